@@ -1,0 +1,12 @@
+/* Everything the core offers. See each header for its equations. */
+#ifndef HYST_HYST_H
+#define HYST_HYST_H
+
+#include "hyst/chain.h"
+#include "hyst/dead_zone.h"
+#include "hyst/guard.h"
+#include "hyst/play.h"
+#include "hyst/prandtl_ishlinskii.h"
+#include "hyst/real.h"
+
+#endif

@@ -1,0 +1,26 @@
+/* Prandtl-Ishlinskii operator (S1 eq. 4):  y = p0 u + sum_i p_i play_{r_i}[u].
+ * Its inverse is the same operator with other constants (S1 eqs. 7-8), so one step serves both. */
+#ifndef HYST_PRANDTL_ISHLINSKII_H
+#define HYST_PRANDTL_ISHLINSKII_H
+
+#include "hyst/real.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct {
+    size_t count;       /* number of plays */
+    hyst_real p0;       /* weight of the input itself */
+    const hyst_real *p; /* weights of the plays */
+    const hyst_real *r; /* their thresholds, >= 0, in units of u */
+} hyst_pi;
+
+/* One sample. z holds the count play outputs; the sum starts at p0 u and follows the order of i. */
+hyst_real hyst_pi_step(const hyst_pi *pi, hyst_real *z, hyst_real u);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,46 @@
+/* Dead-zone maps: the sum is taken in the order of the terms, so results repeat to the bit. */
+#include "hyst/dead_zone.h"
+
+static hyst_real two_sided(hyst_real u, hyst_real rho)
+{
+    const hyst_real excess = u - rho;
+    const hyst_real zero = HYST_REAL(0.0);
+    if (rho > zero) {
+        return excess > zero ? excess : zero;
+    }
+    if (rho < zero) {
+        return excess < zero ? excess : zero;
+    }
+    return u;
+}
+
+static hyst_real by_direction(hyst_real u_previous, hyst_real u, hyst_real rho)
+{
+    if (u > u_previous && u > rho) {
+        return u - rho;
+    }
+    if (u < u_previous && u < -rho) {
+        return u + rho;
+    }
+    return HYST_REAL(0.0);
+}
+
+hyst_real hyst_dead_zone_step(const hyst_dead_zone *map, hyst_real u)
+{
+    hyst_real y = HYST_REAL(0.0);
+    for (size_t i = 0; i < map->count; ++i) {
+        y += map->weight[i] * two_sided(u, map->threshold[i]);
+    }
+    return y;
+}
+
+hyst_real hyst_direction_dead_zone_step(const hyst_dead_zone *map, hyst_real *u_previous,
+                                        hyst_real u)
+{
+    hyst_real y = HYST_REAL(0.0);
+    for (size_t i = 0; i < map->count; ++i) {
+        y += map->weight[i] * by_direction(*u_previous, u, map->threshold[i]);
+    }
+    *u_previous = u;
+    return y;
+}

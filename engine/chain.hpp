@@ -1,0 +1,46 @@
+// A chain of the core together with the memory its constants live in.
+//
+// Invariant: every pointer inside `stages_` points into `constants_`, which never moves after
+// construction; so a Chain is neither copied nor moved.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <vector>
+
+#include "hyst/hyst.h"
+
+namespace hyst {
+
+class Chain {
+public:
+    Chain() = default;
+    Chain(const Chain &) = delete;
+    Chain &operator=(const Chain &) = delete;
+
+    void add_affine(double gain, double offset);
+    void add_play(double r);
+    void add_stop(double r);
+    void add_dead_zone(std::vector<double> weights, std::vector<double> thresholds,
+                       bool by_direction);
+    void add_pi(double p0, std::vector<double> p, std::vector<double> r);
+
+    hyst_chain view() const { return {stages_.size(), stages_.data()}; }
+    const std::vector<hyst_stage> &stages() const { return stages_; }
+    std::size_t state_length() const;
+    std::size_t parameter_count() const;
+
+    // One record; the state is carried in and out.
+    void run(double *state, const double *u, double *y, std::size_t samples) const;
+
+private:
+    const double *keep(std::vector<double> values);
+
+    std::deque<std::vector<double>> constants_;
+    std::vector<hyst_stage> stages_;
+};
+
+// Parameters of one stage in the order of Operator.parameters() in Python.
+std::size_t parameter_count(const hyst_stage &stage);
+
+}  // namespace hyst

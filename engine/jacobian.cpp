@@ -1,0 +1,157 @@
+// The derivative of a play is remembered like the play itself (contact-sample rule):
+// while z is pushed, z = u -+ r, so dz = du -+ dr; while it rests, dz is what it was at the
+// last sample that pushed it. So each stage keeps one tangent per play and incoming parameter.
+#include "jacobian.hpp"
+
+#include <vector>
+
+namespace hyst {
+namespace {
+
+// Where a stage finds the record and the tangents: columns [0, incoming) hold the derivatives of
+// its input on entry and of its output on exit; its own columns start at `incoming`.
+struct Tangents {
+    double *signal;
+    std::size_t samples;
+    double *rows;
+    std::size_t stride;
+    std::size_t incoming;
+
+    double *row(std::size_t k) const { return rows + k * stride; }
+    double *own(std::size_t k) const { return row(k) + incoming; }
+    void scale(std::size_t k, double factor) const {
+        for (std::size_t c = 0; c < incoming; ++c) row(k)[c] *= factor;
+    }
+};
+
+void affine(const hyst_affine &map, const Tangents &t) {
+    for (std::size_t k = 0; k < t.samples; ++k) {
+        t.scale(k, map.gain);
+        t.own(k)[0] = t.signal[k];
+        t.own(k)[1] = 1.0;
+        t.signal[k] = map.gain * t.signal[k] + map.offset;
+    }
+}
+
+// Value and slope of one dead-zone term, and its derivative by the threshold.
+struct Term {
+    double value;
+    double slope;
+    double by_threshold;
+};
+
+Term two_sided(double u, double rho) {
+    if (rho == 0.0) return {u, 1.0, 0.0};
+    const bool active = rho > 0.0 ? u > rho : u < rho;
+    return active ? Term{u - rho, 1.0, -1.0} : Term{0.0, 0.0, 0.0};
+}
+
+Term by_direction(double u_previous, double u, double rho) {
+    if (u > u_previous && u > rho) return {u - rho, 1.0, -1.0};
+    if (u < u_previous && u < -rho) return {u + rho, 1.0, 1.0};
+    return {0.0, 0.0, 0.0};
+}
+
+void dead_zone(const hyst_dead_zone &map, const double *u_previous, const Tangents &t) {
+    double before = u_previous ? *u_previous : 0.0;
+    for (std::size_t k = 0; k < t.samples; ++k) {
+        const double u = t.signal[k];
+        double y = 0.0, slope = 0.0;
+        for (std::size_t i = 0; i < map.count; ++i) {
+            const double rho = map.threshold[i];
+            const Term term = u_previous ? by_direction(before, u, rho) : two_sided(u, rho);
+            y += map.weight[i] * term.value;
+            slope += map.weight[i] * term.slope;
+            t.own(k)[i] = term.value;
+            t.own(k)[map.count + i] = map.weight[i] * term.by_threshold;
+        }
+        t.scale(k, slope);
+        t.signal[k] = y;
+        before = u;
+    }
+}
+
+// One play with the derivatives it remembers: by its threshold and by every incoming parameter.
+struct RememberingPlay {
+    double z;
+    double by_r = 0.0;
+    std::vector<double> by_input;
+
+    RememberingPlay(double start, std::size_t incoming) : z(start), by_input(incoming, 0.0) {}
+
+    void step(double u, double r, const double *input_tangent) {
+        const double pushed = hyst_play(u, r, z);
+        if (pushed == z) return;
+        by_r = pushed > z ? -1.0 : 1.0;
+        by_input.assign(input_tangent, input_tangent + by_input.size());
+        z = pushed;
+    }
+};
+
+void play_or_stop(const hyst_stage &stage, double start, const Tangents &t) {
+    const bool is_stop = stage.kind == HYST_STOP;
+    RememberingPlay play(start, t.incoming);
+    for (std::size_t k = 0; k < t.samples; ++k) {
+        const double u = t.signal[k];
+        play.step(u, stage.as.r, t.row(k));
+        for (std::size_t c = 0; c < t.incoming; ++c) {
+            double &tangent = t.row(k)[c];
+            tangent = is_stop ? tangent - play.by_input[c] : play.by_input[c];
+        }
+        t.own(k)[0] = is_stop ? -play.by_r : play.by_r;
+        t.signal[k] = is_stop ? u - play.z : play.z;
+    }
+}
+
+void prandtl_ishlinskii(const hyst_pi &pi, const double *start, const Tangents &t) {
+    std::vector<RememberingPlay> plays;
+    for (std::size_t i = 0; i < pi.count; ++i) plays.emplace_back(start[i], t.incoming);
+    for (std::size_t k = 0; k < t.samples; ++k) {
+        const double u = t.signal[k];
+        double *own = t.own(k);
+        double y = pi.p0 * u;
+        own[0] = u;
+        for (std::size_t i = 0; i < pi.count; ++i) {
+            plays[i].step(u, pi.r[i], t.row(k));
+            y += pi.p[i] * plays[i].z;
+            own[1 + i] = plays[i].z;
+            own[1 + pi.count + i] = pi.p[i] * plays[i].by_r;
+        }
+        t.scale(k, pi.p0);
+        for (std::size_t c = 0; c < t.incoming; ++c) {
+            for (std::size_t i = 0; i < pi.count; ++i) t.row(k)[c] += pi.p[i] * plays[i].by_input[c];
+        }
+        t.signal[k] = y;
+    }
+}
+
+void pass(const hyst_stage &stage, const double *state, const Tangents &t) {
+    switch (stage.kind) {
+    case HYST_AFFINE:
+        return affine(stage.as.affine, t);
+    case HYST_PLAY:
+    case HYST_STOP:
+        return play_or_stop(stage, state[0], t);
+    case HYST_DEAD_ZONE:
+        return dead_zone(stage.as.dead_zone, nullptr, t);
+    case HYST_DIRECTION_DEAD_ZONE:
+        return dead_zone(stage.as.dead_zone, state, t);
+    case HYST_PI:
+        return prandtl_ishlinskii(stage.as.pi, state, t);
+    }
+}
+
+}  // namespace
+
+void jacobian(const Chain &chain, double *state, const double *u, std::size_t samples,
+              double *jacobian) {
+    std::vector<double> signal(u, u + samples);
+    Tangents tangents{signal.data(), samples, jacobian, chain.parameter_count(), 0};
+    for (const hyst_stage &stage : chain.stages()) {
+        pass(stage, state, tangents);
+        tangents.incoming += parameter_count(stage);
+        state += hyst_stage_state_length(&stage);
+    }
+}
+
+}  // namespace hyst
