@@ -1,0 +1,45 @@
+# What the core defines and what it asks for, read from its archive by nm.
+#   cmake -D NM=nm -D ARCHIVE=libcore.a -P symbols.cmake
+# Every defined symbol that others can see starts with hyst_; every undefined one is defined in the
+# archive itself, so nothing is taken from libc, libm or the compiler's own library; and there is no
+# writable data, so no state but the caller's.
+cmake_minimum_required(VERSION 3.18)
+execute_process(COMMAND ${NM} -P ${ARCHIVE} OUTPUT_VARIABLE listing RESULT_VARIABLE status)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "${NM} cannot read ${ARCHIVE}")
+endif()
+
+set(defined "")
+set(undefined "")
+set(problems "")
+string(REPLACE "\n" ";" lines "${listing}")
+foreach(line IN LISTS lines)
+  if(NOT line MATCHES "^([^ ]+) ([A-Za-z])( |$)")
+    continue() # the name of an object file
+  endif()
+  set(name ${CMAKE_MATCH_1})
+  set(kind ${CMAKE_MATCH_2})
+  if(kind STREQUAL "U")
+    list(APPEND undefined ${name})
+  elseif(kind MATCHES "[A-Z]")
+    list(APPEND defined ${name})
+    if(NOT name MATCHES "^hyst_")
+      string(APPEND problems "\n  defined without the prefix hyst_: ${name}")
+    endif()
+  endif()
+  if(kind MATCHES "[BbDdCcGgSs]")
+    string(APPEND problems "\n  writable data: ${name}")
+  endif()
+endforeach()
+foreach(name IN LISTS undefined)
+  if(NOT name IN_LIST defined)
+    string(APPEND problems "\n  taken from outside: ${name}")
+  endif()
+endforeach()
+
+if(NOT "hyst_guarded_step" IN_LIST defined)
+  string(APPEND problems "\n  hyst_guarded_step is not there: this is not the core")
+endif()
+if(problems)
+  message(FATAL_ERROR "${ARCHIVE}:${problems}")
+endif()
