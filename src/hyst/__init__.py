@@ -1,1 +1,98 @@
-"""hyst."""
+"""hyst: from a measured hysteresis loop to a model, its exact inverse and a command.
+
+Names are loaded when they are first used, so that ``import hyst`` stays quick.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+if TYPE_CHECKING:
+    from hyst import compensation, io, signals
+    from hyst.errors import (
+        HystError,
+        InputError,
+        MissingExtraError,
+        NotIdentifiableError,
+        NotInvertibleError,
+        SolverError,
+    )
+    from hyst.identification import Identified, identify
+    from hyst.io import read_record
+    from hyst.models import (
+        GeneralizedPrandtlIshlinskii,
+        ModifiedPrandtlIshlinskii,
+        PrandtlIshlinskii,
+    )
+    from hyst.models.model_loading import load
+    from hyst.operators import Affine, Composition, DeadZone, Operator, Play, Stop
+    from hyst.signals import Record
+
+_HOME = {
+    "HystError": "hyst.errors",
+    "InputError": "hyst.errors",
+    "MissingExtraError": "hyst.errors",
+    "NotIdentifiableError": "hyst.errors",
+    "NotInvertibleError": "hyst.errors",
+    "SolverError": "hyst.errors",
+    "Identified": "hyst.identification",
+    "identify": "hyst.identification",
+    "read_record": "hyst.io",
+    "GeneralizedPrandtlIshlinskii": "hyst.models",
+    "ModifiedPrandtlIshlinskii": "hyst.models",
+    "PrandtlIshlinskii": "hyst.models",
+    "load": "hyst.models",
+    "Affine": "hyst.operators",
+    "Composition": "hyst.operators",
+    "DeadZone": "hyst.operators",
+    "Operator": "hyst.operators",
+    "Play": "hyst.operators",
+    "Stop": "hyst.operators",
+    "Record": "hyst.signals",
+}
+_PACKAGES = ("compensation", "errors", "identification", "io", "models", "operators", "signals")
+
+__all__ = [
+    "Affine",
+    "Composition",
+    "DeadZone",
+    "GeneralizedPrandtlIshlinskii",
+    "HystError",
+    "Identified",
+    "InputError",
+    "MissingExtraError",
+    "ModifiedPrandtlIshlinskii",
+    "NotIdentifiableError",
+    "NotInvertibleError",
+    "Operator",
+    "Play",
+    "PrandtlIshlinskii",
+    "Record",
+    "SolverError",
+    "Stop",
+    "__version__",
+    "compensation",
+    "identify",
+    "io",
+    "load",
+    "read_record",
+    "signals",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        value = getattr(importlib.import_module(_HOME[name]), name)
+    elif name in _PACKAGES:
+        value = importlib.import_module(f"hyst.{name}")
+    else:
+        raise AttributeError(f"module 'hyst' has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,55 @@
+"""Checks of the two parts of a mapped Prandtl-Ishlinskii model."""
+
+from __future__ import annotations
+
+from hyst.errors import InputError
+from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii
+from hyst.operators.base import Operator
+
+
+def as_map(operator: Operator, name: str) -> Operator:
+    """Check that an operator can stand before or after the plays as a map.
+
+    Parameters
+    ----------
+    operator
+        Any operator.
+    name
+        What messages call it.
+
+    Returns
+    -------
+    Operator
+        ``operator`` itself.
+
+    Raises
+    ------
+    InputError
+        If it is no operator or has memory.
+    """
+    if not isinstance(operator, Operator) or not operator.traits().memoryless:
+        raise InputError(f"{name} is {operator!r}; give an operator without memory, as DeadZone")
+    return operator
+
+
+def as_plays(operator: Operator) -> PrandtlIshlinskii:
+    """Check that an operator is a Prandtl-Ishlinskii model.
+
+    Parameters
+    ----------
+    operator
+        Any operator.
+
+    Returns
+    -------
+    PrandtlIshlinskii
+        ``operator`` itself.
+
+    Raises
+    ------
+    InputError
+        If it is something else.
+    """
+    if not isinstance(operator, PrandtlIshlinskii):
+        raise InputError(f"pi is {operator!r}; give a PrandtlIshlinskii")
+    return operator

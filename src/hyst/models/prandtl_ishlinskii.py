@@ -1,0 +1,222 @@
+"""The Prandtl-Ishlinskii model and its exact inverse."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hyst import _engine
+from hyst.errors import InputError, NotInvertibleError
+from hyst.operators.base import Operator
+from hyst.operators.checks import as_ascending_thresholds, as_constants, as_number
+from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
+from hyst.operators.registry import entries, register
+from hyst.operators.traits import Traits
+
+Array = NDArray[np.float64]
+
+
+@register
+@final
+@dataclass(frozen=True, eq=False, init=False)
+class PrandtlIshlinskii(Operator):
+    """Prandtl-Ishlinskii model: ``y = p0 u + sum_i p_i F_i[u]``, F_i the play of threshold r_i.
+
+    Parameters
+    ----------
+    p
+        Shape (n,), weights of the plays, output units per input unit, any sign.
+    r
+        Shape (n,), thresholds ``0 <= r_1 <= ... <= r_n``, input units.
+    p0
+        Weight of the input itself, output units per input unit.
+    z0
+        Shape (n,), play outputs before the first sample, input units; zeros (no memory) if left
+        out.
+
+    Raises
+    ------
+    InputError
+        If lengths differ, thresholds are negative or unsorted, or a constant is not finite.
+
+    Notes
+    -----
+    S1 eq. 4, S4 eq. 1.
+
+    Examples
+    --------
+    >>> model = PrandtlIshlinskii(p=[0.5, 0.25], r=[0.1, 0.4], p0=1.0)
+    >>> u = [0.0, 1.0, 0.2, 0.6]
+    >>> bool(abs(model.inverse()(model(u)) - u).max() < 1e-15)
+    True
+    """
+
+    p: Array
+    r: Array
+    p0: float
+    z0: Array
+
+    kind = "prandtl-ishlinskii"
+
+    def __init__(
+        self, p: ArrayLike, r: ArrayLike, p0: float = 0.0, z0: ArrayLike | None = None
+    ) -> None:
+        weights, thresholds = as_constants(p, "p"), as_ascending_thresholds(r)
+        if weights.size != thresholds.size:
+            raise InputError(
+                f"p has {weights.size} entries but r has {thresholds.size}; give one p for each r"
+            )
+        memory = as_constants(np.zeros(weights.size) if z0 is None else z0, "z0")
+        if memory.size != weights.size:
+            raise InputError(
+                f"z0 has {memory.size} entries; give one for each of {weights.size} plays"
+            )
+        object.__setattr__(self, "p", weights)
+        object.__setattr__(self, "r", thresholds)
+        object.__setattr__(self, "p0", as_number(p0, "p0"))
+        object.__setattr__(self, "z0", memory)
+
+    def traits(self) -> Traits:
+        """Give the traits of a superposition of plays."""
+        return Traits(
+            memoryless=self.p.size == 0,
+            rate_independent=True,
+            return_point_memory=True,
+            congruent_loops=True,
+            monotone=bool(self._slopes().min() >= 0.0),
+            invertible=self.is_invertible(),
+        )
+
+    def initial_state(self) -> Array:
+        """Give the initial play outputs, shape (n,)."""
+        return self.z0.copy()
+
+    def inverse(self) -> PrandtlIshlinskii:
+        """Give the exact inverse, again a Prandtl-Ishlinskii model.
+
+        With ``c_j = p0 + p_1 + .. + p_j``: weights ``g0 = 1/p0``, ``g_j = -p_j / (c_j c_{j-1})``,
+        thresholds ``s_j = s_{j-1} + c_{j-1} (r_j - r_{j-1})``, memory
+        ``c_j z_j + sum_{i>j} p_i z_i``.
+
+        Raises
+        ------
+        NotInvertibleError
+            If p0 is not positive, a cumulative weight c_j is not positive (the weight is named), or
+            the initial memory is none that an input could have left.
+
+        Notes
+        -----
+        S1 eqs. 7-8, S4 eqs. 14-16 (eq. 16 must start with y1 = a0 x1).
+        """
+        self._require_invertible()
+        p, r, z = self._merged()
+        slopes = self.p0 + np.concatenate([[0.0], np.cumsum(p)])
+        weights = -p / (slopes[1:] * slopes[:-1])
+        thresholds = np.cumsum(slopes[:-1] * np.diff(r, prepend=0.0))
+        beyond = np.cumsum((p * z)[::-1])[::-1] - p * z
+        return PrandtlIshlinskii(weights, thresholds, 1.0 / self.p0, slopes[1:] * z + beyond)
+
+    def initial_loading_curve(self, u: ArrayLike) -> Array:
+        """Give the output while the input first rises from 0 without memory.
+
+        Parameters
+        ----------
+        u
+            Inputs >= 0.
+
+        Returns
+        -------
+        numpy.ndarray
+            ``f(u) = p0 u + sum_i p_i max(u - r_i, 0)``, in the shape of ``u``.
+        """
+        rising = np.asarray(u, dtype=np.float64)
+        return self.p0 * rising + np.maximum(rising[..., None] - self.r, 0.0) @ self.p
+
+    def parameters(self) -> Parameters:
+        """Give p0, the weights, then the thresholds."""
+        n = self.p.size
+        free = np.full(n + 1, np.inf)
+        return Parameters(
+            values=np.concatenate([[self.p0], self.p, self.r]),
+            names=("p0", *numbered("p", n, 1), *numbered("r", n, 1)),
+            lower=np.concatenate([-free, np.zeros(n)]),
+            upper=np.concatenate([free, free[1:]]),
+        )
+
+    def with_parameters(self, theta: Sequence[float] | Array) -> PrandtlIshlinskii:
+        """Give a model with other weights and thresholds and the same initial memory."""
+        n = self.p.size
+        vector = as_parameter_vector(theta, 1 + 2 * n)
+        return PrandtlIshlinskii(vector[1 : n + 1], vector[n + 1 :], float(vector[0]), self.z0)
+
+    def lipschitz_constant(self) -> float:
+        """Give the sum of the absolute weights."""
+        return float(abs(self.p0) + np.abs(self.p).sum())
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give kind, weights, thresholds and, where there is one, the initial memory."""
+        memory = {"z0": self.z0.tolist()} if self.z0.any() else {}
+        return {
+            "kind": self.kind,
+            "p0": self.p0,
+            "p": self.p.tolist(),
+            "r": self.r.tolist(),
+            **memory,
+        }
+
+    @classmethod
+    def from_dict(cls, data: dict[str, Any]) -> PrandtlIshlinskii:
+        """Rebuild from ``to_dict()``.
+
+        Raises
+        ------
+        InputError
+            If an entry is missing, unknown or not allowed.
+        """
+        return cls(**entries(data, required=("p", "r", "p0"), optional=("z0",)))
+
+    def append_to(self, chain: _engine.Chain) -> None:
+        """Append this stage to a chain of the engine."""
+        chain.add_pi(self.p0, self.p.tolist(), self.r.tolist())
+
+    def _merged(self) -> tuple[Array, Array, Array]:
+        """Weights, thresholds and memory with plays of one threshold taken together."""
+        r, first, place = np.unique(self.r, return_index=True, return_inverse=True)
+        p = np.zeros(r.size)
+        np.add.at(p, place, self.p)
+        return p, r, self.z0[first]
+
+    def _slopes(self) -> Array:
+        """Slope of every piece of the loading curve."""
+        p, r, _ = self._merged()
+        slopes = self.p0 + np.concatenate([[0.0], np.cumsum(p)])
+        # A play of threshold 0 is the input itself, so the piece before it has no length.
+        return slopes[1:] if r.size and r[0] == 0.0 else slopes
+
+    def _require_invertible(self) -> None:
+        if self.p0 <= 0.0:
+            raise NotInvertibleError(
+                f"p0 is {self.p0:.6g}: without a positive linear part the output rests while the "
+                "input turns; identify or give p0 > 0"
+            )
+        p, r, z = self._merged()
+        slopes = self.p0 + np.cumsum(p)
+        if (slopes <= 0.0).any():
+            j = int(np.flatnonzero(slopes <= 0.0)[0])
+            last = int(np.flatnonzero(self.r == r[j])[-1]) + 1
+            raise NotInvertibleError(
+                f"the cumulative weight p0 + p[1] + .. + p[{last}] is {slopes[j]:.6g}: beyond "
+                f"threshold r[{last}] = {r[j]:.6g} the output would not rise with the input; "
+                f"p[{last}] = {self.p[last - 1]:.6g} is too small"
+            )
+        reach = np.diff(r) + 1e-12 * (np.abs(z).max(initial=0.0) + np.abs(r).max(initial=0.0))
+        equal = all(np.unique(self.z0[self.r == each]).size == 1 for each in r)
+        if not equal or (np.abs(np.diff(z)) > reach).any():
+            raise NotInvertibleError(
+                "z0 is no memory that an input could have left (neighbouring plays differ by more "
+                "than their thresholds); give an admissible z0"
+            )

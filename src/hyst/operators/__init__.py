@@ -1,0 +1,28 @@
+"""Operators: the building blocks of every model."""
+
+from __future__ import annotations
+
+from hyst.operators.affine import Affine
+from hyst.operators.base import Composition, Operator
+from hyst.operators.dead_zone import DeadZone
+from hyst.operators.model_file import ModelDescription
+from hyst.operators.parameters import Parameters
+from hyst.operators.play import Play
+from hyst.operators.registry import operator_from_dict
+from hyst.operators.stepper import Stepper
+from hyst.operators.stop import Stop
+from hyst.operators.traits import Traits
+
+__all__ = [
+    "Affine",
+    "Composition",
+    "DeadZone",
+    "ModelDescription",
+    "Operator",
+    "Parameters",
+    "Play",
+    "Stepper",
+    "Stop",
+    "Traits",
+    "operator_from_dict",
+]

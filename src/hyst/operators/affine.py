@@ -1,0 +1,116 @@
+"""Gain and offset."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst import _engine
+from hyst.errors import NotInvertibleError
+from hyst.operators.base import Operator
+from hyst.operators.checks import as_number
+from hyst.operators.parameters import Parameters, as_parameter_vector
+from hyst.operators.registry import entries, register
+from hyst.operators.traits import Traits
+
+
+@register
+@final
+@dataclass(frozen=True, eq=False)
+class Affine(Operator):
+    """Gain and offset: ``y = gain u + offset``.
+
+    Parameters
+    ----------
+    gain
+        Output units per input unit.
+    offset
+        In output units.
+
+    Raises
+    ------
+    InputError
+        If a constant is not a finite number.
+
+    Examples
+    --------
+    >>> Affine(2.0, 1.0)([0.0, 3.0])
+    array([1., 7.])
+    """
+
+    gain: float
+    offset: float = 0.0
+
+    kind = "affine"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "gain", as_number(self.gain, "gain"))
+        object.__setattr__(self, "offset", as_number(self.offset, "offset"))
+
+    def traits(self) -> Traits:
+        """Give the traits of a straight line."""
+        return Traits(
+            memoryless=True,
+            rate_independent=True,
+            return_point_memory=True,
+            congruent_loops=True,
+            monotone=self.gain >= 0.0,
+            invertible=self.is_invertible(),
+        )
+
+    def initial_state(self) -> NDArray[np.float64]:
+        """Give an empty array: there is no memory."""
+        return np.empty(0)
+
+    def inverse(self) -> Affine:
+        """Give ``u = (y - offset) / gain``.
+
+        Raises
+        ------
+        NotInvertibleError
+            If the gain is zero.
+        """
+        if self.gain == 0.0:
+            raise NotInvertibleError("gain is 0: every input gives the same output")
+        return Affine(1.0 / self.gain, -self.offset / self.gain)
+
+    def parameters(self) -> Parameters:
+        """Give gain and offset."""
+        return Parameters(
+            values=np.array([self.gain, self.offset]),
+            names=("gain", "offset"),
+            lower=np.full(2, -np.inf),
+            upper=np.full(2, np.inf),
+        )
+
+    def with_parameters(self, theta: Sequence[float] | NDArray[np.float64]) -> Affine:
+        """Give another line."""
+        gain, offset = as_parameter_vector(theta, 2)
+        return Affine(float(gain), float(offset))
+
+    def lipschitz_constant(self) -> float:
+        """Give the absolute gain."""
+        return abs(self.gain)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give kind, gain and offset."""
+        return {"kind": self.kind, "gain": self.gain, "offset": self.offset}
+
+    @classmethod
+    def from_dict(cls, data: dict[str, Any]) -> Affine:
+        """Rebuild from ``to_dict()``.
+
+        Raises
+        ------
+        InputError
+            If an entry is missing, unknown or not allowed.
+        """
+        return cls(**entries(data, required=("gain", "offset")))
+
+    def append_to(self, chain: _engine.Chain) -> None:
+        """Append this stage to a chain of the engine."""
+        chain.add_affine(self.gain, self.offset)

@@ -1,0 +1,207 @@
+"""Checks of what operators are given: signals, states, constants."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hyst.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+def _as_real_array(values: Any, name: str) -> Array:
+    try:
+        array = np.asarray(values)
+    except ValueError as error:
+        raise InputError(f"{name} is not a rectangular array of numbers: {error}") from None
+    if array.dtype.kind not in "fiub":
+        raise InputError(f"{name} has dtype {array.dtype}; give real numbers")
+    return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
+
+
+def _refuse_non_finite(array: Array, name: str) -> None:
+    finite = np.isfinite(array)
+    if not finite.all():
+        index = tuple(int(i) for i in np.argwhere(~finite)[0])
+        where = index[0] if len(index) == 1 else index
+        raise InputError(f"{name}[{where}] is {array[index]}; every number must be finite")
+
+
+def as_signal(u: ArrayLike, name: str = "u") -> Array:
+    """Check a signal and give it as contiguous float64.
+
+    Parameters
+    ----------
+    u
+        Shape (N,) or (batch, N), real, finite, N >= 1.
+    name
+        What messages call it.
+
+    Returns
+    -------
+    numpy.ndarray
+        Float64, C-contiguous; ``u`` itself where it already is that.
+
+    Raises
+    ------
+    InputError
+        If it has another shape, is empty, is not real, or holds a number that is not finite; the
+        first bad index is named.
+    """
+    signal = _as_real_array(u, name)
+    if signal.ndim not in (1, 2):
+        raise InputError(f"{name} has {signal.ndim} dimensions; give (N,) or (batch, N)")
+    if signal.size == 0:
+        raise InputError(f"{name} is empty; give at least one sample")
+    _refuse_non_finite(signal, name)
+    return signal
+
+
+def as_state(state: ArrayLike, length: int, batch: int | None) -> Array:
+    """Check a state and give a copy, one row per record of a batch.
+
+    Parameters
+    ----------
+    state
+        Shape (length,), or (batch, length); float64 exactly, so that nothing is converted silently.
+    length
+        State values of the operator.
+    batch
+        Number of records, or None for a single one.
+
+    Returns
+    -------
+    numpy.ndarray
+        A fresh (batch or 1, length) array.
+
+    Raises
+    ------
+    InputError
+        If shape or dtype are wrong or a value is not finite.
+    """
+    given = np.asarray(state)
+    if given.dtype != np.float64 and given.size:
+        raise InputError(f"state has dtype {given.dtype}; give float64")
+    rows = 1 if batch is None else batch
+    if given.shape != (length,) and (batch is None or given.shape != (batch, length)):
+        expected = f"({length},)" if batch is None else f"({length},) or ({batch}, {length})"
+        raise InputError(f"state has shape {given.shape}; this operator needs {expected}")
+    _refuse_non_finite(given, "state")
+    return np.array(np.broadcast_to(given, (rows, length)), dtype=np.float64, order="C")
+
+
+def as_constants(values: ArrayLike, name: str) -> Array:
+    """Check an array of constants and give a read-only copy.
+
+    Parameters
+    ----------
+    values
+        Shape (n,), real and finite; n may be 0.
+    name
+        What messages call it.
+
+    Returns
+    -------
+    numpy.ndarray
+        Float64, read-only.
+
+    Raises
+    ------
+    InputError
+        If it is not one-dimensional, not real or not finite.
+    """
+    constants = _as_real_array(values, name).copy()
+    if constants.ndim != 1:
+        raise InputError(f"{name} has shape {constants.shape}; give a list of numbers")
+    _refuse_non_finite(constants, name)
+    constants.flags.writeable = False
+    return constants
+
+
+def as_number(value: Any, name: str) -> float:
+    """Check one constant.
+
+    Parameters
+    ----------
+    value
+        A finite real number.
+    name
+        What messages call it.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InputError
+        If it is not a finite real number.
+    """
+    number = _as_real_array(value, name)
+    if number.ndim != 0:
+        raise InputError(f"{name} has shape {number.shape}; give one number")
+    if not np.isfinite(number):
+        raise InputError(f"{name} is {float(number)}; it must be finite")
+    return float(number)
+
+
+def as_threshold(value: Any, name: str = "r") -> float:
+    """Check the threshold of a play or a stop.
+
+    Parameters
+    ----------
+    value
+        A finite number >= 0, in units of the input.
+    name
+        What messages call it.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InputError
+        If it is negative or not a finite number.
+    """
+    threshold = as_number(value, name)
+    if threshold < 0.0:
+        raise InputError(f"{name} is {threshold}; a threshold is zero or positive")
+    return threshold
+
+
+def as_ascending_thresholds(values: ArrayLike, name: str = "r") -> Array:
+    """Check the thresholds of a bank of plays: ``0 <= r_1 <= ... <= r_n``.
+
+    Parameters
+    ----------
+    values
+        Shape (n,), in units of the input.
+    name
+        What messages call it.
+
+    Returns
+    -------
+    numpy.ndarray
+        Float64, read-only.
+
+    Raises
+    ------
+    InputError
+        If one is negative, smaller than the one before it, or not finite.
+    """
+    thresholds = as_constants(values, name)
+    if thresholds.size and thresholds.min() < 0.0:
+        bad = int(np.flatnonzero(thresholds < 0.0)[0])
+        raise InputError(f"{name}[{bad}] is {thresholds[bad]}; thresholds are zero or positive")
+    falling = np.flatnonzero(np.diff(thresholds) < 0.0)
+    if falling.size:
+        i = int(falling[0]) + 1
+        raise InputError(
+            f"{name}[{i}] = {thresholds[i]} is smaller than {name}[{i - 1}] = {thresholds[i - 1]}; "
+            "sort the thresholds in ascending order, with their weights"
+        )
+    return thresholds

@@ -1,0 +1,82 @@
+"""The flat parameter vector of an operator."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class Parameters:
+    """Values, names and bounds of the constants of an operator, in one fixed order.
+
+    Parameters
+    ----------
+    values, lower, upper
+        Shape (m,), float64; ``lower <= values <= upper``. Bounds may be infinite.
+    names
+        m distinct names, for example ``p[1]`` or ``affine.offset``.
+    """
+
+    values: NDArray[np.float64]
+    names: tuple[str, ...]
+    lower: NDArray[np.float64]
+    upper: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+
+def numbered(name: str, count: int, first: int = 0) -> tuple[str, ...]:
+    """Names ``name[first]`` ... of ``count`` entries of one array.
+
+    Parameters
+    ----------
+    name
+        The array's name.
+    count
+        How many entries it has.
+    first
+        Index of the first one.
+
+    Returns
+    -------
+    tuple of str
+    """
+    return tuple(f"{name}[{first + i}]" for i in range(count))
+
+
+def as_parameter_vector(
+    theta: Sequence[float] | NDArray[np.float64], count: int
+) -> NDArray[np.float64]:
+    """Check a parameter vector.
+
+    Parameters
+    ----------
+    theta
+        Shape (count,), finite numbers.
+    count
+        How many entries the operator needs.
+
+    Returns
+    -------
+    numpy.ndarray
+        A float64 copy.
+
+    Raises
+    ------
+    InputError
+        If the length is wrong or an entry is not finite.
+    """
+    vector = np.array(theta, dtype=np.float64)
+    if vector.shape != (count,):
+        raise InputError(f"theta has shape {vector.shape}; this operator has {count} parameters")
+    if not np.isfinite(vector).all():
+        bad = int(np.flatnonzero(~np.isfinite(vector))[0])
+        raise InputError(f"theta[{bad}] is {vector[bad]}; parameters must be finite")
+    return vector
