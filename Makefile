@@ -1,0 +1,91 @@
+# What a contributor runs; `make` alone lists it. Every target does the set-up it needs, in .venv,
+# from nothing but Python 3.11 or newer, a C and a C++ compiler and make.
+
+PYTHON ?= $(shell for python in python3 python3.14 python3.13 python3.12 python3.11; do \
+	$$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
+	&& echo $$python && break; done)
+# Sanitized builds of the core: ON, OFF, or AUTO for where the compiler can link them.
+SANITIZERS ?= AUTO
+PYTEST_ARGS ?= -n 2
+JOBS ?= 2
+
+# Make's own default for CXX is one vendor's; c++ is what goes with cc.
+ifeq ($(origin CXX),default)
+CXX := c++
+endif
+
+bin := .venv/bin
+installed := .venv/.installed
+installed_dev := .venv/.installed-dev
+core_build := build/core-tests/$(notdir $(CC))
+built_from := pyproject.toml CMakeLists.txt core/SOURCES \
+	$(shell find core/include core/src engine -type f)
+
+# Threaded BLAS is a hundred times slower as soon as another process wants the core.
+export OPENBLAS_NUM_THREADS := 1
+export OMP_NUM_THREADS := 1
+export MKL_NUM_THREADS := 1
+export CC CXX
+
+.DEFAULT_GOAL := help
+.PHONY: help venv install demo test core-test lint types bench clean distclean
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+venv: $(bin)/python ## create the virtual environment
+
+install: $(installed_dev) ## install hyst and all development tools; again after a change of C or C++
+
+demo: $(installed) ## the whole story on a simulated stage; results in demo/
+	$(bin)/hyst demo -o demo
+
+test: core-test ## C tests of the core, then pytest
+	$(bin)/python -m pytest $(PYTEST_ARGS)
+
+core-test: $(installed_dev) ## C tests of the core: double and float, plain and sanitized
+	@$(bin)/cmake -S . -B $(core_build) -G Ninja --log-level=WARNING \
+		-DCMAKE_MAKE_PROGRAM=$(abspath $(bin)/ninja) \
+		-DHYST_CORE_TESTS=ON -DHYST_SANITIZERS=$(SANITIZERS)
+	@$(bin)/cmake --build $(core_build) --parallel $(JOBS) -- --quiet
+	@$(bin)/ctest --test-dir $(core_build) --output-on-failure --parallel $(JOBS)
+
+lint: $(installed_dev) ## style, formatting and import direction
+	$(bin)/ruff check
+	$(bin)/ruff format --check
+	$(bin)/lint-imports
+
+types: $(installed_dev) ## strict type check
+	$(bin)/mypy
+
+bench: $(installed_dev) ## timings and accuracy against peers
+	$(bin)/python -m benchmarks
+
+clean: ## remove everything built, but not .venv
+	rm -rf build dist demo .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	find src tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
+
+distclean: clean ## remove .venv too
+	rm -rf .venv
+
+$(bin)/python:
+	@test -n "$(PYTHON)" || { echo "hyst needs Python 3.11 or newer and found none;" \
+		"install one, or name it: make PYTHON=/path/to/python" >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+		echo "hyst needs Python 3.11 or newer, and $(PYTHON) is not;" \
+		"name another: make PYTHON=python3.12" >&2; exit 1; }
+	@for compiler in $(CC) $(CXX); do command -v $$compiler >/dev/null || { \
+		echo "hyst needs a C and a C++ compiler, and there is no $$compiler;" \
+		"install one, or name it: make CC=gcc CXX=g++" >&2; exit 1; }; done
+	@$(PYTHON) -m venv .venv || { rm -rf .venv; echo "$(PYTHON) cannot make virtual environments;" \
+		"install its venv module (python3-venv on Debian and Ubuntu)" >&2; exit 1; }
+
+# pip fetches what builds the package (scikit-build-core, nanobind and, where the machine has none,
+# cmake and ninja) into an environment of its own.
+$(installed): $(built_from) | $(bin)/python
+	$(bin)/python -m pip install --quiet --disable-pip-version-check --editable '.[all]'
+	@touch $@
+
+$(installed_dev): $(built_from) | $(bin)/python
+	$(bin)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $(installed) $@
