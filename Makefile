@@ -48,7 +48,9 @@ core-test: $(installed_dev) ## C tests of the core: double and float, plain and 
 		-DCMAKE_MAKE_PROGRAM=$(abspath $(bin)/ninja) \
 		-DHYST_CORE_TESTS=ON -DHYST_SANITIZERS=$(SANITIZERS)
 	@$(bin)/cmake --build $(core_build) --parallel $(JOBS) -- --quiet
-	@$(bin)/ctest --test-dir $(core_build) --output-on-failure --parallel $(JOBS)
+	@$(bin)/ctest --test-dir $(core_build) --output-on-failure --parallel $(JOBS) \
+		--quiet --output-log $(core_build)/ctest.log || { cat $(core_build)/ctest.log; exit 1; }
+	@grep 'tests passed' $(core_build)/ctest.log
 
 lint: $(installed_dev) ## style, formatting and import direction
 	$(bin)/ruff check
