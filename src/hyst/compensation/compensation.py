@@ -1,0 +1,74 @@
+"""What a compensation gives back."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Compensation:
+    """A command, and what the model says it will do.
+
+    Parameters
+    ----------
+    u
+        Command, shape (N,), input units.
+    y_ref
+        Wanted output, shape (N,), output units.
+    y_predicted
+        The model's output for ``u``, shape (N,), output units.
+    method
+        How the command was computed.
+    clipped
+        Number of samples at which the command was held at an end of the input range.
+
+    Examples
+    --------
+    >>> done = Compensation(np.zeros(2), np.zeros(2), np.array([3.0, -4.0]), "exact", 0)
+    >>> done.max_abs, round(done.rms**2, 12), done.percent_of_range(done.rms)
+    (4.0, 12.5, None)
+    """
+
+    u: Array
+    y_ref: Array
+    y_predicted: Array
+    method: str
+    clipped: int
+
+    @cached_property
+    def predicted_error(self) -> Array:
+        """``y_predicted - y_ref``, shape (N,), output units."""
+        return self.y_predicted - self.y_ref
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the predicted error, output units."""
+        return math.sqrt(float(np.mean(np.square(self.predicted_error))))
+
+    @property
+    def max_abs(self) -> float:
+        """Largest absolute predicted error, output units."""
+        return float(np.max(np.abs(self.predicted_error)))
+
+    def percent_of_range(self, value: float) -> float | None:
+        """Give an error in percent of the range of the wanted output.
+
+        Parameters
+        ----------
+        value
+            An error, output units.
+
+        Returns
+        -------
+        float or None
+            None if the wanted output does not move.
+        """
+        extent = float(np.ptp(self.y_ref))
+        return 100.0 * value / extent if extent > 0.0 else None
