@@ -1,0 +1,33 @@
+"""A chain with a stage of every kind, built in the engine and written as plain Python."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from equations import Pair, direction_dead_zone, play, prandtl_ishlinskii, stop, two_sided_dead_zone
+
+
+@pytest.fixture
+def pair() -> Pair:
+    made = Pair()
+    made.chain.add_affine(1.1, -0.3)
+    made.steps.append(lambda u: 1.1 * u + -0.3)
+    made.chain.add_dead_zone([0.9, 0.2, -0.1], [0.0, 0.7, -1.3], False)
+    made.steps.append(two_sided_dead_zone([0.9, 0.2, -0.1], [0.0, 0.7, -1.3]))
+    made.chain.add_pi(0.4, [0.3, 0.2, 0.1], [0.1, 0.9, 2.3])
+    made.steps.append(prandtl_ishlinskii(0.4, [0.3, 0.2, 0.1], [0.1, 0.9, 2.3]))
+    made.chain.add_play(0.05)
+    made.steps.append(play(0.05))
+    made.chain.add_stop(2.2)
+    made.steps.append(stop(2.2))
+    made.chain.add_dead_zone([1.7, 0.3], [0.0, 0.4], True)
+    made.steps.append(direction_dead_zone([1.7, 0.3], [0.0, 0.4]))
+    return made
+
+
+@pytest.fixture
+def noise() -> np.ndarray:
+    """Reversals at every other sample, and a plateau."""
+    u = 4.0 * np.random.default_rng(1).standard_normal(3000)
+    u[1000:1010] = u[1000]
+    return u
