@@ -1,7 +1,8 @@
-"""Identification: from records to models."""
+"""Identification: from records to models that can be inverted."""
 
 from __future__ import annotations
 
 from hyst.identification.identified import Candidate, Identified, UsedSamples
+from hyst.identification.identify import identify
 
-__all__ = ["Candidate", "Identified", "UsedSamples"]
+__all__ = ["Candidate", "Identified", "UsedSamples", "identify"]

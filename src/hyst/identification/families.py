@@ -1,0 +1,220 @@
+"""The families of models: how free parameters become the constants of an operator.
+
+For every family the constants of the operator are an affine function of the free parameters,
+``constants = fixed + transform @ theta``, so the Jacobian by theta is the operator's own Jacobian
+times ``transform``, and bounds on theta keep every iterate invertible. Scales that only shift a
+factor from one stage to the next are fixed: the slope of a map around 0 is 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.models import (
+    GeneralizedPrandtlIshlinskii,
+    ModifiedPrandtlIshlinskii,
+    PrandtlIshlinskii,
+)
+from hyst.operators import Affine, DeadZone, Operator
+
+Array = NDArray[np.float64]
+
+LINEAR, PI, GPI, MPI = "linear", "pi", "gpi", "mpi"
+FAMILIES = (LINEAR, PI, GPI, MPI)
+"""From the simplest to the richest."""
+
+SMALLEST_MAP_SLOPE = 0.02
+"""Of an envelope or output map, whose slope around 0 is 1."""
+
+SMALLEST_SLOPE = 1e-3
+"""Least p0 as a share of the mean slope of the loop: it bounds the gain of the inverse."""
+
+
+@dataclass(frozen=True, eq=False)
+class Parametrization:
+    """Free parameters of a family and the operator they make.
+
+    Parameters
+    ----------
+    template
+        An operator of the family; its constants are replaced.
+    transform, fixed
+        Shapes (constants, m) and (constants,).
+    lower, upper
+        Shape (m,), bounds of theta.
+    plays
+        Number of plays; theta starts with p0, p_1 .. p_n, r_1 .. r_n.
+    """
+
+    template: Operator
+    transform: Array
+    fixed: Array
+    lower: Array
+    upper: Array
+    plays: int
+
+    @property
+    def size(self) -> int:
+        """Number of free parameters."""
+        return int(self.lower.size)
+
+    def constants(self, theta: Array) -> Array:
+        """Give the operator's parameter vector."""
+        vector: Array = self.fixed + self.transform @ theta
+        return vector
+
+    def operator(self, theta: Array) -> Operator:
+        """Give the operator for sorted theta."""
+        return self.template.with_parameters(self.constants(theta))
+
+    def canonical(self, theta: Array) -> Array:
+        """Sort the plays by radius, each with its weight: their order means nothing."""
+        n = self.plays
+        order = np.argsort(theta[n + 1 : 2 * n + 1], kind="stable")
+        sorted_theta = theta.copy()
+        sorted_theta[1 : n + 1] = theta[1 : n + 1][order]
+        sorted_theta[n + 1 : 2 * n + 1] = theta[n + 1 : 2 * n + 1][order]
+        return sorted_theta
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """A first guess: plays and offset of a PI model, and the knots of a map.
+
+    Parameters
+    ----------
+    p0, p, r, offset
+        Of ``y = sign (p0 u + sum_i p_i z_i) + offset``.
+    sign
+        +1, or -1 where the output falls as the input rises.
+    knots
+        Thresholds of the map, none of them 0: in input units for ``gpi``, in output units without
+        the offset for ``mpi``.
+    largest_radius
+        Upper bound of the radii, input units.
+    fixed_radii
+        Whether the radii are to stay as they are.
+    """
+
+    p0: float
+    p: Array
+    r: Array
+    offset: float
+    sign: float
+    knots: Array
+    largest_radius: float
+    fixed_radii: bool = False
+
+
+def parametrize(family: str, start: Start) -> tuple[Parametrization, Array]:
+    """Give the parametrization of a family and theta for a first guess.
+
+    Parameters
+    ----------
+    family
+        ``linear``, ``pi``, ``gpi`` or ``mpi``.
+    start
+        The first guess; a map starts as the identity.
+
+    Returns
+    -------
+    Parametrization
+    theta : numpy.ndarray
+    """
+    return _PARTS[family](start)
+
+
+def _pi(start: Start) -> tuple[Parametrization, Array]:
+    pi = PrandtlIshlinskii(start.p, start.r, start.p0)
+    template = Affine(start.sign, start.offset) @ pi
+    return _assemble(template, start, map_at=None)
+
+
+def _gpi(start: Start) -> tuple[Parametrization, Array]:
+    pi = PrandtlIshlinskii(start.p, start.r, start.p0)
+    envelope = _identity_map(start.knots)
+    template = Affine(start.sign, start.offset) @ GeneralizedPrandtlIshlinskii(envelope, pi)
+    return _assemble(template, start, map_at=0)
+
+
+def _mpi(start: Start) -> tuple[Parametrization, Array]:
+    pi = PrandtlIshlinskii(start.p, start.r, start.p0)
+    output_map = _identity_map(start.knots)
+    template = Affine(start.sign, start.offset) @ ModifiedPrandtlIshlinskii(pi, output_map)
+    return _assemble(template, start, map_at=1 + 2 * pi.p.size)
+
+
+def _linear(start: Start) -> tuple[Parametrization, Array]:
+    template = Affine(start.sign * start.p0, start.offset)
+    return (
+        Parametrization(
+            template=template,
+            transform=np.array([[start.sign, 0.0], [0.0, 1.0]]),
+            fixed=np.zeros(2),
+            lower=np.array([SMALLEST_SLOPE * start.p0, -np.inf]),
+            upper=np.full(2, np.inf),
+            plays=0,
+        ),
+        np.array([start.p0, start.offset]),
+    )
+
+
+_PARTS: dict[str, Callable[[Start], tuple[Parametrization, Array]]] = {
+    LINEAR: _linear,
+    PI: _pi,
+    GPI: _gpi,
+    MPI: _mpi,
+}
+
+
+def _identity_map(knots: Array) -> DeadZone:
+    return DeadZone(np.concatenate([[1.0], np.zeros(knots.size)]), np.concatenate([[0.0], knots]))
+
+
+def _assemble(
+    template: Operator, start: Start, map_at: int | None
+) -> tuple[Parametrization, Array]:
+    """Lay out theta = (p0, p, r, slopes of the map, offset) over the operator's constants."""
+    n, knots = start.p.size, start.knots if map_at is not None else np.empty(0)
+    fixed = template.parameters().values.copy()
+    size = 2 * n + 2 + knots.size
+    transform = np.zeros((fixed.size, size))
+    pi_at = 2 * (knots.size + 1) if map_at == 0 else 0
+    transform[pi_at : pi_at + 2 * n + 1, : 2 * n + 1] = np.eye(2 * n + 1)
+    fixed[pi_at : pi_at + 2 * n + 1] = 0.0
+    if map_at is not None:
+        weights = slice(map_at + 1, map_at + 1 + knots.size)
+        transform[weights, 2 * n + 1 : -1], fixed[weights] = _slopes_to_weights(knots)
+    transform[-1, -1], fixed[-1] = 1.0, 0.0
+    slope = start.p0 + float(start.p.sum())
+    theta = np.concatenate([[start.p0], start.p, start.r, np.ones(knots.size), [start.offset]])
+    lower = np.zeros(size)
+    lower[0] = SMALLEST_SLOPE * slope
+    lower[n + 1 : 2 * n + 1] = 1e-3 * start.largest_radius
+    lower[2 * n + 1 : -1] = SMALLEST_MAP_SLOPE
+    lower[-1] = -np.inf
+    upper = np.full(size, np.inf)
+    upper[n + 1 : 2 * n + 1] = start.largest_radius
+    if start.fixed_radii:
+        lower[n + 1 : 2 * n + 1] = upper[n + 1 : 2 * n + 1] = start.r
+    return Parametrization(template, transform, fixed, lower, upper, n), theta
+
+
+def _slopes_to_weights(knots: Array) -> tuple[Array, Array]:
+    """Weights at the knots from the slopes beyond them, counted outwards from slope 1 around 0."""
+    count = knots.size
+    transform, fixed = np.zeros((count, count)), np.zeros(count)
+    for side in (1.0, -1.0):
+        before = None
+        for i in sorted(np.flatnonzero(side * knots > 0.0), key=lambda i: abs(knots[i])):
+            transform[i, i] = 1.0
+            if before is None:
+                fixed[i] = -1.0
+            else:
+                transform[i, before] = -1.0
+            before = i
+    return transform, fixed

@@ -1,0 +1,267 @@
+"""Fit one family of a given size to records."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.identification.bounded_least_squares import Problem, Solution, minimize
+from hyst.identification.data import Data
+from hyst.identification.families import (
+    GPI,
+    LINEAR,
+    MPI,
+    Parametrization,
+    Start,
+    parametrize,
+)
+from hyst.identification.weights import Weights, fit_weights
+from hyst.operators import Operator
+
+Array = NDArray[np.float64]
+
+FINE_BANK = 60
+
+MOST_STARTS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """One family fitted: its parametrization, where the iteration ended, and how well.
+
+    Parameters
+    ----------
+    family
+        The family.
+    parametrization, solution
+        Free parameters and their best values.
+    """
+
+    family: str
+    parametrization: Parametrization
+    solution: Solution
+
+    @property
+    def operator(self) -> Operator:
+        """The fitted operator."""
+        return self.parametrization.operator(self.solution.theta)
+
+
+def model_output(data: Data, operator: Operator) -> Array:
+    """Give the model's output over the samples used, all records one after the other.
+
+    Parameters
+    ----------
+    data
+        The records.
+    operator
+        The model.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (samples used,).
+    """
+    return np.concatenate(
+        [operator(r.u[: w.stop])[w] for r, w in zip(data.records, data.windows(), strict=True)]
+    )
+
+
+def model_jacobian(data: Data, operator: Operator) -> Array:
+    """Give the derivative of ``model_output`` by the operator's constants.
+
+    Parameters
+    ----------
+    data
+        The records.
+    operator
+        The model.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (samples used, constants).
+    """
+    return np.concatenate(
+        [
+            operator.jacobian(r.u[: w.stop])[w]
+            for r, w in zip(data.records, data.windows(), strict=True)
+        ]
+    )
+
+
+def problem_of(
+    data: Data, parametrization: Parametrization, chosen: NDArray[np.bool_] | None = None
+) -> Problem:
+    """Pose the least squares problem of a parametrization over all or some samples.
+
+    Parameters
+    ----------
+    data
+        The records.
+    parametrization
+        Free parameters of a family.
+    chosen
+        Shape (samples used,): which samples count; all if left out.
+
+    Returns
+    -------
+    Problem
+    """
+    y = data.measured()
+    rows: NDArray[np.bool_] | slice = slice(None) if chosen is None else chosen
+    target = y[rows]
+
+    def residual(theta: Array) -> Array:
+        return model_output(data, parametrization.operator(theta))[rows] - target
+
+    def linearize(theta: Array) -> tuple[Array, Array]:
+        jacobian = model_jacobian(data, parametrization.operator(theta))[rows]
+        return residual(theta), jacobian @ parametrization.transform
+
+    return Problem(
+        linearize,
+        residual,
+        parametrization.lower,
+        parametrization.upper,
+        parametrization.canonical,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Fitter:
+    """Fits families to the same records, sharing what does not depend on the family.
+
+    Parameters
+    ----------
+    data
+        The records.
+    knots
+        Number of knots of the map of ``gpi`` and ``mpi``.
+    radii
+        Shape (n,), radii to keep, input units; None if they are to be found.
+    """
+
+    data: Data
+    knots: int
+    radii: Array | None = None
+
+    def fit(self, family: str, plays: int, starts: int = 1, max_iterations: int = 100) -> Fit:
+        """Fit a family with a given number of plays; the best of several starts is kept.
+
+        Parameters
+        ----------
+        family
+            ``linear``, ``pi``, ``gpi`` or ``mpi``.
+        plays
+            Number of plays.
+        starts
+            How many first guesses of the radii to try, at most ``MOST_STARTS``. They are the same
+            in every run.
+        max_iterations
+            For each start.
+
+        Returns
+        -------
+        Fit
+        """
+        guesses = self._first_radii(0 if family == LINEAR else plays)[:starts]
+        fits = [self._fit_from(family, r, max_iterations) for r in guesses]
+        return min(fits, key=lambda fit: fit.solution.cost)
+
+    def refit(self, fit: Fit, plays: Array, max_iterations: int = 100) -> Fit:
+        """Fit a family again with some of its plays only.
+
+        Parameters
+        ----------
+        fit
+            An earlier fit.
+        plays
+            Shape (n,), bool: which plays stay.
+        max_iterations
+            At most.
+
+        Returns
+        -------
+        Fit
+        """
+        n = fit.parametrization.plays
+        theta = fit.solution.theta
+        keep = np.concatenate([[True], plays, plays, np.ones(theta.size - 2 * n - 1, dtype=bool)])
+        start = replace(
+            self._start(fit.family, fit_weights(self.data, theta[n + 1 : 2 * n + 1], self.sign)),
+            p=theta[1 : n + 1][plays],
+            r=theta[n + 1 : 2 * n + 1][plays],
+        )
+        parametrization = parametrize(fit.family, start)[0]
+        problem = problem_of(self.data, parametrization)
+        solution = minimize(problem, theta[keep], max_iterations)
+        return Fit(fit.family, parametrization, solution)
+
+    @functools.cached_property
+    def sign(self) -> float:
+        """+1 where the output rises with the input, -1 where it falls."""
+        windows = zip(self.data.records, self.data.windows(), strict=True)
+        u = np.concatenate([record.u[window] for record, window in windows])
+        return 1.0 if float(np.dot(u - u.mean(), self.data.measured())) >= 0.0 else -1.0
+
+    @functools.cached_property
+    def _fine_bank(self) -> tuple[Array, Array]:
+        """Radii of a bank finer than any model, and the share of the curvature up to each."""
+        fine = self.data.largest_radius * np.arange(1, FINE_BANK + 1) / (FINE_BANK + 1)
+        p = fit_weights(self.data, fine, self.sign).p
+        share = p / p.sum() if p.sum() > 0.0 else np.zeros(FINE_BANK)
+        # A floor keeps the radii apart where the bank puts all weight on a few plays.
+        return fine, np.cumsum(share + 0.5 / FINE_BANK)
+
+    def _first_radii(self, plays: int) -> list[Array]:
+        """First guesses: equal shares of the curvature, evenly spaced, denser at small radii."""
+        if self.radii is not None:
+            return [self.radii]
+        if plays == 0:
+            return [np.empty(0)]
+        largest = self.data.largest_radius
+        fine, share = self._fine_bank
+        levels = share[-1] * (np.arange(plays) + 0.5) / plays
+        even = largest * np.arange(1, plays + 1) / (plays + 1)
+        return [np.interp(levels, share, fine), even, even**2 / largest]
+
+    def _fit_from(self, family: str, r: Array, max_iterations: int) -> Fit:
+        weights = fit_weights(self.data, r, self.sign)
+        slope = weights.p0 + float(weights.p.sum())
+        start = replace(
+            self._start(family, weights),
+            p0=max(weights.p0, 0.05 * slope),
+            p=np.maximum(weights.p, 0.01 * slope / max(r.size, 1)),
+            r=r,
+        )
+        parametrization, theta = parametrize(family, start)
+        solution = minimize(problem_of(self.data, parametrization), theta, max_iterations)
+        return Fit(family, parametrization, solution)
+
+    def _start(self, family: str, weights: Weights) -> Start:
+        return Start(
+            p0=weights.p0,
+            p=weights.p,
+            r=np.empty(0),
+            offset=weights.offset,
+            sign=self.sign,
+            knots=self._knots(family, weights),
+            largest_radius=self.data.largest_radius,
+            fixed_radii=self.radii is not None,
+        )
+
+    def _knots(self, family: str, weights: Weights) -> Array:
+        """Knots of the map, evenly spaced over the signal it acts on; none at 0."""
+        if family == GPI:
+            signal = np.concatenate([record.u for record in self.data.records])
+        elif family == MPI:
+            signal = self.sign * (self.data.measured() - weights.offset)
+        else:
+            return np.empty(0)
+        low, high = float(signal.min()), float(signal.max())
+        knots = np.linspace(low, high, self.knots + 2)[1:-1]
+        return np.asarray(knots[np.abs(knots) > 1e-6 * (high - low)])

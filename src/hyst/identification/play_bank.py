@@ -1,0 +1,62 @@
+"""Play outputs and normal equations of a bank of plays over several records."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst import _engine
+from hyst.identification.data import Data
+
+Array = NDArray[np.float64]
+
+
+def bank_matrix(data: Data, r: Array) -> Array:
+    """Give the regressors of the weights.
+
+    Parameters
+    ----------
+    data
+        The records.
+    r
+        Shape (n,), radii, input units.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (samples used, 1 + n): the input, then the play outputs, of all records one after the
+        other.
+    """
+    blocks = []
+    for record, window in zip(data.records, data.windows(), strict=True):
+        z = np.empty((len(record), r.size))
+        _engine.play_outputs(r.tolist(), np.zeros(r.size), record.u, z)
+        blocks.append(np.column_stack([record.u[window], z[window]]))
+    return np.concatenate(blocks)
+
+
+def bank_gram(data: Data, r: Array) -> Array:
+    """Sum the inner products of the columns [u, z_1 .. z_n, 1, y] while the records stream by.
+
+    Parameters
+    ----------
+    data
+        The records.
+    r
+        Shape (n,), radii, input units.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (n + 3, n + 3), symmetric.
+    """
+    width = r.size + 3
+    total = np.zeros((width, width))
+    for record, window in zip(data.records, data.windows(), strict=True):
+        gram = np.zeros((1, width, width))
+        u = record.u[: window.stop]
+        y = record.y[data.delay :]
+        edges = [window.start, window.stop]
+        _engine.play_gram(r.tolist(), np.zeros(r.size), u, y, edges, gram)
+        total += gram[0]
+    return total

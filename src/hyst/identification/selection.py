@@ -1,0 +1,99 @@
+"""Choose family and number of plays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from hyst.identification.cross_validation import cross_validate
+from hyst.identification.families import FAMILIES, LINEAR
+from hyst.identification.fitting import Fitter
+from hyst.identification.identified import Candidate
+
+SIZES = (1, 2, 3, 4, 6, 8, 10)
+SMALLEST_GAIN = 1e-3
+"""A larger model of the same family must lower the score by this share to be worth going on."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Family and size, and what they were chosen from.
+
+    Parameters
+    ----------
+    family
+        The family.
+    plays
+        Number of plays.
+    candidates
+        All that were compared, from the simplest to the richest.
+    """
+
+    family: str
+    plays: int
+    candidates: tuple[Candidate, ...]
+
+
+def choose(
+    fitter: Fitter,
+    families: Sequence[str],
+    sizes: Sequence[int],
+    progress: Callable[[str], None],
+) -> Choice:
+    """Compare families and sizes and take the simplest within one standard error of the best.
+
+    Simple means few free parameters; between equals the order of ``FAMILIES`` decides. Sizes of a
+    family are tried upwards until two in a row have not lowered the score.
+
+    Parameters
+    ----------
+    fitter
+        Fits families to the records.
+    families
+        Which families.
+    sizes
+        Which numbers of plays, ascending.
+    progress
+        Told what is being fitted.
+
+    Returns
+    -------
+    Choice
+
+    Notes
+    -----
+    Breiman et al., Classification and Regression Trees (1984), sec. 3.4.3: the one standard error
+    rule.
+    """
+    candidates: list[Candidate] = []
+    for family in families:
+        candidates += _grow(fitter, family, (0,) if family == LINEAR else sizes, progress)
+    best = min(candidates, key=lambda each: each.score)
+    limit = best.score + best.standard_error
+    good = [each for each in candidates if each.score <= limit]
+    simplest = min(good, key=lambda each: (each.parameters, FAMILIES.index(each.family)))
+    marked = tuple(replace(each, chosen=each is simplest) for each in candidates)
+    return Choice(simplest.family, simplest.plays, marked)
+
+
+def _grow(
+    fitter: Fitter,
+    family: str,
+    sizes: Sequence[int],
+    progress: Callable[[str], None],
+) -> list[Candidate]:
+    candidates: list[Candidate] = []
+    best, idle = float("inf"), 0
+    for plays in sizes:
+        progress(f"{family} with {plays} plays" if plays else family)
+        fit = fitter.fit(family, plays)
+        score = cross_validate(fitter.data, fit)
+        size = fit.parametrization.size
+        candidates.append(
+            Candidate(family, plays, size, score.rms, score.standard_error, chosen=False)
+        )
+        idle = 0 if score.rms < best * (1.0 - SMALLEST_GAIN) else idle + 1
+        best = min(best, score.rms)
+        if idle == 2:
+            break
+    return candidates
