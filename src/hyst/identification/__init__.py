@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from hyst.identification.identified import Candidate, Identified, UsedSamples
-from hyst.identification.identify import identify
+from hyst.identification.from_records import identify
 
 __all__ = ["Candidate", "Identified", "UsedSamples", "identify"]

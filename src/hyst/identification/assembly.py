@@ -77,7 +77,7 @@ def _idle_plays(wanted: int, kept: int) -> tuple[str, ...]:
 
 
 def _standard_errors(data: Data, fit: Fit) -> tuple[Array, tuple[str, ...]]:
-    """Standard errors of the operator's constants, NaN where on a bound or not determined."""
+    """Give standard errors of the constants, NaN where on a bound or not determined."""
     parametrization, theta = fit.parametrization, fit.solution.theta
     transform = parametrization.transform
     jacobian = model_jacobian(data, fit.operator) @ transform

@@ -76,7 +76,7 @@ def undetermined_combination(jacobian: Array) -> Array | None:
 
 
 def _bandwidth(residual: Array, lengths: Sequence[int]) -> int:
-    """Number of lags, at most a quarter of the shortest record."""
+    """Choose the number of lags, at most a quarter of the shortest record."""
     before = np.ones(residual.size, dtype=bool)
     before[np.cumsum(lengths) - 1] = False
     now, after = residual[:-1][before[:-1]], residual[1:][before[:-1]]

@@ -49,14 +49,14 @@ class Data:
         return LARGEST_RADIUS * self.half_range
 
     def windows(self) -> list[slice]:
-        """Model samples used, one slice for each record."""
+        """Give the model samples used, one slice for each record."""
         return [
             slice(start, len(record) - self.delay)
             for start, record in zip(self.starts, self.records, strict=True)
         ]
 
     def measured(self) -> Array:
-        """Outputs to be explained, all records one after the other."""
+        """Give the outputs to be explained, all records one after the other."""
         return np.concatenate(
             [
                 record.y[start + self.delay :]
@@ -65,14 +65,14 @@ class Data:
         )
 
     def used(self) -> tuple[UsedSamples, ...]:
-        """Which output samples take part."""
+        """Tell which output samples take part."""
         return tuple(
             UsedSamples(start + self.delay, len(record), len(record))
             for start, record in zip(self.starts, self.records, strict=True)
         )
 
     def delayed(self, delay: int) -> Data:
-        """The same records with another delay."""
+        """Give the same records with another delay."""
         return Data(self.records, self.starts, delay, self.half_range, self.settled)
 
 
@@ -137,8 +137,8 @@ def _check(records: tuple[Record, ...]) -> None:
         turns = reversals(record.u, 0.05 * float(np.ptp(record.u))).size
         if turns < 2:
             raise NotIdentifiableError(
-                f"the input of record {number} turns {turns} times; hysteresis shows only after the "
-                "input has turned at least twice"
+                f"the input of record {number} turns {turns} times; hysteresis shows only after "
+                "the input has turned at least twice"
             )
 
 

@@ -20,10 +20,10 @@ def estimate_delay(data: Data) -> int:
     """Find the delay that leaves the least residual of a model richer than any family.
 
     The regressors are the input, evenly spaced plays, dead-zone functions of the input and of one
-    play's output (so that asymmetry does not pass for delay), and a linear drift. They do not depend
-    on the delay, so one QR factorisation serves all; delays are tried upwards from 0 until the
-    residual has grown three times in a row. A rate-independent loop turns with its input, a delayed
-    one after it, which is what tells hysteresis and delay apart.
+    play's output (so that asymmetry does not pass for delay), and a linear drift. They do not
+    depend on the delay, so one QR factorisation serves all; delays are tried upwards from 0 until
+    the residual has grown three times in a row. A rate-independent loop turns with its input, a
+    delayed one after it, which is what tells hysteresis and delay apart.
 
     Parameters
     ----------

@@ -172,7 +172,7 @@ class Fitter:
         fits = [self._fit_from(family, r, max_iterations) for r in guesses]
         return min(fits, key=lambda fit: fit.solution.cost)
 
-    def refit(self, fit: Fit, plays: Array, max_iterations: int = 100) -> Fit:
+    def refit(self, fit: Fit, plays: NDArray[np.bool_], max_iterations: int = 100) -> Fit:
         """Fit a family again with some of its plays only.
 
         Parameters

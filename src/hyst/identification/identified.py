@@ -77,7 +77,7 @@ class Identified:
         Whole samples by which the measured output lags the model's output.
     parameter_names, parameter_values, standard_errors
         The free parameters with their standard errors, which take the autocorrelation of the
-        residual into account; NaN where a value lies on a bound.
+        residual into account; NaN where a value lies on a bound or is not determined.
     undetermined
         One sentence for each parameter the records cannot determine, and what was done.
     metrics
@@ -170,7 +170,9 @@ class Identified:
         for name, value, error in zip(
             self.parameter_names, self.parameter_values, self.standard_errors, strict=True
         ):
-            shown = "on a bound" if np.isnan(error) else f"{error:.3g}"
+            shown = "-" if np.isnan(error) else f"{error:.3g}"
             lines.append(f"{name:36s} {value:13.6g} {shown:>15s}")
+        if np.isnan(self.standard_errors).any():
+            lines.append("(-: on a bound, or not determined by the records)")
         lines += [f"undetermined: {sentence}" for sentence in self.undetermined]
         return "\n".join(lines)

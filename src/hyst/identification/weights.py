@@ -48,8 +48,9 @@ class Weights:
 def fit_weights(data: Data, r: Array, sign: float = 1.0) -> Weights:
     """Fit ``y = sign (p0 u + sum_i p_i z_i) + offset`` with p0, p >= 0 by least squares.
 
-    The offset is eliminated by centring; the weights solve a non-negative least squares problem on
-    the Cholesky factor of the streamed Gram matrix, or on a QR factor where that is ill-conditioned.
+    The offset is eliminated by centring; the weights solve a non-negative least squares problem
+    on the Cholesky factor of the streamed Gram matrix, or on a QR factor of the regressors where
+    that is ill-conditioned.
 
     Parameters
     ----------
