@@ -63,9 +63,9 @@ static void by_direction_takes_negative_thresholds(void)
     CHECK_EQUAL(hyst_direction_dead_zone_step(&map, &u_previous, R(-2.0)), R(0.0));
 }
 
-/* The envelope of S1 sec. 5.2 and its inverse by S1 eqs. 54-55, calculated here. S1 prints
- * psi = 4.94, 8.688, 15.2315 and eps = 1.5385, -0.361, -0.3069, -0.2244; two of these eight have a
- * misprint in their third digit, and 4.914 and -0.3620 are what the equations give. */
+/* The envelope of S1 sec. 5.2 and its inverse by S1 eqs. 53-55, calculated here. Of the numbers S1
+ * prints, two are not what its equations give: psi_1 is 4.914 (printed 4.94), eps_1 -0.3620
+ * (printed -0.361). */
 static void inverse_envelope_gives_the_input_back(void)
 {
     const double xi[] = {0.65, 0.2, 0.3, 0.4};
