@@ -1,0 +1,108 @@
+"""The look all figures share, and the door to matplotlib's file output.
+
+Figures are made with the object-oriented interface: nothing here opens a window, keeps a figure
+alive or depends on a display.
+"""
+
+from __future__ import annotations
+
+import functools
+import io
+import warnings
+from collections.abc import Callable
+from typing import Any, ParamSpec
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+Parameters = ParamSpec("Parameters")
+
+MEASURED = "#6b7280"
+MODELLED = "#c2410c"
+SECOND = "#1d4ed8"
+FAINT = "#d1d5db"
+
+_DOTS_PER_INCH = 100
+_LOOK: Any = {
+    "font.size": 10.0,
+    "axes.titlesize": 10.5,
+    "axes.titlelocation": "left",
+    "axes.labelsize": 10.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": "#4b5563",
+    "axes.linewidth": 0.8,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#e5e7eb",
+    "grid.linewidth": 0.7,
+    "legend.frameon": False,
+    "legend.fontsize": 9.0,
+    "figure.titlesize": 11.5,
+    "figure.titleweight": "bold",
+    "lines.linewidth": 1.2,
+    # Names come from the user's file: a dollar sign in one starts no formula.
+    "text.parse_math": False,
+}
+
+
+def drawn(draw: Callable[Parameters, Figure]) -> Callable[Parameters, bytes]:
+    """Decorate a function that makes a figure, so that it gives the bytes of a PNG file.
+
+    Parameters
+    ----------
+    draw
+        Makes the figure with ``blank``.
+
+    Returns
+    -------
+    callable
+        The same in the shared look; equal arguments give equal bytes.
+    """
+
+    @functools.wraps(draw)
+    def draw_png(*args: Parameters.args, **kwargs: Parameters.kwargs) -> bytes:
+        content = io.BytesIO()
+        with mpl.rc_context(_LOOK), warnings.catch_warnings():
+            # A sign the font does not have, in a name from the user's file, is drawn as a box.
+            warnings.filterwarnings("ignore", message="Glyph .* missing")
+            figure = draw(*args, **kwargs)
+            FigureCanvasAgg(figure)
+            figure.savefig(content, format="png", metadata={"Software": None})
+        return content.getvalue()
+
+    return draw_png
+
+
+def blank(columns: int, rows: int, width: float, height: float) -> tuple[Figure, list[Axes]]:
+    """Make a figure with axes in a grid.
+
+    Parameters
+    ----------
+    columns, rows
+        Of the grid.
+    width, height
+        Of the figure, inches.
+
+    Returns
+    -------
+    figure : matplotlib.figure.Figure
+    axes : list of matplotlib.axes.Axes
+        Row by row.
+    """
+    figure = Figure(figsize=(width, height), dpi=_DOTS_PER_INCH, layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False)
+    return figure, [each for row in axes for each in row]
+
+
+def with_unit(name: str, unit: str) -> str:
+    """Label of an axis.
+
+    Examples
+    --------
+    >>> with_unit("drive", "V"), with_unit("drive", "")
+    ('drive [V]', 'drive')
+    """
+    return f"{name} [{unit}]" if unit else name

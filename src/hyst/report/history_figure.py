@@ -1,0 +1,69 @@
+"""Output over time, measured and modelled: the whole record and a few strokes of it."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from hyst.report.canvas import MEASURED, MODELLED, blank, drawn, with_unit
+from hyst.report.fitted_record import FittedRecord
+from hyst.signals import reversals
+
+_STROKES = 6
+
+
+@drawn
+def draw_history(fits: tuple[FittedRecord, ...], heading: str) -> Figure:
+    """Draw records over time, one a row, and beside each a close view.
+
+    Parameters
+    ----------
+    fits
+        Records with the model's output.
+    heading
+        Line above the figure; empty for none.
+
+    Returns
+    -------
+    bytes
+        PNG.
+    """
+    figure, axes = blank(2, len(fits), 10.0, 0.8 + 2.7 * len(fits))
+    for row, fit in enumerate(fits):
+        whole, close = axes[2 * row], axes[2 * row + 1]
+        _draw(whole, fit, 0, len(fit.record))
+        _draw(close, fit, *_a_few_strokes(fit))
+        whole.set_title(f"Output, {fit.label} record")
+        close.set_title("A closer look")
+        whole.set_ylabel(with_unit(fit.record.output_name, fit.record.output_unit))
+        if fit.start > 0:
+            whole.axvspan(0.0, fit.start * fit.record.dt, color="#f3f4f6", zorder=0)
+    for bottom in axes[-2:]:
+        bottom.set_xlabel("time [s]")
+    axes[1].legend(loc="upper right", ncols=2)
+    low, high = axes[1].get_ylim()
+    axes[1].set_ylim(low, high + 0.18 * (high - low))
+    if heading:
+        figure.suptitle(heading)
+    return figure
+
+
+def _draw(axes: Axes, fit: FittedRecord, start: int, stop: int) -> None:
+    t = fit.record.time[start:stop]
+    axes.plot(
+        t, fit.record.y[start:stop], color=MEASURED, linewidth=2.2, alpha=0.6, label="measured"
+    )
+    axes.plot(t, fit.y_model[start:stop], color=MODELLED, linewidth=1.0, label="model")
+    axes.margins(x=0.01)
+
+
+def _a_few_strokes(fit: FittedRecord) -> tuple[int, int]:
+    """First and last sample of some strokes in the middle of what took part."""
+    u = fit.record.u
+    turns = reversals(u, 0.05 * float(np.ptp(u)))
+    turns = turns[turns >= fit.start]
+    if turns.size < _STROKES + 1:
+        return fit.start, len(fit.record)
+    first = (turns.size - _STROKES - 1) // 2
+    return int(turns[first]), int(turns[first + _STROKES]) + 1

@@ -1,0 +1,258 @@
+"""The report of an identification: model, numbers, figures and a page that explains them."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from hyst.files import replacing_files
+from hyst.identification import Identified
+from hyst.report.error_figure import autocorrelation, draw_error
+from hyst.report.fitted_record import FittedRecord, fit_records
+from hyst.report.history_figure import draw_history
+from hyst.report.loop_figure import draw_loop
+from hyst.report.model_figure import Labels, draw_model
+from hyst.report.page import Page
+from hyst.report.tables import (
+    Table,
+    candidates_table,
+    metrics_table,
+    number,
+    parameters_table,
+    with_unit,
+)
+from hyst.report.words import (
+    equations,
+    error_sentence,
+    explanations,
+    family_name,
+    in_short,
+    memory_sentence,
+)
+from hyst.signals import Record
+
+MODEL, METRICS, PAGE = "model.json", "metrics.json", "report.html"
+LOOP, HISTORY, ERROR, PARTS = "loop.png", "history.png", "error.png", "model.png"
+FILES = (MODEL, METRICS, LOOP, HISTORY, ERROR, PARTS, PAGE)
+"""Everything a report consists of."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Findings:
+    """What the page is written from."""
+
+    identified: Identified
+    training: tuple[FittedRecord, ...]
+    validation: tuple[FittedRecord, ...]
+    sources: tuple[str, ...]
+    folder: Path
+    banner: str
+
+    @property
+    def records(self) -> tuple[Record, ...]:
+        return tuple(fit.record for fit in self.training)
+
+
+def write_report(
+    identified: Identified,
+    records: Record | Sequence[Record],
+    validation: Record | Sequence[Record],
+    folder: str | os.PathLike[str],
+    *,
+    sources: Sequence[str] = (),
+    banner: str = "",
+) -> tuple[Path, ...]:
+    """Write model.json, metrics.json, the figures and report.html; all of them or none.
+
+    Parameters
+    ----------
+    identified
+        The result.
+    records
+        Records it was identified from, in the same order.
+    validation
+        Records kept apart; may be empty.
+    folder
+        Made if it does not exist; its own parent must. Other files in it stay.
+    sources
+        Where the records came from, training before validation, for the page.
+    banner
+        A line to put above everything, for instance that the data are simulated.
+
+    Returns
+    -------
+    tuple of pathlib.Path
+        The files written.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be one.
+
+    Examples
+    --------
+    ::
+
+        found = hyst.identify(record)
+        hyst.report.write_report(found, record, (), "out")
+    """
+    training, kept = fit_records(identified, _several(records), _several(validation))
+    findings = _Findings(identified, training, kept, tuple(sources), Path(folder), banner)
+    figures = _figures(findings)
+    with replacing_files(folder) as temporary:
+        identified.model.save(temporary / MODEL, identified.description)
+        numbers = json.dumps(identified.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
+        (temporary / METRICS).write_text(numbers + "\n", encoding="utf-8")
+        for name, content in figures.items():
+            (temporary / name).write_bytes(content)
+        (temporary / PAGE).write_text(_page(findings, figures), encoding="utf-8")
+    return tuple(Path(folder) / name for name in FILES)
+
+
+def _several(records: Record | Sequence[Record]) -> tuple[Record, ...]:
+    return (records,) if isinstance(records, Record) else tuple(records)
+
+
+def _figures(findings: _Findings) -> dict[str, bytes]:
+    identified, training = findings.identified, findings.training
+    about = identified.description
+    labels = Labels(about.input_name, about.input_unit, about.output_name, about.output_unit)
+    errors = dict(zip(identified.parameter_names, identified.standard_errors.tolist(), strict=True))
+    u = np.concatenate([record.u for record in findings.records])
+    heading = findings.banner
+    return {
+        LOOP: draw_loop(training, heading),
+        HISTORY: draw_history((*training[:1], *findings.validation[:1]), heading),
+        ERROR: draw_error(training, heading),
+        PARTS: draw_model(identified.model, u, labels, errors, heading),
+    }
+
+
+def _page(findings: _Findings, figures: dict[str, bytes]) -> str:
+    about = findings.identified.description
+    page = Page(f"Hysteresis of {about.output_name} over {about.input_name}")
+    if findings.banner:
+        page.banner(findings.banner)
+    page.items(in_short(findings.identified, findings.records))
+    page.picture(
+        figures[LOOP],
+        "Measured and modelled loop. On the right the straight line that fits best is taken away, "
+        "so that the hysteresis fills the picture.",
+    )
+    _how_good(page, findings, figures)
+    _the_model(page, findings, figures)
+    _what_was_compared(page, findings)
+    _the_data(page, findings)
+    _what_next(page, findings)
+    return page.to_html()
+
+
+def _how_good(page: Page, findings: _Findings, figures: dict[str, bytes]) -> None:
+    page.heading("How good it is")
+    page.table(metrics_table(findings.identified))
+    page.text(
+        "Fit is 100 % for a perfect model and 0 % for one no better than the mean. With a free "
+        "offset the mean of the error is taken out first: sensors drift, and a constant between "
+        "model and sensor often means nothing."
+    )
+    page.picture(figures[HISTORY], "Output over time. A shaded beginning was not used.")
+    page.picture(figures[ERROR], "What the model leaves unexplained on the training record.")
+    error = findings.training[0].error
+    lag_one = float(autocorrelation(error, 1)[1]) if error.size > 1 else 0.0
+    page.text(error_sentence(lag_one, error.size))
+
+
+def _the_model(page: Page, findings: _Findings, figures: dict[str, bytes]) -> None:
+    identified = findings.identified
+    page.heading(f"The model: {family_name(identified.family)}")
+    for each in equations(identified.family):
+        page.equation(each)
+    for each in explanations(identified.family):
+        page.text(each)
+    page.picture(figures[PARTS], "What the model is made of.")
+    page.table(parameters_table(identified))
+    page.faint(
+        "Standard errors say how far a value may be off because of noise; they allow for errors "
+        "that last longer than one sample. A value on a bound has none."
+    )
+    if identified.undetermined:
+        page.text("The record does not determine everything:")
+        page.items(identified.undetermined)
+
+
+def _what_was_compared(page: Page, findings: _Findings) -> None:
+    identified = findings.identified
+    if not identified.candidates:
+        return
+    page.heading("What else was tried")
+    page.text(
+        "Every candidate was identified without some blocks of the record and judged on those. The "
+        "simplest one within one standard error (+-) of the best was taken."
+    )
+    page.table(candidates_table(identified))
+
+
+def _the_data(page: Page, findings: _Findings) -> None:
+    page.heading("The data")
+    identified = findings.identified
+    fits = (*findings.training, *findings.validation)
+    sources = findings.sources or ("",) * len(fits)
+    rows = []
+    for fit, source in zip(fits, sources, strict=True):
+        record = fit.record
+        rows.append(
+            (
+                fit.label,
+                source,
+                str(len(record)),
+                f"{number(record.dt)} s",
+                _range(record.u, record.input_unit),
+                _range(record.y, record.output_unit),
+            )
+        )
+    page.table(
+        Table(
+            "Records", ("record", "file", "samples", "sample time", "input", "output"), tuple(rows)
+        )
+    )
+    page.items(
+        [
+            f"{fit.label}: output samples {used.start} to {used.stop - 1} of {used.total} were used"
+            + (
+                "; before, the memory of the actuator is not known."
+                if used.start > identified.delay
+                else "."
+            )
+            for fit, used in zip(findings.training, identified.used, strict=True)
+        ]
+        + [f"{fit.label}: {note}" for fit in fits for note in fit.record.notes]
+    )
+    page.faint(f"The fit ended: {identified.status} after {identified.iterations} iterations.")
+
+
+def _range(signal: np.ndarray[tuple[int], np.dtype[np.float64]], unit: str) -> str:
+    return with_unit(f"{number(float(signal.min()))} to {number(float(signal.max()))}", unit)
+
+
+def _what_next(page: Page, findings: _Findings) -> None:
+    page.heading("What next")
+    model = shlex.quote(str(findings.folder / MODEL))
+    if not findings.identified.model.is_invertible():
+        page.text("The output for another input:")
+        page.code(f"hyst simulate {model} drive.csv --input 0 -o output.csv")
+        return
+    page.text("The command that makes the output follow a trajectory of yours:")
+    page.code(f"hyst compensate {model} trajectory.csv --column 0 -o command.csv")
+    page.text("The same in Python:")
+    page.code(
+        "import hyst\n\n"
+        f"model = hyst.load({str(findings.folder / MODEL)!r})\n"
+        "command = hyst.compensation.invert_trajectory(model, y_ref).u"
+    )
+    page.text(memory_sentence(findings.records[0]))

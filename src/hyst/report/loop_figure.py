@@ -1,0 +1,66 @@
+"""The loop: output over input, measured and modelled."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from hyst.report.canvas import FAINT, MEASURED, MODELLED, blank, drawn, with_unit
+from hyst.report.fitted_record import FittedRecord
+
+Array = NDArray[np.float64]
+
+
+@drawn
+def draw_loop(fits: tuple[FittedRecord, ...], heading: str) -> Figure:
+    """Draw the loop, and beside it the loop without its straight line, where hysteresis is large.
+
+    Parameters
+    ----------
+    fits
+        Training records with the model's output.
+    heading
+        Line above the figure; empty for none.
+
+    Returns
+    -------
+    bytes
+        PNG.
+    """
+    figure, (left, right) = blank(2, 1, 10.0, 4.4)
+    slope, offset = _straight_line(fits)
+    for number, fit in enumerate(fits):
+        label = number == 0
+        u = fit.model_input
+        _pair(left, u, fit.measured, fit.modelled, label)
+        line = slope * u + offset
+        _pair(right, u, fit.measured - line, fit.modelled - line, label)
+    record = fits[0].record
+    right.axhline(0.0, color=FAINT, linewidth=1.0, zorder=0)
+    left.set_title("Loop")
+    right.set_title("Loop without its straight line")
+    for axes in (left, right):
+        axes.set_xlabel(with_unit(record.input_name, record.input_unit))
+    left.set_ylabel(with_unit(record.output_name, record.output_unit))
+    right.set_ylabel(with_unit(f"{record.output_name} - line", record.output_unit))
+    left.legend(loc="upper left" if slope > 0.0 else "upper right")
+    if heading:
+        figure.suptitle(heading)
+    return figure
+
+
+def _straight_line(fits: tuple[FittedRecord, ...]) -> tuple[float, float]:
+    u = np.concatenate([fit.model_input for fit in fits])
+    y = np.concatenate([fit.measured for fit in fits])
+    slope = float(np.dot(u - u.mean(), y) / np.dot(u - u.mean(), u - u.mean()))
+    return slope, float(y.mean() - slope * u.mean())
+
+
+def _pair(axes: Axes, u: Array, measured: Array, modelled: Array, label: bool) -> None:
+    axes.plot(
+        u, measured, ".", color=MEASURED, markersize=2.0, alpha=0.5, label="measured" * label,
+        rasterized=True,
+    )  # fmt: skip
+    axes.plot(u, modelled, color=MODELLED, linewidth=1.1, label="model" * label)

@@ -1,0 +1,186 @@
+"""The model itself: weights over radii, the loading curve of the plays, and its map if any."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from hyst.models import PrandtlIshlinskii
+from hyst.operators import DeadZone, Operator
+from hyst.operators.base import Chained
+from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn, with_unit
+
+Array = NDArray[np.float64]
+
+_ENTRY = re.compile(r"(?:.*\.)?([pr])\[(\d+)\]")
+
+
+@dataclass(frozen=True)
+class Labels:
+    """Names and units of the two signals.
+
+    Parameters
+    ----------
+    input_name, input_unit, output_name, output_unit
+        As text.
+    """
+
+    input_name: str
+    input_unit: str
+    output_name: str
+    output_unit: str
+
+
+@drawn
+def draw_model(
+    model: Operator,
+    u: Array,
+    labels: Labels,
+    standard_errors: Mapping[str, float],
+    heading: str,
+) -> Figure:
+    """Draw what a model is made of.
+
+    Parameters
+    ----------
+    model
+        Any operator.
+    u
+        An input that covers the range of interest, shape (N,).
+    labels
+        Names and units.
+    standard_errors
+        Of the parameters by name; those of p and r are drawn.
+    heading
+        Line above the figure; empty for none.
+
+    Returns
+    -------
+    bytes
+        PNG.
+    """
+    parts = [part for part in stages_with_signals(model, u) if _is_drawn(part[0])]
+    count = sum(2 if isinstance(stage, PrandtlIshlinskii) else 1 for stage, _, _ in parts)
+    figure, axes = blank(max(count, 1), 1, 10.0 if count > 1 else 5.0, 3.9)
+    free = iter(axes)
+    for stage, before, after in parts:
+        if isinstance(stage, PrandtlIshlinskii):
+            _draw_weights(next(free), stage, standard_errors, labels)
+            _draw_loading_curve(next(free), stage, before, labels)
+        else:
+            _draw_map(next(free), before, after, labels, is_input=before is u)
+    if not parts:
+        _draw_map(axes[0], u, model(u), labels, is_input=True)
+        axes[0].set_title("The straight line")
+        axes[0].set_ylabel(with_unit(labels.output_name, labels.output_unit))
+    if heading:
+        figure.suptitle(heading)
+    return figure
+
+
+def stages_with_signals(model: Operator, u: Array) -> Iterator[tuple[Operator, Array, Array]]:
+    """Go through the operators a model is made of, with the signal before and after each.
+
+    Parameters
+    ----------
+    model
+        Any operator.
+    u
+        Its input, shape (N,).
+
+    Yields
+    ------
+    tuple
+        Operator, its input, its output.
+
+    Examples
+    --------
+    >>> from hyst.operators import Affine
+    >>> [float(after[0]) for _, _, after in stages_with_signals(
+    ...     Affine(2.0) @ Affine(1.0, 1.0), np.array([3.0]))]
+    [4.0, 8.0]
+    """
+    if not isinstance(model, Chained):
+        yield model, u, model(u)
+        return
+    signal = u
+    for stage in model.stages:
+        for leaf, before, after in stages_with_signals(stage, signal):
+            yield leaf, before, after
+            signal = after
+
+
+def _is_drawn(stage: Operator) -> bool:
+    return isinstance(stage, PrandtlIshlinskii | DeadZone)
+
+
+def _draw_weights(
+    axes: Axes, plays: PrandtlIshlinskii, standard_errors: Mapping[str, float], labels: Labels
+) -> None:
+    errors = {"p": np.zeros(plays.p.size), "r": np.zeros(plays.p.size)}
+    for name, value in standard_errors.items():
+        entry = _ENTRY.fullmatch(name)
+        if entry and 1 <= int(entry[2]) <= plays.p.size and np.isfinite(value):
+            errors[entry[1]][int(entry[2]) - 1] = value
+    axes.vlines(plays.r, 0.0, plays.p, color=MODELLED, linewidth=1.6)
+    axes.errorbar(
+        plays.r,
+        plays.p,
+        xerr=errors["r"],
+        yerr=errors["p"],
+        fmt="o",
+        markersize=4.5,
+        color=MODELLED,
+        ecolor=MEASURED,
+        elinewidth=1.0,
+        capsize=2.0,
+        label="plays, +- one standard error",
+    )
+    axes.axhline(plays.p0, color=SECOND, linestyle="--", label="linear part p0")
+    axes.axhline(0.0, color=FAINT, zorder=0)
+    _leave_room_for_legend(axes)
+    axes.set_title("Weights over radii")
+    axes.set_xlabel(with_unit("radius r", labels.input_unit))
+    axes.set_ylabel("weight p")
+    axes.legend(loc="upper right")
+
+
+def _draw_loading_curve(
+    axes: Axes, plays: PrandtlIshlinskii, signal: Array, labels: Labels
+) -> None:
+    end = max(0.5 * float(np.ptp(signal)), float(plays.r.max(initial=0.0)))
+    rising = np.unique(np.concatenate([np.linspace(0.0, end, 200), plays.r]))
+    axes.plot(rising, plays.initial_loading_curve(rising), color=MODELLED, label="plays")
+    axes.plot(rising, plays.p0 * rising, color=SECOND, linestyle="--", label="linear part p0")
+    axes.plot(plays.r, plays.initial_loading_curve(plays.r), ".", color=MODELLED)
+    axes.set_title("Loading curve of the plays")
+    axes.set_xlabel(with_unit("rise of their input from rest", labels.input_unit))
+    axes.set_ylabel("rise of their output")
+    axes.legend(loc="upper left")
+
+
+def _draw_map(axes: Axes, before: Array, after: Array, labels: Labels, is_input: bool) -> None:
+    order = np.argsort(before)
+    x, y = before[order], after[order]
+    axes.plot(x, y, color=MODELLED, label="map")
+    slope = (y[-1] - y[0]) / (x[-1] - x[0]) if x[-1] > x[0] else 0.0
+    axes.plot(
+        x[[0, -1]], y[0] + slope * (x[[0, -1]] - x[0]), "--", color=MEASURED, label="straight"
+    )
+    axes.set_title("Envelope map" if is_input else "Output map")
+    axes.set_xlabel(
+        with_unit(labels.input_name, labels.input_unit) if is_input else "output of the plays"
+    )
+    axes.set_ylabel("output of the map")
+    axes.legend(loc="upper left" if slope >= 0.0 else "upper right")
+
+
+def _leave_room_for_legend(axes: Axes) -> None:
+    low, high = axes.get_ylim()
+    axes.set_ylim(min(low, 0.0), high + 0.25 * (high - low))

@@ -1,0 +1,212 @@
+"""Tables of text, the same for the terminal and for the page."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from hyst.identification import Identified
+from hyst.operators import Operator
+
+_TRAITS = {
+    "memoryless": "output depends on the present input alone",
+    "rate_independent": "speed does not matter",
+    "return_point_memory": "minor loops close and are forgotten",
+    "congruent_loops": "loops between the same inputs have one shape",
+    "monotone": "output never falls while the input rises",
+    "invertible": "has an exact inverse",
+}
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of text under headings.
+
+    Parameters
+    ----------
+    title
+        What the table shows.
+    header
+        One heading a column.
+    rows
+        One text a column.
+    marked
+        Index of the row to stand out, if any.
+    """
+
+    title: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    marked: int | None = None
+
+
+def number(value: float, digits: int = 4) -> str:
+    """Write a number for reading, with ``digits`` significant digits.
+
+    Examples
+    --------
+    >>> number(1234567.0), number(0.00012345), number(3.0), number(float("nan"))
+    ('1.235e+06', '0.0001234', '3', '-')
+    """
+    return "-" if math.isnan(value) else f"{value:.{digits}g}"
+
+
+def with_unit(text: str, unit: str) -> str:
+    """Put a unit behind a number, if there is one.
+
+    Examples
+    --------
+    >>> with_unit("3", "um"), with_unit("3", "")
+    ('3 um', '3')
+    """
+    return f"{text} {unit}" if unit else text
+
+
+def metrics_table(identified: Identified) -> Table:
+    """Errors by record.
+
+    Parameters
+    ----------
+    identified
+        The result.
+
+    Returns
+    -------
+    Table
+    """
+    unit = identified.description.output_unit
+    return Table(
+        "Error of the model (modelled minus measured output)",
+        (
+            "record",
+            with_unit("rms", unit and f"[{unit}]"),
+            "rms [% of range]",
+            with_unit("max", unit and f"[{unit}]"),
+            "max [% of range]",
+            "fit [%]",
+        ),
+        tuple(
+            (
+                name,
+                number(each.rms),
+                f"{each.rms_percent:.3f}",
+                number(each.max_abs),
+                f"{each.max_percent:.3f}",
+                f"{each.nrmse_fit_percent:.2f}",
+            )
+            for name, each in identified.metrics.items()
+        ),
+    )
+
+
+def candidates_table(identified: Identified) -> Table:
+    """Families and sizes that were compared; the chosen one is marked.
+
+    Parameters
+    ----------
+    identified
+        The result.
+
+    Returns
+    -------
+    Table
+    """
+    unit = identified.description.output_unit
+    candidates = identified.candidates
+    marked = [k for k, each in enumerate(candidates) if each.chosen]
+    return Table(
+        "Families and sizes compared",
+        (
+            "family",
+            "plays",
+            "parameters",
+            with_unit("error on left-out blocks", unit and f"[{unit}]"),
+            "+-",
+            "chosen",
+        ),
+        tuple(
+            (
+                each.family,
+                str(each.plays),
+                str(each.parameters),
+                number(each.score),
+                number(each.standard_error, 2),
+                "<- chosen" if each.chosen else "",
+            )
+            for each in candidates
+        ),
+        marked[0] if marked else None,
+    )
+
+
+def parameters_table(identified: Identified) -> Table:
+    """Free parameters with their standard errors.
+
+    Parameters
+    ----------
+    identified
+        The result.
+
+    Returns
+    -------
+    Table
+    """
+    return Table(
+        "Parameters",
+        ("parameter", "value", "standard error"),
+        tuple(
+            (name, number(value, 6), "on a bound" if math.isnan(error) else number(error, 2))
+            for name, value, error in zip(
+                identified.parameter_names,
+                identified.parameter_values.tolist(),
+                identified.standard_errors.tolist(),
+                strict=True,
+            )
+        ),
+    )
+
+
+def constants_table(model: Operator) -> Table:
+    """All constants of an operator.
+
+    Parameters
+    ----------
+    model
+        Any operator.
+
+    Returns
+    -------
+    Table
+    """
+    parameters = model.parameters()
+    return Table(
+        "Constants",
+        ("name", "value"),
+        tuple(
+            (name, number(value, 10))
+            for name, value in zip(parameters.names, parameters.values.tolist(), strict=True)
+        ),
+    )
+
+
+def traits_table(model: Operator) -> Table:
+    """List what may be relied on of an operator.
+
+    Parameters
+    ----------
+    model
+        Any operator.
+
+    Returns
+    -------
+    Table
+    """
+    held = vars(model.traits())
+    return Table(
+        "Traits",
+        ("trait", "holds", "meaning"),
+        tuple(
+            (name.replace("_", " "), "yes" if held[name] else "no", meaning)
+            for name, meaning in _TRAITS.items()
+        ),
+    )

@@ -1,0 +1,192 @@
+"""What was found, in sentences a control engineer understands."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from hyst.errors import NotInvertibleError
+from hyst.identification import Identified
+from hyst.operators import Operator
+from hyst.report.tables import number, with_unit
+from hyst.signals import Record
+
+FAMILY_NAMES = {
+    "linear": "straight line",
+    "pi": "Prandtl-Ishlinskii model",
+    "gpi": "generalized Prandtl-Ishlinskii model",
+    "mpi": "modified Prandtl-Ishlinskii model",
+}
+
+_PLAYS = "P[w](t) = p0 w(t) + \u03a3 p\u1d62 F\u1d63\u1d62[w](t)"
+_EQUATIONS = {
+    "linear": ("y(t) = gain \u00b7 u(t) + offset",),
+    "pi": ("y(t) = \u00b1 P[u](t) + offset", _PLAYS),
+    "gpi": ("y(t) = \u00b1 P[\u03b3(u)](t) + offset", _PLAYS),
+    "mpi": ("y(t) = \u00b1 \u039b(P[u](t)) + offset", _PLAYS),
+}
+_PLAY_TEXT = (
+    "F with radius r is a play (backlash of half-width r): its output rests until its input has "
+    "come r away from it, and then follows at that distance. The sum of plays gives the loop and "
+    "its minor loops; p0 is the part without hysteresis."
+)
+_MAP_TEXT = {
+    "gpi": "\u03b3 is a piecewise linear map of the input before the plays; it bends the loop over "
+    "the input, so that it may be asymmetric and saturate.",
+    "mpi": "\u039b is a piecewise linear map after the plays; it bends the loop over the output, "
+    "so that it may be asymmetric.",
+}
+_LINEAR_TEXT = "This model has no hysteresis: the output depends on the present input alone."
+
+
+def family_name(family: str) -> str:
+    """Give the full name of a family.
+
+    Examples
+    --------
+    >>> family_name("mpi"), family_name("new")
+    ('modified Prandtl-Ishlinskii model', 'new model')
+    """
+    return FAMILY_NAMES.get(family, f"{family} model")
+
+
+def equations(family: str) -> tuple[str, ...]:
+    """Give the equations of a family in plain characters; none if the family is not known here."""
+    return _EQUATIONS.get(family, ())
+
+
+def explanations(family: str) -> tuple[str, ...]:
+    """Say what the signs in the equations mean."""
+    if family == "linear":
+        return (_LINEAR_TEXT,)
+    return tuple(text for text in (_PLAY_TEXT, _MAP_TEXT.get(family, "")) if text)
+
+
+def straight_line_percent(record: Record, start: int) -> float:
+    """Give the rms error of the best straight line, in percent of the output's range.
+
+    Parameters
+    ----------
+    record
+        The record.
+    start
+        First sample that counts.
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
+    >>> straight_line_percent(Record([0.0, 1.0, 2.0], [1.0, 3.0, 5.0], 1.0), 0) < 1e-12
+    True
+    """
+    u, y = record.u[start:], record.y[start:]
+    centred = u - u.mean()
+    spread = y - y.mean()
+    slope = float(np.dot(centred, spread)) / max(float(np.dot(centred, centred)), math.ulp(0.0))
+    rms = float(np.sqrt(np.mean((spread - slope * centred) ** 2)))
+    return 100.0 * rms / float(np.ptp(y))
+
+
+def in_short(identified: Identified, records: tuple[Record, ...]) -> tuple[str, ...]:
+    """Say in a few sentences what was found and how good it is.
+
+    Parameters
+    ----------
+    identified
+        The result.
+    records
+        Training records.
+
+    Returns
+    -------
+    tuple of str
+    """
+    sentences = [f"The model is a {family_name(identified.family)}{_plays_of(identified)}."]
+    unit = identified.description.output_unit
+    training = identified.metrics.get("training")
+    if training is not None:
+        line = straight_line_percent(records[0], identified.used[0].start)
+        sentences.append(
+            f"On the record it was identified from it misses the measured output by "
+            f"{with_unit(number(training.rms, 3), unit)} rms, {training.rms_percent:.2f} % of the "
+            f"output's range (at most {with_unit(number(training.max_abs, 3), unit)}, "
+            f"{training.max_percent:.2f} %); a straight line misses it by {line:.2f} % rms."
+        )
+    for name, each in identified.metrics.items():
+        if name.startswith("validation") and "offset" not in name:
+            sentences.append(
+                f"On the {name} record, which it has not seen, it misses by "
+                f"{with_unit(number(each.rms, 3), unit)} rms, {each.rms_percent:.2f} %."
+            )
+    if not any(name.startswith("validation") for name in identified.metrics):
+        sentences.append(
+            "No validation record was given, so how well it predicts another drive is not measured."
+        )
+    sentences += [delay_sentence(identified), invertible_sentence(identified.model)]
+    return tuple(sentences)
+
+
+def delay_sentence(identified: Identified) -> str:
+    """Say by how much the output lags."""
+    delay, dt = identified.delay, identified.description.dt
+    if delay == 0:
+        return "The output does not lag by a whole sample or more."
+    time = "" if dt is None else f" ({number(delay * dt)} s)"
+    return (
+        f"The measured output lags the model by {delay} sample{'s' * (delay > 1)}{time}. The "
+        "model itself has no delay; the lag is kept in the model file and cannot be compensated, "
+        "only anticipated, by giving the command that much earlier."
+    )
+
+
+def invertible_sentence(model: Operator) -> str:
+    """Say whether there is an exact inverse, or what stands in its way."""
+    try:
+        model.inverse()
+    except NotInvertibleError as error:
+        return f"It has no exact inverse: {error}."
+    return "It has an exact inverse, so a wanted output can be turned into a command."
+
+
+def error_sentence(lag_one: float, samples: int) -> str:
+    """Say what the autocorrelation of the error at one sample means.
+
+    Parameters
+    ----------
+    lag_one
+        Correlation of neighbouring errors.
+    samples
+        Number of samples.
+
+    Returns
+    -------
+    str
+    """
+    if abs(lag_one) <= 3.0 / math.sqrt(max(samples, 1)):
+        return "Neighbouring errors are not correlated: what is left looks like white sensor noise."
+    return (
+        f"Neighbouring errors have the correlation {lag_one:.2f}: what is left is not white noise "
+        "alone but also drift, dynamics, or hysteresis of another shape. The standard errors take "
+        "this into account."
+    )
+
+
+def memory_sentence(record: Record) -> str:
+    """Say where the model's memory starts and how to tell it otherwise."""
+    high = with_unit(number(float(record.u.max())), record.input_unit)
+    low = with_unit(number(float(record.u.min())), record.input_unit)
+    return (
+        "The model starts without memory, as an actuator that has never been driven. A used one "
+        "remembers: drive it once through its range before the command, and tell hyst so. After a "
+        f"sweep to {high} and back to {low}, for instance, add --history with these two numbers."
+    )
+
+
+def _plays_of(identified: Identified) -> str:
+    count = sum(name.rpartition(".")[2].startswith("r[") for name in identified.parameter_names)
+    if count == 0:
+        return ""
+    return f" with {count} play{'s' * (count > 1)}"
