@@ -1,8 +1,9 @@
 """What is public says what it takes and when it refuses.
 
 What users reach, the names a package exports, has a section for its parameters; what only other
-modules of hyst call may name them in a sentence, or leave a single one to its type. Left to say nothing: a method that overrides a
-documented one, and commands, which document their parameters in their options' help.
+modules of hyst call may name them in a sentence, or leave a single one to its type. Left to say
+nothing: a method that overrides a documented one, and commands, which document their parameters in
+their options' help.
 """
 
 from __future__ import annotations
