@@ -140,6 +140,7 @@ def _select(
 def _final_fit(fitter: Fitter, family: str, plays: int, max_iterations: int) -> Fit:
     """Fit from all starts, then again without the plays that came out idle, until none is."""
     fit = fitter.fit(family, plays, MOST_STARTS, max_iterations)
+    fit = fitter.improve(fit, max_iterations)
     while fitter.radii is None:
         working = _working_plays(fit, fitter.data)
         if working.all():

@@ -6,6 +6,7 @@ import functools
 import os
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, ClassVar, final
 
 import numpy as np
@@ -196,7 +197,7 @@ class Operator(ABC):
     @final
     def __matmul__(self, inner: Operator) -> Operator:
         """Compose: ``(f @ g)(u) = f(g(u))``."""
-        return Composition((*_stages(inner), *_stages(self)))
+        return Composition((inner, self))
 
     @final
     def save(
@@ -241,7 +242,9 @@ class Operator(ABC):
 
     @final
     def __hash__(self) -> int:
-        return hash(repr(self.to_dict()))
+        # Not of the dictionary's text: -0.0 equals 0.0 but is written otherwise.
+        constants = (*self.parameters().values.tolist(), *self.initial_state().tolist())
+        return hash((self.kind, constants))
 
     @final
     def __reduce__(self) -> tuple[Any, ...]:
@@ -270,11 +273,12 @@ class Chained(Operator):
         Loops stay congruent through a stage with memory, whose input they are, but not through a
         curved map of a signal that already has memory.
         """
-        traits = [stage.traits() for stage in self.stages]
+        leaves = leaves_of(self)
+        traits = [leaf.traits() for leaf in leaves]
         remembers = False
         congruent = all(each.congruent_loops for each in traits)
-        for stage, each in zip(self.stages, traits, strict=True):
-            curved = each.memoryless and stage.kind != "affine"
+        for leaf, each in zip(leaves, traits, strict=True):
+            curved = each.memoryless and leaf.kind != "affine"
             congruent = congruent and not (remembers and curved)
             remembers = remembers or not each.memoryless
         return Traits(
@@ -303,7 +307,7 @@ class Chained(Operator):
 
     def parameters(self) -> Parameters:
         """Give the parameters of the stages, one after the other, named by stage."""
-        leaves = _leaves(self)
+        leaves = leaves_of(self)
         parts = [leaf.parameters() for leaf in leaves]
         names = [
             f"{prefix}.{name}"
@@ -341,6 +345,7 @@ class Chained(Operator):
 
 @register
 @final
+@dataclass(frozen=True, eq=False, repr=False, init=False)
 class Composition(Chained):
     """A composition without a name of its own; ``f @ g`` makes one.
 
@@ -348,6 +353,7 @@ class Composition(Chained):
     ----------
     stages
         Operators in the order the signal passes them: ``(f @ g)`` has the stages ``(g, f)``.
+        Compositions without a name among them are replaced by their own stages.
 
     Raises
     ------
@@ -362,15 +368,20 @@ class Composition(Chained):
     array([1., 2., 4., 4.])
     """
 
+    _stages: tuple[Operator, ...]
+
     kind = "composition"
 
     def __init__(self, stages: Sequence[Operator]) -> None:
-        if not stages:
-            raise InputError("a composition has no stage; give at least one operator")
+        if not isinstance(stages, list | tuple) or not stages:
+            raise InputError("a composition has no stage; give a list of at least one operator")
         for stage in stages:
             if not isinstance(stage, Operator):
-                raise InputError(f"{stage!r} is not an operator; compose operators only")
-        self._stages = tuple(stages)
+                raise InputError(
+                    f"a stage is of type {type(stage).__name__}; compose operators only"
+                )
+        flat = (part for stage in stages for part in _stages(stage))
+        object.__setattr__(self, "_stages", tuple(flat))
 
     @property
     def stages(self) -> tuple[Operator, ...]:
@@ -407,11 +418,22 @@ def _stages(operator: Operator) -> tuple[Operator, ...]:
     return operator.stages if type(operator) is Composition else (operator,)
 
 
-def _leaves(operator: Operator) -> tuple[Operator, ...]:
-    """Give the operators a composition is made of in the end, in the order of the signal."""
+def leaves_of(operator: Operator) -> tuple[Operator, ...]:
+    """Give the operators that are no compositions themselves, in the order of the signal.
+
+    Parameters
+    ----------
+    operator
+        Any operator.
+
+    Returns
+    -------
+    tuple of Operator
+        ``operator`` alone if it is no composition.
+    """
     if not isinstance(operator, Chained):
         return (operator,)
-    return tuple(leaf for stage in operator.stages for leaf in _leaves(stage))
+    return tuple(leaf for stage in operator.stages for leaf in leaves_of(stage))
 
 
 def _prefixes(leaves: tuple[Operator, ...]) -> list[str]:
