@@ -81,8 +81,11 @@ struct RememberingPlay {
 
     void step(double u, double r, const double *input_tangent) {
         const double pushed = hyst_play(u, r, z);
-        if (pushed == z) return;
-        by_r = pushed > z ? -1.0 : 1.0;
+        if (pushed != z) {
+            by_r = pushed > z ? -1.0 : 1.0;
+        } else if (r > 0.0) {
+            return;  // resting; a play of threshold 0 never rests
+        }
         by_input.assign(input_tangent, input_tangent + by_input.size());
         z = pushed;
     }

@@ -22,7 +22,7 @@ from hyst.identification.radius_search import search_radii
 from hyst.identification.weights import Weights, fit_weights
 from hyst.models import PrandtlIshlinskii
 from hyst.operators import Operator
-from hyst.operators.base import leaves_of
+from hyst.operators.composition import leaves_of
 from hyst.signals import reversals
 
 Array = NDArray[np.float64]

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import Any, final
 
 from hyst.models.parts import as_map, as_plays
-from hyst.operators.base import Chained, Operator
+from hyst.operators.base import Operator
+from hyst.operators.composition import Chained
 from hyst.operators.registry import entries, operator_from_dict, register
 
 

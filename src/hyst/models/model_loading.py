@@ -54,5 +54,5 @@ def load_described(path: str | os.PathLike[str]) -> tuple[Operator, ModelDescrip
         return operator_from_dict(model), description
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    except TypeError as error:
-        raise InputError(f"{path}: an entry has the wrong type: {error}") from None
+    except RecursionError:
+        raise InputError(f"{path}: operators are nested too deeply; compose them flat") from None

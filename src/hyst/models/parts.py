@@ -28,7 +28,8 @@ def as_map(operator: Operator, name: str) -> Operator:
         If it is no operator or has memory.
     """
     if not isinstance(operator, Operator) or not operator.traits().memoryless:
-        raise InputError(f"{name} is {operator!r}; give an operator without memory, as DeadZone")
+        what = operator.kind if isinstance(operator, Operator) else type(operator).__name__
+        raise InputError(f"{name} is a {what}; give an operator without memory, as DeadZone")
     return operator
 
 
@@ -51,5 +52,6 @@ def as_plays(operator: Operator) -> PrandtlIshlinskii:
         If it is something else.
     """
     if not isinstance(operator, PrandtlIshlinskii):
-        raise InputError(f"pi is {operator!r}; give a PrandtlIshlinskii")
+        what = operator.kind if isinstance(operator, Operator) else type(operator).__name__
+        raise InputError(f"pi is a {what}; give a PrandtlIshlinskii")
     return operator

@@ -12,7 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from hyst import _engine
 from hyst.errors import InputError, NotInvertibleError
 from hyst.operators.base import Operator
-from hyst.operators.checks import as_ascending_thresholds, as_constants, as_number
+from hyst.operators.checks import (
+    as_ascending_thresholds,
+    as_constants,
+    as_number,
+    refuse_overflow,
+)
+from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries, register
 from hyst.operators.traits import Traits
@@ -78,7 +84,8 @@ class PrandtlIshlinskii(Operator):
         object.__setattr__(self, "p", weights)
         object.__setattr__(self, "r", thresholds)
         object.__setattr__(self, "p0", as_number(p0, "p0"))
-        object.__setattr__(self, "z0", memory)
+        # -0.0 becomes 0.0, since a dictionary leaves out a memory of zeros.
+        object.__setattr__(self, "z0", as_constants(memory + 0.0, "z0"))
 
     def traits(self) -> Traits:
         """Give the traits of a superposition of plays."""
@@ -87,7 +94,7 @@ class PrandtlIshlinskii(Operator):
             rate_independent=True,
             return_point_memory=True,
             congruent_loops=True,
-            monotone=bool(self._slopes().min() >= 0.0),
+            monotone=self._is_monotone(),
             invertible=self.is_invertible(),
         )
 
@@ -100,25 +107,31 @@ class PrandtlIshlinskii(Operator):
 
         With ``c_j = p0 + p_1 + .. + p_j``: weights ``g0 = 1/p0``, ``g_j = -p_j / (c_j c_{j-1})``,
         thresholds ``s_j = s_{j-1} + c_{j-1} (r_j - r_{j-1})``, memory
-        ``c_j z_j + sum_{i>j} p_i z_i``.
+        ``c_j z_j + sum_{i>j} p_i z_i``. A play of threshold 0 is the input itself and counts as
+        part of p0; plays of one threshold count as one.
 
         Raises
         ------
         NotInvertibleError
-            If p0 is not positive, a cumulative weight c_j is not positive (the weight is named), or
-            the initial memory is none that an input could have left.
+            If p0 is not positive, a cumulative weight c_j is not positive (the weight is named) or
+            zero to rounding, the initial memory is none that an input could have left, or a
+            constant of the inverse overflows.
 
         Notes
         -----
         S1 eqs. 7-8, S4 eqs. 14-16 (eq. 16 must start with y1 = a0 x1).
         """
         self._require_invertible()
-        p, r, z = self._merged()
-        slopes = self.p0 + np.concatenate([[0.0], np.cumsum(p)])
-        weights = -p / (slopes[1:] * slopes[:-1])
-        thresholds = np.cumsum(slopes[:-1] * np.diff(r, prepend=0.0))
-        beyond = np.cumsum((p * z)[::-1])[::-1] - p * z
-        return PrandtlIshlinskii(weights, thresholds, 1.0 / self.p0, slopes[1:] * z + beyond)
+        p0, p, r, z = self._merged()
+        slopes = cumulative(p0, p)
+        with np.errstate(all="ignore"):
+            weights = -(p / slopes[1:]) / slopes[:-1]
+            thresholds = np.cumsum(slopes[:-1] * np.diff(r, prepend=0.0))
+            beyond = np.concatenate([np.cumsum((p * z)[:0:-1])[::-1], np.zeros(min(p.size, 1))])
+            memory = slopes[1:] * z + beyond
+            g0 = 1.0 / np.float64(p0)
+        refuse_overflow(g0, weights, thresholds, memory)
+        return PrandtlIshlinskii(weights, thresholds, float(g0), memory)
 
     def initial_loading_curve(self, u: ArrayLike) -> Array:
         """Give the output while the input first rises from 0 without memory.
@@ -183,39 +196,52 @@ class PrandtlIshlinskii(Operator):
         """Append this stage to a chain of the engine."""
         chain.add_pi(self.p0, self.p.tolist(), self.r.tolist())
 
-    def _merged(self) -> tuple[Array, Array, Array]:
-        """Weights, thresholds and memory with plays of one threshold taken together."""
+    def _merged(self) -> tuple[float, Array, Array, Array]:
+        """Linear part, weights, thresholds and memory with plays of one threshold taken together.
+
+        A play of threshold 0 is the input itself, whatever its memory, and joins the linear part.
+        """
         r, first, place = np.unique(self.r, return_index=True, return_inverse=True)
         p = np.zeros(r.size)
         np.add.at(p, place, self.p)
-        return p, r, self.z0[first]
+        linear = int(r.size > 0 and r[0] == 0.0)
+        p0 = self.p0 + float(p[:linear].sum())
+        return p0, p[linear:], r[linear:], self.z0[first][linear:]
 
-    def _slopes(self) -> Array:
-        """Slope of every piece of the loading curve."""
-        p, r, _ = self._merged()
-        slopes = self.p0 + np.concatenate([[0.0], np.cumsum(p)])
-        # A play of threshold 0 is the input itself, so the piece before it has no length.
-        return slopes[1:] if r.size and r[0] == 0.0 else slopes
+    def _is_monotone(self) -> bool:
+        if self.p0 >= 0.0 and not (self.p < 0.0).any():
+            return True
+        p0, p, _, _ = self._merged()
+        return bool(cumulative(p0, p).min() >= 0.0) and self._has_admissible_memory()
+
+    def _has_admissible_memory(self) -> bool:
+        """Neighbouring plays differ by no more than their thresholds, those of one not at all."""
+        r, z = self.r[self.r > 0.0], self.z0[self.r > 0.0]
+        gaps = np.diff(r)
+        # What rounding may add to a memory that an earlier run has left.
+        slack = 1e-12 * (np.abs(z).max(initial=0.0) + np.abs(r).max(initial=0.0))
+        return bool((np.abs(np.diff(z)) <= np.where(gaps > 0.0, gaps + slack, 0.0)).all())
 
     def _require_invertible(self) -> None:
-        if self.p0 <= 0.0:
+        p0, p, r, _ = self._merged()
+        linear = int((self.r == 0.0).sum())
+        if p0 <= rounding_of_cumulative(self.p0, self.p[:linear])[-1]:
+            what = "p0" if linear == 0 else f"the linear part p0 + p[1] + .. + p[{linear}]"
             raise NotInvertibleError(
-                f"p0 is {self.p0:.6g}: without a positive linear part the output rests while the "
+                f"{what} is {p0:.6g}: without a positive linear part the output rests while the "
                 "input turns; identify or give p0 > 0"
             )
-        p, r, z = self._merged()
-        slopes = self.p0 + np.cumsum(p)
-        if (slopes <= 0.0).any():
-            j = int(np.flatnonzero(slopes <= 0.0)[0])
-            last = int(np.flatnonzero(self.r == r[j])[-1]) + 1
+        slopes = cumulative(p0, p)
+        wrong = np.flatnonzero(slopes <= rounding_of_cumulative(p0, p))
+        if wrong.size:
+            j = int(wrong[0])
+            last = int(np.flatnonzero(self.r == r[j - 1])[-1]) + 1
             raise NotInvertibleError(
                 f"the cumulative weight p0 + p[1] + .. + p[{last}] is {slopes[j]:.6g}: beyond "
-                f"threshold r[{last}] = {r[j]:.6g} the output would not rise with the input; "
+                f"threshold r[{last}] = {r[j - 1]:.6g} the output would not rise with the input; "
                 f"p[{last}] = {self.p[last - 1]:.6g} is too small"
             )
-        reach = np.diff(r) + 1e-12 * (np.abs(z).max(initial=0.0) + np.abs(r).max(initial=0.0))
-        equal = all(np.unique(self.z0[self.r == each]).size == 1 for each in r)
-        if not equal or (np.abs(np.diff(z)) > reach).any():
+        if not self._has_admissible_memory():
             raise NotInvertibleError(
                 "z0 is no memory that an input could have left (neighbouring plays differ by more "
                 "than their thresholds); give an admissible z0"

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from hyst.operators.affine import Affine
-from hyst.operators.base import Composition, Operator
+from hyst.operators.base import Operator
+from hyst.operators.composition import Chained, Composition
 from hyst.operators.dead_zone import DeadZone
 from hyst.operators.model_file import ModelDescription
 from hyst.operators.parameters import Parameters
@@ -15,6 +16,7 @@ from hyst.operators.traits import Traits
 
 __all__ = [
     "Affine",
+    "Chained",
     "Composition",
     "DeadZone",
     "ModelDescription",

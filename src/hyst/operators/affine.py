@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from hyst import _engine
 from hyst.errors import NotInvertibleError
 from hyst.operators.base import Operator
-from hyst.operators.checks import as_number
+from hyst.operators.checks import as_number, refuse_overflow
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries, register
 from hyst.operators.traits import Traits
@@ -72,11 +72,14 @@ class Affine(Operator):
         Raises
         ------
         NotInvertibleError
-            If the gain is zero.
+            If the gain is zero, or so small that the inverse overflows.
         """
         if self.gain == 0.0:
             raise NotInvertibleError("gain is 0: every input gives the same output")
-        return Affine(1.0 / self.gain, -self.offset / self.gain)
+        with np.errstate(all="ignore"):
+            gain, offset = np.array([1.0, -self.offset]) / self.gain
+        refuse_overflow(gain, offset)
+        return Affine(float(gain), float(offset))
 
     def parameters(self) -> Parameters:
         """Give gain and offset."""

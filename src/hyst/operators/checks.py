@@ -7,16 +7,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst.errors import InputError
+from hyst.errors import InputError, NotInvertibleError
 
 Array = NDArray[np.float64]
 
 
 def _as_real_array(values: Any, name: str) -> Array:
+    if np.ma.is_masked(values):
+        raise InputError(f"{name} has masked entries; give numbers only")
     try:
         array = np.asarray(values)
-    except ValueError as error:
-        raise InputError(f"{name} is not a rectangular array of numbers: {error}") from None
+    except ValueError:
+        raise InputError(
+            f"{name} is not a rectangular array of numbers; give lists of equal length"
+        ) from None
     if array.dtype.kind not in "fiub":
         raise InputError(f"{name} has dtype {array.dtype}; give real numbers")
     return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
@@ -82,7 +86,10 @@ def as_state(state: ArrayLike, length: int, batch: int | None) -> Array:
     InputError
         If shape or dtype are wrong or a value is not finite.
     """
-    given = np.asarray(state)
+    try:
+        given = np.asarray(state)
+    except ValueError:
+        raise InputError("state is not a rectangular array; give float64 numbers") from None
     if given.dtype != np.float64 and given.size:
         raise InputError(f"state has dtype {given.dtype}; give float64")
     rows = 1 if batch is None else batch
@@ -205,3 +212,23 @@ def as_ascending_thresholds(values: ArrayLike, name: str = "r") -> Array:
             "sort the thresholds in ascending order, with their weights"
         )
     return thresholds
+
+
+def refuse_overflow(*constants: Array | float) -> None:
+    """Check that the constants of an inverse are numbers a double can hold.
+
+    Parameters
+    ----------
+    constants
+        Weights, thresholds, memory of the inverse.
+
+    Raises
+    ------
+    NotInvertibleError
+        If one of them has overflowed.
+    """
+    if not all(np.isfinite(each).all() for each in constants):
+        raise NotInvertibleError(
+            "a constant of the inverse is beyond the range of double precision; choose units in "
+            "which weights and thresholds are of moderate size"
+        )

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from hyst import _engine
 from hyst.errors import InputError, NotInvertibleError
 from hyst.operators.base import Operator
-from hyst.operators.checks import as_constants
+from hyst.operators.checks import as_constants, refuse_overflow
+from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries, register
 from hyst.operators.traits import Traits
@@ -71,7 +72,7 @@ class DeadZone(Operator):
             raise InputError(f"{w.size} weights but {rho.size} thresholds; give one for each")
         if w.size == 0:
             raise InputError("a dead-zone map needs at least one weight and threshold")
-        if variant not in ("two-sided", "by-direction"):
+        if not isinstance(variant, str) or variant not in ("two-sided", "by-direction"):
             raise InputError(f"variant is {variant!r}; choose 'two-sided' or 'by-direction'")
         object.__setattr__(self, "weights", w)
         object.__setattr__(self, "thresholds", rho)
@@ -141,8 +142,9 @@ class DeadZone(Operator):
         Raises
         ------
         NotInvertibleError
-            If the map is not strictly monotone; the flat or reversed piece is named. Also for the
-            form by direction, which jumps.
+            If the map is not strictly monotone, or flat to rounding; the flat or reversed piece is
+            named. If a constant of the inverse overflows. Also for the form by direction, which
+            jumps.
 
         Notes
         -----
@@ -154,17 +156,19 @@ class DeadZone(Operator):
                 "use variant='two-sided'"
             )
         slope = self._linear_part()
-        if slope == 0.0:
+        if abs(slope) <= rounding_of_cumulative(0.0, self.weights[self.thresholds == 0.0])[-1]:
             raise NotInvertibleError(
                 "the map is flat around 0 (no weight at threshold 0, or one of zero); "
                 "give it a linear part"
             )
-        right = self._inverse_side(1.0, slope)
-        left = self._inverse_side(-1.0, slope)
-        return DeadZone(
-            np.concatenate([[1.0 / slope], right[0], left[0]]),
-            np.concatenate([[0.0], right[1], left[1]]),
-        )
+        with np.errstate(all="ignore"):
+            right = self._inverse_side(1.0, slope)
+            left = self._inverse_side(-1.0, slope)
+            weights = np.concatenate([[1.0 / slope], right[0], left[0]])
+            images = np.concatenate([right[1], left[1]])
+            # An image of 0 would turn a one-sided term into a linear one: 1/0 is an overflow too.
+            refuse_overflow(weights, images, 1.0 / images)
+        return DeadZone(weights, np.concatenate([[0.0], images]))
 
     def parameters(self) -> Parameters:
         """Give weights, then thresholds; a threshold keeps its sign, since S jumps across 0."""
@@ -231,15 +235,13 @@ class DeadZone(Operator):
     def _slopes(self) -> Array:
         """Slopes of all pieces, from the middle to the right, then from the middle to the left."""
         slope = self._linear_part()
-        return np.concatenate(
-            [[slope]] + [slope + np.cumsum(self._side(sign)[1]) for sign in (1.0, -1.0)]
-        )
+        return np.concatenate([cumulative(slope, self._side(sign)[1]) for sign in (1.0, -1.0)])
 
     def _inverse_side(self, sign: float, slope: float) -> tuple[Array, Array]:
         """Weights and thresholds of the inverse on one side of 0."""
         distance, weights = self._side(sign)
-        slopes = slope + np.concatenate([[0.0], np.cumsum(weights)])
-        wrong = np.flatnonzero(slopes * np.sign(slope) <= 0.0)
+        slopes = cumulative(slope, weights)
+        wrong = np.flatnonzero(slopes * np.sign(slope) <= rounding_of_cumulative(slope, weights))
         if wrong.size:
             piece = int(wrong[0])
             raise NotInvertibleError(
@@ -248,4 +250,4 @@ class DeadZone(Operator):
                 f"{slopes[piece]:.6g}, around 0 it is {slope:.6g}"
             )
         images = np.cumsum(slopes[:-1] * np.diff(distance, prepend=0.0))
-        return -weights / (slopes[1:] * slopes[:-1]), sign * images
+        return -(weights / slopes[1:]) / slopes[:-1], sign * images

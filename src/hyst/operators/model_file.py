@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import numbers
 import os
 import re
 from dataclasses import asdict, dataclass, fields
@@ -32,7 +33,7 @@ class ModelDescription:
     input_unit, output_unit
         Their units, as text.
     input_low, input_high, output_low, output_high
-        Ranges of the record the model was identified from, if it was; NaN is not allowed.
+        Ranges of the record the model was identified from, if it was.
     dt
         Sample time of that record in seconds.
     delay
@@ -40,6 +41,11 @@ class ModelDescription:
         model itself has no delay, so that it has an exact inverse.
     family
         Family the model was identified in.
+
+    Raises
+    ------
+    InputError
+        If a name or unit is no text, or a number is not finite or, for the delay, not whole.
     """
 
     input_name: str = "u"
@@ -53,6 +59,11 @@ class ModelDescription:
     dt: float | None = None
     delay: int = 0
     family: str = ""
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = _checked(field.name, getattr(self, field.name), str(field.type))
+            object.__setattr__(self, field.name, value)
 
 
 def write_model(
@@ -108,10 +119,10 @@ def read_model(path: str | os.PathLike[str]) -> tuple[dict[str, Any], ModelDescr
     content = _parse(Path(path))
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise InputError(f"{path}: not a model file; its entry 'format' must be {FORMAT!r}")
-    if content.get("version") != VERSION:
+    version = content.get("version")
+    if type(version) is not int or version != VERSION:
         raise InputError(
-            f"{path}: version {content.get('version')!r} of the model file; "
-            f"this hyst reads version {VERSION}"
+            f"{path}: version {version!r} of the model file; this hyst reads version {VERSION}"
         )
     for key in ("description", "model"):
         if key not in content:
@@ -123,56 +134,88 @@ def read_model(path: str | os.PathLike[str]) -> tuple[dict[str, Any], ModelDescr
 
 
 def _parse(path: Path) -> Any:
-    def refuse(text: str) -> NoReturn:
-        raise InputError(f"{path}: the number {text} is not finite")
-
-    def finite(text: str) -> float:
-        number = float(text)
-        if not math.isfinite(number):
-            refuse(text)
-        return number
-
-    def distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        keys = [key for key, _ in pairs]
-        for key in keys:
-            if keys.count(key) > 1:
-                raise InputError(f"{path}: the entry {key!r} is there more than once")
-        return dict(pairs)
-
     try:
-        text = path.read_text(encoding="utf-8")
         return json.loads(
-            text, parse_constant=refuse, parse_float=finite, object_pairs_hook=distinct
+            path.read_text(encoding="utf-8"),
+            parse_constant=_refuse_number,
+            parse_float=_finite,
+            parse_int=_whole,
+            object_pairs_hook=_distinct,
         )
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
-    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
-        raise InputError(f"{path}: not JSON: {error}") from None
+    except json.JSONDecodeError as error:
+        where = f"line {error.lineno}, column {error.colno}"
+        raise InputError(f"{path}: not JSON: {where}: {error.msg}") from None
+    except RecursionError:
+        raise InputError(f"{path}: lists or objects are nested too deeply") from None
+    except ValueError as error:  # not UTF-8, or no path
+        raise InputError(f"{str(path)!r} cannot be read: {error}") from None
+
+
+def _refuse_number(text: str) -> NoReturn:
+    raise InputError(f"the number {text[:24]} is not finite in double precision")
+
+
+def _finite(text: str) -> float:
+    number = float(text)
+    if not math.isfinite(number):
+        _refuse_number(text)
+    return number
+
+
+def _whole(text: str) -> int:
+    _finite(text)  # a longer one could neither be used nor, beyond 4300 digits, be converted
+    return int(text)
+
+
+def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in found:
+            raise InputError(f"the entry {key!r} is there more than once")
+        found[key] = value
+    return found
 
 
 def _description(path: str | os.PathLike[str], data: Any) -> ModelDescription:
     if not isinstance(data, dict):
         raise InputError(f"{path}: 'description' must be an object")
-    known = {field.name: field for field in fields(ModelDescription)}
+    known = {field.name for field in fields(ModelDescription)}
     for key, value in data.items():
         if key not in known:
             raise InputError(f"{path}: unknown entry {key!r} in 'description'")
-        if not _fits(value, str(known[key].type)):
-            raise InputError(
-                f"{path}: 'description' has {key} = {value!r}; {known[key].type} wanted"
-            )
-    return ModelDescription(**data)
+        if value is None:
+            raise InputError(f"{path}: {key!r} in 'description' is null; leave the entry out")
+    try:
+        return ModelDescription(**data)
+    except InputError as error:
+        raise InputError(f"{path}: in 'description', {error}") from None
 
 
-def _fits(value: Any, wanted: str) -> bool:
+def _checked(name: str, value: Any, wanted: str) -> Any:
+    """Give a value of a description as the plain Python type that JSON knows."""
     if wanted == "str":
-        return isinstance(value, str)
-    if wanted == "int":
-        return isinstance(value, int) and not isinstance(value, bool)
-    return isinstance(value, int | float) and not isinstance(value, bool)
+        # A lone surrogate cannot be written as UTF-8.
+        if isinstance(value, str) and not re.search("[\ud800-\udfff]", value):
+            return value
+    elif value is None:
+        if wanted == "float | None":
+            return None
+    elif not isinstance(value, bool) and isinstance(value, numbers.Real):
+        number = float(value)
+        if math.isfinite(number) and (wanted != "int" or number.is_integer()):
+            return int(number) if wanted == "int" else number
+    raise InputError(f"{name} is {value!r}; give {_WANTED[wanted]}")
+
+
+_WANTED = {"str": "text", "int": "a whole number", "float | None": "a finite number"}
 
 
 def _lists_on_one_line(text: str) -> str:
     """Put lists of numbers on one line each: a person reads p and r side by side."""
-    number_list = re.compile(r"\[\s+(-?\d[^\[\]\"{}]*?)\s+\]")
+    # JSON writes a line feed inside a text as \n, so no text can look like a list over lines.
+    number_list = re.compile(r"\[\n\s*(-?\d[^\[\]\"{}]*?)\n\s*\]")
     return number_list.sub(lambda found: "[" + re.sub(r"\s+", " ", found.group(1)) + "]", text)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
+from hyst.operators.checks import as_constants
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,17 +67,14 @@ def as_parameter_vector(
     Returns
     -------
     numpy.ndarray
-        A float64 copy.
+        A read-only float64 copy.
 
     Raises
     ------
     InputError
-        If the length is wrong or an entry is not finite.
+        If it is no list of real numbers, the length is wrong or an entry is not finite.
     """
-    vector = np.array(theta, dtype=np.float64)
-    if vector.shape != (count,):
-        raise InputError(f"theta has shape {vector.shape}; this operator has {count} parameters")
-    if not np.isfinite(vector).all():
-        bad = int(np.flatnonzero(~np.isfinite(vector))[0])
-        raise InputError(f"theta[{bad}] is {vector[bad]}; parameters must be finite")
+    vector = as_constants(theta, "theta")
+    if vector.size != count:
+        raise InputError(f"theta has {vector.size} entries; this operator has {count} parameters")
     return vector

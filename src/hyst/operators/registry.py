@@ -42,6 +42,29 @@ def registered() -> dict[str, type[Operator]]:
     return dict(_CLASSES)
 
 
+def compose(stages: tuple[Operator, ...]) -> Operator:
+    """Make a composition without a name; ``f @ g`` is ``compose((g, f))``.
+
+    Parameters
+    ----------
+    stages
+        Operators in the order the signal passes them.
+
+    Returns
+    -------
+    Operator
+
+    Raises
+    ------
+    InputError
+        If something else than an operator is among them.
+    """
+    # The class is looked up, since its base class, which offers ``@``, cannot import it.
+    composition: Any = _CLASSES["composition"]
+    made: Operator = composition(stages)
+    return made
+
+
 def operator_from_dict(data: Any) -> Operator:
     """Rebuild any operator from its dictionary.
 
@@ -94,7 +117,7 @@ def entries(
     Raises
     ------
     InputError
-        If one is missing or unknown.
+        If one is missing or unknown, or holds null, true or false.
     """
     given = {key: value for key, value in data.items() if key != "kind"}
     kind = data.get("kind")
@@ -104,4 +127,13 @@ def entries(
     for key in given:
         if key not in required and key not in optional:
             raise InputError(f"{kind}: unknown entry {key!r}; remove it or update hyst")
+    for key, value in given.items():
+        _refuse_what_numpy_would_convert(value, f"{kind}: the entry {key!r}")
     return given
+
+
+def _refuse_what_numpy_would_convert(value: Any, what: str) -> None:
+    # NumPy reads true as 1, and a null would silently mean "left out".
+    for each in value if isinstance(value, list) else (value,):
+        if each is None or isinstance(each, bool):
+            raise InputError(f"{what} holds {each}; leave out or write numbers")

@@ -24,7 +24,8 @@ class ThresholdOperator(Operator):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "r", as_threshold(self.r))
-        object.__setattr__(self, "z0", as_number(self.z0, "z0"))
+        # -0.0 becomes 0.0, since a dictionary leaves out a memory of zero.
+        object.__setattr__(self, "z0", as_number(self.z0, "z0") + 0.0)
 
     def initial_state(self) -> NDArray[np.float64]:
         """Give the initial play output, shape (1,)."""

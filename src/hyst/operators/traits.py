@@ -21,7 +21,7 @@ class Traits:
     congruent_loops
         Loops between the same two input values have the same shape wherever they start.
     monotone
-        While the input rises, from whatever state, the output does not fall.
+        While the input rises, from any state an input can have left, the output does not fall.
     invertible
         ``inverse()`` gives an exact inverse.
     """

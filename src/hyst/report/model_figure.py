@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from hyst.models import PrandtlIshlinskii
-from hyst.operators import DeadZone, Operator
-from hyst.operators.base import Chained
+from hyst.operators import Chained, DeadZone, Operator
 from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn, with_unit
 
 Array = NDArray[np.float64]

@@ -1,0 +1,215 @@
+"""Operators one after the other."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst import _engine
+from hyst.errors import InputError
+from hyst.operators.base import Operator
+from hyst.operators.parameters import Parameters, as_parameter_vector
+from hyst.operators.registry import entries, operator_from_dict, register
+from hyst.operators.traits import Traits
+
+Array = NDArray[np.float64]
+
+
+class Chained(Operator):
+    """Operators one after the other; subclasses say which, everything else follows.
+
+    The inverse of a composition is the composition of the inverses, reversed.
+    """
+
+    @property
+    @abstractmethod
+    def stages(self) -> tuple[Operator, ...]:
+        """The operators in the order the signal passes them."""
+
+    @abstractmethod
+    def _with_stages(self, stages: tuple[Operator, ...]) -> Operator:
+        """Give the same kind of composition of other stages."""
+
+    def traits(self) -> Traits:
+        """Give what follows from the traits of the stages.
+
+        Loops stay congruent through a stage with memory, whose input they are, but not through a
+        curved map of a signal that already has memory.
+        """
+        leaves = leaves_of(self)
+        traits = [leaf.traits() for leaf in leaves]
+        remembers = False
+        congruent = all(each.congruent_loops for each in traits)
+        for leaf, each in zip(leaves, traits, strict=True):
+            curved = each.memoryless and leaf.kind != "affine"
+            congruent = congruent and not (remembers and curved)
+            remembers = remembers or not each.memoryless
+        return Traits(
+            memoryless=not remembers,
+            rate_independent=all(each.rate_independent for each in traits),
+            return_point_memory=all(each.return_point_memory for each in traits)
+            and all(each.monotone for each in traits[:-1]),
+            congruent_loops=congruent,
+            monotone=all(each.monotone for each in traits),
+            invertible=all(each.invertible for each in traits),
+        )
+
+    def initial_state(self) -> Array:
+        """Give the states of the stages, one after the other."""
+        return np.concatenate([stage.initial_state() for stage in self.stages])
+
+    def inverse(self) -> Operator:
+        """Give the inverses of the stages in reversed order.
+
+        Raises
+        ------
+        NotInvertibleError
+            If a stage has none; its own message says why.
+        """
+        return Composition(tuple(stage.inverse() for stage in reversed(self.stages)))
+
+    def parameters(self) -> Parameters:
+        """Give the parameters of the stages, one after the other, named by stage."""
+        leaves = leaves_of(self)
+        parts = [leaf.parameters() for leaf in leaves]
+        names = [
+            f"{prefix}.{name}"
+            for prefix, part in zip(_prefixes(leaves), parts, strict=True)
+            for name in part.names
+        ]
+        return Parameters(
+            values=np.concatenate([part.values for part in parts]),
+            names=tuple(names),
+            lower=np.concatenate([part.lower for part in parts]),
+            upper=np.concatenate([part.upper for part in parts]),
+        )
+
+    def with_parameters(self, theta: Sequence[float] | Array) -> Operator:
+        """Give the same composition with other constants."""
+        counts = [len(stage.parameters()) for stage in self.stages]
+        vector = as_parameter_vector(theta, sum(counts))
+        pieces = np.split(vector, np.cumsum(counts)[:-1])
+        return self._with_stages(
+            tuple(s.with_parameters(piece) for s, piece in zip(self.stages, pieces, strict=True))
+        )
+
+    def lipschitz_constant(self) -> float:
+        """Give the product of the stages' constants."""
+        constant = 1.0
+        for stage in self.stages:
+            constant *= stage.lipschitz_constant()
+        return constant
+
+    def append_to(self, chain: _engine.Chain) -> None:
+        """Append all stages in the order the signal passes them."""
+        for stage in self.stages:
+            stage.append_to(chain)
+
+
+@register
+@final
+@dataclass(frozen=True, eq=False, repr=False, init=False)
+class Composition(Chained):
+    """A composition without a name of its own; ``f @ g`` makes one.
+
+    Parameters
+    ----------
+    stages
+        Operators in the order the signal passes them: ``(f @ g)`` has the stages ``(g, f)``.
+        Compositions without a name among them are replaced by their own stages.
+
+    Raises
+    ------
+    InputError
+        If there is no stage, or something else than an operator among them.
+
+    Examples
+    --------
+    >>> from hyst.operators import Affine, Play
+    >>> backlash = Affine(2.0, 1.0) @ Play(0.5)
+    >>> backlash([0.0, 1.0, 2.0, 1.5])
+    array([1., 2., 4., 4.])
+    """
+
+    _stages: tuple[Operator, ...]
+
+    kind = "composition"
+
+    def __init__(self, stages: Sequence[Operator]) -> None:
+        if not isinstance(stages, list | tuple) or not stages:
+            raise InputError("a composition has no stage; give a list of at least one operator")
+        for stage in stages:
+            if not isinstance(stage, Operator):
+                raise InputError(
+                    f"a stage is of type {type(stage).__name__}; compose operators only"
+                )
+        flat = (part for stage in stages for part in _stages(stage))
+        object.__setattr__(self, "_stages", tuple(flat))
+
+    @property
+    def stages(self) -> tuple[Operator, ...]:
+        """The operators in the order the signal passes them."""
+        return self._stages
+
+    def _with_stages(self, stages: tuple[Operator, ...]) -> Operator:
+        return Composition(stages)
+
+    def __repr__(self) -> str:
+        return " @ ".join(repr(stage) for stage in reversed(self._stages))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give the kind and the stages."""
+        return {"kind": self.kind, "stages": [stage.to_dict() for stage in self._stages]}
+
+    @classmethod
+    def from_dict(cls, data: dict[str, Any]) -> Operator:
+        """Rebuild a composition.
+
+        Raises
+        ------
+        InputError
+            If an entry is missing, unknown or not allowed.
+        """
+        stages = entries(data, required=("stages",))["stages"]
+        if not isinstance(stages, list):
+            raise InputError("composition: 'stages' must be a list of operators")
+        return cls([operator_from_dict(stage) for stage in stages])
+
+
+def _stages(operator: Operator) -> tuple[Operator, ...]:
+    """Flatten nested compositions without a name; those with a name stay whole."""
+    return operator.stages if type(operator) is Composition else (operator,)
+
+
+def leaves_of(operator: Operator) -> tuple[Operator, ...]:
+    """Give the operators that are no compositions themselves, in the order of the signal.
+
+    Parameters
+    ----------
+    operator
+        Any operator.
+
+    Returns
+    -------
+    tuple of Operator
+        ``operator`` alone if it is no composition.
+    """
+    if not isinstance(operator, Chained):
+        return (operator,)
+    return tuple(leaf for stage in operator.stages for leaf in leaves_of(stage))
+
+
+def _prefixes(leaves: tuple[Operator, ...]) -> list[str]:
+    """Name operators by kind, numbered from 1 where a kind comes more than once."""
+    kinds = [leaf.kind.replace("-", "_") for leaf in leaves]
+    seen: dict[str, int] = {}
+    prefixes = []
+    for kind in kinds:
+        seen[kind] = seen.get(kind, 0) + 1
+        prefixes.append(f"{kind}_{seen[kind]}" if kinds.count(kind) > 1 else kind)
+    return prefixes
