@@ -76,18 +76,23 @@ $(bin)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
 		echo "hyst needs Python 3.11 or newer, and $(PYTHON) is not;" \
 		"name another: make PYTHON=python3.12" >&2; exit 1; }
-	@for compiler in $(CC) $(CXX); do command -v $$compiler >/dev/null || { \
-		echo "hyst needs a C and a C++ compiler, and there is no $$compiler;" \
-		"install one, or name it: make CC=gcc CXX=g++" >&2; exit 1; }; done
 	@$(PYTHON) -m venv .venv || { rm -rf .venv; echo "$(PYTHON) cannot make virtual environments;" \
 		"install its venv module (python3-venv on Debian and Ubuntu)" >&2; exit 1; }
+
+define demand_compilers
+@for compiler in $(CC) $(CXX); do command -v $$compiler >/dev/null || { \
+		echo "hyst needs a C and a C++ compiler, and there is no $$compiler;" \
+		"install one, or name it: make CC=gcc CXX=g++" >&2; exit 1; }; done
+endef
 
 # pip fetches what builds the package (scikit-build-core, nanobind and, where the machine has none,
 # cmake and ninja) into an environment of its own.
 $(installed): $(built_from) | $(bin)/python
+	$(demand_compilers)
 	$(bin)/python -m pip install --quiet --disable-pip-version-check --editable '.[all]'
 	@touch $@
 
 $(installed_dev): $(built_from) | $(bin)/python
+	$(demand_compilers)
 	$(bin)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	@touch $(installed) $@
