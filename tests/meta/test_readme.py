@@ -50,7 +50,7 @@ def commands(text: str) -> Iterator[list[str]]:
 @functools.cache
 def help_of(*verb: str) -> str:
     """What the command line says about a verb, wide enough that nothing is cut off."""
-    program = "import sys; sys.argv[0] = 'hyst'; from hyst.cli import main; main()"
+    program = "import sys; sys.argv[0] = 'hyst'; from hyst.cli import main; sys.exit(main())"
     wide = {"COLUMNS": "250", "TERMINAL_WIDTH": "250", "NO_COLOR": "1", "TERM": "dumb"}
     finished = subprocess.run(
         [sys.executable, "-c", program, *verb, "--help"],
