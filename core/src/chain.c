@@ -13,6 +13,8 @@ size_t hyst_stage_state_length(const hyst_stage *stage)
         return 1;
     case HYST_PI:
         return stage->as.pi.count;
+    case HYST_RATE_DEPENDENT_PI:
+        return stage->as.rate_dependent_pi.pi.count + 2;
     case HYST_AFFINE:
     case HYST_DEAD_ZONE:
     default:
@@ -44,6 +46,8 @@ hyst_real hyst_stage_step(const hyst_stage *stage, hyst_real *state, hyst_real u
         return hyst_direction_dead_zone_step(&stage->as.dead_zone, state, u);
     case HYST_PI:
         return hyst_pi_step(&stage->as.pi, state, u);
+    case HYST_RATE_DEPENDENT_PI:
+        return hyst_rate_dependent_pi_step(&stage->as.rate_dependent_pi, state, u);
     default:
         return u;
     }

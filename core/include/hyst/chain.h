@@ -8,6 +8,7 @@
 
 #include "hyst/dead_zone.h"
 #include "hyst/prandtl_ishlinskii.h"
+#include "hyst/rate_dependent_prandtl_ishlinskii.h"
 #include "hyst/real.h"
 
 #ifdef __cplusplus
@@ -25,7 +26,8 @@ typedef enum {
     HYST_STOP,
     HYST_DEAD_ZONE,
     HYST_DIRECTION_DEAD_ZONE,
-    HYST_PI
+    HYST_PI,
+    HYST_RATE_DEPENDENT_PI
 } hyst_kind;
 
 typedef struct {
@@ -35,6 +37,7 @@ typedef struct {
         hyst_real r; /* threshold of a play or a stop */
         hyst_dead_zone dead_zone;
         hyst_pi pi;
+        hyst_rate_dependent_pi rate_dependent_pi;
     } as;
 } hyst_stage;
 

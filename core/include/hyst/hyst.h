@@ -7,6 +7,7 @@
 #include "hyst/guard.h"
 #include "hyst/play.h"
 #include "hyst/prandtl_ishlinskii.h"
+#include "hyst/rate_dependent_prandtl_ishlinskii.h"
 #include "hyst/real.h"
 
 #endif

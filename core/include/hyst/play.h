@@ -13,14 +13,18 @@
 extern "C" {
 #endif
 
-/* The play's equation, for all files of the core: clamp z to [u - r, u + r].
- * Comparisons instead of fmin and fmax: no libm, and six times faster. */
-static inline hyst_real hyst_play(hyst_real u, hyst_real r, hyst_real z)
+/* z moved no further than into [low, high]. Comparisons instead of fmin and fmax: no libm, and six
+ * times faster. */
+static inline hyst_real hyst_clamp(hyst_real low, hyst_real high, hyst_real z)
 {
-    const hyst_real low = u - r;
-    const hyst_real high = u + r;
     const hyst_real below = z < high ? z : high;
     return below > low ? below : low;
+}
+
+/* The play's equation, for all files of the core: clamp z to [u - r, u + r]. */
+static inline hyst_real hyst_play(hyst_real u, hyst_real r, hyst_real z)
+{
+    return hyst_clamp(u - r, u + r, z);
 }
 
 /* One sample of the play; returns the new z, which is also stored. */
