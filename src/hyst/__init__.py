@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
-    from hyst import compensation, io, signals
+    from hyst import compensation, demo, errors, files, io, models, report, signals
     from hyst.errors import (
         HystError,
         InputError,
@@ -53,7 +53,18 @@ _HOME = {
     "Stop": "hyst.operators",
     "Record": "hyst.signals",
 }
-_PACKAGES = ("compensation", "errors", "identification", "io", "models", "operators", "signals")
+_PACKAGES = (
+    "compensation",
+    "demo",
+    "errors",
+    "files",
+    "identification",
+    "io",
+    "models",
+    "operators",
+    "report",
+    "signals",
+)
 
 __all__ = [
     "Affine",
@@ -75,10 +86,15 @@ __all__ = [
     "Stop",
     "__version__",
     "compensation",
+    "demo",
+    "errors",
+    "files",
     "identify",
     "io",
     "load",
+    "models",
     "read_record",
+    "report",
     "signals",
 ]
 

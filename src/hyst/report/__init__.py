@@ -9,20 +9,58 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from hyst.report.identification_report import write_report
-    from hyst.report.tables import Table
+    from hyst.report.identification_report import Section, write_report
+    from hyst.report.tables import (
+        Table,
+        candidates_table,
+        compensation_table,
+        constants_table,
+        description_table,
+        metrics_table,
+        parameters_table,
+        traits_table,
+    )
+    from hyst.report.tracking_figure import draw_tracking
+    from hyst.report.words import delay_sentence, in_short, invertible_sentence
 
 _HOME = {
-    "Table": "hyst.report.tables",
-    "write_report": "hyst.report.identification_report",
+    "Section": "identification_report",
+    "Table": "tables",
+    "candidates_table": "tables",
+    "compensation_table": "tables",
+    "constants_table": "tables",
+    "delay_sentence": "words",
+    "description_table": "tables",
+    "draw_tracking": "tracking_figure",
+    "in_short": "words",
+    "invertible_sentence": "words",
+    "metrics_table": "tables",
+    "parameters_table": "tables",
+    "traits_table": "tables",
+    "write_report": "identification_report",
 }
 
-__all__ = ["Table", "write_report"]
+__all__ = [
+    "Section",
+    "Table",
+    "candidates_table",
+    "compensation_table",
+    "constants_table",
+    "delay_sentence",
+    "description_table",
+    "draw_tracking",
+    "in_short",
+    "invertible_sentence",
+    "metrics_table",
+    "parameters_table",
+    "traits_table",
+    "write_report",
+]
 
 
 def __getattr__(name: str) -> Any:
     if name not in _HOME:
         raise AttributeError(f"module 'hyst.report' has no attribute {name!r}")
-    value = getattr(importlib.import_module(_HOME[name]), name)
+    value = getattr(importlib.import_module(f"hyst.report.{_HOME[name]}"), name)
     globals()[name] = value
     return value

@@ -1,4 +1,4 @@
-"""Output over time, measured and modelled: the whole record and a few strokes of it."""
+"""Output over time, recorded and modelled: the whole record and a few strokes of it."""
 
 from __future__ import annotations
 
@@ -51,9 +51,7 @@ def draw_history(fits: tuple[FittedRecord, ...], heading: str) -> Figure:
 
 def _draw(axes: Axes, fit: FittedRecord, start: int, stop: int) -> None:
     t = fit.record.time[start:stop]
-    axes.plot(
-        t, fit.record.y[start:stop], color=MEASURED, linewidth=2.2, alpha=0.6, label="measured"
-    )
+    axes.plot(t, fit.record.y[start:stop], color=MEASURED, linewidth=2.2, alpha=0.6, label="record")
     axes.plot(t, fit.y_model[start:stop], color=MODELLED, linewidth=1.0, label="model")
     axes.margins(x=0.01)
 

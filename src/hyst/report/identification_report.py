@@ -44,6 +44,26 @@ FILES = (MODEL, METRICS, LOOP, HISTORY, ERROR, PARTS, PAGE)
 
 
 @dataclass(frozen=True, eq=False)
+class Section:
+    """A section of the page that a caller adds, with a picture.
+
+    Parameters
+    ----------
+    heading, texts, table
+        What it says.
+    picture, png, caption
+        Name of the picture's file, its content, and what there is to see.
+    """
+
+    heading: str
+    texts: tuple[str, ...]
+    table: Table
+    picture: str
+    png: bytes
+    caption: str
+
+
+@dataclass(frozen=True, eq=False)
 class _Findings:
     """What the page is written from."""
 
@@ -53,6 +73,7 @@ class _Findings:
     sources: tuple[str, ...]
     folder: Path
     banner: str
+    sections: tuple[Section, ...]
 
     @property
     def records(self) -> tuple[Record, ...]:
@@ -67,6 +88,7 @@ def write_report(
     *,
     sources: Sequence[str] = (),
     banner: str = "",
+    sections: Sequence[Section] = (),
 ) -> tuple[Path, ...]:
     """Write model.json, metrics.json, the figures and report.html; all of them or none.
 
@@ -84,6 +106,8 @@ def write_report(
         Where the records came from, training before validation, for the page.
     banner
         A line to put above everything, for instance that the data are simulated.
+    sections
+        Further sections of the page; their pictures are written too.
 
     Returns
     -------
@@ -103,7 +127,9 @@ def write_report(
         hyst.report.write_report(found, record, (), "out")
     """
     training, kept = fit_records(identified, _several(records), _several(validation))
-    findings = _Findings(identified, training, kept, tuple(sources), Path(folder), banner)
+    findings = _Findings(
+        identified, training, kept, tuple(sources), Path(folder), banner, tuple(sections)
+    )
     figures = _figures(findings)
     with replacing_files(folder) as temporary:
         identified.model.save(temporary / MODEL, identified.description)
@@ -111,8 +137,11 @@ def write_report(
         (temporary / METRICS).write_text(numbers + "\n", encoding="utf-8")
         for name, content in figures.items():
             (temporary / name).write_bytes(content)
+        for section in sections:
+            (temporary / section.picture).write_bytes(section.png)
         (temporary / PAGE).write_text(_page(findings, figures), encoding="utf-8")
-    return tuple(Path(folder) / name for name in FILES)
+    names = (*FILES, *(section.picture for section in sections))
+    return tuple(Path(folder) / name for name in names)
 
 
 def _several(records: Record | Sequence[Record]) -> tuple[Record, ...]:
@@ -142,13 +171,15 @@ def _page(findings: _Findings, figures: dict[str, bytes]) -> str:
     page.items(in_short(findings.identified, findings.records))
     page.picture(
         figures[LOOP],
-        "Measured and modelled loop. On the right the straight line that fits best is taken away, "
+        "Recorded and modelled loop. On the right the straight line that fits best is taken away, "
         "so that the hysteresis fills the picture.",
     )
     _how_good(page, findings, figures)
     _the_model(page, findings, figures)
     _what_was_compared(page, findings)
     _the_data(page, findings)
+    for section in findings.sections:
+        _further(page, section)
     _what_next(page, findings)
     return page.to_html()
 
@@ -234,6 +265,14 @@ def _the_data(page: Page, findings: _Findings) -> None:
         + [f"{fit.label}: {note}" for fit in fits for note in fit.record.notes]
     )
     page.faint(f"The fit ended: {identified.status} after {identified.iterations} iterations.")
+
+
+def _further(page: Page, section: Section) -> None:
+    page.heading(section.heading)
+    for text in section.texts:
+        page.text(text)
+    page.table(section.table)
+    page.picture(section.png, section.caption)
 
 
 def _range(signal: np.ndarray[tuple[int], np.dtype[np.float64]], unit: str) -> str:

@@ -1,4 +1,4 @@
-"""The loop: output over input, measured and modelled."""
+"""The loop: output over input, recorded and modelled."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _straight_line(fits: tuple[FittedRecord, ...]) -> tuple[float, float]:
 
 def _pair(axes: Axes, u: Array, measured: Array, modelled: Array, label: bool) -> None:
     axes.plot(
-        u, measured, ".", color=MEASURED, markersize=2.0, alpha=0.5, label="measured" * label,
+        u, measured, ".", color=MEASURED, markersize=2.0, alpha=0.5, label="record" * label,
         rasterized=True,
     )  # fmt: skip
     axes.plot(u, modelled, color=MODELLED, linewidth=1.1, label="model" * label)

@@ -75,9 +75,7 @@ def draw_model(
         else:
             _draw_map(next(free), before, after, labels, is_input=before is u)
     if not parts:
-        _draw_map(axes[0], u, model(u), labels, is_input=True)
-        axes[0].set_title("The straight line")
-        axes[0].set_ylabel(with_unit(labels.output_name, labels.output_unit))
+        _draw_line(axes[0], u, model(u), labels)
     if heading:
         figure.suptitle(heading)
     return figure
@@ -138,16 +136,13 @@ def _draw_weights(
         color=MODELLED,
         ecolor=MEASURED,
         elinewidth=1.0,
-        capsize=2.0,
-        label="plays, +- one standard error",
+        capsize=2.5,
     )
-    axes.axhline(plays.p0, color=SECOND, linestyle="--", label="linear part p0")
     axes.axhline(0.0, color=FAINT, zorder=0)
-    _leave_room_for_legend(axes)
-    axes.set_title("Weights over radii")
+    axes.set_xlim(left=0.0)
+    axes.set_title(f"Weights over radii (p0 = {plays.p0:.3g})")
     axes.set_xlabel(with_unit("radius r", labels.input_unit))
-    axes.set_ylabel("weight p")
-    axes.legend(loc="upper right")
+    axes.set_ylabel("weight p, +- one standard error" if standard_errors else "weight p")
 
 
 def _draw_loading_curve(
@@ -167,19 +162,21 @@ def _draw_loading_curve(
 def _draw_map(axes: Axes, before: Array, after: Array, labels: Labels, is_input: bool) -> None:
     order = np.argsort(before)
     x, y = before[order], after[order]
-    axes.plot(x, y, color=MODELLED, label="map")
     slope = (y[-1] - y[0]) / (x[-1] - x[0]) if x[-1] > x[0] else 0.0
-    axes.plot(
-        x[[0, -1]], y[0] + slope * (x[[0, -1]] - x[0]), "--", color=MEASURED, label="straight"
+    axes.plot(x, y - y[0] - slope * (x - x[0]), color=MODELLED)
+    axes.axhline(0.0, color=FAINT, zorder=0)
+    axes.set_title(
+        ("Envelope" if is_input else "Output map") + f" without its line of slope {slope:.3g}"
     )
-    axes.set_title("Envelope map" if is_input else "Output map")
     axes.set_xlabel(
         with_unit(labels.input_name, labels.input_unit) if is_input else "output of the plays"
     )
-    axes.set_ylabel("output of the map")
-    axes.legend(loc="upper left" if slope >= 0.0 else "upper right")
+    axes.set_ylabel("output of the map minus the line")
 
 
-def _leave_room_for_legend(axes: Axes) -> None:
-    low, high = axes.get_ylim()
-    axes.set_ylim(min(low, 0.0), high + 0.25 * (high - low))
+def _draw_line(axes: Axes, u: Array, y: Array, labels: Labels) -> None:
+    order = np.argsort(u)
+    axes.plot(u[order], y[order], color=MODELLED)
+    axes.set_title("The straight line")
+    axes.set_xlabel(with_unit(labels.input_name, labels.input_unit))
+    axes.set_ylabel(with_unit(labels.output_name, labels.output_unit))

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from hyst.compensation import Compensation
 from hyst.identification import Identified
-from hyst.operators import Operator
+from hyst.operators import ModelDescription, Operator
 
 _TRAITS = {
     "memoryless": "output depends on the present input alone",
@@ -76,7 +77,7 @@ def metrics_table(identified: Identified) -> Table:
     """
     unit = identified.description.output_unit
     return Table(
-        "Error of the model (modelled minus measured output)",
+        "Error of the model (modelled minus recorded output)",
         (
             "record",
             with_unit("rms", unit and f"[{unit}]"),
@@ -210,3 +211,59 @@ def traits_table(model: Operator) -> Table:
             for name, meaning in _TRAITS.items()
         ),
     )
+
+
+def compensation_table(done: Compensation, unit: str) -> Table:
+    """Give the tracking error the model predicts.
+
+    Parameters
+    ----------
+    done
+        The command and its prediction.
+    unit
+        Of the output.
+
+    Returns
+    -------
+    Table
+    """
+
+    def row(name: str, value: float) -> tuple[str, str, str]:
+        percent = done.percent_of_range(value)
+        return name, number(value), "-" if percent is None else number(percent)
+
+    return Table(
+        "Predicted tracking error (model's output minus reference)",
+        ("", with_unit("error", unit and f"[{unit}]"), "% of the reference's range"),
+        (row("rms", done.rms), row("max", done.max_abs)),
+    )
+
+
+def description_table(about: ModelDescription) -> Table:
+    """List what the numbers of a model mean, as far as its file says.
+
+    Parameters
+    ----------
+    about
+        From the model file.
+
+    Returns
+    -------
+    Table
+    """
+
+    def signal(name: str, unit: str, low: float | None, high: float | None) -> str:
+        extent = "" if low is None or high is None else f", {number(low, 6)} to {number(high, 6)}"
+        return f"{name}{extent}" + (f" {unit}" if unit else "")
+
+    rows = [
+        ("family", about.family or "not identified"),
+        ("input", signal(about.input_name, about.input_unit, about.input_low, about.input_high)),
+        (
+            "output",
+            signal(about.output_name, about.output_unit, about.output_low, about.output_high),
+        ),
+        ("sample time", "any" if about.dt is None else f"{number(about.dt, 6)} s"),
+        ("delay of the output", f"{about.delay} samples"),
+    ]
+    return Table("Description", ("what", "value"), tuple(rows))

@@ -110,7 +110,7 @@ def in_short(identified: Identified, records: tuple[Record, ...]) -> tuple[str, 
     if training is not None:
         line = straight_line_percent(records[0], identified.used[0].start)
         sentences.append(
-            f"On the record it was identified from it misses the measured output by "
+            f"On the record it was identified from it misses the recorded output by "
             f"{with_unit(number(training.rms, 3), unit)} rms, {training.rms_percent:.2f} % of the "
             f"output's range (at most {with_unit(number(training.max_abs, 3), unit)}, "
             f"{training.max_percent:.2f} %); a straight line misses it by {line:.2f} % rms."
@@ -125,18 +125,20 @@ def in_short(identified: Identified, records: tuple[Record, ...]) -> tuple[str, 
         sentences.append(
             "No validation record was given, so how well it predicts another drive is not measured."
         )
-    sentences += [delay_sentence(identified), invertible_sentence(identified.model)]
+    sentences += [
+        delay_sentence(identified.delay, identified.description.dt),
+        invertible_sentence(identified.model),
+    ]
     return tuple(sentences)
 
 
-def delay_sentence(identified: Identified) -> str:
-    """Say by how much the output lags."""
-    delay, dt = identified.delay, identified.description.dt
+def delay_sentence(delay: int, dt: float | None) -> str:
+    """Say by how much the output lags: ``delay`` samples of ``dt`` seconds."""
     if delay == 0:
         return "The output does not lag by a whole sample or more."
     time = "" if dt is None else f" ({number(delay * dt)} s)"
     return (
-        f"The measured output lags the model by {delay} sample{'s' * (delay > 1)}{time}. The "
+        f"The recorded output lags the model by {delay} sample{'s' * (delay > 1)}{time}. The "
         "model itself has no delay; the lag is kept in the model file and cannot be compensated, "
         "only anticipated, by giving the command that much earlier."
     )

@@ -1,0 +1,11 @@
+"""The command line: one file a verb.
+
+The verbs reach everything through the names of ``hyst`` itself, which are loaded when first used;
+so ``hyst --help`` loads no numerics, and no verb imports anything inside a function.
+"""
+
+from __future__ import annotations
+
+from hyst.cli.app import main
+
+__all__ = ["main"]

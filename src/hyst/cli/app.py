@@ -1,0 +1,83 @@
+"""The program: its verbs, its global options, and how it ends."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Sequence
+from typing import Annotated
+
+import typer
+
+import hyst
+from hyst.cli.compensate import compensate
+from hyst.cli.demo import demo
+from hyst.cli.identify import identify
+from hyst.cli.info import info
+from hyst.cli.simulate import simulate
+
+DONE, FAILURE, BAD_INPUT = 0, 1, 2
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    help="From a measured hysteresis loop to a model, its exact inverse and a command.",
+    epilog="Exit code: 0 done, 2 bad input, 1 failure.",
+)
+for verb in (identify, simulate, compensate, info, demo):
+    app.command(verb.__name__)(verb)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        print(f"hyst {hyst.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_show_version, is_eager=True, help="Show the version and exit."
+        ),
+    ] = False,
+    debug: Annotated[bool, typer.Option("--debug", help="Show where an error came from.")] = False,
+) -> None:
+    """Take the options that come before the verb; each acts on its own."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the program; errors go to stderr in one sentence, with their origin after ``--debug``."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    debug = "--debug" in given
+    # Whoever repeats a failed command appends the option, so it may stand anywhere.
+    given = [each for each in given if each != "--debug"]
+    try:
+        status = app(args=given, prog_name="hyst", standalone_mode=False)
+    except typer.Abort:
+        return _end("stopped", FAILURE)
+    except Exception as error:
+        if debug:
+            traceback.print_exc()
+        return _end(*_explain(error))
+    return status if isinstance(status, int) else DONE
+
+
+def _explain(error: Exception) -> tuple[str, int]:
+    """Give the sentence and the exit code of an error."""
+    if isinstance(error, hyst.HystError):
+        # Bad input is a ValueError too; a solver that failed or a missing package is not.
+        return str(error), BAD_INPUT if isinstance(error, ValueError) else FAILURE
+    if hasattr(error, "format_message"):
+        return f"{error.format_message()} (hyst --help shows what there is)", BAD_INPUT
+    if isinstance(error, OSError):
+        return str(error), FAILURE
+    what = f"{type(error).__name__}: {error}"
+    return f"hyst itself failed, {what}; run it again with --debug and report it", FAILURE
+
+
+def _end(message: str, status: int) -> int:
+    print(f"error: {' '.join(message.split())}", file=sys.stderr)
+    return status

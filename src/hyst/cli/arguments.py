@@ -1,0 +1,58 @@
+"""Arguments that several verbs take, and how their text is read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+import hyst
+
+ModelFile = Annotated[
+    Path,
+    typer.Argument(metavar="MODEL", show_default=False, help="Model file, as identify writes."),
+]
+InputColumn = Annotated[
+    str,
+    typer.Option(
+        "--input",
+        metavar="COL",
+        show_default=False,
+        help="Column of the input: name or index from 0.",
+    ),
+]
+
+
+def whole_or_auto(text: str, name: str) -> int | Literal["auto"]:
+    """Read a whole number or the word auto."""
+    if text == "auto":
+        return "auto"
+    try:
+        return int(text)
+    except ValueError:
+        raise hyst.InputError(f"--{name} is {text!r}; give a whole number or auto") from None
+
+
+def numbers(text: str, name: str) -> list[float]:
+    """Read numbers with commas between them."""
+    try:
+        return [float(each) for each in text.split(",")]
+    except ValueError:
+        raise hyst.InputError(
+            f"--{name} is {text!r}; give numbers with commas between them, as 0,3.6"
+        ) from None
+
+
+def require_same_unit(unit: str, model_unit: str, what: str) -> None:
+    """Refuse a signal in another unit than the model's; one that says none is believed."""
+    if unit and model_unit and _spelt(unit) != _spelt(model_unit):
+        raise hyst.InputError(
+            f"{what} is in {unit!r} but the model's in {model_unit!r}; hyst converts no units, so "
+            "convert the column, or correct its header"
+        )
+
+
+def _spelt(unit: str) -> str:
+    """Spell the two signs for micro as u, which is what keyboards have."""
+    return unit.replace("\u00b5", "u").replace("\u03bc", "u")

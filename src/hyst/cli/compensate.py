@@ -1,0 +1,118 @@
+"""hyst compensate: the command that makes the output follow a trajectory."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+import hyst
+from hyst.cli.arguments import ModelFile, numbers, require_same_unit
+from hyst.cli.console import note, show_files, show_table
+
+if TYPE_CHECKING:
+    from hyst.operators import ModelDescription
+
+
+def compensate(
+    model_file: ModelFile,
+    reference: Annotated[
+        Path,
+        typer.Argument(
+            metavar="REFERENCE", show_default=False, help="File with the wanted output."
+        ),
+    ],
+    column: Annotated[
+        str,
+        typer.Option(metavar="COL", show_default=False, help="Its column: name or index from 0."),
+    ],
+    out: Annotated[
+        Path,
+        typer.Option("-o", "--out", metavar="FILE", show_default=False, help="CSV file to write."),
+    ],
+    method: Annotated[str, typer.Option(help="How to invert: exact.")] = "exact",
+    outside: Annotated[
+        Literal["refuse", "clip"], typer.Option(help="What to do about a reference out of reach.")
+    ] = "refuse",
+    limits: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LOW,HIGH",
+            show_default="the range the model was identified from",
+            help="Range of the input.",
+        ),
+    ] = None,
+    no_limits: Annotated[
+        bool, typer.Option("--no-limits", help="Let the input go wherever it must.")
+    ] = False,
+    history: Annotated[
+        str | None,
+        typer.Option(
+            metavar="U,U,...",
+            show_default=False,
+            help="Inputs the actuator passed just before; they set its memory.",
+        ),
+    ] = None,
+) -> None:
+    """Turn a wanted output into the input that produces it, and predict how well."""
+    model, about = hyst.models.load_described(model_file)
+    y_ref, _, unit = hyst.io.read_column(reference, column)
+    require_same_unit(unit, about.output_unit, "the reference")
+    input_range = _input_range(limits, no_limits, about)
+    done = hyst.compensation.invert_trajectory(
+        model,
+        y_ref,
+        method,
+        input_range=input_range,
+        outside=outside,
+        history=None if history is None else numbers(history, "history"),
+    )
+    headers = [
+        hyst.io.join_unit(name, unit)
+        for name, unit in (
+            ("reference", about.output_unit),
+            ("command", about.input_unit),
+            ("predicted", about.output_unit),
+        )
+    ]
+    hyst.io.write_columns(out, headers, (done.y_ref, done.u, done.y_predicted))
+    _tell(done, about, input_range)
+    show_files([out])
+
+
+def _input_range(
+    limits: str | None, no_limits: bool, about: ModelDescription
+) -> tuple[float, float] | None:
+    if limits is not None and no_limits:
+        raise hyst.InputError("--limits and --no-limits are both given; give one of them")
+    if no_limits:
+        return None
+    if limits is not None:
+        ends = numbers(limits, "limits")
+        if len(ends) != 2:
+            raise hyst.InputError(f"--limits is {limits!r}; give the lowest and the highest input")
+        return ends[0], ends[1]
+    if about.input_low is None or about.input_high is None:
+        note("the model file names no range of the input, so the command has no limits")
+        return None
+    return about.input_low, about.input_high
+
+
+def _tell(
+    done: hyst.compensation.Compensation,
+    about: ModelDescription,
+    input_range: tuple[float, float] | None,
+) -> None:
+    unit = f" {about.input_unit}" if about.input_unit else ""
+    limits = (
+        "no limits"
+        if input_range is None
+        else f"limits {input_range[0]:.6g} to {input_range[1]:.6g}"
+    )
+    print(f"command from {done.u.min():.6g} to {done.u.max():.6g}{unit} ({limits})")
+    if done.clipped:
+        print(f"{done.clipped} of {done.u.size} samples are out of reach and were clipped")
+    show_table(hyst.report.compensation_table(done, about.output_unit))
+    if about.delay:
+        print(hyst.report.delay_sentence(about.delay, about.dt))

@@ -1,0 +1,72 @@
+"""What the verbs say: tables, notes, and that they are still at work."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table as RichTable
+from rich.text import Text
+
+if TYPE_CHECKING:
+    from hyst.report.tables import Table
+
+
+def show_table(table: Table) -> None:
+    """Print a table: ruled on a terminal, aligned plain text elsewhere."""
+    if sys.stdout.isatty():
+        Console().print(_ruled(table))
+    else:
+        print(f"\n{table.title}")
+        print("\n".join(_aligned(table)))
+
+
+def show_files(files: Sequence[Path]) -> None:
+    """Print which files were written."""
+    print(f"\nwrote {', '.join(str(each) for each in files)}")
+
+
+def note(text: str) -> None:
+    """Say on stderr what the user should know but did not ask for."""
+    print(f"note: {text}", file=sys.stderr)
+
+
+@contextlib.contextmanager
+def at_work(what: str) -> Iterator[Callable[[str], None]]:
+    """Show on a terminal that something is going on, and give a way to say what."""
+    if not sys.stderr.isatty():
+        yield _say_nothing
+        return
+    columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task(what, total=None)
+        yield lambda text: progress.update(task, description=f"{what}: {text}")
+
+
+def _say_nothing(_: str) -> None:
+    """Tell nobody."""
+
+
+def _ruled(table: Table) -> RichTable:
+    # Text instead of markup: names from the user's file may hold brackets.
+    ruled = RichTable(title=Text(table.title), title_justify="left", title_style="bold")
+    for index, heading in enumerate(table.header):
+        ruled.add_column(Text(heading), justify="left" if index == 0 else "right")
+    for index, row in enumerate(table.rows):
+        style = "bold" if index == table.marked else None
+        ruled.add_row(*(Text(cell) for cell in row), style=style)
+    return ruled
+
+
+def _aligned(table: Table) -> Iterator[str]:
+    rows = [table.header, *table.rows]
+    widths = [max(len(row[column]) for row in rows) for column in range(len(table.header))]
+    for row in rows:
+        cells = [row[0].ljust(widths[0])]
+        cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
+        yield "  " + "  ".join(cells).rstrip()

@@ -1,0 +1,113 @@
+"""hyst demo: the whole story on a simulated stage."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+import hyst
+from hyst.cli.console import at_work, show_files, show_table
+
+if TYPE_CHECKING:
+    from hyst.demo import Story
+    from hyst.report import Section, Table
+
+
+def demo(
+    folder: Annotated[
+        Path, typer.Option("-o", "--out", metavar="DIR", help="Where to write.")
+    ] = Path("demo"),
+) -> None:
+    """Tell the whole story on a simulated stage: measure, identify, invert, track, compare."""
+    hyst.files.require_folder(folder)
+    with at_work("demo") as say:
+        story = hyst.demo.tell(say=say)
+        say("report")
+        files = hyst.report.write_report(
+            story.identified,
+            story.training,
+            story.validation,
+            folder,
+            banner=hyst.demo.BANNER,
+            sections=[_tracking_section(story)],
+        )
+        files += _write_signals(story, folder)
+    print(hyst.demo.BANNER)
+    for sentence in hyst.report.in_short(story.identified, (story.training,)):
+        print(sentence)
+    show_table(hyst.report.metrics_table(story.identified))
+    show_table(_tracking_table(story))
+    print(_verdict(story))
+    show_files(files)
+    print(f"\nopen {folder / 'report.html'}, or go on yourself with these simulated files:")
+    print(
+        f"  hyst identify {folder / 'record.csv'} --input drive --output position --time time "
+        f"-o {folder / 'again'}\n"
+        f"  hyst compensate {folder / 'model.json'} {folder / 'reference.csv'} --column reference "
+        f"--history 0,100,0 -o {folder / 'command.csv'}"
+    )
+
+
+def _tracking_table(story: Story) -> Table:
+    return hyst.report.Table(
+        "Tracking error of the simulated stage (true position minus reference)",
+        ("command from", "rms [um]", "rms [% of range]", "max [um]", "max [% of range]"),
+        tuple(
+            (
+                each.name,
+                f"{each.metrics.rms:.4f}",
+                f"{each.metrics.rms_percent:.3f}",
+                f"{each.metrics.max_abs:.4f}",
+                f"{each.metrics.max_percent:.3f}",
+            )
+            for each in story.tracking
+        ),
+    )
+
+
+def _verdict(story: Story) -> str:
+    return (
+        f"With the exact inverse of the model the simulated stage follows the reference "
+        f"{story.improvement:.1f} times closer than with a straight line."
+    )
+
+
+def _tracking_section(story: Story) -> Section:
+    name, unit = story.training.output_name, story.training.output_unit
+    outputs = {f"{each.name}": each.y for each in story.tracking}
+    return hyst.report.Section(
+        heading="Following a trajectory",
+        texts=(
+            "The stage was swept once through its range, so that its memory is known, and then "
+            "had to climb stairs and follow two sines: once with the command a straight line "
+            "gives, once with the command of the model's exact inverse.",
+            _verdict(story),
+        ),
+        table=_tracking_table(story),
+        picture="tracking.png",
+        png=hyst.report.draw_tracking(
+            story.training.dt, story.y_ref, outputs, name, unit, hyst.demo.BANNER
+        ),
+        caption="The simulated stage with both commands; what is left is its resonance, its lag, "
+        "and what the model does not capture.",
+    )
+
+
+def _write_signals(story: Story, folder: Path) -> tuple[Path, ...]:
+    record, reference, command = (
+        folder / name for name in ("record.csv", "reference.csv", "command.csv")
+    )
+    training = story.training
+    hyst.io.write_columns(
+        record, ("time [s]", "drive [V]", "position [um]"), (training.time, training.u, training.y)
+    )
+    hyst.io.write_columns(reference, ("reference [um]",), (story.y_ref,))
+    done = story.compensation
+    hyst.io.write_columns(
+        command,
+        ("reference [um]", "command [V]", "predicted [um]"),
+        (done.y_ref, done.u, done.y_predicted),
+    )
+    return record, reference, command

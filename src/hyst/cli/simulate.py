@@ -1,0 +1,67 @@
+"""hyst simulate: the output of a model for an input of the user's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+import hyst
+from hyst.cli.arguments import InputColumn, ModelFile, require_same_unit
+from hyst.cli.console import note, show_files
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from hyst.operators import ModelDescription
+
+
+def simulate(
+    model_file: ModelFile,
+    data: Annotated[
+        Path, typer.Argument(metavar="DATA", show_default=False, help="File with the input.")
+    ],
+    input_column: InputColumn,
+    out: Annotated[
+        Path,
+        typer.Option("-o", "--out", metavar="FILE", show_default=False, help="CSV file to write."),
+    ],
+    with_delay: Annotated[
+        bool,
+        typer.Option("--with-delay", help="Let the output lag as in the record identified from."),
+    ] = False,
+) -> None:
+    """Compute the output of a model for an input, sample by sample."""
+    model, about = hyst.models.load_described(model_file)
+    u, _, unit = hyst.io.read_column(data, input_column)
+    require_same_unit(unit, about.input_unit, "the input")
+    _note_extrapolation(u, about)
+    y = _delayed(model(u), about.delay if with_delay else 0)
+    headers = (
+        hyst.io.join_unit(about.input_name, about.input_unit),
+        hyst.io.join_unit(about.output_name, about.output_unit),
+    )
+    hyst.io.write_columns(out, headers, (u, y))
+    show_files([out])
+
+
+def _delayed(y: NDArray[np.float64], lag: int) -> NDArray[np.float64]:
+    """Let a signal lag, its first value repeated before."""
+    if lag == 0:
+        return y
+    late = y.copy()
+    late[:lag] = y[0]
+    late[lag:] = y[:-lag]
+    return late
+
+
+def _note_extrapolation(u: NDArray[np.float64], about: ModelDescription) -> None:
+    low, high = about.input_low, about.input_high
+    if low is None or high is None or (u.min() >= low and u.max() <= high):
+        return
+    note(
+        f"the input goes from {u.min():.6g} to {u.max():.6g}, the model was identified from "
+        f"{low:.6g} to {high:.6g}; beyond that it is a guess"
+    )
