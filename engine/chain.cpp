@@ -47,6 +47,29 @@ void Chain::add_pi(double p0, std::vector<double> p, std::vector<double> r) {
     stages_.push_back(stage);
 }
 
+void Chain::add_rate_dependent_pi(double p0, std::vector<double> p, std::vector<double> r,
+                                  const RateCurve &curve, double dt) {
+    add_pi(p0, std::move(p), std::move(r));
+    hyst_stage stage{};
+    stage.kind = HYST_RATE_DEPENDENT_PI;
+    stage.as.rate_dependent_pi.pi = stages_.back().as.pi;
+    stage.as.rate_dependent_pi.growth = curve.beta / dt;
+    // The core's curve is over the change of the input in one sample, x dt.
+    std::vector<double> powers = curve.powers, slopes = curve.slopes, knees = curve.knees;
+    double scale = dt;
+    for (double &power : powers) power /= scale *= dt;
+    for (double &slope : slopes) slope /= dt;
+    for (double &knee : knees) knee *= dt;
+    stage.as.rate_dependent_pi.powers = powers.size();
+    stage.as.rate_dependent_pi.power = keep(std::move(powers));
+    const std::size_t ramps = slopes.size();
+    const double *slope = keep(std::move(slopes));
+    stage.as.rate_dependent_pi.ramps = {ramps, slope, keep(std::move(knees))};
+    stages_.back() = stage;
+    dts_.resize(stages_.size(), 0.0);
+    dts_.back() = dt;
+}
+
 std::size_t Chain::state_length() const {
     const hyst_chain chain = view();
     return hyst_chain_state_length(&chain);
@@ -75,6 +98,10 @@ std::size_t parameter_count(const hyst_stage &stage) {
         return 2 * stage.as.dead_zone.count;
     case HYST_PI:
         return 1 + 2 * stage.as.pi.count;
+    case HYST_RATE_DEPENDENT_PI: {
+        const hyst_rate_dependent_pi &model = stage.as.rate_dependent_pi;
+        return 2 + 2 * model.pi.count + model.powers + model.ramps.count;
+    }
     }
     return 0;
 }

@@ -12,6 +12,13 @@
 
 namespace hyst {
 
+// Widening of the thresholds over the rate x of the input, in units per second:
+// beta x + powers_0 x^2 + powers_1 x^3 + .. + sum_j slopes_j max(x - knees_j, 0).
+struct RateCurve {
+    double beta;
+    std::vector<double> powers, slopes, knees;
+};
+
 class Chain {
 public:
     Chain() = default;
@@ -24,9 +31,13 @@ public:
     void add_dead_zone(std::vector<double> weights, std::vector<double> thresholds,
                        bool by_direction);
     void add_pi(double p0, std::vector<double> p, std::vector<double> r);
+    void add_rate_dependent_pi(double p0, std::vector<double> p, std::vector<double> r,
+                               const RateCurve &curve, double dt);
 
     hyst_chain view() const { return {stages_.size(), stages_.data()}; }
     const std::vector<hyst_stage> &stages() const { return stages_; }
+    // Sample time of stage i in seconds; 0 where the stage has none.
+    double dt(std::size_t i) const { return dts_.size() > i ? dts_[i] : 0.0; }
     std::size_t state_length() const;
     std::size_t parameter_count() const;
 
@@ -38,6 +49,7 @@ private:
 
     std::deque<std::vector<double>> constants_;
     std::vector<hyst_stage> stages_;
+    std::vector<double> dts_;
 };
 
 // Parameters of one stage in the order of Operator.parameters() in Python.

@@ -5,6 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "chain.hpp"
 #include "gram.hpp"
@@ -19,6 +20,7 @@ using Vector = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Matrix = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Cube = nb::ndarray<double, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 using Signal = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Rows = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Batch = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
 void require(bool holds, const char *message) {
@@ -42,6 +44,20 @@ void jacobian(const hyst::Chain &chain, Vector state, Signal u, Matrix result) {
             "the Jacobian has the wrong shape");
     const nb::gil_scoped_release released;
     hyst::jacobian(chain, state.data(), u.data(), u.shape(0), result.data());
+}
+
+// Plays whose thresholds are given for every sample: row k of r.
+void run_with_thresholds(double p0, const std::vector<double> &p, Rows r, Vector z, Signal u,
+                         Vector y) {
+    const std::size_t samples = u.shape(0), count = p.size();
+    require(r.shape(0) == samples && r.shape(1) == count && z.shape(0) == count &&
+                y.shape(0) == samples,
+            "arrays do not fit each other");
+    const nb::gil_scoped_release released;
+    for (std::size_t k = 0; k < samples; ++k) {
+        const hyst_pi pi = {count, p0, p.data(), r.data() + k * count};
+        y(k) = hyst_pi_step(&pi, z.data(), u(k));
+    }
 }
 
 void gram(const std::vector<double> &r, Vector z, Signal u, Signal y,
@@ -83,6 +99,14 @@ NB_MODULE(_engine, module) {
         .def("add_stop", &hyst::Chain::add_stop)
         .def("add_dead_zone", &hyst::Chain::add_dead_zone)
         .def("add_pi", &hyst::Chain::add_pi)
+        .def("add_rate_dependent_pi",
+             [](hyst::Chain &chain, double p0, std::vector<double> p, std::vector<double> r,
+                double beta, std::vector<double> powers, std::vector<double> slopes,
+                std::vector<double> knees, double dt) {
+                 const hyst::RateCurve curve{beta, std::move(powers), std::move(slopes),
+                                             std::move(knees)};
+                 chain.add_rate_dependent_pi(p0, std::move(p), std::move(r), curve, dt);
+             })
         .def_prop_ro("state_length", &hyst::Chain::state_length)
         .def_prop_ro("parameter_count", &hyst::Chain::parameter_count)
         .def("run", &run, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
@@ -94,6 +118,9 @@ NB_MODULE(_engine, module) {
                nb::arg("result").noconvert());
     module.def("play_outputs", &outputs, nb::arg("r"), nb::arg("z").noconvert(),
                nb::arg("u").noconvert(), nb::arg("result").noconvert());
+    module.def("run_with_thresholds", &run_with_thresholds, nb::arg("p0"), nb::arg("p"),
+               nb::arg("r").noconvert(), nb::arg("z").noconvert(), nb::arg("u").noconvert(),
+               nb::arg("y").noconvert());
     module.def("stepper", &stepper, nb::arg("chain"), nb::arg("state"), nb::arg("y_safe"));
     if (!hyst::register_stepper(module.ptr())) throw nb::python_error();
 }
