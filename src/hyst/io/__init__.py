@@ -1,0 +1,19 @@
+"""Data files: read text, MATLAB, HDF5, Parquet and NPZ; write text."""
+
+from __future__ import annotations
+
+from hyst.io.formats import read_table
+from hyst.io.header import split_unit
+from hyst.io.reading import read_column, read_record
+from hyst.io.table import Table
+from hyst.io.writing import join_unit, write_columns
+
+__all__ = [
+    "Table",
+    "join_unit",
+    "read_column",
+    "read_record",
+    "read_table",
+    "split_unit",
+    "write_columns",
+]

@@ -1,0 +1,116 @@
+"""Choose a column of a table by header, name or index."""
+
+from __future__ import annotations
+
+import operator
+
+from hyst.errors import InputError
+from hyst.io.table import Table
+
+_LISTED = 12
+_SHOWN = 40
+
+
+def find_column(table: Table, column: int | str) -> int:
+    """Find the index of a column.
+
+    Tried in this order: the full header (``voltage [V]``), the name without its unit
+    (``voltage``), the same two ignoring case, and last a string of digits as an index.
+
+    Parameters
+    ----------
+    table
+        Where to look.
+    column
+        Header, name, or 0-based index.
+
+    Returns
+    -------
+    int
+        0-based index.
+
+    Raises
+    ------
+    InputError
+        If there is no such column (those there are get listed) or more than one.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from hyst.io.table import table_of
+    >>> table = table_of("a.npz", {"Drive": np.zeros(2), "stroke": np.zeros(2)})
+    >>> find_column(table, "drive"), find_column(table, "1"), find_column(table, 1)
+    (0, 1, 1)
+    """
+    if not isinstance(column, str):
+        return _by_index(table, column)
+    wanted = column.strip()
+    folded = wanted.casefold()
+    for matches in (
+        [k for k, header in enumerate(table.headers) if header == wanted],
+        [k for k, name in enumerate(table.names) if name == wanted],
+        [k for k, header in enumerate(table.headers) if header.casefold() == folded],
+        [k for k, name in enumerate(table.names) if name.casefold() == folded],
+    ):
+        if len(matches) == 1:
+            return matches[0]
+        if matches:
+            which = " and ".join(str(k) for k in matches[:_LISTED])
+            raise InputError(
+                f"{table.source}: {wanted!r} fits the columns {which}; "
+                "give the full header or the index"
+            )
+    if wanted.isascii() and wanted.isdigit():
+        return _by_index(table, int(wanted[:18]))
+    raise InputError(f"{table.source} has no column {shorten(wanted)}; there are {_listed(table)}")
+
+
+def refuse_flaws(table: Table, column: int, remedy: str) -> None:
+    """Refuse a column that holds something other than finite numbers.
+
+    Parameters
+    ----------
+    table, column
+        Where to look, and the 0-based index.
+    remedy
+        What to do about it, for the message.
+
+    Raises
+    ------
+    InputError
+        If the column has a flaw; its first line or index and its text are named.
+    """
+    flaw = table.flaws[column]
+    if flaw is None:
+        return
+    name, place = table.names[column], table.place(flaw.row)
+    if not flaw.text:
+        raise InputError(f"{table.source}: {name!r} has no value at {place}; {remedy}")
+    raise InputError(
+        f"{table.source}: {name!r} is {shorten(flaw.text)} at {place}, not a finite number; "
+        f"{remedy}"
+    )
+
+
+def shorten(text: str) -> str:
+    """Quote a text from a file, cut to a length that fits a message."""
+    return repr(text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "...")
+
+
+def _by_index(table: Table, column: int) -> int:
+    try:
+        index = operator.index(column)
+    except TypeError:
+        index = -1
+    if isinstance(column, bool) or not 0 <= index < len(table.columns):
+        raise InputError(
+            f"{table.source} has no column {column!r}; there are {len(table.columns)}, "
+            f"counted from 0: {_listed(table)}"
+        )
+    return index
+
+
+def _listed(table: Table) -> str:
+    shown = ", ".join(header[:_SHOWN] for header in table.headers[:_LISTED])
+    more = len(table.headers) - _LISTED
+    return shown if more <= 0 else f"{shown} and {more} more"

@@ -1,0 +1,69 @@
+"""Bytes of a text file to lines."""
+
+from __future__ import annotations
+
+import codecs
+import re
+
+from hyst.errors import InputError
+
+_CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
+_BYTE_ORDER_MARKS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+
+
+def decode(data: bytes, source: str) -> str:
+    r"""Decode UTF-8 or UTF-16 by its byte order mark, else UTF-8, else Latin-1.
+
+    Parameters
+    ----------
+    data
+        Content of the file.
+    source
+        Name of the file, for messages.
+
+    Returns
+    -------
+    str
+        The text, lines ended by a line feed.
+
+    Raises
+    ------
+    InputError
+        If the file holds control characters, as binary files do, or breaks the encoding its
+        byte order mark announces.
+
+    Examples
+    --------
+    >>> decode(b"t [\xb5s]\r\n1\r\n", "a.csv")
+    't [µs]\n1\n'
+    """
+    # DOS editors end a file with this mark.
+    text = _decoded(data, source).removesuffix("\x1a")
+    control = _CONTROL.search(text)
+    if control:
+        line = text.count("\n", 0, control.start()) + 1
+        raise InputError(
+            f"{source} is not a text file: it holds the control character "
+            f"{ord(control[0]):#04x} at line {line}; give it the suffix of its real format"
+        )
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _decoded(data: bytes, source: str) -> str:
+    for mark, encoding in _BYTE_ORDER_MARKS:
+        if data.startswith(mark):
+            try:
+                return data[len(mark) :].decode(encoding)
+            except UnicodeDecodeError as error:
+                raise InputError(
+                    f"{source} starts as {encoding} but breaks off at byte {error.start}; "
+                    "save it again as UTF-8"
+                ) from error
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
