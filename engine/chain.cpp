@@ -1,5 +1,6 @@
 #include "chain.hpp"
 
+#include <stdexcept>
 #include <utility>
 
 namespace hyst {
@@ -70,6 +71,28 @@ void Chain::add_rate_dependent_pi(double p0, std::vector<double> p, std::vector<
     dts_.back() = dt;
 }
 
+void Chain::add_state_space(std::size_t delay, std::vector<double> a, std::vector<double> b,
+                            std::vector<double> c, double d) {
+    const std::size_t order = b.size();
+    if (order > HYST_LARGEST_ORDER || a.size() != order * order || c.size() != order) {
+        throw std::invalid_argument("the matrices of the state space do not fit each other");
+    }
+    hyst_stage stage{};
+    stage.kind = HYST_STATE_SPACE;
+    const double *columns = keep(std::move(a)), *input = keep(std::move(b));
+    stage.as.state_space = {order, delay, columns, input, keep(std::move(c)), d};
+    stages_.push_back(stage);
+}
+
+void Chain::add_sections(std::vector<double> coefficients) {
+    if (coefficients.size() % 5 != 0) throw std::invalid_argument("give five numbers a section");
+    hyst_stage stage{};
+    stage.kind = HYST_SECTIONS;
+    const std::size_t count = coefficients.size() / 5;
+    stage.as.sections = {count, keep(std::move(coefficients))};
+    stages_.push_back(stage);
+}
+
 std::size_t Chain::state_length() const {
     const hyst_chain chain = view();
     return hyst_chain_state_length(&chain);
@@ -102,6 +125,12 @@ std::size_t parameter_count(const hyst_stage &stage) {
         const hyst_rate_dependent_pi &model = stage.as.rate_dependent_pi;
         return 2 + 2 * model.pi.count + model.powers + model.ramps.count;
     }
+    case HYST_STATE_SPACE: {
+        const std::size_t order = stage.as.state_space.order;
+        return (order + 2) * order + 1;
+    }
+    case HYST_SECTIONS:
+        return 5 * stage.as.sections.count;
     }
     return 0;
 }

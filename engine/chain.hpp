@@ -33,6 +33,11 @@ public:
     void add_pi(double p0, std::vector<double> p, std::vector<double> r);
     void add_rate_dependent_pi(double p0, std::vector<double> p, std::vector<double> r,
                                const RateCurve &curve, double dt);
+    // a: order x order, column after column.
+    void add_state_space(std::size_t delay, std::vector<double> a, std::vector<double> b,
+                         std::vector<double> c, double d);
+    // Five coefficients for each section: b0 b1 b2 a1 a2.
+    void add_sections(std::vector<double> coefficients);
 
     hyst_chain view() const { return {stages_.size(), stages_.data()}; }
     const std::vector<hyst_stage> &stages() const { return stages_; }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "linear_jacobian.hpp"
+
 namespace hyst {
 namespace {
 
@@ -235,6 +237,12 @@ void pass(const hyst_stage &stage, double dt, const double *state, const Tangent
         return prandtl_ishlinskii(stage.as.pi, state, t);
     case HYST_RATE_DEPENDENT_PI:
         return rate_dependent_pi(stage.as.rate_dependent_pi, dt, state, t);
+    case HYST_STATE_SPACE:
+        return state_space_jacobian(stage.as.state_space, state,
+                                    {t.signal, t.samples, t.rows, t.stride, t.incoming});
+    case HYST_SECTIONS:
+        return sections_jacobian(stage.as.sections, state,
+                                 {t.signal, t.samples, t.rows, t.stride, t.incoming});
     }
 }
 

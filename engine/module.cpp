@@ -107,6 +107,8 @@ NB_MODULE(_engine, module) {
                                              std::move(knees)};
                  chain.add_rate_dependent_pi(p0, std::move(p), std::move(r), curve, dt);
              })
+        .def("add_state_space", &hyst::Chain::add_state_space)
+        .def("add_sections", &hyst::Chain::add_sections)
         .def_prop_ro("state_length", &hyst::Chain::state_length)
         .def_prop_ro("parameter_count", &hyst::Chain::parameter_count)
         .def("run", &run, nb::arg("state").noconvert(), nb::arg("u").noconvert(),

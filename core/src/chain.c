@@ -15,6 +15,10 @@ size_t hyst_stage_state_length(const hyst_stage *stage)
         return stage->as.pi.count;
     case HYST_RATE_DEPENDENT_PI:
         return stage->as.rate_dependent_pi.pi.count + 2;
+    case HYST_STATE_SPACE:
+        return stage->as.state_space.order + stage->as.state_space.delay;
+    case HYST_SECTIONS:
+        return 2 * stage->as.sections.count;
     case HYST_AFFINE:
     case HYST_DEAD_ZONE:
     default:
@@ -48,6 +52,10 @@ hyst_real hyst_stage_step(const hyst_stage *stage, hyst_real *state, hyst_real u
         return hyst_pi_step(&stage->as.pi, state, u);
     case HYST_RATE_DEPENDENT_PI:
         return hyst_rate_dependent_pi_step(&stage->as.rate_dependent_pi, state, u);
+    case HYST_STATE_SPACE:
+        return hyst_state_space_step(&stage->as.state_space, state, u);
+    case HYST_SECTIONS:
+        return hyst_sections_step(&stage->as.sections, state, u);
     default:
         return u;
     }

@@ -7,6 +7,7 @@
 #define HYST_CHAIN_H
 
 #include "hyst/dead_zone.h"
+#include "hyst/linear_dynamics.h"
 #include "hyst/prandtl_ishlinskii.h"
 #include "hyst/rate_dependent_prandtl_ishlinskii.h"
 #include "hyst/real.h"
@@ -27,7 +28,9 @@ typedef enum {
     HYST_DEAD_ZONE,
     HYST_DIRECTION_DEAD_ZONE,
     HYST_PI,
-    HYST_RATE_DEPENDENT_PI
+    HYST_RATE_DEPENDENT_PI,
+    HYST_STATE_SPACE,
+    HYST_SECTIONS
 } hyst_kind;
 
 typedef struct {
@@ -38,6 +41,8 @@ typedef struct {
         hyst_dead_zone dead_zone;
         hyst_pi pi;
         hyst_rate_dependent_pi rate_dependent_pi;
+        hyst_state_space state_space;
+        hyst_sections sections;
     } as;
 } hyst_stage;
 

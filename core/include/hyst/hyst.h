@@ -5,6 +5,7 @@
 #include "hyst/chain.h"
 #include "hyst/dead_zone.h"
 #include "hyst/guard.h"
+#include "hyst/linear_dynamics.h"
 #include "hyst/play.h"
 #include "hyst/prandtl_ishlinskii.h"
 #include "hyst/rate_dependent_prandtl_ishlinskii.h"
