@@ -15,45 +15,49 @@ if TYPE_CHECKING:
     from hyst.operators import ModelDescription
 
 
+Reference = Annotated[
+    Path,
+    typer.Argument(metavar="REFERENCE", show_default=False, help="File with the wanted output."),
+]
+Column = Annotated[
+    str, typer.Option(metavar="COL", show_default=False, help="Its column: name or index from 0.")
+]
+Out = Annotated[
+    Path, typer.Option("-o", "--out", metavar="FILE", show_default=False, help="CSV to write.")
+]
+Method = Annotated[str, typer.Option(help="How to invert: exact.")]
+Outside = Annotated[
+    Literal["refuse", "clip"], typer.Option(help="What to do about a reference out of reach.")
+]
+Limits = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LOW,HIGH",
+        show_default="the range the model was identified from",
+        help="Range of the input.",
+    ),
+]
+NoLimits = Annotated[bool, typer.Option("--no-limits", help="Let the input go wherever it must.")]
+History = Annotated[
+    str | None,
+    typer.Option(
+        metavar="U,U,...",
+        show_default=False,
+        help="Inputs the actuator passed just before; they set its memory.",
+    ),
+]
+
+
 def compensate(
     model_file: ModelFile,
-    reference: Annotated[
-        Path,
-        typer.Argument(
-            metavar="REFERENCE", show_default=False, help="File with the wanted output."
-        ),
-    ],
-    column: Annotated[
-        str,
-        typer.Option(metavar="COL", show_default=False, help="Its column: name or index from 0."),
-    ],
-    out: Annotated[
-        Path,
-        typer.Option("-o", "--out", metavar="FILE", show_default=False, help="CSV file to write."),
-    ],
-    method: Annotated[str, typer.Option(help="How to invert: exact.")] = "exact",
-    outside: Annotated[
-        Literal["refuse", "clip"], typer.Option(help="What to do about a reference out of reach.")
-    ] = "refuse",
-    limits: Annotated[
-        str | None,
-        typer.Option(
-            metavar="LOW,HIGH",
-            show_default="the range the model was identified from",
-            help="Range of the input.",
-        ),
-    ] = None,
-    no_limits: Annotated[
-        bool, typer.Option("--no-limits", help="Let the input go wherever it must.")
-    ] = False,
-    history: Annotated[
-        str | None,
-        typer.Option(
-            metavar="U,U,...",
-            show_default=False,
-            help="Inputs the actuator passed just before; they set its memory.",
-        ),
-    ] = None,
+    reference: Reference,
+    column: Column,
+    out: Out,
+    method: Method = "exact",
+    outside: Outside = "refuse",
+    limits: Limits = None,
+    no_limits: NoLimits = False,
+    history: History = None,
 ) -> None:
     """Turn a wanted output into the input that produces it, and predict how well."""
     model, about = hyst.models.load_described(model_file)

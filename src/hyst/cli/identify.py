@@ -12,59 +12,67 @@ import hyst
 from hyst.cli.arguments import InputColumn, whole_or_auto
 from hyst.cli.console import at_work, show_files, show_table
 
+Data = Annotated[
+    list[Path], typer.Argument(metavar="DATA", show_default=False, help="Measured records.")
+]
+OutputColumn = Annotated[
+    str,
+    typer.Option("--output", metavar="COL", show_default=False, help="Column of the output."),
+]
+Folder = Annotated[
+    Path, typer.Option("-o", "--out", metavar="DIR", show_default=False, help="Where to write.")
+]
+Rate = Annotated[
+    float | None, typer.Option(metavar="HZ", show_default=False, help="Samples per second.")
+]
+TimeColumn = Annotated[
+    str | None,
+    typer.Option(metavar="COL", show_default=False, help="Or the column of time stamps."),
+]
+TimeUnit = Annotated[
+    str | None,
+    typer.Option(metavar="UNIT", show_default=False, help="Its unit: s, ms, us, ns, min or h."),
+]
+Repair = Annotated[
+    bool, typer.Option("--repair", help="Leave out bad rows and resample uneven time.")
+]
+Family = Annotated[str, typer.Option(help="linear, pi, gpi, mpi; auto compares them.")]
+Plays = Annotated[str, typer.Option(metavar="N|auto", help="Number of plays.")]
+Delay = Annotated[str, typer.Option(metavar="N|auto", help="Samples by which the output lags.")]
+Start = Annotated[str, typer.Option(metavar="N|auto", help="First sample to use.")]
+Validate = Annotated[
+    list[Path] | None,
+    typer.Option(metavar="DATA", show_default=False, help="A record to judge by; repeatable."),
+]
+InputLabel = Annotated[
+    str | None,
+    typer.Option(metavar="LABEL", show_default=False, help='Call the input so, as "drive [V]".'),
+]
+OutputLabel = Annotated[
+    str | None, typer.Option(metavar="LABEL", show_default=False, help="Call the output so.")
+]
+AllowUnconverged = Annotated[
+    bool, typer.Option("--allow-unconverged", help="Accept a fit that did not converge.")
+]
+
 
 def identify(
-    data: Annotated[
-        list[Path], typer.Argument(metavar="DATA...", show_default=False, help="Measured records.")
-    ],
+    data: Data,
     input_column: InputColumn,
-    output_column: Annotated[
-        str,
-        typer.Option(
-            "--output", metavar="COL", show_default=False, help="Column of the output, likewise."
-        ),
-    ],
-    folder: Annotated[
-        Path,
-        typer.Option("-o", "--out", metavar="DIR", show_default=False, help="Where to write."),
-    ],
-    rate: Annotated[
-        float | None, typer.Option(metavar="HZ", show_default=False, help="Samples per second.")
-    ] = None,
-    time: Annotated[
-        str | None,
-        typer.Option(metavar="COL", show_default=False, help="Or the column of time stamps."),
-    ] = None,
-    time_unit: Annotated[
-        str | None,
-        typer.Option(metavar="UNIT", show_default=False, help="Its unit: s, ms, us, ns, min, h."),
-    ] = None,
-    repair: Annotated[
-        bool, typer.Option("--repair", help="Leave out bad rows, resample uneven time.")
-    ] = False,
-    family: Annotated[str, typer.Option(help="auto compares: linear, pi, gpi, mpi.")] = "auto",
-    plays: Annotated[str, typer.Option(metavar="N|auto", help="Number of plays.")] = "auto",
-    delay: Annotated[
-        str, typer.Option(metavar="N|auto", help="Samples by which the output lags.")
-    ] = "auto",
-    start: Annotated[str, typer.Option(metavar="N|auto", help="First sample to use.")] = "auto",
-    validate: Annotated[
-        list[Path] | None,
-        typer.Option(metavar="DATA", show_default=False, help="A record to judge by; repeatable."),
-    ] = None,
-    input_label: Annotated[
-        str | None,
-        typer.Option(
-            metavar="LABEL", show_default=False, help='Call the input so, as "drive [V]".'
-        ),
-    ] = None,
-    output_label: Annotated[
-        str | None,
-        typer.Option(metavar="LABEL", show_default=False, help="Call the output so, likewise."),
-    ] = None,
-    allow_unconverged: Annotated[
-        bool, typer.Option("--allow-unconverged", help="Accept a fit that did not converge.")
-    ] = False,
+    output_column: OutputColumn,
+    folder: Folder,
+    rate: Rate = None,
+    time: TimeColumn = None,
+    time_unit: TimeUnit = None,
+    repair: Repair = False,
+    family: Family = "auto",
+    plays: Plays = "auto",
+    delay: Delay = "auto",
+    start: Start = "auto",
+    validate: Validate = None,
+    input_label: InputLabel = None,
+    output_label: OutputLabel = None,
+    allow_unconverged: AllowUnconverged = False,
 ) -> None:
     """Identify a model from measured records, and write model, numbers, figures and a report."""
     hyst.files.require_folder(folder)
@@ -98,6 +106,11 @@ def identify(
         say("report")
         sources = [str(path) for path in (*data, *(validate or []))]
         files = hyst.report.write_report(found, records, validation, folder, sources=sources)
+    _tell(found, records)
+    show_files(files)
+
+
+def _tell(found: hyst.Identified, records: list[hyst.Record]) -> None:
     for sentence in hyst.report.in_short(found, tuple(records)):
         print(sentence)
     if found.candidates:
@@ -106,7 +119,6 @@ def identify(
     show_table(hyst.report.parameters_table(found))
     for sentence in found.undetermined:
         print(f"undetermined: {sentence}")
-    show_files(files)
 
 
 def _labelled(

@@ -98,7 +98,7 @@ def blank(columns: int, rows: int, width: float, height: float) -> tuple[Figure,
 
 
 def with_unit(name: str, unit: str) -> str:
-    """Label of an axis.
+    """Label an axis with a name and its unit.
 
     Examples
     --------

@@ -202,7 +202,7 @@ def _how_good(page: Page, findings: _Findings, figures: dict[str, bytes]) -> Non
 def _the_model(page: Page, findings: _Findings, figures: dict[str, bytes]) -> None:
     identified = findings.identified
     page.heading(f"The model: {family_name(identified.family)}")
-    for each in equations(identified.family):
+    for each in equations(identified.family, identified.model):
         page.equation(each)
     for each in explanations(identified.family):
         page.text(each)

@@ -165,13 +165,11 @@ def _draw_map(axes: Axes, before: Array, after: Array, labels: Labels, is_input:
     slope = (y[-1] - y[0]) / (x[-1] - x[0]) if x[-1] > x[0] else 0.0
     axes.plot(x, y - y[0] - slope * (x - x[0]), color=MODELLED)
     axes.axhline(0.0, color=FAINT, zorder=0)
-    axes.set_title(
-        ("Envelope" if is_input else "Output map") + f" without its line of slope {slope:.3g}"
-    )
+    axes.set_title("Envelope map" if is_input else "Output map")
     axes.set_xlabel(
         with_unit(labels.input_name, labels.input_unit) if is_input else "output of the plays"
     )
-    axes.set_ylabel("output of the map minus the line")
+    axes.set_ylabel(f"its output minus {slope:.3g} times its input")
 
 
 def _draw_line(axes: Axes, u: Array, y: Array, labels: Labels) -> None:

@@ -106,7 +106,7 @@ class Page:
         )
 
     def picture(self, png: bytes, caption: str) -> None:
-        """Add a PNG picture, inside the page, with what there is to see."""
+        """Add a picture, the bytes ``png``, inside the page; ``caption`` says what it shows."""
         data = base64.b64encode(png).decode("ascii")
         words = html.escape(caption)
         self._parts.append(

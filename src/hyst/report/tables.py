@@ -42,7 +42,7 @@ class Table:
 
 
 def number(value: float, digits: int = 4) -> str:
-    """Write a number for reading, with ``digits`` significant digits.
+    """Write a value for reading, with ``digits`` significant digits.
 
     Examples
     --------
@@ -53,7 +53,7 @@ def number(value: float, digits: int = 4) -> str:
 
 
 def with_unit(text: str, unit: str) -> str:
-    """Put a unit behind a number, if there is one.
+    """Put a unit behind a text, if there is one.
 
     Examples
     --------

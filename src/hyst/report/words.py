@@ -22,9 +22,9 @@ FAMILY_NAMES = {
 _PLAYS = "P[w](t) = p0 w(t) + \u03a3 p\u1d62 F\u1d63\u1d62[w](t)"
 _EQUATIONS = {
     "linear": ("y(t) = gain \u00b7 u(t) + offset",),
-    "pi": ("y(t) = \u00b1 P[u](t) + offset", _PLAYS),
-    "gpi": ("y(t) = \u00b1 P[\u03b3(u)](t) + offset", _PLAYS),
-    "mpi": ("y(t) = \u00b1 \u039b(P[u](t)) + offset", _PLAYS),
+    "pi": ("y(t) = {sign}P[u](t) + offset", _PLAYS),
+    "gpi": ("y(t) = {sign}P[\u03b3(u)](t) + offset", _PLAYS),
+    "mpi": ("y(t) = {sign}\u039b(P[u](t)) + offset", _PLAYS),
 }
 _PLAY_TEXT = (
     "F with radius r is a play (backlash of half-width r): its output rests until its input has "
@@ -51,9 +51,12 @@ def family_name(family: str) -> str:
     return FAMILY_NAMES.get(family, f"{family} model")
 
 
-def equations(family: str) -> tuple[str, ...]:
-    """Give the equations of a family in plain characters; none if the family is not known here."""
-    return _EQUATIONS.get(family, ())
+def equations(family: str, model: Operator) -> tuple[str, ...]:
+    """Give the equations of a model of a family in plain characters; none for an unknown family."""
+    parameters = model.parameters()
+    gains = [v for n, v in zip(parameters.names, parameters.values, strict=True) if "gain" in n]
+    sign = "-" if family != "linear" and gains and gains[-1] < 0.0 else ""
+    return tuple(each.format(sign=sign) for each in _EQUATIONS.get(family, ()))
 
 
 def explanations(family: str) -> tuple[str, ...]:
@@ -63,8 +66,8 @@ def explanations(family: str) -> tuple[str, ...]:
     return tuple(text for text in (_PLAY_TEXT, _MAP_TEXT.get(family, "")) if text)
 
 
-def straight_line_percent(record: Record, start: int) -> float:
-    """Give the rms error of the best straight line, in percent of the output's range.
+def straight_line_rms(record: Record, start: int) -> float:
+    """Give the rms error of the best straight line, output units.
 
     Parameters
     ----------
@@ -79,15 +82,15 @@ def straight_line_percent(record: Record, start: int) -> float:
 
     Examples
     --------
-    >>> straight_line_percent(Record([0.0, 1.0, 2.0], [1.0, 3.0, 5.0], 1.0), 0) < 1e-12
-    True
+    >>> line = straight_line_rms(Record([0.0, 1.0, 2.0], [1.0, 2.0, 0.0], 1.0), 0)
+    >>> round(line**2, 12)  # the line is 1.5 - u / 2, and misses by 0.5, 1, 0.5
+    0.5
     """
     u, y = record.u[start:], record.y[start:]
     centred = u - u.mean()
     spread = y - y.mean()
     slope = float(np.dot(centred, spread)) / max(float(np.dot(centred, centred)), math.ulp(0.0))
-    rms = float(np.sqrt(np.mean((spread - slope * centred) ** 2)))
-    return 100.0 * rms / float(np.ptp(y))
+    return float(np.sqrt(np.mean((spread - slope * centred) ** 2)))
 
 
 def in_short(identified: Identified, records: tuple[Record, ...]) -> tuple[str, ...]:
@@ -108,12 +111,13 @@ def in_short(identified: Identified, records: tuple[Record, ...]) -> tuple[str, 
     unit = identified.description.output_unit
     training = identified.metrics.get("training")
     if training is not None:
-        line = straight_line_percent(records[0], identified.used[0].start)
+        line = straight_line_rms(records[0], identified.used[0].start)
+        line_percent = 100.0 * line / training.output_range
         sentences.append(
             f"On the record it was identified from it misses the recorded output by "
             f"{with_unit(number(training.rms, 3), unit)} rms, {training.rms_percent:.2f} % of the "
             f"output's range (at most {with_unit(number(training.max_abs, 3), unit)}, "
-            f"{training.max_percent:.2f} %); a straight line misses it by {line:.2f} % rms."
+            f"{training.max_percent:.2f} %); a straight line misses it by {line_percent:.2f} % rms."
         )
     for name, each in identified.metrics.items():
         if name.startswith("validation") and "offset" not in name:
@@ -133,7 +137,19 @@ def in_short(identified: Identified, records: tuple[Record, ...]) -> tuple[str, 
 
 
 def delay_sentence(delay: int, dt: float | None) -> str:
-    """Say by how much the output lags: ``delay`` samples of ``dt`` seconds."""
+    """Say by how much the output lags.
+
+    Parameters
+    ----------
+    delay
+        Whole samples.
+    dt
+        Sample time, s, if known.
+
+    Returns
+    -------
+    str
+    """
     if delay == 0:
         return "The output does not lag by a whole sample or more."
     time = "" if dt is None else f" ({number(delay * dt)} s)"
@@ -145,7 +161,17 @@ def delay_sentence(delay: int, dt: float | None) -> str:
 
 
 def invertible_sentence(model: Operator) -> str:
-    """Say whether there is an exact inverse, or what stands in its way."""
+    """Say whether there is an exact inverse, or what stands in its way.
+
+    Parameters
+    ----------
+    model
+        Any operator.
+
+    Returns
+    -------
+    str
+    """
     try:
         model.inverse()
     except NotInvertibleError as error:
