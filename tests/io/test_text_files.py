@@ -118,6 +118,25 @@ def test_a_single_column_may_have_a_name_of_several_words(tmp_path: Path) -> Non
     assert columns_of(table) == [[1.5, 2.5]]
 
 
+@pytest.mark.parametrize(
+    ("text", "columns"),
+    [
+        ("stroke [um]\n1,5\n2,5\n", [[1.5, 2.5]]),
+        ('"stroke"\n1,5\n2,5\n', [[1.5, 2.5]]),
+        ("1,5\n-2,05\n", [[1.5, -2.05]]),
+        ("1,5e-3\n2,5\n", [[1.5e-3, 2.5]]),
+        ("1,5\n2,5\n", [[1.0, 2.0], [5.0, 5.0]]),  # nothing says it is one column
+        ("u,y\n1,5\n2,5\n", [[1.0, 2.0], [5.0, 5.0]]),
+        ("u y\n1,5\n2,5\n", [[1.0, 2.0], [5.0, 5.0]]),
+        ("1,5,06\n2,5,07\n", [[1.0, 2.0], [5.0, 5.0], [6.0, 7.0]]),
+    ],
+)
+def test_a_column_with_decimal_commas_is_not_two_columns(
+    tmp_path: Path, text: str, columns: list[list[float]]
+) -> None:
+    assert columns_of(table_of(tmp_path, text)) == columns
+
+
 def test_columns_of_text_do_not_hinder_the_others(tmp_path: Path) -> None:
     text = "clock;u;note\n01.02.2020 12:00:01,5;1,5;start, slowly\n01.02.2020 12:00:02,0;2,5;\n"
     table = table_of(tmp_path, text)

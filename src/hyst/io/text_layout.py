@@ -12,6 +12,7 @@ from hyst.io.header import bracketed
 _SAMPLED = 200
 _POINT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _COMMA = re.compile(r"[+-]?(\d+(,\d+)?|,\d+)([eE][+-]?\d+)?", re.ASCII)
+_FRACTION = re.compile(r",0\d|[eE]")
 _MISSING = frozenset({"", "nan", "na", "n/a", "null", "none", "-", "inf", "+inf", "-inf"})
 _QUOTED_OR_BARE = re.compile(r'"[^"]*"|\S+')
 _NAMED = re.compile(r'\[[^\]]*\]|\([^)]*\)|(?:"[^"]*"|[^\s\[(]\S*)(?:\s*(?:\[[^\]]*\]|\([^)]*\)))?')
@@ -133,7 +134,26 @@ def find_writing(lines: list[str]) -> Writing:
         if writing.separator is None
         or 2 * sum(writing.separator in line for line in sample) > len(sample)
     ]
-    return max(fitting, key=lambda writing: _share_of_numbers(writing, sample))
+    best = max(fitting, key=lambda writing: _share_of_numbers(writing, sample))
+    if best == Writing(",", ".") and _is_one_column(lines, sample):
+        return Writing(None, ",")
+    return best
+
+
+def _is_one_column(lines: list[str], sample: list[str]) -> bool:
+    """Tell one column with decimal commas from two columns of whole numbers.
+
+    The signs of it are a header of one name, a zero that leads the part after the comma, or an
+    exponent.
+    """
+    writing = Writing(None, ",")
+    numbers = [line.strip() for line in sample if writing.kind(line) != "text"]
+    if not all(map(writing.is_number, numbers)):
+        return False
+    texts = [line for line in lines[:_SAMPLED] if writing.kind(line) == "text"]
+    if texts and "," not in texts[-1] and len(writing.titles(texts[-1])) == 1:
+        return True
+    return any(_FRACTION.search(number) for number in numbers)
 
 
 def _share_of_numbers(writing: Writing, sample: list[str]) -> float:
