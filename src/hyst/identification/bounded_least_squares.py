@@ -58,6 +58,8 @@ class Problem:
         Shape (m,).
     canonical
         Gives an equivalent theta in the form ``linearize`` expects (sorted radii).
+    negligible
+        A sum of squared residuals that is nothing but rounding.
     """
 
     linearize: Linearize
@@ -65,6 +67,7 @@ class Problem:
     lower: Array
     upper: Array
     canonical: Callable[[Array], Array]
+    negligible: float = 0.0
 
 
 def minimize(
@@ -102,7 +105,8 @@ def minimize(
         normal, gradient = jacobian.T @ jacobian, jacobian.T @ residual
         step, promise = _projected_step(problem, theta, normal, gradient, damping)
         # A damped step promises little because it is short, not because there is nothing to gain.
-        if abs(promise) * (1.0 + damping) <= tolerance * cost / residual.size:
+        settled = abs(promise) * (1.0 + damping) <= tolerance * cost / residual.size
+        if settled or cost <= problem.negligible:
             return Solution(theta, cost, iteration, CONVERGED)
         trial = problem.canonical(np.clip(theta + step, problem.lower, problem.upper))
         trial_residual = problem.residual(trial)

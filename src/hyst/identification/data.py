@@ -102,7 +102,7 @@ def prepare(records: Record | Sequence[Record], start: Literal["auto"] | int, de
     InputError
         If there is no record, their sample times differ, or ``start`` is beyond a record.
     NotIdentifiableError
-        If the input of a record is constant or never turns.
+        If input or output of a record is constant, or the input does not turn twice.
     """
     given = (records,) if isinstance(records, Record) else tuple(records)
     _check(given)
@@ -133,6 +133,10 @@ def _check(records: tuple[Record, ...]) -> None:
         if np.ptp(record.u) == 0.0:
             raise NotIdentifiableError(
                 f"the input of record {number} is constant ({record.u[0]:.6g}); drive the actuator"
+            )
+        if np.ptp(record.y) == 0.0:
+            raise NotIdentifiableError(
+                f"the output of record {number} is constant ({record.y[0]:.6g}); check the sensor"
             )
         turns = reversals(record.u, 0.05 * float(np.ptp(record.u))).size
         if turns < 2:

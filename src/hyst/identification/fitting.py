@@ -31,6 +31,9 @@ FINE_BANK = 60
 
 MOST_STARTS = 3
 
+ROUNDING = 1e-12
+"""A residual of this share of the output range is rounding."""
+
 
 @dataclass(frozen=True, eq=False)
 class Fit:
@@ -132,6 +135,7 @@ def problem_of(
         parametrization.lower,
         parametrization.upper,
         parametrization.canonical,
+        negligible=float(target.size * (ROUNDING * np.ptp(y)) ** 2),
     )
 
 

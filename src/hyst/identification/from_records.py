@@ -108,6 +108,7 @@ def identify(
         say("delay")
         data = data.delayed(_as_delay(delay, data))
         fixed, left_out = _within_reach(fixed, data)
+        sizes = sizes if fixed is None else (fixed.size,)
         fitter = Fitter(data, _as_knots(knots), fixed)
         _require_samples(data, families, sizes, knots)
         chosen_family, chosen_plays, candidates = _select(fitter, families, sizes, say)

@@ -1,0 +1,74 @@
+"""Standard errors against the textbook formula, a direct sum and simulation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from hyst.identification.covariance import (
+    _bartlett_sum,
+    robust_covariance,
+    undetermined_combination,
+)
+
+
+def test_white_residuals_give_the_textbook_covariance() -> None:
+    rng = np.random.default_rng(0)
+    jacobian = rng.normal(size=(200_000, 3)) * [1.0, 10.0, 1e-3]
+    residual = 0.3 * rng.normal(size=200_000)
+    expected = 0.09 * np.linalg.inv(jacobian.T @ jacobian)
+    found = robust_covariance(jacobian, residual, [200_000])
+    # 2e5 samples know a variance to sqrt(2 / 2e5) = 0.3 %, kurtosis and lags add to it.
+    np.testing.assert_allclose(np.sqrt(np.diag(found)), np.sqrt(np.diag(expected)), rtol=0.02)
+
+
+def test_window_sums_equal_the_sum_over_lags() -> None:
+    scores = np.random.default_rng(1).normal(size=(50, 2))
+    bandwidth = 7
+    direct = scores.T @ scores
+    for lag in range(1, bandwidth):
+        gamma = scores[lag:].T @ scores[:-lag]
+        direct += (1.0 - lag / bandwidth) * (gamma + gamma.T)
+    np.testing.assert_allclose(_bartlett_sum(scores, bandwidth), direct, rtol=1e-12)
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.8])
+def test_claimed_errors_match_the_scatter_of_estimates(rho: float) -> None:
+    """Least squares estimates of a slow regressor with autocorrelated noise scatter as claimed."""
+    rng = np.random.default_rng(2)
+    samples, runs = 2000, 300
+    jacobian = np.column_stack([np.ones(samples), np.sin(np.arange(samples) / 50.0)])
+    solve = np.linalg.pinv(jacobian)
+    estimates, claimed = [], []
+    for _ in range(runs):
+        noise = lfilter([1.0], [1.0, -rho], rng.normal(size=samples))
+        theta = solve @ noise
+        estimates.append(theta)
+        covariance = robust_covariance(jacobian, noise - jacobian @ theta, [samples])
+        claimed.append(np.sqrt(np.diag(covariance)))
+    ratio = np.mean(claimed, axis=0) / np.std(estimates, axis=0)
+    # 300 runs know a standard deviation to 4 %; a Bartlett window is biased low by several percent.
+    assert (ratio > 0.8).all()
+    assert (ratio < 1.15).all()
+
+
+def test_the_order_of_records_does_not_matter() -> None:
+    """It would, if correlation reached from the end of one record to the start of the next."""
+    rng = np.random.default_rng(4)
+    jacobian, residual = rng.normal(size=(90, 2)), lfilter([1.0], [1.0, -0.9], rng.normal(size=90))
+    ours = robust_covariance(jacobian, residual, [30, 60])
+    swapped = np.r_[30:90, 0:30]
+    other = robust_covariance(jacobian[swapped], residual[swapped], [60, 30])
+    np.testing.assert_allclose(ours, other, rtol=1e-9)
+
+
+def test_names_what_is_not_determined() -> None:
+    rng = np.random.default_rng(5)
+    a, b = rng.normal(size=(2, 100))
+    assert undetermined_combination(np.column_stack([a, b])) is None
+    share = undetermined_combination(np.column_stack([a, b, 2.0 * a]))
+    assert share is not None
+    np.testing.assert_allclose(share, [np.sqrt(0.5), 0.0, np.sqrt(0.5)], atol=1e-6)
+    idle = undetermined_combination(np.column_stack([a, np.zeros(100)]))
+    np.testing.assert_array_equal(idle, [0.0, 1.0])

@@ -1,0 +1,91 @@
+"""What identification refuses, in one sentence that names the value."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from simulated_records import TRUE_PI, drive, record
+
+import hyst
+
+GIVEN = record(TRUE_PI)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"family": "preisach"}, "preisach"),
+        ({"plays": 0}, "plays is 0"),
+        ({"plays": 201}, "plays is 201"),
+        ({"plays": 2.5}, "plays is 2.5"),
+        ({"plays": True}, "plays is True"),
+        ({"plays": 2, "radii": [0.1]}, "1 radii"),
+        ({"radii": []}, "radii"),
+        ({"radii": [0.1, -0.2]}, "radii"),
+        ({"radii": [np.nan]}, "radii"),
+        ({"family": "linear", "radii": [0.1]}, "linear"),
+        ({"knots": 0}, "knots is 0"),
+        ({"delay": -1}, "delay is -1"),
+        ({"delay": 3000}, "delay is 3000"),
+        ({"delay": 1.5}, "delay is 1.5"),
+        ({"start": 3000}, "start is 3000"),
+        ({"start": -1}, "start is -1"),
+    ],
+)
+def test_arguments_that_cannot_be_used(arguments: dict[str, Any], said: str) -> None:
+    with pytest.raises(hyst.InputError, match=said) as caught:
+        hyst.identify(GIVEN, **arguments)
+    assert "\n" not in str(caught.value)
+
+
+def test_no_record() -> None:
+    with pytest.raises(hyst.InputError, match="no record"):
+        hyst.identify([])
+
+
+def test_something_else_than_a_record() -> None:
+    with pytest.raises(hyst.InputError, match="ndarray"):
+        hyst.identify([GIVEN.u])  # type: ignore[list-item]
+
+
+def test_records_of_different_sample_times() -> None:
+    other = hyst.Record(GIVEN.u, GIVEN.y, dt=2e-3)
+    with pytest.raises(hyst.InputError, match="record 2 has dt"):
+        hyst.identify([GIVEN, other])
+
+
+def test_a_constant_input() -> None:
+    with pytest.raises(hyst.NotIdentifiableError, match="constant"):
+        hyst.identify(hyst.Record(np.full(100, 2.0), GIVEN.y[:100], 1e-3))
+
+
+def test_a_constant_output() -> None:
+    with pytest.raises(hyst.NotIdentifiableError, match="output"):
+        hyst.identify(hyst.Record(GIVEN.u, np.full(len(GIVEN), 2.0), 1e-3))
+
+
+def test_an_input_that_does_not_turn_twice() -> None:
+    u = np.linspace(0.0, 1.0, 100)
+    with pytest.raises(hyst.NotIdentifiableError, match="turns"):
+        hyst.identify(hyst.Record(u, u**2, 1e-3))
+
+
+def test_fewer_samples_than_parameters() -> None:
+    u = drive(30)
+    with pytest.raises(hyst.NotIdentifiableError, match="samples"):
+        hyst.identify(hyst.Record(u, TRUE_PI(u), 1e-3), family="pi", plays=15)
+
+
+def test_no_radius_within_reach() -> None:
+    with pytest.raises(hyst.NotIdentifiableError, match="radius"):
+        hyst.identify(GIVEN, radii=[5.0])
+
+
+def test_not_converged_raises_unless_allowed() -> None:
+    noisy = record(TRUE_PI, noise=0.02)
+    with pytest.raises(hyst.SolverError, match="did not converge"):
+        hyst.identify(noisy, family="mpi", plays=4, max_iterations=1)
+    found = hyst.identify(noisy, family="mpi", plays=4, max_iterations=1, allow_unconverged=True)
+    assert found.status == "iteration limit"

@@ -1,0 +1,63 @@
+"""The measured piezo record: what a PI and a modified PI model must leave of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hyst
+
+
+@pytest.fixture(scope="module")
+def piezo(measured_data: Path) -> hyst.Record:
+    path = measured_data / "piezo-dbo" / "Model_Vi_Do.dat"
+    return hyst.read_record(path, input=0, output=4, rate=200)
+
+
+@pytest.mark.parametrize(("family", "most"), [("pi", 0.72), ("mpi", 0.45), ("gpi", 0.45)])
+def test_training_error_in_percent_of_the_range_of_the_record(
+    piezo: hyst.Record, family: str, most: float
+) -> None:
+    found = hyst.identify(piezo, family=family)
+    assert found.metrics["training"].rms_percent <= most
+    error = found.predict(piezo.u) - piezo.y
+    used = slice(found.used[0].start, found.used[0].stop)
+    by_hand = 100.0 * np.sqrt(np.mean(error[used] ** 2)) / np.ptp(piezo.y)
+    assert found.metrics["training"].rms_percent == pytest.approx(by_hand, rel=1e-9)
+
+
+def test_the_delay_is_seen_at_the_turning_points(piezo: hyst.Record) -> None:
+    """Averaged over the cycles the output turns three to four samples after the input."""
+    cycles = slice(400, 400 + 38 * 200)
+    u, y = (signal[cycles].reshape(38, 200).mean(axis=0) for signal in (piezo.u, piezo.y))
+    # A parabola through 13 samples around each turning point gives it to a fraction of one.
+    lags = []
+    for sign in (1.0, -1.0):
+        places = []
+        for signal in (sign * u, sign * y):
+            near = int(signal.argmax()) + np.arange(-6, 7)
+            a, b, _ = np.polyfit(near, signal[near], 2)
+            places.append(-b / (2.0 * a))
+        lags.append(places[1] - places[0])
+    found = hyst.identify(piezo, family="pi", plays=3)
+    assert found.delay == round(float(np.mean(lags)))
+
+
+def test_the_start_up_transient_is_left_out(piezo: hyst.Record) -> None:
+    found = hyst.identify(piezo, family="pi", plays=3)
+    assert 100 < found.used[0].start < 300
+
+
+def test_a_model_of_the_first_half_predicts_the_second(piezo: hyst.Record) -> None:
+    first, second = piezo.slice(0, 4000), piezo.slice(4000, len(piezo))
+    found = hyst.identify(first, family="mpi", validation=second)
+    assert found.metrics["validation, free offset"].rms_percent < 0.45
+
+
+def test_the_inverse_undoes_the_model(piezo: hyst.Record) -> None:
+    found = hyst.identify(piezo, family="mpi")
+    y_ref = -100.0 + 15.0 * np.sin(np.linspace(0.0, 30.0, 3000))
+    y = found.model(found.model.inverse()(y_ref))
+    assert np.abs(y - y_ref).max() < 1e-12 * np.ptp(piezo.y) * 100
