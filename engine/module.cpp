@@ -2,14 +2,20 @@
 // shapes that would write outside an array are refused.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "chain.hpp"
+#include "evaluation.hpp"
+#include "gradient.hpp"
 #include "gram.hpp"
 #include "jacobian.hpp"
+#include "parallel.hpp"
+#include "simd/kernels.hpp"
 #include "stepper.hpp"
 
 namespace nb = nanobind;
@@ -27,14 +33,92 @@ void require(bool holds, const char *message) {
     if (!holds) throw std::invalid_argument(message);
 }
 
-void run(const hyst::Chain &chain, Matrix state, Batch u, Matrix y) {
-    const std::size_t batch = u.shape(0), samples = u.shape(1), length = chain.state_length();
-    require(y.shape(0) == batch && y.shape(1) == samples, "y must have the shape of u");
-    require(state.shape(0) == batch && state.shape(1) == length, "state has the wrong shape");
+hyst::Engine engine_named(const std::string &name) {
+    using hyst::Engine;
+    for (Engine each : {Engine::automatic, Engine::loop, Engine::lanes, Engine::memory_curve}) {
+        if (name == hyst::name_of(each)) return each;
+    }
+    throw std::invalid_argument("engine is '" + name +
+                                "'; give auto, loop, lanes or memory-curve");
+}
+
+void require_record(const hyst::Chain &chain, const Matrix &state, const Batch &u, const Matrix &y) {
+    require(y.shape(0) == u.shape(0) && y.shape(1) == u.shape(1), "y must have the shape of u");
+    require(state.shape(0) == u.shape(0) && state.shape(1) == chain.state_length(),
+            "state has the wrong shape");
+}
+
+// Flat index of the first sample that is not finite, and nothing done; or -1.
+std::ptrdiff_t run(const hyst::Chain &chain, Matrix state, Batch u, Matrix y,
+                   const std::string &engine, std::size_t threads) {
+    require_record(chain, state, u, y);
+    const hyst::Options options{engine_named(engine), threads};
+    const std::size_t rows = u.shape(0), samples = u.shape(1);
     const nb::gil_scoped_release released;
-    for (std::size_t b = 0; b < batch; ++b) {
-        chain.run(state.data() + b * length, u.data() + b * samples, y.data() + b * samples,
-                  samples);
+    const std::size_t bad = hyst::evaluate(chain, state.data(), u.data(), y.data(), rows, samples,
+                                           options, nullptr);
+    return bad < rows * samples ? static_cast<std::ptrdiff_t>(bad) : -1;
+}
+
+// Runs like `run`, and tells for each stage: engine, reason, reversals per sample, and the expected
+// nanoseconds per sample of loop, lanes and memory curve.
+nb::list explain(const hyst::Chain &chain, Matrix state, Batch u, Matrix y,
+                 const std::string &engine) {
+    require_record(chain, state, u, y);
+    std::vector<hyst::Choice> choices;
+    hyst::evaluate(chain, state.data(), u.data(), y.data(), u.shape(0), u.shape(1),
+                   {engine_named(engine), 1}, &choices);
+    nb::list told;
+    for (const hyst::Choice &choice : choices) {
+        told.append(nb::make_tuple(hyst::name_of(choice.engine), choice.reason,
+                                   choice.rough.reversals, choice.loop, choice.lanes,
+                                   choice.memory_curve));
+    }
+    return told;
+}
+
+// The bank of plays a gradient is wanted of: a chain that is one Prandtl-Ishlinskii stage.
+double loss_gradient(const hyst::Chain &chain, Vector state, Signal u, Signal target,
+                     Vector gradient, std::size_t threads) {
+    require(state.shape(0) == chain.state_length(), "state has the wrong length");
+    require(target.shape(0) == u.shape(0), "the target must have the length of u");
+    require(gradient.shape(0) == chain.parameter_count(), "the gradient has the wrong length");
+    const nb::gil_scoped_release released;
+    return hyst::loss_gradient(chain, state.data(), u.data(), target.data(), u.shape(0), threads,
+                               gradient.data());
+}
+
+void run_parameter_sets(Signal p0, Batch p, Batch r, Signal u, Matrix y, std::size_t threads) {
+    const std::size_t sets = p0.shape(0), plays = p.shape(1), samples = u.shape(0);
+    require(p.shape(0) == sets && r.shape(0) == sets && r.shape(1) == plays,
+            "p0, p and r do not fit each other");
+    require(y.shape(0) == sets && y.shape(1) == samples, "y has the wrong shape");
+    const nb::gil_scoped_release released;
+    hyst::parallel(sets, threads, [&](std::size_t set) {
+        hyst_stage stage{};
+        stage.kind = HYST_PI;
+        stage.as.pi = {plays, p0(set), p.data() + set * plays, r.data() + set * plays};
+        std::vector<double> z(plays, 0.0);
+        hyst::evaluate_stage(stage, z.data(), u.data(), y.data() + set * samples, samples, {});
+    });
+}
+
+std::ptrdiff_t first_non_finite(Signal values) {
+    const std::size_t bad = hyst::kernels().first_non_finite(values.data(), values.shape(0));
+    return bad < values.shape(0) ? static_cast<std::ptrdiff_t>(bad) : -1;
+}
+
+std::vector<std::string> instruction_sets() {
+    std::vector<std::string> names;
+    for (auto each = hyst::available_kernels(); *each != nullptr; ++each) {
+        names.emplace_back((*each)->name);
+    }
+    return names;
+}
+
+void use_instruction_set(const std::string &name) {
+    if (!hyst::use_kernels(name.c_str())) {
+        throw std::invalid_argument("instruction set '" + name + "' is not available here");
     }
 }
 
@@ -112,7 +196,12 @@ NB_MODULE(_engine, module) {
         .def_prop_ro("state_length", &hyst::Chain::state_length)
         .def_prop_ro("parameter_count", &hyst::Chain::parameter_count)
         .def("run", &run, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
-             nb::arg("y").noconvert())
+             nb::arg("y").noconvert(), nb::arg("engine") = "auto", nb::arg("threads") = 1)
+        .def("explain", &explain, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
+             nb::arg("y").noconvert(), nb::arg("engine") = "auto")
+        .def("loss_gradient", &loss_gradient, nb::arg("state").noconvert(),
+             nb::arg("u").noconvert(), nb::arg("target").noconvert(),
+             nb::arg("gradient").noconvert(), nb::arg("threads") = 1)
         .def("jacobian", &jacobian, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
              nb::arg("result").noconvert());
     module.def("play_gram", &gram, nb::arg("r"), nb::arg("z").noconvert(),
@@ -123,6 +212,13 @@ NB_MODULE(_engine, module) {
     module.def("run_with_thresholds", &run_with_thresholds, nb::arg("p0"), nb::arg("p"),
                nb::arg("r").noconvert(), nb::arg("z").noconvert(), nb::arg("u").noconvert(),
                nb::arg("y").noconvert());
+    module.def("run_parameter_sets", &run_parameter_sets, nb::arg("p0").noconvert(),
+               nb::arg("p").noconvert(), nb::arg("r").noconvert(), nb::arg("u").noconvert(),
+               nb::arg("y").noconvert(), nb::arg("threads") = 1);
+    module.def("first_non_finite", &first_non_finite, nb::arg("values").noconvert());
+    module.def("instruction_sets", &instruction_sets);
+    module.def("instruction_set", [] { return hyst::kernels().name; });
+    module.def("use_instruction_set", &use_instruction_set, nb::arg("name"));
     module.def("stepper", &stepper, nb::arg("chain"), nb::arg("state"), nb::arg("y_safe"));
     if (!hyst::register_stepper(module.ptr())) throw nb::python_error();
 }

@@ -1,0 +1,201 @@
+#include "evaluation.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "lanes.hpp"
+#include "memory_curve.hpp"
+#include "parallel.hpp"
+#include "simd/kernels.hpp"
+
+namespace hyst {
+namespace {
+
+constexpr std::size_t kSmallestPart = 16384;  // samples that are worth a thread
+constexpr std::size_t kBlock = 4096;          // samples copied at a time where u and y are the same
+constexpr double kNot = std::numeric_limits<double>::quiet_NaN();
+
+// The memory curve gives up the last bits of y, so it must be worth it.
+constexpr double kWorthwhileShare = 0.6;
+constexpr double kWorthwhileSaving = 1e5;  // nanoseconds
+
+bool memory_curve_can_take(const hyst_stage &stage, const double *state) {
+    return stage.kind == HYST_PI && Lanes::can_take(stage) && is_admissible(stage.as.pi, state);
+}
+
+std::size_t play_count(const hyst_stage &stage) {
+    if (stage.kind == HYST_PI) return stage.as.pi.count;
+    return stage.kind == HYST_RATE_DEPENDENT_PI ? stage.as.rate_dependent_pi.pi.count : 1;
+}
+
+Choice estimate(const hyst_stage &stage, const double *state, const double *u,
+                std::size_t samples) {
+    const std::size_t plays = play_count(stage);
+    const double each = 1.0 / static_cast<double>(samples);
+    Choice choice{stage.kind, Engine::loop, "", cost_of_loop(plays, samples) * each,
+                  cost_of_lanes(plays, samples) * each, kNot, {}};
+    if (memory_curve_can_take(stage, state)) {
+        choice.rough = roughness(stage.as.pi, u, samples);
+        choice.memory_curve = cost_of_memory_curve(plays, samples, choice.rough) * each;
+    }
+    return choice;
+}
+
+void take_cheapest(Choice &choice, std::size_t samples) {
+    choice.engine = choice.lanes < choice.loop ? Engine::lanes : Engine::loop;
+    choice.reason = choice.engine == Engine::lanes ? "cheapest that keeps every bit of y"
+                                                   : "the record is short";
+    const double exact = std::min(choice.lanes, choice.loop);
+    const double saving = (exact - choice.memory_curve) * static_cast<double>(samples);
+    if (choice.memory_curve < kWorthwhileShare * exact && saving > kWorthwhileSaving) {
+        choice.engine = Engine::memory_curve;
+        choice.reason = "few turning points for so many plays and samples";
+    }
+}
+
+Choice choose(const hyst_stage &stage, const double *state, const double *u, std::size_t samples,
+              Engine wanted) {
+    if (!Lanes::can_take(stage)) {
+        const bool plays = stage.kind == HYST_PI || stage.kind == HYST_RATE_DEPENDENT_PI;
+        return {stage.kind, Engine::loop, plays ? "its thresholds do not ascend from zero or more"
+                                                : "it has no plays",
+                kNot, kNot, kNot, {}};
+    }
+    Choice choice = estimate(stage, state, u, samples);
+    if (wanted == Engine::automatic) {
+        take_cheapest(choice, samples);
+    } else if (wanted == Engine::memory_curve && !memory_curve_can_take(stage, state)) {
+        choice.engine = Engine::lanes;
+        choice.reason = "the memory curve cannot take this stage or this state";
+    } else {
+        choice.engine = wanted;
+        choice.reason = "asked for";
+    }
+    return choice;
+}
+
+void run_memory_curve(const hyst_pi &pi, const double *state, const double *u, double *y,
+                      std::size_t samples) {
+    MemoryCurve curve(pi, state);
+    if (u != y) {
+        curve.run(u, y, samples);
+        return;
+    }
+    std::vector<double> copy(std::min(samples, kBlock));
+    for (std::size_t k = 0; k < samples; k += kBlock) {
+        const std::size_t count = std::min(kBlock, samples - k);
+        std::copy(u + k, u + k + count, copy.begin());
+        curve.run(copy.data(), y + k, count);
+    }
+}
+
+void run_part(const hyst_stage &stage, Engine engine, double *state, const double *u, double *y,
+              std::size_t samples) {
+    if (engine == Engine::lanes) {
+        Lanes(stage).run(state, u, y, samples);
+    } else if (engine == Engine::memory_curve) {
+        std::vector<double> end(state, state + stage.as.pi.count);
+        Lanes(stage).jump(end.data(), u, samples);
+        run_memory_curve(stage.as.pi, state, u, y, samples);
+        std::copy(end.begin(), end.end(), state);
+    } else if (stage.kind == HYST_AFFINE) {
+        kernels().affine(stage.as.affine.gain, stage.as.affine.offset, u, y, samples);
+    } else if (stage.kind == HYST_DEAD_ZONE) {
+        kernels().dead_zone(stage.as.dead_zone, u, y, samples);
+    } else {
+        hyst_stage_run(&stage, state, u, y, samples);
+    }
+}
+
+// Parts of the record on threads, each from the exact state that the parts before it leave.
+void run_parts(const hyst_stage &stage, Engine engine, double *state, const double *u, double *y,
+               std::size_t samples, std::size_t threads) {
+    const std::size_t parts = std::min(threads, samples / kSmallestPart);
+    if (parts <= 1 || engine == Engine::loop) {
+        run_part(stage, engine, state, u, y, samples);
+        return;
+    }
+    const std::size_t values = hyst_stage_state_length(&stage), length = samples / parts;
+    std::vector<double> states, end(state, state + values);
+    for (std::size_t part = 0; part < parts; ++part) {
+        states.insert(states.end(), end.begin(), end.end());
+        Lanes(stage).jump(end.data(), u + part * length, length);
+    }
+    parallel(parts, threads, [&](std::size_t part) {
+        const std::size_t first = part * length;
+        const std::size_t count = part + 1 < parts ? length : samples - first;
+        run_part(stage, engine, &states[part * values], u + first, y + first, count);
+    });
+    std::copy_n(&states[(parts - 1) * values], values, state);
+}
+
+// A stage may be handed what overflowed in the one before it: only the loop knows what to do then.
+bool is_finite(const double *u, std::size_t count) {
+    return kernels().first_non_finite(u, count) == count;
+}
+
+void run_chain(const Chain &chain, double *state, const double *u, double *y, std::size_t samples,
+               const Options &options, std::vector<Choice> *choices) {
+    if (chain.stages().empty()) std::copy(u, u + samples, y);
+    const double *in = u;
+    for (const hyst_stage &stage : chain.stages()) {
+        const bool safe = in == u || is_finite(in, samples);
+        const Choice choice = choose(stage, state, in, samples, safe ? options.engine : Engine::loop);
+        if (choices != nullptr) choices->push_back(choice);
+        run_parts(stage, choice.engine, state, in, y, samples, options.threads);
+        state += hyst_stage_state_length(&stage);
+        in = y;
+    }
+}
+
+// Short records of a batch: as many as there are lanes go side by side.
+bool runs_rows_in_lanes(const Chain &chain, const Options &options, std::size_t rows,
+                        std::size_t samples) {
+    constexpr std::size_t short_record = 4096;
+    const bool allowed = options.engine == Engine::automatic || options.engine == Engine::lanes;
+    return allowed && chain.stages().size() == 1 && Lanes::can_take(chain.stages()[0]) &&
+           rows >= kernels().width && samples <= short_record;
+}
+
+}  // namespace
+
+void evaluate_stage(const hyst_stage &stage, double *state, const double *u, double *y,
+                    std::size_t samples, const Options &options) {
+    if (samples == 0) return;
+    const Choice choice = choose(stage, state, u, samples, options.engine);
+    run_parts(stage, choice.engine, state, u, y, samples, options.threads);
+}
+
+std::size_t evaluate(const Chain &chain, double *states, const double *u, double *y,
+                     std::size_t rows, std::size_t samples, const Options &options,
+                     std::vector<Choice> *choices) {
+    const std::size_t total = rows * samples;
+    if (total == 0) return total;
+    const std::size_t bad = kernels().first_non_finite(u, total);
+    if (bad < total) return bad;
+
+    const std::size_t length = chain.state_length();
+    const std::size_t together = runs_rows_in_lanes(chain, options, rows, samples) && !choices
+                                     ? kernels().width
+                                     : 1;
+    const std::size_t groups = rows / together, grouped = groups * together;
+    Options within = options;
+    if (rows > 1) within.threads = 1;
+    const auto run_group = [&](std::size_t group) {
+        const std::size_t row = group * together, k = row * samples;
+        if (together > 1) {
+            Lanes(chain.stages()[0]).run_rows(states + row * length, u + k, y + k, samples);
+        } else {
+            run_chain(chain, states + row * length, u + k, y + k, samples, within,
+                      row == 0 ? choices : nullptr);
+        }
+    };
+    parallel(groups, rows > 1 ? options.threads : 1, run_group);
+    for (std::size_t row = grouped; row < rows; ++row) {
+        run_chain(chain, states + row * length, u + row * samples, y + row * samples, samples,
+                  within, nullptr);
+    }
+    return total;
+}
+
+}  // namespace hyst

@@ -1,0 +1,41 @@
+// Runs records through a chain, stage after stage, each by the engine that suits it.
+//
+// Invariant: the state after a record has the core's bits, whatever the engine. y has them too with
+// the loop and with lanes; with the memory curve it agrees to rounding.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "chain.hpp"
+#include "cost_model.hpp"
+
+namespace hyst {
+
+struct Options {
+    Engine engine = Engine::automatic;
+    std::size_t threads = 1;
+};
+
+// What was chosen for one stage, and why. Costs are expected nanoseconds a sample; NaN where the
+// engine cannot take the stage.
+struct Choice {
+    hyst_kind kind;
+    Engine engine;
+    const char *reason;
+    double loop, lanes, memory_curve;
+    Roughness rough;
+};
+
+// `rows` records of `samples` each, one after the other in memory; states likewise. Returns the flat
+// index of the first sample of u that is not finite, or rows * samples; in the first case states and
+// y are meaningless. choices, if not null, receives one entry for each stage, for the first record.
+std::size_t evaluate(const Chain &chain, double *states, const double *u, double *y,
+                     std::size_t rows, std::size_t samples, const Options &options,
+                     std::vector<Choice> *choices);
+
+// One stage, one record of finite samples. u and y may be the same.
+void evaluate_stage(const hyst_stage &stage, double *state, const double *u, double *y,
+                    std::size_t samples, const Options &options);
+
+}  // namespace hyst

@@ -1,0 +1,37 @@
+// Time lanes: a record cut into stretches that are evaluated side by side, each starting from the
+// exact memory that the stretches before it leave. docs/engine.md says why that is exact.
+//
+// Invariant: state and y get the bits of the core's loop.
+#pragma once
+
+#include <cstddef>
+
+#include "hyst/chain.h"
+
+namespace hyst {
+
+class Lanes {
+public:
+    // Whether the lane identity holds for this stage: plays of thresholds that ascend from >= 0.
+    static bool can_take(const hyst_stage &stage);
+
+    // The stage, which can_take, must outlive this.
+    explicit Lanes(const hyst_stage &stage) : stage_(stage) {}
+
+    // The state after `count` more samples, without their outputs.
+    void jump(double *state, const double *u, std::size_t count) const;
+
+    // One record. u and y may be the same.
+    void run(double *state, const double *u, double *y, std::size_t samples) const;
+
+    // As many records as there are lanes, one after the other in memory, and their states.
+    void run_rows(double *states, const double *u, double *y, std::size_t samples) const;
+
+private:
+    void run_packed(double *packed, const double *u, double *y, std::size_t samples,
+                    std::size_t stride) const;
+
+    const hyst_stage &stage_;
+};
+
+}  // namespace hyst

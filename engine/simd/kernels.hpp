@@ -1,0 +1,92 @@
+// The inner loops that exist once per instruction set, and the choice among them at run time.
+#pragma once
+
+#include <cstddef>
+
+#include "hyst/dead_zone.h"
+#include "hyst/prandtl_ishlinskii.h"
+#include "hyst/rate_dependent_prandtl_ishlinskii.h"
+
+namespace hyst {
+
+// Which way a play moved last: the derivative of its memory by its own threshold.
+constexpr double kRose = -1.0;
+constexpr double kFell = 1.0;
+
+constexpr std::size_t kJumpBlock = 64;  // samples the backward scan takes at once
+constexpr std::size_t kGramBlock = 64;  // rows the Gram matrix takes at once
+constexpr std::size_t kWidest = 8;      // lanes of the widest instruction set
+
+// y = a + b u from sample to sample while u moves one way, no further than `limit`.
+struct Line {
+    double a;
+    double b;
+    double limit;
+};
+
+// The loss gradient's view of a bank: everything is in packs, one for each play.
+struct GradientBank {
+    hyst_pi pi;
+    double *z;             // memories of the lanes
+    double *direction;     // their last movements
+    double *by_p;          // out: sums of error times memory
+    double *by_direction;  // out: sums of error times direction
+    double *scratch;       // 2 x width x count packs
+};
+
+struct GradientSums {
+    double loss;   // half the sum of squared errors
+    double by_p0;  // sum of error times input
+};
+
+struct Kernels {
+    const char *name;
+    std::size_t width;  // lanes
+
+    // `width` records side by side; lane c at u + c * stride. z: one pack for each play.
+    // samples: a multiple of width. u and y may be the same.
+    void (*pi_lanes)(const hyst_pi &pi, const double *u, double *y, std::size_t samples,
+                     std::size_t stride, double *z);
+    void (*rate_dependent_pi_lanes)(const hyst_rate_dependent_pi &model, const double *previous,
+                                    const double *u, double *y, std::size_t samples,
+                                    std::size_t stride, double *z);
+    void (*play_lanes)(double r, bool stop, const double *u, double *y, std::size_t samples,
+                       std::size_t stride, double *z);
+
+    // Memories of all plays after `count` samples. r ascends, r[0] >= 0.
+    void (*pi_jump)(const double *u, std::size_t count, std::size_t plays, const double *r,
+                    double *z, double *direction);
+    void (*rate_dependent_pi_jump)(const hyst_rate_dependent_pi &model, double previous,
+                                   const double *u, std::size_t count, double *z);
+
+    // Follow a line from u[0] on; returns how many samples it went. y may not be u; u[-1] exists.
+    std::size_t (*rise)(const Line &line, const double *u, double *y, std::size_t count);
+    std::size_t (*fall)(const Line &line, const double *u, double *y, std::size_t count);
+
+    std::size_t (*first_non_finite)(const double *u, std::size_t count);  // count if there is none
+    void (*affine)(double gain, double offset, const double *u, double *y, std::size_t count);
+    void (*dead_zone)(const hyst_dead_zone &map, const double *u, double *y, std::size_t count);
+
+    GradientSums (*gradient_lanes)(const GradientBank &bank, const double *u, const double *target,
+                                   std::size_t samples, std::size_t stride);
+    // Every play's memory and direction after each sample, one row of `stride` doubles a sample.
+    void (*derivative_rows)(const hyst_pi &pi, double *z, double *direction, const double *u,
+                            std::size_t samples, double *by_p, double *by_r, std::size_t stride);
+    // Play outputs of a block, `stride` a multiple of width; z and r padded to it.
+    void (*play_rows)(const double *r, double *z, std::size_t stride, const double *u,
+                      std::size_t samples, double *rows);
+    // gram += rows' rows, lower triangle and a little more. stride: a multiple of width.
+    void (*add_gram)(const double *rows, std::size_t samples, std::size_t width, std::size_t stride,
+                     double *gram);
+};
+
+// The kernels in use: the widest this processor runs, unless another set was asked for.
+const Kernels &kernels();
+
+// All sets this build has and this processor runs, widest first; ends with a null pointer.
+const Kernels *const *available_kernels();
+
+// Use the set of this name from now on. Returns false, and changes nothing, if it is not available.
+bool use_kernels(const char *name);
+
+}  // namespace hyst

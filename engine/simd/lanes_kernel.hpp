@@ -1,0 +1,98 @@
+// kWidth records side by side, one in each lane, through the same bank of plays.
+//
+// Invariant: every lane does the operations of hyst_pi_step (or its rate-dependent sibling) in the
+// same order, none of them contracted, so z and y get the core's bits.
+#pragma once
+
+#include "pack.hpp"
+#include "widening_kernel.hpp"
+
+namespace hyst::HYST_INSTRUCTION_SET {
+
+// The interval [u - b, u + b] that a threshold r widens to the play's bounds: b = 0 for a play of
+// constant threshold, b = g(|u - u_previous|) for a rate-dependent one. `prepare` sees kWidth
+// samples of all lanes, `low` and `high` give their intervals.
+struct ConstantThreshold {
+    void prepare(const Pack *) {}
+    Pack low(std::size_t t, const Pack *u) const { return u[t]; }
+    Pack high(std::size_t t, const Pack *u) const { return u[t]; }
+};
+
+struct RateDependentThreshold {
+    const hyst_rate_dependent_pi &model;
+    Pack previous;  // last inputs of the lanes
+    Pack low_[kWidth], high_[kWidth];
+
+    RateDependentThreshold(const hyst_rate_dependent_pi &of, Pack before)
+        : model(of), previous(before) {}
+
+    void prepare(const Pack *u) {
+        for (std::size_t t = 0; t < kWidth; ++t) {
+            const Pack b = widening(model, magnitude(u[t] - previous));
+            low_[t] = u[t] - b;
+            high_[t] = u[t] + b;
+            previous = u[t];
+        }
+    }
+    Pack low(std::size_t t, const Pack *) const { return low_[t]; }
+    Pack high(std::size_t t, const Pack *) const { return high_[t]; }
+};
+
+// kWidth samples of all lanes. u: in time order; y: out. z: count packs, one for each play.
+template <class Threshold>
+inline void square(const hyst_pi &pi, Threshold &threshold, const Pack *u, Pack *y, double *z) {
+    threshold.prepare(u);
+    const Pack p0 = broadcast(pi.p0);
+#pragma GCC unroll 8
+    for (std::size_t t = 0; t < kWidth; ++t) y[t] = p0 * u[t];
+    for (std::size_t i = 0; i < pi.count; ++i) {
+        const Pack r = broadcast(pi.r[i]), p = broadcast(pi.p[i]);
+        Pack memory = load(z + i * kWidth);
+#pragma GCC unroll 8
+        for (std::size_t t = 0; t < kWidth; ++t) {
+            memory = clamp(minus(threshold.low(t, u), r), plus(threshold.high(t, u), r), memory);
+            y[t] += p * memory;
+        }
+        store(z + i * kWidth, memory);
+    }
+}
+
+template <class Threshold>
+struct PlayBank {
+    const hyst_pi &pi;
+    Threshold threshold;
+    double *z;
+
+    void operator()(const Pack *u, Pack *y) { square(pi, threshold, u, y, z); }
+};
+
+struct SinglePlay {
+    Pack r;
+    bool stop;
+    Pack z;
+
+    void operator()(const Pack *u, Pack *y) {
+        for (std::size_t t = 0; t < kWidth; ++t) {
+            z = clamp(u[t] - r, u[t] + r, z);
+            y[t] = stop ? u[t] - z : z;
+        }
+    }
+};
+
+// Lane c reads u[c * stride ..) and writes y[c * stride ..), `samples` each, a multiple of kWidth.
+template <class Stage>
+inline void lanes(Stage &stage, const double *u, double *y, std::size_t samples,
+                  std::size_t stride) {
+    for (std::size_t k = 0; k < samples; k += kWidth) {
+        Pack in[kWidth], out[kWidth];
+#pragma GCC unroll 8
+        for (std::size_t c = 0; c < kWidth; ++c) in[c] = load(u + c * stride + k);
+        transpose(in);
+        stage(in, out);
+        transpose(out);
+#pragma GCC unroll 8
+        for (std::size_t c = 0; c < kWidth; ++c) store(y + c * stride + k, out[c]);
+    }
+}
+
+}  // namespace hyst::HYST_INSTRUCTION_SET
