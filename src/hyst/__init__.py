@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         GeneralizedPrandtlIshlinskii,
         ModifiedPrandtlIshlinskii,
         PrandtlIshlinskii,
+        RateDependentPrandtlIshlinskii,
     )
     from hyst.models.model_loading import load
     from hyst.operators import Affine, Composition, DeadZone, Operator, Play, Stop
@@ -44,6 +45,7 @@ _HOME = {
     "GeneralizedPrandtlIshlinskii": "hyst.models",
     "ModifiedPrandtlIshlinskii": "hyst.models",
     "PrandtlIshlinskii": "hyst.models",
+    "RateDependentPrandtlIshlinskii": "hyst.models",
     "load": "hyst.models",
     "Affine": "hyst.operators",
     "Composition": "hyst.operators",
@@ -81,6 +83,7 @@ __all__ = [
     "Operator",
     "Play",
     "PrandtlIshlinskii",
+    "RateDependentPrandtlIshlinskii",
     "Record",
     "SolverError",
     "Stop",

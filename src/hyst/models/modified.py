@@ -23,7 +23,7 @@ class ModifiedPrandtlIshlinskii(Chained):
     Parameters
     ----------
     pi
-        The ``PrandtlIshlinskii`` model.
+        The ``PrandtlIshlinskii`` model, or the rate-dependent one.
     output_map
         A memoryless operator, usually a ``DeadZone``; strictly monotone if the model is to be
         inverted.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from hyst.errors import InputError
 from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii
+from hyst.models.rate_dependent import RateDependentPrandtlIshlinskii
 from hyst.operators.base import Operator
 
 
@@ -33,8 +34,8 @@ def as_map(operator: Operator, name: str) -> Operator:
     return operator
 
 
-def as_plays(operator: Operator) -> PrandtlIshlinskii:
-    """Check that an operator is a Prandtl-Ishlinskii model.
+def as_plays(operator: Operator) -> PrandtlIshlinskii | RateDependentPrandtlIshlinskii:
+    """Check that an operator is a Prandtl-Ishlinskii model, rate-dependent or not.
 
     Parameters
     ----------
@@ -43,7 +44,7 @@ def as_plays(operator: Operator) -> PrandtlIshlinskii:
 
     Returns
     -------
-    PrandtlIshlinskii
+    PrandtlIshlinskii or RateDependentPrandtlIshlinskii
         ``operator`` itself.
 
     Raises
@@ -51,7 +52,7 @@ def as_plays(operator: Operator) -> PrandtlIshlinskii:
     InputError
         If it is something else.
     """
-    if not isinstance(operator, PrandtlIshlinskii):
+    if not isinstance(operator, PrandtlIshlinskii | RateDependentPrandtlIshlinskii):
         what = operator.kind if isinstance(operator, Operator) else type(operator).__name__
         raise InputError(f"pi is a {what}; give a PrandtlIshlinskii")
     return operator

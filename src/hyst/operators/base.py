@@ -40,6 +40,34 @@ class Operator(ABC):
     def initial_state(self) -> Array:
         """Give the state before the first sample, shape (n,), a fresh array."""
 
+    @property
+    def dt(self) -> float | None:
+        """The sample time the operator is made for, seconds; None if any will do."""
+        return None
+
+    @final
+    def require_sample_time(self, dt: float, what: str = "the record") -> None:
+        """Refuse a record of another sample time.
+
+        Parameters
+        ----------
+        dt
+            Sample time of the record, seconds.
+        what
+            What messages call the record.
+
+        Raises
+        ------
+        InputError
+            If the operator has a sample time that differs by more than one part in a million.
+        """
+        own = self.dt
+        if own is not None and abs(dt - own) > 1e-6 * own:
+            raise InputError(
+                f"{what} has dt = {dt:.6g} s, the model {own:.6g} s; its constants hold for its "
+                "own sample time only, so resample the record or identify the model anew"
+            )
+
     @abstractmethod
     def inverse(self) -> Operator:
         """Give the exact inverse, with its initial state, so that both cancel from sample 0 on.

@@ -59,6 +59,11 @@ class Chained(Operator):
             invertible=all(each.invertible for each in traits),
         )
 
+    @property
+    def dt(self) -> float | None:
+        """The sample time of the stages that have one, seconds."""
+        return _common_sample_time(self.stages)
+
     def initial_state(self) -> Array:
         """Give the states of the stages, one after the other."""
         return np.concatenate([stage.initial_state() for stage in self.stages])
@@ -126,7 +131,8 @@ class Composition(Chained):
     Raises
     ------
     InputError
-        If there is no stage, or something else than an operator among them.
+        If there is no stage, something else than an operator among them, or stages made for
+        different sample times.
 
     Examples
     --------
@@ -150,6 +156,7 @@ class Composition(Chained):
                 )
         flat = (part for stage in stages for part in _stages(stage))
         object.__setattr__(self, "_stages", tuple(flat))
+        _common_sample_time(self._stages)
 
     @property
     def stages(self) -> tuple[Operator, ...]:
@@ -213,3 +220,13 @@ def _prefixes(leaves: tuple[Operator, ...]) -> list[str]:
         seen[kind] = seen.get(kind, 0) + 1
         prefixes.append(f"{kind}_{seen[kind]}" if kinds.count(kind) > 1 else kind)
     return prefixes
+
+
+def _common_sample_time(stages: tuple[Operator, ...]) -> float | None:
+    own = [stage.dt for stage in stages if stage.dt is not None]
+    if own and max(own) - min(own) > 1e-6 * min(own):
+        raise InputError(
+            f"stages are made for sample times of {min(own):.6g} s and {max(own):.6g} s; compose "
+            "operators of one sample time"
+        )
+    return own[0] if own else None

@@ -1,0 +1,332 @@
+"""The rate-dependent Prandtl-Ishlinskii model and its explicit, approximate inverse."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hyst import _engine
+from hyst.errors import InputError, NotInvertibleError
+from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii
+from hyst.models.rate_curve import RateCurve
+from hyst.operators.base import Operator
+from hyst.operators.checks import (
+    as_ascending_thresholds,
+    as_constants,
+    as_number,
+    as_signal,
+    refuse_overflow,
+)
+from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
+from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
+from hyst.operators.registry import entries, register
+from hyst.operators.traits import Traits
+
+Array = NDArray[np.float64]
+
+
+@register
+@final
+@dataclass(frozen=True, eq=False, repr=False, init=False)
+class RateDependentPrandtlIshlinskii(Operator):
+    """Prandtl-Ishlinskii model whose thresholds grow with the rate of its input.
+
+        y_k = p0 u_k + sum_i p_i z_i,   z_i: play of threshold r_i + g(|u_k - u_{k-1}| / dt)
+
+    with ``g(x) = beta x``, or any ``RateCurve``. The rate of the very first sample is 0, as if the
+    input had rested at it; plays are where ``z0`` says.
+
+    Parameters
+    ----------
+    p
+        Shape (n,), weights of the plays, output units per input unit, any sign.
+    r
+        Shape (n,), thresholds at rest ``0 <= r_1 <= ... <= r_n``, input units.
+    beta
+        Widening of every threshold per rate of the input, >= 0, seconds; or a ``RateCurve``.
+    dt
+        Sample time, > 0, seconds.
+    p0
+        Weight of the input itself, output units per input unit.
+    z0
+        Shape (n,), play outputs before the first sample, input units, neighbours no further apart
+        than their thresholds (S4 eq. 8); zeros if left out.
+
+    Raises
+    ------
+    InputError
+        If lengths differ, thresholds are negative or unsorted (their distances are what must not
+        shrink), beta is negative, dt is not positive, neighbours of ``z0`` are too far apart, or a
+        constant is not finite.
+
+    Notes
+    -----
+    S4 eqs. 4, 6, 19, 24 and 34-38. Its state is the play outputs, the previous input, and 1 once
+    there is a previous input. It has no exact inverse unless beta is 0: see
+    ``explicit_inverse`` and ``hyst.compensation.invert_trajectory``.
+
+    Examples
+    --------
+    >>> model = RateDependentPrandtlIshlinskii([1.0], [1.0], beta=0.01, dt=0.1, p0=0.5)
+    >>> model([0.0, 10.0, 10.0, 0.0])
+    array([ 0., 13., 14.,  2.])
+    """
+
+    p: Array
+    r: Array
+    beta: float
+    sample_time: float
+    p0: float
+    z0: Array
+    rate_curve: RateCurve
+
+    kind = "rate-dependent-prandtl-ishlinskii"
+
+    def __init__(
+        self,
+        p: ArrayLike,
+        r: ArrayLike,
+        beta: float | RateCurve,
+        dt: float,
+        p0: float = 0.0,
+        z0: ArrayLike | None = None,
+    ) -> None:
+        weights, thresholds = as_constants(p, "p"), as_ascending_thresholds(r)
+        if weights.size != thresholds.size:
+            raise InputError(
+                f"p has {weights.size} entries but r has {thresholds.size}; give one p for each r"
+            )
+        curve = beta if isinstance(beta, RateCurve) else RateCurve(beta)
+        sample_time = as_number(dt, "dt")
+        if sample_time <= 0.0:
+            raise InputError(f"dt is {sample_time}; a sample time is positive")
+        memory = as_constants(np.zeros(weights.size) if z0 is None else z0, "z0")
+        _require_memory(memory, thresholds)
+        object.__setattr__(self, "p", weights)
+        object.__setattr__(self, "r", thresholds)
+        object.__setattr__(self, "beta", curve.beta)
+        object.__setattr__(self, "sample_time", sample_time)
+        object.__setattr__(self, "p0", as_number(p0, "p0"))
+        object.__setattr__(self, "z0", as_constants(memory + 0.0, "z0"))
+        object.__setattr__(self, "rate_curve", curve)
+
+    @property
+    def dt(self) -> float:
+        """The sample time, seconds."""
+        return self.sample_time
+
+    def __repr__(self) -> str:
+        curve = self.beta if self.rate_curve.is_linear else self.rate_curve
+        return (
+            f"RateDependentPrandtlIshlinskii(p={self.p!r}, r={self.r!r}, beta={curve!r}, "
+            f"dt={self.dt!r}, p0={self.p0!r}, z0={self.z0!r})"
+        )
+
+    def at_rest(self) -> PrandtlIshlinskii:
+        """Give the rate-independent model that this one becomes at low rates (S4 eq. 26).
+
+        Returns
+        -------
+        PrandtlIshlinskii
+        """
+        return PrandtlIshlinskii(self.p, self.r, self.p0, self.z0)
+
+    def thresholds(self, u: ArrayLike) -> Array:
+        """Give the thresholds that an input causes, for every sample.
+
+        Parameters
+        ----------
+        u
+            Shape (N,), finite, input units.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (N, n), input units; the first row is at rest.
+
+        Raises
+        ------
+        InputError
+            If ``u`` is not one record of finite numbers.
+        """
+        signal = as_signal(u)
+        if signal.ndim != 1:
+            raise InputError(f"u has shape {signal.shape}; give one record, (N,)")
+        widening = self.rate_curve(np.diff(signal, prepend=signal[0]) / self.dt)
+        return np.asarray(widening[:, None] + self.r)
+
+    def sample_equation_slope(self) -> float:
+        """Give the least slope of the output over the sample's own input, output per input unit.
+
+        ``p0 + (1 - g'/dt) sum_i max(p_i, 0)`` with g' the steepest slope of the rate curve. Where
+        it is not positive, one sample can ask for an output that several inputs give, and the
+        exact solution sample by sample chatters between fast and slow.
+
+        Returns
+        -------
+        float
+        """
+        ratio = self.rate_curve.steepest() / self.dt
+        rising = float(np.maximum(self.p, 0.0).sum())
+        return self.p0 + (1.0 - ratio) * rising if rising else self.p0
+
+    def traits(self) -> Traits:
+        """Give the traits; with a rate that counts none of those of plays is left."""
+        rest = self.at_rest()
+        plain = self.rate_curve.is_zero or not self.p.any()
+        return Traits(
+            memoryless=self.p.size == 0 and rest.traits().memoryless,
+            rate_independent=plain,
+            return_point_memory=plain,
+            congruent_loops=plain,
+            monotone=plain and rest.traits().monotone,
+            invertible=self.is_invertible(),
+        )
+
+    def initial_state(self) -> Array:
+        """Give the initial play outputs and that there is no previous input, shape (n + 2,)."""
+        return np.concatenate([self.z0, np.zeros(2)])
+
+    def inverse(self) -> Operator:
+        """Give the exact inverse where there is one: for beta = 0.
+
+        Raises
+        ------
+        NotInvertibleError
+            If beta is not 0: the thresholds follow the rate of the drive, which is what an inverse
+            has yet to find. If beta is 0, as for ``PrandtlIshlinskii``.
+        """
+        if not self.rate_curve.is_zero:
+            raise NotInvertibleError(
+                f"beta is {self.beta:.6g}: the thresholds follow the rate of the drive, which an "
+                "inverse does not know before it has found the drive; use "
+                "hyst.compensation.invert_trajectory, or explicit_inverse() and its error"
+            )
+        return self.at_rest().inverse()
+
+    def explicit_inverse(self) -> RateDependentPrandtlIshlinskii:
+        """Give the explicit inverse: exact only where both see the same thresholds over time.
+
+        With ``c_j = p0 + p_1 + .. + p_j``: weights ``1/p0`` and ``1/c_j - 1/c_{j-1}``, thresholds
+        ``s_j = s_{j-1} + c_{j-1} (r_j - r_{j-1})``, rate curve ``p0 g``, memory
+        ``d_j = d_{j-1} + c_{j-1} (x_j - x_{j-1})`` of the distances from the input. It takes the
+        rate of the reference for that of the drive, so it leaves an error; simulate it.
+
+        Returns
+        -------
+        RateDependentPrandtlIshlinskii
+            A causal operator from wanted output to drive.
+
+        Raises
+        ------
+        NotInvertibleError
+            If p0 or a cumulative weight is not positive, or a constant overflows.
+
+        Notes
+        -----
+        S4 eqs. 12-16; eq. 16 must start with ``y_1 = a0 x_1``, as eq. 18 does.
+        """
+        slopes = cumulative(self.p0, self.p)
+        wrong = np.flatnonzero(slopes <= rounding_of_cumulative(self.p0, self.p))
+        if wrong.size:
+            j = int(wrong[0])
+            which = "p0" if j == 0 else f"the cumulative weight p0 + p[1] + .. + p[{j}]"
+            raise NotInvertibleError(
+                f"{which} is {slopes[j]:.6g}: the output would not rise with the input; "
+                "identify or give weights whose sums from p0 on are positive"
+            )
+        with np.errstate(all="ignore"):
+            weights = -(self.p / slopes[1:]) / slopes[:-1]
+            thresholds = np.cumsum(slopes[:-1] * np.diff(self.r, prepend=0.0))
+            beyond = np.cumsum((self.p * self.z0)[::-1])[::-1] - self.p * self.z0
+            memory = slopes[1:] * self.z0 + beyond
+            g0 = 1.0 / np.float64(self.p0)
+        refuse_overflow(g0, weights, thresholds, memory)
+        return RateDependentPrandtlIshlinskii(
+            weights, thresholds, self.rate_curve.scaled(self.p0), self.dt, float(g0), memory
+        )
+
+    def parameters(self) -> Parameters:
+        """Give p0, the weights, the thresholds, then beta and what else the rate curve has."""
+        n = self.p.size
+        free = np.full(n + 1, np.inf)
+        rate = self.rate_curve.parameters()
+        return Parameters(
+            values=np.concatenate([[self.p0], self.p, self.r, rate.values]),
+            names=("p0", *numbered("p", n, 1), *numbered("r", n, 1), *rate.names),
+            lower=np.concatenate([-free, np.zeros(n), rate.lower]),
+            upper=np.concatenate([free, free[1:], rate.upper]),
+        )
+
+    def with_parameters(self, theta: Sequence[float] | Array) -> RateDependentPrandtlIshlinskii:
+        """Give a model with other constants and the same sample time, knees and initial memory."""
+        n = self.p.size
+        vector = as_parameter_vector(theta, 1 + 2 * n + len(self.rate_curve.parameters()))
+        curve = self.rate_curve.with_parameters(vector[2 * n + 1 :])
+        p, r = vector[1 : n + 1], vector[n + 1 : 2 * n + 1]
+        return RateDependentPrandtlIshlinskii(p, r, curve, self.dt, float(vector[0]), self.z0)
+
+    def lipschitz_constant(self) -> float:
+        """Give ``|p0| + sum |p_i| (1 + 2 g'/dt)``, g' the steepest slope of the rate curve."""
+        size = float(np.abs(self.p).sum())
+        widening = 2.0 * self.rate_curve.steepest() / self.dt
+        return abs(self.p0) + size * (1.0 + widening) if size else abs(self.p0)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give kind, constants and, where there is one, the initial memory."""
+        memory = {"z0": self.z0.tolist()} if self.z0.any() else {}
+        return {
+            "kind": self.kind,
+            "p0": self.p0,
+            "p": self.p.tolist(),
+            "r": self.r.tolist(),
+            **self.rate_curve.to_dict(),
+            "dt": self.dt,
+            **memory,
+        }
+
+    @classmethod
+    def from_dict(cls, data: dict[str, Any]) -> RateDependentPrandtlIshlinskii:
+        """Rebuild from ``to_dict()``.
+
+        Raises
+        ------
+        InputError
+            If an entry is missing, unknown or not allowed.
+        """
+        further = ("powers", "slopes", "knees")
+        given = entries(data, required=("p", "r", "p0", "beta", "dt"), optional=("z0", *further))
+        curve = RateCurve(given.pop("beta"), **{key: given.pop(key, ()) for key in further})
+        return cls(beta=curve, **given)
+
+    def append_to(self, chain: _engine.Chain) -> None:
+        """Append this stage to a chain of the engine."""
+        curve = self.rate_curve
+        chain.add_rate_dependent_pi(
+            self.p0,
+            self.p.tolist(),
+            self.r.tolist(),
+            curve.beta,
+            curve.powers.tolist(),
+            curve.slopes.tolist(),
+            curve.knees.tolist(),
+            self.dt,
+        )
+
+
+def _require_memory(z0: Array, r: Array) -> None:
+    if z0.size != r.size:
+        raise InputError(f"z0 has {z0.size} entries; give one for each of {r.size} plays")
+    # What rounding may add to a memory that an earlier run has left.
+    slack = 1e-12 * (np.abs(z0).max(initial=0.0) + np.abs(r).max(initial=0.0))
+    apart = np.flatnonzero(np.abs(np.diff(z0)) > np.diff(r) + slack)
+    if apart.size:
+        i = int(apart[0])
+        raise InputError(
+            f"z0[{i}] and z0[{i + 1}] differ by {abs(z0[i + 1] - z0[i]):.6g}, their thresholds by "
+            f"{r[i + 1] - r[i]:.6g} only; no input leaves such a memory"
+        )
