@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "lanes.hpp"
+#include "linear_run.hpp"
 #include "memory_curve.hpp"
 #include "parallel.hpp"
 #include "simd/kernels.hpp"
@@ -102,6 +103,8 @@ void run_part(const hyst_stage &stage, Engine engine, double *state, const doubl
         kernels().affine(stage.as.affine.gain, stage.as.affine.offset, u, y, samples);
     } else if (stage.kind == HYST_DEAD_ZONE) {
         kernels().dead_zone(stage.as.dead_zone, u, y, samples);
+    } else if (stage.kind == HYST_STATE_SPACE) {
+        run_state_space(stage.as.state_space, state, u, y, samples);
     } else {
         hyst_stage_run(&stage, state, u, y, samples);
     }
