@@ -19,7 +19,7 @@ installed := .venv/.installed
 installed_dev := .venv/.installed-dev
 core_build := build/core-tests/$(notdir $(CC))
 built_from := pyproject.toml CMakeLists.txt core/SOURCES \
-	$(shell find core/include core/src engine -type f)
+	$(shell find core/include core/src engine)
 
 # Threaded BLAS is a hundred times slower as soon as another process wants the core.
 export OPENBLAS_NUM_THREADS := 1
