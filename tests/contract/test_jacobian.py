@@ -1,0 +1,148 @@
+"""The analytic Jacobian against central differences of the reference implementation.
+
+While no play and no dead-zone changes its branch, the output is a straight line in each single
+parameter, so that the difference quotient is exact but for rounding, whatever the step. Samples
+from the first one on where a step changes a branch are left out: there the derivative is one-sided.
+"""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from hyst import Affine, Operator, Play, PrandtlIshlinskii
+from reference.examples import EXAMPLES
+from reference.numpy_operators import Trace, flat, simulate
+from reference.random_operators import RANDOM
+
+Array = NDArray[np.float64]
+
+STEP = 1e-5
+# Names of the constants in a dictionary, in the order of the parameter vector.
+ORDER = {
+    "affine": ("gain", "offset"),
+    "play": ("r",),
+    "stop": ("r",),
+    "dead-zone": ("weights", "thresholds"),
+    "prandtl-ishlinskii": ("p0", "p", "r"),
+}
+
+
+def places(model: dict[str, Any]) -> list[tuple[int, str, int | None]]:
+    """Stage, name and index of every constant, in the order of the parameter vector."""
+    found: list[tuple[int, str, int | None]] = []
+    for number, stage in enumerate(flat(model)):
+        for name in ORDER[stage["kind"]]:
+            value = stage[name]
+            indices = range(len(value)) if isinstance(value, list) else (None,)
+            found += [(number, name, index) for index in indices]
+    return found
+
+
+def constant(model: dict[str, Any], place: tuple[int, str, int | None]) -> float:
+    number, name, index = place
+    value = flat(model)[number][name]
+    return float(value if index is None else value[index])
+
+
+def with_constant(
+    model: dict[str, Any], place: tuple[int, str, int | None], value: float
+) -> dict[str, Any]:
+    changed = copy.deepcopy(model)
+    number, name, index = place
+    stage = flat(changed)[number]
+    if index is None:
+        stage[name] = value
+    else:
+        stage[name][index] = value
+    return changed
+
+
+def two_points(
+    model: dict[str, Any], place: tuple[int, str, int | None]
+) -> tuple[float, float] | None:
+    """Values on both sides; for a width of 0 two positive ones; none for the linear part's 0."""
+    value = constant(model, place)
+    if place[1] == "thresholds" and value == 0.0:
+        return None
+    if place[1] == "r" and value < 2.0 * STEP:
+        return STEP, 2.0 * STEP
+    return value - STEP, value + STEP
+
+
+def same_branches(traces: list[Trace]) -> int:
+    """Number of samples before the first one whose branches differ."""
+    for k, regimes in enumerate(zip(*(trace.regimes for trace in traces), strict=True)):
+        if len(set(regimes)) > 1:
+            return k
+    return len(traces[0].regimes)
+
+
+def compare(operator: Operator, u: Array) -> float:
+    """Compare all columns; give the share of entries that could be compared."""
+    model = operator.to_dict()
+    jacobian = operator.jacobian(u)
+    compared = entries = 0
+    for column, place in enumerate(places(model)):
+        points = two_points(model, place)
+        if points is None:
+            continue
+        traces = [simulate(with_constant(model, place, point), u) for point in points]
+        # A play without width has one branch; what it would do with hardly any is what counts.
+        value = constant(model, place) or (5e-324 if place[1] == "r" else 0.0)
+        here = simulate(with_constant(model, place, value), u)
+        count = same_branches([*traces, here])
+        step = points[1] - points[0]
+        quotient = (traces[1].y - traces[0].y) / step
+        # Both outputs are off by their rounding, and so is the parameter that was stepped.
+        tolerance = 2.0 * (traces[0].rounding + traces[1].rounding) / step
+        tolerance += 1e-9 * (1.0 + np.abs(jacobian[:, column]).max())
+        np.testing.assert_allclose(
+            jacobian[:count, column], quotient[:count], rtol=0.0, atol=tolerance, err_msg=str(place)
+        )
+        compared += count
+        entries += u.size
+    return compared / max(entries, 1)
+
+
+def random_walk(seed: int, samples: int = 60) -> Array:
+    """A signal off every lattice, that starts anywhere and turns at random."""
+    generator = np.random.default_rng(seed)
+    return generator.uniform(-4.0, 4.0) + np.cumsum(generator.standard_normal(samples))
+
+
+@pytest.mark.parametrize("operator", EXAMPLES.values(), ids=list(EXAMPLES))
+@pytest.mark.parametrize("seed", range(3))
+def test_examples(operator: Operator, seed: int) -> None:
+    # A step of 1e-5 changes the branch of few of 60 samples about 1 apart.
+    assert compare(operator, random_walk(seed)) > 0.95
+
+
+@pytest.mark.parametrize("kind", sorted(RANDOM))
+@given(data=st.data(), seed=st.integers(0, 2**32 - 1))
+def test_random_operators(kind: str, data: st.DataObject, seed: int) -> None:
+    operator = data.draw(RANDOM[kind])
+    compare(operator, random_walk(seed, samples=25))
+
+
+def test_by_hand() -> None:
+    # y = gain z + offset with z = u - r rising to 3, then resting at 3 - r while u falls to 2.
+    operator = Affine(2.0, 1.0) @ Play(1.0)
+    assert operator.jacobian([0.0, 3.0, 2.0]).tolist() == [
+        [0.0, 0.0, 1.0],
+        [-2.0, 2.0, 1.0],
+        [-2.0, 2.0, 1.0],
+    ]
+
+
+@pytest.mark.parametrize("bank", [Play(0.0), PrandtlIshlinskii([1.0], [0.0])])
+def test_a_play_without_width_passes_derivatives_from_the_first_sample(bank: Operator) -> None:
+    # It is the identity: with u = 0 in rest its input's derivatives are still its own.
+    operator = bank @ Affine(1.0, 0.0)
+    assert operator.jacobian([0.0, 0.0])[:, :2].tolist() == [[0.0, 1.0], [0.0, 1.0]]

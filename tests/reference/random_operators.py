@@ -1,0 +1,153 @@
+"""Random operators and signals for hypothesis.
+
+Numbers come from a lattice of quarters as often as from the reals: on the lattice inputs meet
+thresholds exactly, and plays are left exactly on their edge.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from hyst import (
+    Affine,
+    Composition,
+    DeadZone,
+    GeneralizedPrandtlIshlinskii,
+    ModifiedPrandtlIshlinskii,
+    Operator,
+    Play,
+    PrandtlIshlinskii,
+    Stop,
+)
+from reference.examples import EXAMPLES
+
+Array = NDArray[np.float64]
+Operators = st.SearchStrategy[Operator]
+
+
+def numbers(low: float, high: float) -> st.SearchStrategy[float]:
+    lattice = st.integers(int(4 * low), int(4 * high)).map(lambda quarters: quarters / 4.0)
+    return lattice | st.floats(low, high)
+
+
+def signals(low: float = -8.0, high: float = 8.0, most: int = 30) -> st.SearchStrategy[Array]:
+    return st.lists(numbers(low, high), min_size=1, max_size=most).map(np.array)
+
+
+@st.composite
+def banks(draw: st.DrawFn) -> PrandtlIshlinskii:
+    r = sorted(draw(st.lists(numbers(0.0, 5.0), max_size=6)))
+    p = draw(st.lists(numbers(-2.0, 2.0), min_size=len(r), max_size=len(r)))
+    z0 = draw(st.none() | st.lists(numbers(-4.0, 4.0), min_size=len(r), max_size=len(r)))
+    return PrandtlIshlinskii(p, r, draw(numbers(-2.0, 2.0)), z0)
+
+
+@st.composite
+def dead_zones(draw: st.DrawFn, variants: tuple[Any, ...] = ("two-sided",)) -> DeadZone:
+    rho = draw(st.lists(numbers(-5.0, 5.0), min_size=1, max_size=6))
+    weights = draw(st.lists(numbers(-2.0, 2.0), min_size=len(rho), max_size=len(rho)))
+    return DeadZone(weights, rho, draw(st.sampled_from(variants)))
+
+
+affines = st.builds(Affine, numbers(-2.0, 2.0), numbers(-3.0, 3.0))
+maps = affines | dead_zones()
+plain: Operators = st.one_of(
+    affines,
+    st.builds(Play, numbers(0.0, 5.0), numbers(-4.0, 4.0)),
+    st.builds(Stop, numbers(0.0, 5.0), numbers(-4.0, 4.0)),
+    dead_zones(),
+    banks(),
+    st.builds(GeneralizedPrandtlIshlinskii, maps, banks()),
+    st.builds(ModifiedPrandtlIshlinskii, banks(), maps),
+)
+compositions = st.lists(plain | dead_zones(("by-direction",)), min_size=1, max_size=3).map(
+    Composition
+)
+
+
+@st.composite
+def invertible_banks(draw: st.DrawFn, steepness: float = 3.0, most: int = 8) -> PrandtlIshlinskii:
+    """Slopes c_j of the loading curve between 1/steepness and steepness, memory an input left."""
+    exponents = draw(st.lists(st.floats(-1.0, 1.0), min_size=1, max_size=most + 1))
+    slopes = steepness ** np.array(exponents)
+    n = slopes.size - 1
+    gaps = np.array(draw(st.lists(numbers(0.0, 2.0), min_size=n, max_size=n)))
+    moves = np.array(draw(st.lists(st.floats(-1.0, 1.0), min_size=n, max_size=n)))
+    memory = draw(st.sampled_from((0.0, 1.0))) * np.cumsum(moves * gaps)
+    return PrandtlIshlinskii(np.diff(slopes), np.cumsum(gaps), slopes[0], memory)
+
+
+@st.composite
+def invertible_dead_zones(draw: st.DrawFn, steepness: float = 3.0) -> DeadZone:
+    """Slopes of all pieces between 1/steepness and steepness, of one sign."""
+    sides = draw(
+        st.lists(
+            st.lists(st.tuples(numbers(0.25, 2.0), st.floats(-1.0, 1.0)), max_size=3),
+            min_size=2,
+            max_size=2,
+        )
+    )
+    middle = steepness ** draw(st.floats(-1.0, 1.0))
+    weights, thresholds = [np.array([middle])], [np.zeros(1)]
+    for sign, side in zip((1.0, -1.0), sides, strict=True):
+        slopes = np.array([middle, *(steepness**exponent for _, exponent in side)])
+        weights.append(np.diff(slopes))
+        thresholds.append(sign * np.cumsum([gap for gap, _ in side]))
+    sign = draw(st.sampled_from((1.0, -1.0)))
+    return DeadZone(sign * np.concatenate(weights), np.concatenate(thresholds))
+
+
+invertible_affines = st.builds(
+    lambda sign, gain, offset: Affine(sign * gain, offset),
+    st.sampled_from((1.0, -1.0)),
+    st.floats(1.0 / 3.0, 3.0),
+    numbers(-3.0, 3.0),
+)
+invertible_maps = invertible_affines | invertible_dead_zones()
+invertible_gpis = st.builds(GeneralizedPrandtlIshlinskii, invertible_maps, invertible_banks())
+invertible_mpis = st.builds(ModifiedPrandtlIshlinskii, invertible_banks(), invertible_maps)
+invertible: Operators = st.one_of(
+    invertible_maps,
+    invertible_banks(),
+    invertible_gpis,
+    invertible_mpis,
+    st.lists(invertible_gpis | invertible_mpis | invertible_banks(), min_size=1, max_size=2).map(
+        Composition
+    ),
+)
+
+RANDOM: dict[str, Operators] = {
+    "affine": affines,
+    "play": st.builds(Play, numbers(0.0, 5.0), numbers(-4.0, 4.0)),
+    "stop": st.builds(Stop, numbers(0.0, 5.0), numbers(-4.0, 4.0)),
+    "dead-zone": dead_zones(("two-sided", "by-direction")),
+    "prandtl-ishlinskii": banks(),
+    "generalized-prandtl-ishlinskii": st.builds(GeneralizedPrandtlIshlinskii, maps, banks()),
+    "modified-prandtl-ishlinskii": st.builds(ModifiedPrandtlIshlinskii, banks(), maps),
+    "composition": compositions,
+    "inverse": invertible.map(lambda operator: operator.inverse()),
+}
+
+SINGLE = ("affine", "play", "stop", "dead-zone", "prandtl-ishlinskii")
+
+
+def operators_that(
+    predicate: Callable[[Operator], bool] = lambda _: True, kinds: Iterable[str] = tuple(RANDOM)
+) -> pytest.MarkDecorator:
+    """Run a contract for every example and every random operator that a predicate holds for."""
+    cases = [
+        pytest.param(st.just(each), id=name) for name, each in EXAMPLES.items() if predicate(each)
+    ]
+    cases += [
+        pytest.param(RANDOM[kind].filter(predicate), id=f"random {kind}") for kind in kinds
+    ]
+    return pytest.mark.parametrize("operators", cases)
+
+
+every_operator = operators_that()
