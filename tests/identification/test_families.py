@@ -18,6 +18,7 @@ START = Start(
     sign=-1.0,
     knots=np.array([-0.5, -0.2, 0.3, 0.8]),
     largest_radius=0.9,
+    mean_slope=1.7,
 )
 
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.identification.weight_rules import NON_NEGATIVE, basis
 from hyst.models import (
     GeneralizedPrandtlIshlinskii,
     ModifiedPrandtlIshlinskii,
@@ -31,7 +32,8 @@ SMALLEST_MAP_SLOPE = 0.02
 """Of an envelope or output map, whose slope around 0 is 1."""
 
 SMALLEST_SLOPE = 1e-3
-"""Least p0 as a share of the mean slope of the loop: it bounds the gain of the inverse."""
+"""Least p0 (or slope of the loading curve, if the rule is ``invertible``) as a share of the mean
+slope of the records: it bounds the gain of the inverse."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,8 +48,8 @@ class Parametrization:
         Shapes (constants, m) and (constants,).
     lower, upper
         Shape (m,), bounds of theta.
-    plays
-        Number of plays; theta starts with p0, p_1 .. p_n, r_1 .. r_n.
+    basis
+        Shape (n + 1, n + 1): theta starts with a_0 .. a_n, r_1 .. r_n, and ``(p0, p) = basis @ a``.
     """
 
     template: Operator
@@ -55,7 +57,20 @@ class Parametrization:
     fixed: Array
     lower: Array
     upper: Array
-    plays: int
+    basis: Array
+
+    @property
+    def plays(self) -> int:
+        """Number of plays n."""
+        return int(self.basis.shape[0] - 1)
+
+    def weights(self, theta: Array) -> Array:
+        """Give p0, p_1 .. p_n."""
+        return np.asarray(self.basis @ theta[: self.plays + 1])
+
+    def radii(self, theta: Array) -> Array:
+        """Give r_1 .. r_n."""
+        return np.asarray(theta[self.plays + 1 : 2 * self.plays + 1])
 
     @property
     def size(self) -> int:
@@ -73,12 +88,16 @@ class Parametrization:
 
     def canonical(self, theta: Array) -> Array:
         """Sort the plays by radius, each with its weight: their order means nothing."""
-        n = self.plays
-        order = np.argsort(theta[n + 1 : 2 * n + 1], kind="stable")
+        n, r = self.plays, self.radii(theta)
+        order = np.argsort(r, kind="stable")
+        if (order[1:] > order[:-1]).all():
+            return theta
+        weights = self.weights(theta)
         sorted_theta = theta.copy()
-        sorted_theta[1 : n + 1] = theta[1 : n + 1][order]
-        sorted_theta[n + 1 : 2 * n + 1] = theta[n + 1 : 2 * n + 1][order]
-        return sorted_theta
+        in_order = np.concatenate([weights[:1], weights[1:][order]])
+        sorted_theta[: n + 1] = np.linalg.solve(self.basis, in_order)
+        sorted_theta[n + 1 : 2 * n + 1] = r[order]
+        return np.clip(sorted_theta, self.lower, self.upper)
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +115,10 @@ class Start:
         the offset for ``mpi``.
     largest_radius
         Upper bound of the radii, input units.
+    mean_slope
+        Output range over input range of the records.
+    rule
+        What the weights may be: ``non-negative`` or ``invertible``.
     fixed_radii
         Whether the radii are to stay as they are.
     """
@@ -107,6 +130,8 @@ class Start:
     sign: float
     knots: Array
     largest_radius: float
+    mean_slope: float
+    rule: str = NON_NEGATIVE
     fixed_radii: bool = False
 
 
@@ -155,9 +180,9 @@ def _linear(start: Start) -> tuple[Parametrization, Array]:
             template=template,
             transform=np.array([[start.sign, 0.0], [0.0, 1.0]]),
             fixed=np.zeros(2),
-            lower=np.array([SMALLEST_SLOPE * start.p0, -np.inf]),
+            lower=np.array([SMALLEST_SLOPE * start.mean_slope, -np.inf]),
             upper=np.full(2, np.inf),
-            plays=0,
+            basis=np.eye(1),
         ),
         np.array([start.p0, start.offset]),
     )
@@ -178,22 +203,24 @@ def _identity_map(knots: Array) -> DeadZone:
 def _assemble(
     template: Operator, start: Start, map_at: int | None
 ) -> tuple[Parametrization, Array]:
-    """Lay out theta = (p0, p, r, slopes of the map, offset) over the operator's constants."""
+    """Lay out theta = (a, r, slopes of the map, offset) over the operator's constants."""
     n, knots = start.p.size, start.knots if map_at is not None else np.empty(0)
     fixed = template.parameters().values.copy()
     size = 2 * n + 2 + knots.size
     transform = np.zeros((fixed.size, size))
     pi_at = 2 * (knots.size + 1) if map_at == 0 else 0
-    transform[pi_at : pi_at + 2 * n + 1, : 2 * n + 1] = np.eye(2 * n + 1)
+    weights_of = basis(start.rule, n)
+    transform[pi_at : pi_at + n + 1, : n + 1] = weights_of
+    transform[pi_at + n + 1 : pi_at + 2 * n + 1, n + 1 : 2 * n + 1] = np.eye(n)
     fixed[pi_at : pi_at + 2 * n + 1] = 0.0
     if map_at is not None:
         weights = slice(map_at + 1, map_at + 1 + knots.size)
         transform[weights, 2 * n + 1 : -1], fixed[weights] = _slopes_to_weights(knots)
     transform[-1, -1], fixed[-1] = 1.0, 0.0
-    slope = start.p0 + float(start.p.sum())
-    theta = np.concatenate([[start.p0], start.p, start.r, np.ones(knots.size), [start.offset]])
+    free = np.linalg.solve(weights_of, np.concatenate([[start.p0], start.p]))
+    theta = np.concatenate([free, start.r, np.ones(knots.size), [start.offset]])
     lower = np.zeros(size)
-    lower[0] = SMALLEST_SLOPE * slope
+    lower[: 1 if start.rule == NON_NEGATIVE else n + 1] = SMALLEST_SLOPE * start.mean_slope
     lower[n + 1 : 2 * n + 1] = 1e-3 * start.largest_radius
     lower[2 * n + 1 : -1] = SMALLEST_MAP_SLOPE
     lower[-1] = -np.inf
@@ -201,7 +228,7 @@ def _assemble(
     upper[n + 1 : 2 * n + 1] = start.largest_radius
     if start.fixed_radii:
         lower[n + 1 : 2 * n + 1] = upper[n + 1 : 2 * n + 1] = start.r
-    return Parametrization(template, transform, fixed, lower, upper, n), theta
+    return Parametrization(template, transform, fixed, lower, upper, weights_of), theta
 
 
 def _slopes_to_weights(knots: Array) -> tuple[Array, Array]:

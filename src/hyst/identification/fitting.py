@@ -19,6 +19,7 @@ from hyst.identification.families import (
     parametrize,
 )
 from hyst.identification.radius_search import search_radii
+from hyst.identification.weight_rules import INVERTIBLE, NON_NEGATIVE, RULES
 from hyst.identification.weights import Weights, fit_weights
 from hyst.models import PrandtlIshlinskii
 from hyst.operators import Operator
@@ -30,6 +31,11 @@ Array = NDArray[np.float64]
 FINE_BANK = 60
 
 MOST_STARTS = 3
+
+AUTO = "auto"
+
+NEGATIVE_WEIGHTS_PAY = 0.9
+"""Negative weights are allowed where they lower the residual of a fine bank below this share."""
 
 ROUNDING = 1e-12
 """A residual of this share of the output range is rounding."""
@@ -151,11 +157,14 @@ class Fitter:
         Number of knots of the map of ``gpi`` and ``mpi``.
     radii
         Shape (n,), radii to keep, input units; None if they are to be found.
+    wanted_rule
+        What the weights may be: ``non-negative``, ``invertible`` or ``auto``.
     """
 
     data: Data
     knots: int
     radii: Array | None = None
+    wanted_rule: str = AUTO
 
     def fit(self, family: str, plays: int, starts: int = 1, max_iterations: int = 100) -> Fit:
         """Fit a family with a given number of plays; the best of several starts is kept.
@@ -219,17 +228,18 @@ class Fitter:
         -------
         Fit
         """
-        n = fit.parametrization.plays
-        theta = fit.solution.theta
-        keep = np.concatenate([[True], plays, plays, np.ones(theta.size - 2 * n - 1, dtype=bool)])
+        theta, of = fit.solution.theta, fit.parametrization
+        weights, r = of.weights(theta), of.radii(theta)
         start = replace(
-            self._start(fit.family, fit_weights(self.data, theta[n + 1 : 2 * n + 1], self.sign)),
-            p=theta[1 : n + 1][plays],
-            r=theta[n + 1 : 2 * n + 1][plays],
+            self._start(fit.family, self._weights(r)),
+            p0=float(weights[0]),
+            p=weights[1:][plays],
+            r=r[plays],
         )
-        parametrization = parametrize(fit.family, start)[0]
-        problem = problem_of(self.data, parametrization)
-        solution = minimize(problem, theta[keep], max_iterations)
+        parametrization, refitted = parametrize(fit.family, start)
+        rest = theta.size - 2 * of.plays - 1
+        refitted[-rest:] = theta[-rest:]
+        solution = minimize(problem_of(self.data, parametrization), refitted, max_iterations)
         return Fit(fit.family, parametrization, solution)
 
     @functools.cached_property
@@ -240,13 +250,24 @@ class Fitter:
         return 1.0 if float(np.dot(u - u.mean(), self.data.measured())) >= 0.0 else -1.0
 
     @functools.cached_property
-    def _fine_bank(self) -> tuple[Array, Array]:
-        """Radii of a bank finer than any model, and the share of the curvature up to each."""
-        fine = self.data.largest_radius * np.arange(1, FINE_BANK + 1) / (FINE_BANK + 1)
-        p = fit_weights(self.data, fine, self.sign).p
-        share = p / p.sum() if p.sum() > 0.0 else np.zeros(FINE_BANK)
-        # A floor keeps the radii apart where the bank puts all weight on a few plays.
-        return fine, np.cumsum(share + 0.5 / FINE_BANK)
+    def rule(self) -> str:
+        """What the weights may be; ``auto`` allows negative ones where they help a lot."""
+        if self.wanted_rule != AUTO:
+            return self.wanted_rule
+        plain, free = (self._fine_weights[rule].rms for rule in (NON_NEGATIVE, INVERTIBLE))
+        return INVERTIBLE if free < NEGATIVE_WEIGHTS_PAY * plain else NON_NEGATIVE
+
+    @functools.cached_property
+    def _fine_weights(self) -> dict[str, Weights]:
+        """Weights of a bank finer than any model, under either rule."""
+        return {rule: fit_weights(self.data, self._fine_radii, self.sign, rule) for rule in RULES}
+
+    @property
+    def _fine_radii(self) -> Array:
+        return self.data.largest_radius * np.arange(1, FINE_BANK + 1) / (FINE_BANK + 1)
+
+    def _weights(self, r: Array) -> Weights:
+        return fit_weights(self.data, r, self.sign, self.rule)
 
     def _first_radii(self, plays: int) -> list[Array]:
         """First guesses: equal shares of the curvature, evenly spaced, denser at small radii."""
@@ -255,21 +276,19 @@ class Fitter:
         if plays == 0:
             return [np.empty(0)]
         largest = self.data.largest_radius
-        fine, share = self._fine_bank
+        curvature = np.abs(self._fine_weights[self.rule].p)
+        # A floor keeps the radii apart where the bank puts all weight on a few plays.
+        share = np.cumsum(curvature + 0.5 * max(curvature.mean(), np.finfo(float).tiny))
         levels = share[-1] * (np.arange(plays) + 0.5) / plays
         even = largest * np.arange(1, plays + 1) / (plays + 1)
-        return [np.interp(levels, share, fine), even, even**2 / largest]
+        return [np.interp(levels, share, self._fine_radii), even, even**2 / largest]
 
     def _fit_from(self, family: str, r: Array, max_iterations: int) -> Fit:
-        weights = fit_weights(self.data, r, self.sign)
-        slope = weights.p0 + float(weights.p.sum())
-        start = replace(
-            self._start(family, weights),
-            p0=max(weights.p0, 0.05 * slope),
-            p=np.maximum(weights.p, 0.01 * slope / max(r.size, 1)),
-            r=r,
-        )
+        start = replace(self._start(family, self._weights(r)), r=r)
         parametrization, theta = parametrize(family, start)
+        # A coefficient that starts on its bound would give its radius no derivative.
+        coefficients = theta[: r.size + 1]
+        theta[: r.size + 1] = np.maximum(coefficients, 0.01 * start.mean_slope)
         solution = minimize(problem_of(self.data, parametrization), theta, max_iterations)
         return Fit(family, parametrization, solution)
 
@@ -282,6 +301,8 @@ class Fitter:
             sign=self.sign,
             knots=self._knots(family, weights),
             largest_radius=self.data.largest_radius,
+            mean_slope=float(np.ptp(self.data.measured())) / (2.0 * self.data.half_range),
+            rule=self.rule,
             fixed_radii=self.radii is not None,
         )
 

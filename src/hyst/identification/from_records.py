@@ -15,9 +15,10 @@ from hyst.identification.bounded_least_squares import CONVERGED
 from hyst.identification.data import Data, prepare
 from hyst.identification.delay import estimate_delay
 from hyst.identification.families import FAMILIES, LINEAR, PI
-from hyst.identification.fitting import MOST_STARTS, Fit, Fitter
+from hyst.identification.fitting import AUTO, MOST_STARTS, Fit, Fitter
 from hyst.identification.identified import Candidate, Identified
 from hyst.identification.selection import SIZES, choose
+from hyst.identification.weight_rules import RULES
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
@@ -32,6 +33,7 @@ def identify(
     plays: int | Literal["auto"] = "auto",
     radii: ArrayLike | None = None,
     knots: int = 6,
+    weights: str = "auto",
     delay: int | Literal["auto"] = "auto",
     start: int | Literal["auto"] = "auto",
     validation: Record | Sequence[Record] = (),
@@ -42,8 +44,8 @@ def identify(
     """Identify a hysteresis model, a constant offset and a whole-sample delay from records.
 
     Families: ``linear`` (a straight line), ``pi`` (Prandtl-Ishlinskii), ``gpi`` (an envelope map
-    before the plays), ``mpi`` (a map after them). Weights are non-negative, p0 and the slopes of
-    the maps positive, so the result can always be inverted.
+    before the plays), ``mpi`` (a map after them). Cumulative weights and the slopes of the maps
+    are kept positive, so the result can always be inverted.
 
     Parameters
     ----------
@@ -60,6 +62,10 @@ def identify(
         Shape (n,), input units: keep these radii instead of finding them.
     knots
         Number of knots of the map of ``gpi`` and ``mpi``, evenly spaced over the signal.
+    weights
+        ``"non-negative"``; ``"invertible"``: single weights may be negative as long as the
+        cumulative ones are positive, for loops that flatten after a reversal, as friction's do; or
+        ``"auto"``: the latter where it lowers the residual by more than a tenth.
     delay
         Whole samples by which the output lags the input, or ``"auto"``. The model is identified
         without it; ``Identified.predict`` adds it.
@@ -109,7 +115,7 @@ def identify(
         data = data.delayed(_as_delay(delay, data))
         fixed, left_out = _within_reach(fixed, data)
         sizes = sizes if fixed is None else (fixed.size,)
-        fitter = Fitter(data, _as_knots(knots), fixed)
+        fitter = Fitter(data, _as_knots(knots), fixed, _as_rule(weights))
         _require_samples(data, families, sizes, knots)
         chosen_family, chosen_plays, candidates = _select(fitter, families, sizes, say)
         say(f"final fit: {chosen_family}")
@@ -152,11 +158,10 @@ def _final_fit(fitter: Fitter, family: str, plays: int, max_iterations: int) -> 
 
 def _working_plays(fit: Fit, data: Data) -> NDArray[np.bool_]:
     """Plays with a weight, and with a radius of their own."""
-    n = fit.parametrization.plays
-    p, r = fit.solution.theta[1 : n + 1], fit.solution.theta[n + 1 : 2 * n + 1]
-    slope = fit.solution.theta[0] + p.sum()
+    weights = fit.parametrization.weights(fit.solution.theta)
+    r = fit.parametrization.radii(fit.solution.theta)
     apart = np.diff(r, prepend=-np.inf) > 1e-4 * data.half_range
-    return np.asarray((p > 1e-6 * slope) & apart)
+    return np.asarray((np.abs(weights[1:]) > 1e-6 * np.abs(weights).max()) & apart)
 
 
 def _as_families(family: str, radii: Array | None) -> tuple[str, ...]:
@@ -195,6 +200,12 @@ def _as_knots(knots: int) -> int:
     if isinstance(knots, bool) or not isinstance(knots, int | np.integer) or not 1 <= knots <= 50:
         raise InputError(f"knots is {knots!r}; give 1 to 50")
     return int(knots)
+
+
+def _as_rule(weights: str) -> str:
+    if weights not in (AUTO, *RULES):
+        raise InputError(f"weights is {weights!r}; choose one of {', '.join((AUTO, *RULES))}")
+    return weights
 
 
 def _as_delay(delay: int | str, data: Data) -> int:

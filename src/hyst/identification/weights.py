@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from hyst.errors import SolverError
 from hyst.identification.data import Data
 from hyst.identification.play_bank import bank_gram, bank_matrix
+from hyst.identification.weight_rules import NON_NEGATIVE, basis
 
 Array = NDArray[np.float64]
 
@@ -29,7 +30,7 @@ class Weights:
     p0
         Weight of the input, output units per input unit.
     p
-        Shape (n,), weights of the plays, >= 0.
+        Shape (n,), weights of the plays.
     offset
         Output units.
     rms
@@ -45,8 +46,8 @@ class Weights:
     condition: float
 
 
-def fit_weights(data: Data, r: Array, sign: float = 1.0) -> Weights:
-    """Fit ``y = sign (p0 u + sum_i p_i z_i) + offset`` with p0, p >= 0 by least squares.
+def fit_weights(data: Data, r: Array, sign: float = 1.0, rule: str = NON_NEGATIVE) -> Weights:
+    """Fit ``y = sign (p0 u + sum_i p_i z_i) + offset`` by least squares within a rule.
 
     The offset is eliminated by centring; the weights solve a non-negative least squares problem
     on the Cholesky factor of the streamed Gram matrix, or on a QR factor of the regressors where
@@ -60,6 +61,8 @@ def fit_weights(data: Data, r: Array, sign: float = 1.0) -> Weights:
         Shape (n,), radii, input units.
     sign
         +1, or -1 for an actuator whose output falls as its input rises.
+    rule
+        ``non-negative`` or ``invertible``; see ``weight_rules``.
 
     Returns
     -------
@@ -74,7 +77,9 @@ def fit_weights(data: Data, r: Array, sign: float = 1.0) -> Weights:
     count = gram[-2, -2]
     mean = gram[-2] / count
     centred = gram - count * np.outer(mean, mean)
-    normal, moment = centred[:-2, :-2], sign * centred[:-2, -1]
+    coefficients = basis(rule, r.size)
+    normal = coefficients.T @ centred[:-2, :-2] @ coefficients
+    moment = sign * coefficients.T @ centred[:-2, -1]
     scale = np.sqrt(np.maximum(np.diag(normal), np.finfo(float).tiny))
     correlation = normal / np.outer(scale, scale)
     condition = float(np.linalg.cond(correlation))
@@ -82,11 +87,10 @@ def fit_weights(data: Data, r: Array, sign: float = 1.0) -> Weights:
         factor = np.linalg.cholesky(correlation).T
         target = scipy.linalg.solve_triangular(factor, moment / scale, trans="T")
     else:
-        factor, target = _by_qr(data, r, sign, scale)
-    weights = _non_negative(factor, target) / scale
-    residual = max(
-        float(centred[-1, -1] - 2.0 * weights @ moment + weights @ normal @ weights), 0.0
-    )
+        factor, target = _by_qr(data, r, sign, coefficients / scale)
+    free = _non_negative(factor, target) / scale
+    weights = coefficients @ free
+    residual = max(float(centred[-1, -1] - 2.0 * free @ moment + free @ normal @ free), 0.0)
     return Weights(
         p0=float(weights[0]),
         p=weights[1:],
@@ -96,10 +100,10 @@ def fit_weights(data: Data, r: Array, sign: float = 1.0) -> Weights:
     )
 
 
-def _by_qr(data: Data, r: Array, sign: float, scale: Array) -> tuple[Array, Array]:
+def _by_qr(data: Data, r: Array, sign: float, scaled_basis: Array) -> tuple[Array, Array]:
     matrix = bank_matrix(data, r)
     y = sign * data.measured()
-    q, factor = np.linalg.qr((matrix - matrix.mean(axis=0)) / scale)
+    q, factor = np.linalg.qr((matrix - matrix.mean(axis=0)) @ scaled_basis)
     return factor, q.T @ (y - y.mean())
 
 
