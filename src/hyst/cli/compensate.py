@@ -9,7 +9,7 @@ import typer
 
 import hyst
 from hyst.cli.arguments import ModelFile, numbers, require_same_unit
-from hyst.cli.console import note, show_files, show_table
+from hyst.cli.console import show_files, show_table
 
 if TYPE_CHECKING:
     from hyst.operators import ModelDescription
@@ -98,7 +98,6 @@ def _input_range(
             raise hyst.InputError(f"--limits is {limits!r}; give the lowest and the highest input")
         return ends[0], ends[1]
     if about.input_low is None or about.input_high is None:
-        note("the model file names no range of the input, so the command has no limits")
         return None
     return about.input_low, about.input_high
 

@@ -37,13 +37,13 @@ def simulate(
     model, about = hyst.models.load_described(model_file)
     u, _, unit = hyst.io.read_column(data, input_column)
     require_same_unit(unit, about.input_unit, "the input")
-    _note_extrapolation(u, about)
     y = _delayed(model(u), about.delay if with_delay else 0)
     headers = (
         hyst.io.join_unit(about.input_name, about.input_unit),
         hyst.io.join_unit(about.output_name, about.output_unit),
     )
     hyst.io.write_columns(out, headers, (u, y))
+    _note_extrapolation(u, about)
     show_files([out])
 
 

@@ -119,7 +119,7 @@ def _bank() -> PrandtlIshlinskii:
 def _saturating(v: Array) -> Array:
     """Cubic from the bank's output, V, to the force on the frame, um; strictly rising."""
     s = v / HIGHEST_DRIVE
-    force: Array = 55.0 * (s + 0.25 * s**2 - 0.22 * s**3)
+    force: Array = 44.0 * (s + 0.35 * s**2 - 0.1 * s**3)
     return force
 
 
