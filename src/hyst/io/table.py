@@ -62,7 +62,13 @@ class Table:
     lines: NDArray[np.intp] | None = None
 
     def place(self, row: int) -> str:
-        """Say where a row is: its line in a text file, its index elsewhere."""
+        """Say where a row is: its line in a text file, its index elsewhere.
+
+        Parameters
+        ----------
+        row
+            Index of the row, from 0.
+        """
         return f"index {row}" if self.lines is None else f"line {self.lines[row]}"
 
 

@@ -51,6 +51,13 @@ def write_columns(
 def join_unit(name: str, unit: str) -> str:
     """Make the header of a column from its name and unit, as ``split_unit`` takes it apart.
 
+    Parameters
+    ----------
+    name
+        Name of the column.
+    unit
+        Its unit; empty for none.
+
     Examples
     --------
     >>> join_unit("voltage", "V"), join_unit("voltage", "")

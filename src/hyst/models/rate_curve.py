@@ -205,7 +205,13 @@ class RateCurve:
         )
 
     def with_parameters(self, theta: Array) -> RateCurve:
-        """Give a curve of the same knees with other coefficients."""
+        """Give a curve of the same knees with other coefficients.
+
+        Parameters
+        ----------
+        theta
+            beta, then the powers, then the slopes, in one vector.
+        """
         m = 1 + self.powers.size
         return RateCurve(float(theta[0]), theta[1:m], theta[m:], self.knees)
 

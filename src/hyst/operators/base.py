@@ -84,7 +84,18 @@ class Operator(ABC):
 
     @abstractmethod
     def with_parameters(self, theta: Sequence[float] | Array) -> Operator:
-        """Give the same operator with other constants, in the order of ``parameters()``."""
+        """Give the same operator with other constants.
+
+        Parameters
+        ----------
+        theta
+            Shape (m,), in the order and the units of ``parameters()``.
+
+        Raises
+        ------
+        InputError
+            If the length is wrong or a value is not allowed.
+        """
 
     @abstractmethod
     def lipschitz_constant(self) -> float:
@@ -99,6 +110,11 @@ class Operator(ABC):
     def from_dict(cls, data: dict[str, Any]) -> Operator:
         """Rebuild the operator from ``to_dict()``.
 
+        Parameters
+        ----------
+        data
+            What ``to_dict()`` gave, or the same read from a model file.
+
         Raises
         ------
         InputError
@@ -107,7 +123,13 @@ class Operator(ABC):
 
     @abstractmethod
     def append_to(self, chain: _engine.Chain) -> None:
-        """Append the stages of this operator to a chain of the engine."""
+        """Append the stages of this operator to a chain of the engine.
+
+        Parameters
+        ----------
+        chain
+            The chain to append to, in the order the signal passes.
+        """
 
     @final
     def __call__(self, u: ArrayLike) -> Array:

@@ -17,7 +17,7 @@ from hyst.operators.registry import entries
 
 @dataclass(frozen=True, eq=False)
 class ThresholdOperator(Operator):
-    """An operator of one threshold whose state is the output z of a play."""
+    """An operator of one threshold r whose state is the output of a play, at first z0."""
 
     r: float
     z0: float = 0.0
