@@ -15,6 +15,7 @@
 #include "gram.hpp"
 #include "jacobian.hpp"
 #include "parallel.hpp"
+#include "rate_dependent_binding.hpp"
 #include "simd/kernels.hpp"
 #include "stepper.hpp"
 
@@ -220,5 +221,6 @@ NB_MODULE(_engine, module) {
     module.def("instruction_set", [] { return hyst::kernels().name; });
     module.def("use_instruction_set", &use_instruction_set, nb::arg("name"));
     module.def("stepper", &stepper, nb::arg("chain"), nb::arg("state"), nb::arg("y_safe"));
+    hyst::bind_rate_dependent_inversion(module);
     if (!hyst::register_stepper(module.ptr())) throw nb::python_error();
 }
