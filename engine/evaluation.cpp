@@ -75,31 +75,31 @@ Choice choose(const hyst_stage &stage, const double *state, const double *u, std
     return choice;
 }
 
-void run_memory_curve(const hyst_pi &pi, const double *state, const double *u, double *y,
+bool run_memory_curve(const hyst_pi &pi, const double *state, const double *u, double *y,
                       std::size_t samples) {
     MemoryCurve curve(pi, state);
-    if (u != y) {
-        curve.run(u, y, samples);
-        return;
-    }
+    if (u != y) return curve.run(u, y, samples) == samples;
     std::vector<double> copy(std::min(samples, kBlock));
     for (std::size_t k = 0; k < samples; k += kBlock) {
         const std::size_t count = std::min(kBlock, samples - k);
         std::copy(u + k, u + k + count, copy.begin());
-        curve.run(copy.data(), y + k, count);
+        if (curve.run(copy.data(), y + k, count) < count) return false;
     }
+    return true;
 }
 
-void run_part(const hyst_stage &stage, Engine engine, double *state, const double *u, double *y,
+bool run_part(const hyst_stage &stage, Engine engine, double *state, const double *u, double *y,
               std::size_t samples) {
-    if (engine == Engine::lanes) {
-        Lanes(stage).run(state, u, y, samples);
-    } else if (engine == Engine::memory_curve) {
+    if (engine == Engine::lanes) return Lanes(stage).run(state, u, y, samples);
+    if (engine == Engine::memory_curve) {
         std::vector<double> end(state, state + stage.as.pi.count);
         Lanes(stage).jump(end.data(), u, samples);
-        run_memory_curve(stage.as.pi, state, u, y, samples);
+        const bool finite = run_memory_curve(stage.as.pi, state, u, y, samples);
         std::copy(end.begin(), end.end(), state);
-    } else if (stage.kind == HYST_AFFINE) {
+        return finite;
+    }
+    const bool finite = all_finite(u, samples);
+    if (stage.kind == HYST_AFFINE) {
         kernels().affine(stage.as.affine.gain, stage.as.affine.offset, u, y, samples);
     } else if (stage.kind == HYST_DEAD_ZONE) {
         kernels().dead_zone(stage.as.dead_zone, u, y, samples);
@@ -108,15 +108,15 @@ void run_part(const hyst_stage &stage, Engine engine, double *state, const doubl
     } else {
         hyst_stage_run(&stage, state, u, y, samples);
     }
+    return finite;
 }
 
 // Parts of the record on threads, each from the exact state that the parts before it leave.
-void run_parts(const hyst_stage &stage, Engine engine, double *state, const double *u, double *y,
+bool run_parts(const hyst_stage &stage, Engine engine, double *state, const double *u, double *y,
                std::size_t samples, std::size_t threads) {
     const std::size_t parts = std::min(threads, samples / kSmallestPart);
     if (parts <= 1 || engine == Engine::loop) {
-        run_part(stage, engine, state, u, y, samples);
-        return;
+        return run_part(stage, engine, state, u, y, samples);
     }
     const std::size_t values = hyst_stage_state_length(&stage), length = samples / parts;
     std::vector<double> states, end(state, state + values);
@@ -124,31 +124,35 @@ void run_parts(const hyst_stage &stage, Engine engine, double *state, const doub
         states.insert(states.end(), end.begin(), end.end());
         Lanes(stage).jump(end.data(), u + part * length, length);
     }
+    std::vector<char> finite(parts);
     parallel(parts, threads, [&](std::size_t part) {
         const std::size_t first = part * length;
         const std::size_t count = part + 1 < parts ? length : samples - first;
-        run_part(stage, engine, &states[part * values], u + first, y + first, count);
+        finite[part] = run_part(stage, engine, &states[part * values], u + first, y + first, count);
     });
-    std::copy_n(&states[(parts - 1) * values], values, state);
+    for (std::size_t i = 0; i < values; ++i) state[i] = states[(parts - 1) * values + i];
+    return std::find(finite.begin(), finite.end(), 0) == finite.end();
 }
 
-// A stage may be handed what overflowed in the one before it: only the loop knows what to do then.
-bool is_finite(const double *u, std::size_t count) {
-    return kernels().first_non_finite(u, count) == count;
-}
-
-void run_chain(const Chain &chain, double *state, const double *u, double *y, std::size_t samples,
+// Returns whether u was finite. What overflows between two stages is not u's fault: only the loop
+// knows what to do then.
+bool run_chain(const Chain &chain, double *state, const double *u, double *y, std::size_t samples,
                const Options &options, std::vector<Choice> *choices) {
-    if (chain.stages().empty()) std::copy(u, u + samples, y);
+    if (chain.stages().empty()) {
+        std::copy(u, u + samples, y);
+        return all_finite(u, samples);
+    }
     const double *in = u;
     for (const hyst_stage &stage : chain.stages()) {
-        const bool safe = in == u || is_finite(in, samples);
+        const bool safe = in == u || all_finite(in, samples);
         const Choice choice = choose(stage, state, in, samples, safe ? options.engine : Engine::loop);
         if (choices != nullptr) choices->push_back(choice);
-        run_parts(stage, choice.engine, state, in, y, samples, options.threads);
+        const bool finite = run_parts(stage, choice.engine, state, in, y, samples, options.threads);
+        if (in == u && !finite) return false;
         state += hyst_stage_state_length(&stage);
         in = y;
     }
+    return true;
 }
 
 // Short records of a batch: as many as there are lanes go side by side.
@@ -162,11 +166,11 @@ bool runs_rows_in_lanes(const Chain &chain, const Options &options, std::size_t 
 
 }  // namespace
 
-void evaluate_stage(const hyst_stage &stage, double *state, const double *u, double *y,
+bool evaluate_stage(const hyst_stage &stage, double *state, const double *u, double *y,
                     std::size_t samples, const Options &options) {
-    if (samples == 0) return;
+    if (samples == 0) return true;
     const Choice choice = choose(stage, state, u, samples, options.engine);
-    run_parts(stage, choice.engine, state, u, y, samples, options.threads);
+    return run_parts(stage, choice.engine, state, u, y, samples, options.threads);
 }
 
 std::size_t evaluate(const Chain &chain, double *states, const double *u, double *y,
@@ -174,31 +178,30 @@ std::size_t evaluate(const Chain &chain, double *states, const double *u, double
                      std::vector<Choice> *choices) {
     const std::size_t total = rows * samples;
     if (total == 0) return total;
-    const std::size_t bad = kernels().first_non_finite(u, total);
-    if (bad < total) return bad;
-
     const std::size_t length = chain.state_length();
-    const std::size_t together = runs_rows_in_lanes(chain, options, rows, samples) && !choices
-                                     ? kernels().width
-                                     : 1;
-    const std::size_t groups = rows / together, grouped = groups * together;
-    Options within = options;
-    if (rows > 1) within.threads = 1;
-    const auto run_group = [&](std::size_t group) {
-        const std::size_t row = group * together, k = row * samples;
-        if (together > 1) {
-            Lanes(chain.stages()[0]).run_rows(states + row * length, u + k, y + k, samples);
-        } else {
-            run_chain(chain, states + row * length, u + k, y + k, samples, within,
-                      row == 0 ? choices : nullptr);
-        }
+    const bool side_by_side = runs_rows_in_lanes(chain, options, rows, samples) && !choices;
+    const std::size_t together = side_by_side ? kernels().width : 1;
+    const std::size_t groups = rows / together;
+    const Options within{options.engine, rows > 1 ? 1 : options.threads};
+    const std::vector<double> before(states, states + rows * length);
+
+    const auto run_row = [&](std::size_t row) {
+        return run_chain(chain, states + row * length, u + row * samples, y + row * samples,
+                         samples, within, row == 0 ? choices : nullptr);
     };
-    parallel(groups, rows > 1 ? options.threads : 1, run_group);
-    for (std::size_t row = grouped; row < rows; ++row) {
-        run_chain(chain, states + row * length, u + row * samples, y + row * samples, samples,
-                  within, nullptr);
+    std::vector<char> finite(groups + 1, 1);
+    parallel(groups, rows > 1 ? options.threads : 1, [&](std::size_t group) {
+        const std::size_t row = group * together, k = row * samples;
+        finite[group] = side_by_side ? Lanes(chain.stages()[0])
+                                           .run_rows(states + row * length, u + k, y + k, samples)
+                                     : run_row(row);
+    });
+    for (std::size_t row = groups * together; row < rows; ++row) {
+        if (!run_row(row)) finite[groups] = 0;
     }
-    return total;
+    if (std::find(finite.begin(), finite.end(), 0) == finite.end()) return total;
+    std::copy(before.begin(), before.end(), states);
+    return kernels().first_non_finite(u, total);
 }
 
 }  // namespace hyst

@@ -57,7 +57,7 @@ void Lanes::jump(double *state, const double *u, std::size_t count) const {
     }
 }
 
-void Lanes::run_packed(double *packed, const double *u, double *y, std::size_t samples,
+bool Lanes::run_packed(double *packed, const double *u, double *y, std::size_t samples,
                        std::size_t stride) const {
     const Kernels &fast = kernels();
     if (stage_.kind == HYST_RATE_DEPENDENT_PI) {
@@ -67,15 +67,15 @@ void Lanes::run_packed(double *packed, const double *u, double *y, std::size_t s
         for (std::size_t lane = 0; lane < fast.width; ++lane) {
             if (!(exists[lane] > 0.0)) previous[lane] = u[lane * stride];
         }
-        fast.rate_dependent_pi_lanes(model, previous, u, y, samples, stride, packed);
-    } else if (stage_.kind == HYST_PI) {
-        fast.pi_lanes(stage_.as.pi, u, y, samples, stride, packed);
-    } else {
-        fast.play_lanes(stage_.as.r, stage_.kind == HYST_STOP, u, y, samples, stride, packed);
+        return fast.rate_dependent_pi_lanes(model, previous, u, y, samples, stride, packed);
     }
+    if (stage_.kind == HYST_PI) {
+        return fast.pi_lanes(stage_.as.pi, u, y, samples, stride, packed);
+    }
+    return fast.play_lanes(stage_.as.r, stage_.kind == HYST_STOP, u, y, samples, stride, packed);
 }
 
-void Lanes::run(double *state, const double *u, double *y, std::size_t samples) const {
+bool Lanes::run(double *state, const double *u, double *y, std::size_t samples) const {
     const std::size_t width = kernels().width, values = hyst_stage_state_length(&stage_);
     const std::size_t length = lane_length(samples, width), in_lanes = length * width;
     std::vector<double> packed(values * width);
@@ -84,12 +84,15 @@ void Lanes::run(double *state, const double *u, double *y, std::size_t samples) 
         for (std::size_t i = 0; i < values; ++i) packed[i * width + lane] = end[i];
         jump(end.data(), u + lane * length, length);
     }
-    if (length > 0) run_packed(packed.data(), u, y, length, length);
+    const std::size_t rest = samples - in_lanes;
+    const bool finite = all_finite(u + in_lanes, rest) &&
+                        (length == 0 || run_packed(packed.data(), u, y, length, length));
     std::copy(end.begin(), end.end(), state);
-    hyst_stage_run(&stage_, state, u + in_lanes, y + in_lanes, samples - in_lanes);
+    hyst_stage_run(&stage_, state, u + in_lanes, y + in_lanes, rest);
+    return finite;
 }
 
-void Lanes::run_rows(double *states, const double *u, double *y, std::size_t samples) const {
+bool Lanes::run_rows(double *states, const double *u, double *y, std::size_t samples) const {
     const std::size_t width = kernels().width, values = hyst_stage_state_length(&stage_);
     const std::size_t in_lanes = samples / width * width;
     std::vector<double> packed(values * width);
@@ -97,11 +100,13 @@ void Lanes::run_rows(double *states, const double *u, double *y, std::size_t sam
         for (std::size_t i = 0; i < values; ++i) packed[i * width + row] = states[row * values + i];
         jump(&states[row * values], u + row * samples, in_lanes);
     }
-    run_packed(packed.data(), u, y, in_lanes, samples);
+    bool finite = run_packed(packed.data(), u, y, in_lanes, samples);
     for (std::size_t row = 0; row < width; ++row) {
-        const std::size_t rest = row * samples + in_lanes;
-        hyst_stage_run(&stage_, states + row * values, u + rest, y + rest, samples - in_lanes);
+        const std::size_t first = row * samples + in_lanes, rest = samples - in_lanes;
+        finite = finite && all_finite(u + first, rest);
+        hyst_stage_run(&stage_, states + row * values, u + first, y + first, rest);
     }
+    return finite;
 }
 
 }  // namespace hyst

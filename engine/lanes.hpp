@@ -21,14 +21,15 @@ public:
     // The state after `count` more samples, without their outputs.
     void jump(double *state, const double *u, std::size_t count) const;
 
-    // One record. u and y may be the same.
-    void run(double *state, const double *u, double *y, std::size_t samples) const;
+    // One record. u and y may be the same. Returns false if u was not finite; state and y are then
+    // meaningless.
+    bool run(double *state, const double *u, double *y, std::size_t samples) const;
 
     // As many records as there are lanes, one after the other in memory, and their states.
-    void run_rows(double *states, const double *u, double *y, std::size_t samples) const;
+    bool run_rows(double *states, const double *u, double *y, std::size_t samples) const;
 
 private:
-    void run_packed(double *packed, const double *u, double *y, std::size_t samples,
+    bool run_packed(double *packed, const double *u, double *y, std::size_t samples,
                     std::size_t stride) const;
 
     const hyst_stage &stage_;

@@ -2,7 +2,7 @@
 #include "jump_kernel.hpp"
 #include "kernels.hpp"
 #include "lanes_kernel.hpp"
-#include "line_kernel.hpp"
+#include "memory_curve_kernel.hpp"
 #include "memoryless_kernel.hpp"
 #include "rows_kernel.hpp"
 #include "sum_kernels.hpp"
@@ -10,25 +10,26 @@
 namespace hyst::HYST_INSTRUCTION_SET {
 namespace {
 
-void pi_lanes(const hyst_pi &pi, const double *u, double *y, std::size_t samples,
+bool pi_lanes(const hyst_pi &pi, const double *u, double *y, std::size_t samples,
               std::size_t stride, double *z) {
     PlayBank<ConstantThreshold> bank{pi, {}, z};
-    lanes(bank, u, y, samples, stride);
+    return lanes(bank, u, y, samples, stride);
 }
 
-void rate_dependent_pi_lanes(const hyst_rate_dependent_pi &model, const double *previous,
+bool rate_dependent_pi_lanes(const hyst_rate_dependent_pi &model, const double *previous,
                              const double *u, double *y, std::size_t samples, std::size_t stride,
                              double *z) {
     PlayBank<RateDependentThreshold> bank{
         model.pi, {model, load(previous)}, z};
-    lanes(bank, u, y, samples, stride);
+    return lanes(bank, u, y, samples, stride);
 }
 
-void play_lanes(double r, bool stop, const double *u, double *y, std::size_t samples,
+bool play_lanes(double r, bool stop, const double *u, double *y, std::size_t samples,
                 std::size_t stride, double *z) {
     SinglePlay play{broadcast(r), stop, load(z)};
-    lanes(play, u, y, samples, stride);
+    const bool finite = lanes(play, u, y, samples, stride);
     store(z, play.z);
+    return finite;
 }
 
 void pi_jump(const double *u, std::size_t count, std::size_t plays, const double *r, double *z,
@@ -54,8 +55,7 @@ const Kernels kKernelTable = {HYST_TEXT(HYST_INSTRUCTION_SET),
                               play_lanes,
                               pi_jump,
                               rate_dependent_pi_jump,
-                              follow<true>,
-                              follow<false>,
+                              memory_curve,
                               first_non_finite,
                               affine,
                               dead_zone,

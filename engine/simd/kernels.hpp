@@ -24,6 +24,26 @@ struct Line {
     double limit;
 };
 
+// Neighbouring plays of the memory curve that one movement of the input has left.
+struct Segment {
+    double e;         // the input where the movement ended
+    int way;          // 1: it rose, z = e - r; -1: it fell, z = e + r
+    std::size_t end;  // first play beyond the segment
+    double tail;      // sum of p z over the plays beyond it
+};
+
+struct MemoryCurveData {
+    const hyst_pi *pi;
+    const double *start;               // memories at the start
+    const double *p_sum;               // of the first i weights
+    const double *pr_sum;              // of the first i products p r
+    const double *start_sum;           // of p z at the start, over the plays from i on
+    const std::size_t *first_in_cell;  // for the search among thresholds: first play of each cell
+    double cells_per_unit;
+    Segment *stack;  // count + 2: at most one segment a play, and an empty one on top
+    std::size_t depth;
+};
+
 // The loss gradient's view of a bank: everything is in packs, one for each play.
 struct GradientBank {
     hyst_pi pi;
@@ -44,13 +64,13 @@ struct Kernels {
     std::size_t width;  // lanes
 
     // `width` records side by side; lane c at u + c * stride. z: one pack for each play.
-    // samples: a multiple of width. u and y may be the same.
-    void (*pi_lanes)(const hyst_pi &pi, const double *u, double *y, std::size_t samples,
+    // samples: a multiple of width. u and y may be the same. Returns whether u was finite.
+    bool (*pi_lanes)(const hyst_pi &pi, const double *u, double *y, std::size_t samples,
                      std::size_t stride, double *z);
-    void (*rate_dependent_pi_lanes)(const hyst_rate_dependent_pi &model, const double *previous,
+    bool (*rate_dependent_pi_lanes)(const hyst_rate_dependent_pi &model, const double *previous,
                                     const double *u, double *y, std::size_t samples,
                                     std::size_t stride, double *z);
-    void (*play_lanes)(double r, bool stop, const double *u, double *y, std::size_t samples,
+    bool (*play_lanes)(double r, bool stop, const double *u, double *y, std::size_t samples,
                        std::size_t stride, double *z);
 
     // Memories of all plays after `count` samples. r ascends, r[0] >= 0.
@@ -59,9 +79,9 @@ struct Kernels {
     void (*rate_dependent_pi_jump)(const hyst_rate_dependent_pi &model, double previous,
                                    const double *u, std::size_t count, double *z);
 
-    // Follow a line from u[0] on; returns how many samples it went. y may not be u; u[-1] exists.
-    std::size_t (*rise)(const Line &line, const double *u, double *y, std::size_t count);
-    std::size_t (*fall)(const Line &line, const double *u, double *y, std::size_t count);
+    // Returns how many samples were finite and have been taken. y may not be u.
+    std::size_t (*memory_curve)(MemoryCurveData &curve, const double *u, double *y,
+                                std::size_t count);
 
     std::size_t (*first_non_finite)(const double *u, std::size_t count);  // count if there is none
     void (*affine)(double gain, double offset, const double *u, double *y, std::size_t count);
@@ -82,6 +102,10 @@ struct Kernels {
 
 // The kernels in use: the widest this processor runs, unless another set was asked for.
 const Kernels &kernels();
+
+inline bool all_finite(const double *u, std::size_t count) {
+    return kernels().first_non_finite(u, count) == count;
+}
 
 // All sets this build has and this processor runs, widest first; ends with a null pointer.
 const Kernels *const *available_kernels();

@@ -80,19 +80,24 @@ struct SinglePlay {
 };
 
 // Lane c reads u[c * stride ..) and writes y[c * stride ..), `samples` each, a multiple of kWidth.
+// Returns whether all of them were finite.
 template <class Stage>
-inline void lanes(Stage &stage, const double *u, double *y, std::size_t samples,
+inline bool lanes(Stage &stage, const double *u, double *y, std::size_t samples,
                   std::size_t stride) {
+    Pack zeros{};  // 0 times a number is 0, 0 times an infinity or a NaN is NaN and stays in the sum
     for (std::size_t k = 0; k < samples; k += kWidth) {
         Pack in[kWidth], out[kWidth];
 #pragma GCC unroll 8
         for (std::size_t c = 0; c < kWidth; ++c) in[c] = load(u + c * stride + k);
+#pragma GCC unroll 8
+        for (std::size_t c = 0; c < kWidth; ++c) zeros += 0.0 * in[c];
         transpose(in);
         stage(in, out);
         transpose(out);
 #pragma GCC unroll 8
         for (std::size_t c = 0; c < kWidth; ++c) store(y + c * stride + k, out[c]);
     }
+    return !any(zeros != 0.0);
 }
 
 }  // namespace hyst::HYST_INSTRUCTION_SET

@@ -10,29 +10,33 @@
 
 namespace hyst::HYST_INSTRUCTION_SET {
 
-template <bool rising>
-inline bool stays(const Line &line, double before, double now) {
-    return rising ? now >= before && now <= line.limit : now <= before && now >= line.limit;
+template <bool rising, class Number>
+inline auto stays(const Number &before, const Number &now, const Number &limit) {
+    return rising ? (now >= before) & (now <= limit) : (now <= before) & (now >= limit);
 }
 
+// A pack is written whole, also where the line ends inside it: what is too much is written again by
+// whoever goes on from there.
 template <bool rising>
 inline std::size_t follow(const Line &line, const double *u, double *y, std::size_t count) {
-    // Rough records leave the line at once; packs pay from the fifth sample on.
+    // Rough records leave the line at once; there a branch that is predicted beats a pack.
     constexpr std::size_t probe = 4;
     std::size_t k = 0;
     for (; k < count && k < probe; ++k) {
-        if (!stays<rising>(line, (u + k)[-1], u[k])) return k;
+        if (!stays<rising>((u + k)[-1], u[k], line.limit)) return k;
         y[k] = line.a + line.b * u[k];
     }
+    constexpr unsigned all = (1u << kWidth) - 1;
     const Pack a = broadcast(line.a), b = broadcast(line.b), limit = broadcast(line.limit);
     for (; k + kWidth <= count; k += kWidth) {
-        const Pack now = load(u + k), before = load(u + k - 1);
-        const Mask leaves = rising ? (now < before) | (now > limit) | (now != now)
-                                   : (now > before) | (now < limit) | (now != now);
-        if (any(leaves)) break;
+        const Pack now = load(u + k);
+        const unsigned on_line = bits(stays<rising>(load(u + k - 1), now, limit));
         store(y + k, a + b * now);
+        if (on_line != all) return k + static_cast<std::size_t>(__builtin_ctz(~on_line));
     }
-    for (; k < count && stays<rising>(line, (u + k)[-1], u[k]); ++k) y[k] = line.a + line.b * u[k];
+    for (; k < count && stays<rising>((u + k)[-1], u[k], line.limit); ++k) {
+        y[k] = line.a + line.b * u[k];
+    }
     return k;
 }
 

@@ -30,7 +30,7 @@ constexpr std::size_t kWidth = 2;
 #endif
 
 using Pack = double __attribute__((vector_size(kWidth * sizeof(double))));
-using Mask = long long __attribute__((vector_size(kWidth * sizeof(double))));
+using Mask = decltype(Pack{} < Pack{});  // all bits of a lane set where a comparison holds
 
 inline Pack load(const double *from) {
     Pack pack;
@@ -66,17 +66,18 @@ inline Pack minus(Pack a, Pack b) { return a - b; }
 // The play of core/include/hyst/play.h between two bounds, in all lanes.
 inline Pack clamp(Pack low, Pack high, Pack z) { return larger(smaller(z, high), low); }
 
-// Whether any lane of a comparison holds.
-inline bool any(Mask mask) {
+// A comparison as bits, the first lane lowest.
+inline unsigned bits(Mask mask) {
 #if defined(__AVX512F__)
-    return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(mask),
-                                  reinterpret_cast<__m512i>(mask)) != 0;
+    return _mm512_movepi64_mask(reinterpret_cast<__m512i>(mask));
 #elif defined(__AVX2__)
-    return _mm256_movemask_pd(reinterpret_cast<__m256d>(mask)) != 0;
+    return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(mask)));
 #else
-    return (mask[0] | mask[1]) != 0;
+    return static_cast<unsigned>((mask[0] & 1) | (mask[1] & 2));
 #endif
 }
+
+inline bool any(Mask mask) { return bits(mask) != 0; }
 
 // Rows a and b of a square, `size` apart, swap what lies `size` beside the diagonal of their blocks.
 template <std::size_t size>
