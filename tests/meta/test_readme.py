@@ -119,6 +119,20 @@ def test_python_names_exist(readme: str) -> None:
     assert not missing
 
 
+def test_python_blocks_run(readme: str, tmp_path: Path) -> None:
+    programs = blocks(readme, {"python", "py"})
+    assert programs, "the README shows no Python"
+    for program in programs:
+        finished = subprocess.run(
+            [sys.executable, "-W", "error", "-c", program],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert finished.returncode == 0, finished.stderr
+
+
 def test_links_lead_somewhere(readme: str, repository: Path) -> None:
     targets = [first or second for first, second in LINK.findall(readme)]
     local = [
