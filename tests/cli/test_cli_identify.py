@@ -195,6 +195,8 @@ def test_bad_validation_data_are_refused(
         (("--time", "t", "--family", "preisach"), "mpi"),
         (("--time", "t", "--plays", "many"), "--plays"),
         (("--time", "t", "--plays", 0), "plays"),
+        (("--time", "t", "--plays", 2, "--knots", -1), "knots"),
+        (("--time", "t", "--weights", "heavy"), "non-negative"),
         (("--time", "t", "--delay", -1), "delay"),
         (("--time", "t", "--start", 100000), "start"),
         (("--time", "t", "--nonsense", 1), "--nonsense"),

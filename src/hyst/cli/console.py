@@ -27,8 +27,8 @@ def show_table(table: Table) -> None:
 
 
 def show_files(files: Sequence[Path]) -> None:
-    """Print which files were written."""
-    print(f"\nwrote {', '.join(str(each) for each in files)}")
+    """Print which files were written; all lie in one folder."""
+    print(f"\nwrote {', '.join(each.name for each in files)} in {files[0].parent}")
 
 
 def note(text: str) -> None:

@@ -38,6 +38,10 @@ Repair = Annotated[
 ]
 Family = Annotated[str, typer.Option(help="linear, pi, gpi, mpi; auto compares them.")]
 Plays = Annotated[str, typer.Option(metavar="N|auto", help="Number of plays.")]
+Knots = Annotated[int, typer.Option(help="Knots of the map of gpi and mpi.")]
+Weights = Annotated[
+    str, typer.Option(help="auto, non-negative, or invertible: negative where the inverse allows.")
+]
 Delay = Annotated[str, typer.Option(metavar="N|auto", help="Samples by which the output lags.")]
 Start = Annotated[str, typer.Option(metavar="N|auto", help="First sample to use.")]
 Validate = Annotated[
@@ -67,6 +71,8 @@ def identify(
     repair: Repair = False,
     family: Family = "auto",
     plays: Plays = "auto",
+    knots: Knots = 6,
+    weights: Weights = "auto",
     delay: Delay = "auto",
     start: Start = "auto",
     validate: Validate = None,
@@ -97,6 +103,8 @@ def identify(
             records,
             family=family,
             plays=whole_or_auto(plays, "plays"),
+            knots=knots,
+            weights=weights,
             delay=whole_or_auto(delay, "delay"),
             start=whole_or_auto(start, "start"),
             validation=validation,
