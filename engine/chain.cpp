@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "masing_jacobian.hpp"
+
 namespace hyst {
 
 const double *Chain::keep(std::vector<double> values) {
@@ -131,6 +133,10 @@ std::size_t parameter_count(const hyst_stage &stage) {
     }
     case HYST_SECTIONS:
         return 5 * stage.as.sections.count;
+    case HYST_MASING:
+        return parameter_count(stage.as.masing);
+    case HYST_MEMORY_ELEMENT:
+        return stage.as.memory_element.function.count;
     }
     return 0;
 }

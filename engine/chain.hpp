@@ -19,6 +19,19 @@ struct RateCurve {
     std::vector<double> powers, slopes, knees;
 };
 
+// How a loading curve remembers; see core/include/hyst/masing.h.
+struct MasingMemory {
+    bool inverse, last_reversal;
+    std::size_t depth;
+    double dead_band;
+};
+
+// How a memory element remembers; see core/include/hyst/memory_element.h.
+struct Momentum {
+    bool inverse, absolute, is_reset;
+    double reset_to;
+};
+
 class Chain {
 public:
     Chain() = default;
@@ -38,6 +51,14 @@ public:
                          std::vector<double> c, double d);
     // Five coefficients for each section: b0 b1 b2 a1 a2.
     void add_sections(std::vector<double> coefficients);
+
+    // A loading curve with memory of reversals. constants: c1 c2 c3 of a power law; p0 p_1.. r_1.. of
+    // plays; a_1 .. a_n of a polynomial.
+    void add_masing(hyst_curve_kind curve, std::vector<double> constants, double least_slope,
+                    const MasingMemory &memory);
+    // constants: c1 c2 c3; a_0 .. a_n; or the values of a table at `knots`. momentum: |u| or u.
+    void add_memory_element(hyst_memory_kind function, std::vector<double> knots,
+                            std::vector<double> constants, const Momentum &momentum, double dt);
 
     hyst_chain view() const { return {stages_.size(), stages_.data()}; }
     const std::vector<hyst_stage> &stages() const { return stages_; }

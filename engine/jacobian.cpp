@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "linear_jacobian.hpp"
+#include "masing_jacobian.hpp"
+#include "memory_element_jacobian.hpp"
 
 namespace hyst {
 namespace {
@@ -243,6 +245,12 @@ void pass(const hyst_stage &stage, double dt, const double *state, const Tangent
     case HYST_SECTIONS:
         return sections_jacobian(stage.as.sections, state,
                                  {t.signal, t.samples, t.rows, t.stride, t.incoming});
+    case HYST_MASING:
+        return masing_jacobian(stage.as.masing, state,
+                               {t.signal, t.samples, t.rows, t.stride, t.incoming});
+    case HYST_MEMORY_ELEMENT:
+        return memory_element_jacobian(stage.as.memory_element, state,
+                                       {t.signal, t.samples, t.rows, t.stride, t.incoming});
     }
 }
 

@@ -14,6 +14,7 @@
 #include "gradient.hpp"
 #include "gram.hpp"
 #include "jacobian.hpp"
+#include "memory_stages_binding.hpp"
 #include "parallel.hpp"
 #include "rate_dependent_binding.hpp"
 #include "simd/kernels.hpp"
@@ -47,6 +48,8 @@ void require_record(const hyst::Chain &chain, const Matrix &state, const Batch &
     require(y.shape(0) == u.shape(0) && y.shape(1) == u.shape(1), "y must have the shape of u");
     require(state.shape(0) == u.shape(0) && state.shape(1) == chain.state_length(),
             "state has the wrong shape");
+    const double *y_end = y.data() + y.size(), *u_end = u.data() + u.size();
+    require(y_end <= u.data() || u_end <= y.data(), "y must not overlap u");
 }
 
 // Flat index of the first sample that is not finite, and nothing done; or -1.
@@ -176,9 +179,12 @@ nb::object stepper(nb::handle chain, nb::handle state, double y_safe) {
 }  // namespace
 
 NB_MODULE(_engine, module) {
+    // Models that live until the interpreter ends are no leak worth a page of text to the user.
+    nb::set_leak_warnings(false);
     module.doc() = "Compiled engine of hyst: the C core on whole records, and derivatives.";
-    nb::class_<hyst::Chain>(module, "Chain")
-        .def(nb::init<>())
+    nb::class_<hyst::Chain> chain(module, "Chain");
+    hyst::bind_memory_stages(chain);
+    chain.def(nb::init<>())
         .def("add_affine", &hyst::Chain::add_affine)
         .def("add_play", &hyst::Chain::add_play)
         .def("add_stop", &hyst::Chain::add_stop)

@@ -19,6 +19,10 @@ size_t hyst_stage_state_length(const hyst_stage *stage)
         return stage->as.state_space.order + stage->as.state_space.delay;
     case HYST_SECTIONS:
         return 2 * stage->as.sections.count;
+    case HYST_MASING:
+        return hyst_masing_state_length(&stage->as.masing);
+    case HYST_MEMORY_ELEMENT:
+        return 2;
     case HYST_AFFINE:
     case HYST_DEAD_ZONE:
     default:
@@ -56,6 +60,10 @@ hyst_real hyst_stage_step(const hyst_stage *stage, hyst_real *state, hyst_real u
         return hyst_state_space_step(&stage->as.state_space, state, u);
     case HYST_SECTIONS:
         return hyst_sections_step(&stage->as.sections, state, u);
+    case HYST_MASING:
+        return hyst_masing_step(&stage->as.masing, state, u);
+    case HYST_MEMORY_ELEMENT:
+        return hyst_memory_element_step(&stage->as.memory_element, state, u);
     default:
         return u;
     }

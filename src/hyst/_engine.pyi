@@ -32,6 +32,27 @@ class Chain:
         self, delay: int, a: Sequence[float], b: Sequence[float], c: Sequence[float], d: float
     ) -> None: ...
     def add_sections(self, coefficients: Sequence[float]) -> None: ...
+    def add_masing(
+        self,
+        curve: str,
+        constants: Sequence[float],
+        least_slope: float,
+        inverse: bool,
+        last_reversal: bool,
+        depth: int,
+        dead_band: float,
+    ) -> None: ...
+    def add_memory_element(
+        self,
+        function: str,
+        knots: Sequence[float],
+        constants: Sequence[float],
+        inverse: bool,
+        absolute: bool,
+        is_reset: bool,
+        reset_to: float,
+        dt: float,
+    ) -> None: ...
     @property
     def state_length(self) -> int: ...
     @property

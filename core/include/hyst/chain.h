@@ -8,6 +8,8 @@
 
 #include "hyst/dead_zone.h"
 #include "hyst/linear_dynamics.h"
+#include "hyst/masing.h"
+#include "hyst/memory_element.h"
 #include "hyst/prandtl_ishlinskii.h"
 #include "hyst/rate_dependent_prandtl_ishlinskii.h"
 #include "hyst/real.h"
@@ -30,7 +32,9 @@ typedef enum {
     HYST_PI,
     HYST_RATE_DEPENDENT_PI,
     HYST_STATE_SPACE,
-    HYST_SECTIONS
+    HYST_SECTIONS,
+    HYST_MASING,
+    HYST_MEMORY_ELEMENT
 } hyst_kind;
 
 typedef struct {
@@ -43,6 +47,8 @@ typedef struct {
         hyst_rate_dependent_pi rate_dependent_pi;
         hyst_state_space state_space;
         hyst_sections sections;
+        hyst_masing masing;
+        hyst_memory_element memory_element;
     } as;
 } hyst_stage;
 
