@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from hyst.io import read_record
     from hyst.models import (
         GeneralizedPrandtlIshlinskii,
+        LinearDynamics,
         ModifiedPrandtlIshlinskii,
         PrandtlIshlinskii,
         RateDependentPrandtlIshlinskii,
@@ -43,6 +44,7 @@ _HOME = {
     "identify": "hyst.identification",
     "read_record": "hyst.io",
     "GeneralizedPrandtlIshlinskii": "hyst.models",
+    "LinearDynamics": "hyst.models",
     "ModifiedPrandtlIshlinskii": "hyst.models",
     "PrandtlIshlinskii": "hyst.models",
     "RateDependentPrandtlIshlinskii": "hyst.models",
@@ -76,6 +78,7 @@ __all__ = [
     "HystError",
     "Identified",
     "InputError",
+    "LinearDynamics",
     "MissingExtraError",
     "ModifiedPrandtlIshlinskii",
     "NotIdentifiableError",

@@ -4,19 +4,25 @@ from __future__ import annotations
 
 from hyst.models.generalized import GeneralizedPrandtlIshlinskii
 from hyst.models.given_thresholds import GivenThresholds
+from hyst.models.linear_dynamics import LinearDynamics
 from hyst.models.model_loading import load, load_described
 from hyst.models.modified import ModifiedPrandtlIshlinskii
 from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii
 from hyst.models.rate_curve import RateCurve
 from hyst.models.rate_dependent import RateDependentPrandtlIshlinskii
+from hyst.models.second_order_sections import SecondOrderSections
+from hyst.models.stable_inverse import StableInverse
 
 __all__ = [
     "GeneralizedPrandtlIshlinskii",
     "GivenThresholds",
+    "LinearDynamics",
     "ModifiedPrandtlIshlinskii",
     "PrandtlIshlinskii",
     "RateCurve",
     "RateDependentPrandtlIshlinskii",
+    "SecondOrderSections",
+    "StableInverse",
     "load",
     "load_described",
 ]

@@ -1,0 +1,398 @@
+"""Linear dynamics with one input and one output, sampled."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Self, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hyst import _engine
+from hyst.errors import InputError, NotInvertibleError
+from hyst.models.linear_properties import answers_after, poles_of, values_at, zeros_of
+from hyst.models.matrices import checked_matrices
+from hyst.models.realizations import cascade, companion, sections_of, zero_order_hold
+from hyst.operators.base import Operator
+from hyst.operators.checks import as_constants, as_number, refuse_overflow
+from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
+from hyst.operators.registry import entries, register
+from hyst.operators.traits import Traits
+
+Array = NDArray[np.float64]
+
+
+@register
+@final
+@dataclass(frozen=True, eq=False, init=False, repr=False)
+class LinearDynamics(Operator):
+    """Linear dynamics: ``x_{k+1} = A x_k + B w_k, y_k = C x_k + D w_k, w_k = u_{k-delay}``.
+
+    Parameters
+    ----------
+    A
+        Shape (n, n), n <= 64.
+    B, C
+        Shape (n,), or (n, 1) and (1, n).
+    D
+        Feedthrough, output units per input unit; a number, or (1, 1).
+    dt
+        Sample time, s, > 0. It says what a sample means; the equations do not need it.
+    delay
+        Whole samples >= 0.
+    x0
+        Shape (n,), state before the first sample; zeros if left out. The delay line starts at 0.
+
+    Raises
+    ------
+    InputError
+        If shapes do not fit, a number is not finite, or n is above 64.
+
+    Examples
+    --------
+    >>> lag = LinearDynamics.from_transfer_function([0.5], [1.0, -0.5], dt=1e-3)
+    >>> lag([1.0, 1.0, 1.0]).tolist()
+    [0.0, 0.5, 0.75]
+    """
+
+    A: Array
+    B: Array
+    C: Array
+    D: float
+    _dt: float
+    delay: int
+    x0: Array
+
+    kind = "linear-dynamics"
+
+    def __init__(
+        self,
+        A: ArrayLike,
+        B: ArrayLike,
+        C: ArrayLike,
+        D: ArrayLike,
+        dt: float,
+        delay: int = 0,
+        x0: ArrayLike | None = None,
+    ) -> None:
+        a, b, c, feedthrough = checked_matrices(A, B, C, D)
+        start = as_constants(np.zeros(b.size) if x0 is None else x0, "x0")
+        if start.size != b.size:
+            raise InputError(f"x0 has {start.size} entries; the order is {b.size}")
+        time = as_number(dt, "dt")
+        if time <= 0.0:
+            raise InputError(f"dt is {time}; give the sample time in seconds, above 0")
+        for name, value in zip(
+            ("A", "B", "C", "D", "_dt", "delay", "x0"),
+            (a, b, c, feedthrough, time, _as_delay(delay), as_constants(start + 0.0, "")),
+            strict=True,
+        ):
+            object.__setattr__(self, name, value)
+
+    @property
+    def dt(self) -> float:
+        """Sample time, s."""
+        return self._dt
+
+    @classmethod
+    def from_transfer_function(
+        cls, num: ArrayLike, den: ArrayLike, dt: float, delay: int = 0
+    ) -> Self:
+        """Make ``G(z) = z^-delay num(z)/den(z)``.
+
+        Parameters
+        ----------
+        num, den
+            Coefficients in descending powers of z, the numerator's degree not above the
+            denominator's.
+        dt, delay
+            Sample time, s, and whole samples.
+
+        Raises
+        ------
+        InputError
+            If the denominator is zero or of lower degree than the numerator.
+
+        Examples
+        --------
+        >>> LinearDynamics.from_transfer_function([1.0, 0.5], [1.0, -0.9], 0.01).dc_gain()
+        15.000000000000004
+        """
+        return cls(*companion(num, den), dt, delay)
+
+    @classmethod
+    def from_continuous(cls, num: ArrayLike, den: ArrayLike, dt: float, delay: int = 0) -> Self:
+        """Sample ``num(s)/den(s)`` with the input held between samples (zero-order hold).
+
+        Parameters
+        ----------
+        num, den
+            Coefficients in descending powers of s.
+        dt, delay
+            Sample time, s, and whole samples.
+
+        Raises
+        ------
+        InputError
+            As ``from_transfer_function``.
+
+        Examples
+        --------
+        >>> lag = LinearDynamics.from_continuous([100.0], [1.0, 100.0], dt=0.01)
+        >>> bool(abs(lag.poles()[0] - np.exp(-1.0)) < 1e-15)
+        True
+        """
+        return cls(*zero_order_hold(num, den, dt), dt, delay)
+
+    @classmethod
+    def from_zeros_poles_gain(
+        cls, zeros: ArrayLike, poles: ArrayLike, gain: float, dt: float, delay: int = 0
+    ) -> Self:
+        """Make ``G(z) = z^-delay gain prod(z - z_i) / prod(z - p_i)``.
+
+        Parameters
+        ----------
+        zeros, poles
+            Complex ones in conjugate pairs; no more zeros than poles.
+        gain
+            Factor of the whole.
+        dt, delay
+            Sample time, s, and whole samples.
+
+        Returns
+        -------
+        LinearDynamics
+            A cascade of second-order sections, so that high orders stay accurate.
+
+        Raises
+        ------
+        InputError
+            If there are more zeros than poles, or a complex one lacks its conjugate.
+
+        Examples
+        --------
+        >>> G = LinearDynamics.from_zeros_poles_gain([1.6], [0.5, 0.4], 2.0, dt=1.0)
+        >>> np.round(G.zeros().real, 9).tolist()
+        [1.6]
+        """
+        return cls(*cascade(sections_of(zeros, poles, gain)), dt, delay)
+
+    @classmethod
+    def from_control(cls, system: Any, dt: float | None = None) -> Self:
+        """Take over a system of python-control: a state space or a transfer function.
+
+        Parameters
+        ----------
+        system
+            With one input and one output. A continuous one is sampled with zero-order hold.
+        dt
+            Sample time, s, if the system has none (``dt=True`` or continuous).
+
+        Returns
+        -------
+        LinearDynamics
+
+        Raises
+        ------
+        InputError
+            If it is something else, has several inputs or outputs, or no sample time is known.
+
+        Examples
+        --------
+        ::
+
+            LinearDynamics.from_control(control.tf([1.0], [1.0, -0.5], 0.01))
+        """
+        from hyst.models.control_objects import matrices_of  # the one door to python-control
+
+        A, B, C, D, time = matrices_of(system, dt)
+        return cls(A, B, C, D, time)
+
+    def to_control(self) -> Any:
+        """Give a ``control.StateSpace`` with the delay written as poles at 0.
+
+        Raises
+        ------
+        MissingExtraError
+            If python-control is not installed.
+        """
+        from hyst.models.control_objects import state_space_of  # the one door to python-control
+
+        return state_space_of(self)
+
+    def traits(self) -> Traits:
+        """Give the traits of a linear system; with order and delay 0 it is a gain."""
+        is_gain = self.order == 0 and self.delay == 0
+        return Traits(
+            memoryless=is_gain,
+            rate_independent=is_gain,
+            return_point_memory=is_gain,
+            congruent_loops=is_gain,
+            monotone=is_gain and self.D >= 0.0,
+            invertible=self.is_invertible(),
+        )
+
+    def initial_state(self) -> Array:
+        """Give x0, then a delay line of zeros, shape (n + delay,)."""
+        return np.concatenate([self.x0, np.zeros(self.delay)])
+
+    def inverse(self) -> LinearDynamics:
+        """Give the causal inverse ``(A - B C/D, B/D, -C/D, 1/D)``.
+
+        Raises
+        ------
+        NotInvertibleError
+            If G is delayed or strictly proper, or a zero does not lie inside the unit circle; use
+            ``hyst.models.StableInverse``, which looks ahead, for a whole trajectory then.
+        """
+        hint = "use hyst.models.StableInverse, which looks ahead, on whole trajectories"
+        if self.relative_degree() > 0:
+            raise NotInvertibleError(
+                f"the output answers {self.relative_degree()} samples late, so no causal inverse "
+                f"follows at once; {hint}"
+            )
+        zeros = self.zeros()
+        if zeros.size and np.abs(zeros).max() >= 1.0:
+            worst = zeros[np.abs(zeros).argmax()]
+            raise NotInvertibleError(
+                f"the zero {worst:.6g} does not lie inside the unit circle, so the causal inverse "
+                f"is unstable; {hint}"
+            )
+        A, B = self.A - np.outer(self.B, self.C) / self.D, self.B / self.D
+        refuse_overflow(A, B, self.C / self.D, 1.0 / self.D)
+        return LinearDynamics(A, B, -self.C / self.D, 1.0 / self.D, self.dt, 0, self.x0)
+
+    def parameters(self) -> Parameters:
+        """Give A row after row, B, C, D."""
+        n = self.order
+        values = np.concatenate([self.A.ravel(), self.B, self.C, [self.D]])
+        entries_of_a = [f"A[{i},{j}]" for i in range(1, n + 1) for j in range(1, n + 1)]
+        free = np.full(values.size, np.inf)
+        names = (*entries_of_a, *numbered("B", n, 1), *numbered("C", n, 1), "D")
+        return Parameters(values, names, -free, free)
+
+    def with_parameters(self, theta: Sequence[float] | Array) -> LinearDynamics:
+        """Give a system with other matrices; order, delay, sample time and x0 stay."""
+        n = self.order
+        vector = as_parameter_vector(theta, (n + 2) * n + 1)
+        A, B, C, D = np.split(vector, [n * n, n * n + n, n * n + 2 * n])
+        return LinearDynamics(A.reshape(n, n), B, C, D, dt=self.dt, delay=self.delay, x0=self.x0)
+
+    def lipschitz_constant(self) -> float:
+        """Give the sum of the absolute impulse response; infinity if G is not stable."""
+        if not self.is_stable():
+            return math.inf
+        response = np.abs(self.impulse_response(self._settling_samples()))
+        return float(response.sum()) * (1.0 + 1e-9)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give kind, sample time, matrices and, where there are any, delay and x0."""
+        more: dict[str, Any] = {"delay": self.delay} if self.delay else {}
+        if self.x0.any():
+            more["x0"] = self.x0.tolist()
+        matrices = {"A": self.A.tolist(), "B": self.B.tolist(), "C": self.C.tolist(), "D": self.D}
+        return {"kind": self.kind, "dt": self.dt, **matrices, **more}
+
+    @classmethod
+    def from_dict(cls, data: dict[str, Any]) -> LinearDynamics:
+        """Rebuild from ``to_dict()``.
+
+        Raises
+        ------
+        InputError
+            If an entry is missing, unknown or not allowed.
+        """
+        return cls(**entries(data, ("dt", "A", "B", "C", "D"), ("delay", "x0")))
+
+    def append_to(self, chain: _engine.Chain) -> None:
+        """Append this stage to a chain of the engine."""
+        columns = self.A.T.ravel().tolist()
+        chain.add_state_space(self.delay, columns, self.B.tolist(), self.C.tolist(), self.D)
+
+    @property
+    def order(self) -> int:
+        """Number of states n, the delay not counted."""
+        return int(self.B.size)
+
+    def poles(self) -> NDArray[np.complex128]:
+        """Give the eigenvalues of A, the largest modulus first; those of the delay are left out."""
+        return poles_of(self.A)
+
+    def relative_degree(self) -> int:
+        """Give the number of samples, delay included, until the output answers.
+
+        That of the zero system is its order plus one, plus the delay.
+        """
+        return answers_after(self.A, self.B, self.C, self.D) + self.delay
+
+    def zeros(self) -> NDArray[np.complex128]:
+        """Give the finite zeros, the largest modulus first; the delay adds none."""
+        return zeros_of(self.A, self.B, self.C, self.D)
+
+    def is_stable(self) -> bool:
+        """Tell whether all poles lie inside the unit circle."""
+        return self.order == 0 or bool(np.abs(self.poles()[0]) < 1.0)
+
+    def dc_gain(self) -> float:
+        """Give the gain at rest, ``C (I - A)^-1 B + D``; infinity for a pole at 1."""
+        try:
+            return float(self.C @ np.linalg.solve(np.eye(self.order) - self.A, self.B)) + self.D
+        except np.linalg.LinAlgError:
+            return math.inf
+
+    def impulse_response(self, samples: int) -> Array:
+        """Give the Markov parameters ``H_0 .. H_{samples - 1}``, from rest.
+
+        Parameters
+        ----------
+        samples
+            How many, >= 1.
+        """
+        impulse = np.zeros(samples)
+        impulse[0] = 1.0
+        return self.run(impulse, np.zeros(self.order + self.delay))[0]
+
+    def frequency_response(self, frequency: ArrayLike) -> NDArray[np.complex128]:
+        """Give ``G(exp(2 pi i f dt))``.
+
+        Parameters
+        ----------
+        frequency
+            Shape (m,), Hz.
+        """
+        z = np.exp(2j * np.pi * np.asarray(frequency, dtype=np.float64) * self.dt)
+        return self.value_at(z)
+
+    def value_at(self, z: ArrayLike) -> NDArray[np.complex128]:
+        """Give G(z) at complex numbers z, shape (m,)."""
+        points = np.atleast_1d(np.asarray(z, dtype=np.complex128))
+        return values_at(points, self.A, self.B, self.C, self.D) * points ** (-self.delay)
+
+    def scaled(self, factor: float) -> LinearDynamics:
+        """Give the system with its output multiplied by a number."""
+        return LinearDynamics(
+            self.A, self.B, factor * self.C, factor * self.D, self.dt, self.delay, self.x0
+        )
+
+    def __repr__(self) -> str:
+        late = f", delay={self.delay}" if self.delay else ""
+        return (
+            f"LinearDynamics(A={self.A.tolist()}, B={self.B.tolist()}, C={self.C.tolist()}, "
+            f"D={self.D!r}, dt={self.dt!r}{late})"
+        )
+
+    def _settling_samples(self) -> int:
+        """Give the samples until the impulse response has died out, at most a million."""
+        slowest = float(np.abs(self.poles()[0])) if self.order else 0.0
+        # Repeated poles decay later than their modulus says: twice as long, and a margin.
+        decay = 80.0 / -math.log(slowest) if slowest > 0.0 else 0.0
+        return int(min(decay, 1e6)) + self.order + self.delay + 64
+
+
+def _as_delay(delay: Any) -> int:
+    number = as_number(delay, "delay")
+    if number < 0.0 or number != int(number):
+        raise InputError(f"delay is {delay}; give a whole number of samples")
+    return int(number)
