@@ -19,8 +19,8 @@ struct PaddedBank {
           stride((columns + kWidest - 1) / kWidest * kWidest),
           r(stride, 0.0),
           z(stride, 0.0) {
-        std::copy(thresholds.begin(), thresholds.end(), r.begin());
-        std::copy(start, start + plays, z.begin());
+        for (std::size_t i = 0; i < plays; ++i) r[i] = thresholds[i];
+        for (std::size_t i = 0; i < plays; ++i) z[i] = start[i];
     }
 };
 

@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from hyst import _engine
 from hyst.errors import InputError, NotInvertibleError
-from hyst.operators.checks import as_signal, as_state
+from hyst.operators.checks import as_signal, as_state, refuse_sample
+from hyst.operators.engine_name import EngineName, as_engine, as_threads
 from hyst.operators.model_file import ModelDescription, write_model
 from hyst.operators.parameters import Parameters
 from hyst.operators.registry import compose
@@ -153,10 +154,19 @@ class Operator(ABC):
         return self.run(u)[0]
 
     @final
-    def run(self, u: ArrayLike, state: ArrayLike | None = None) -> tuple[Array, Array]:
+    def run(
+        self,
+        u: ArrayLike,
+        state: ArrayLike | None = None,
+        *,
+        engine: EngineName = "auto",
+        threads: int = 1,
+    ) -> tuple[Array, Array]:
         """Give the output for a whole record and the state after it.
 
-        Running two halves one after the other gives the same bits as running the whole.
+        Running two halves one after the other gives the same bits as running the whole; where the
+        memory curve is used, of a long and smooth record through many plays, the same bits of the
+        state, and the same output to rounding.
 
         Parameters
         ----------
@@ -164,6 +174,12 @@ class Operator(ABC):
             Shape (N,) or (batch, N), finite, N >= 1.
         state
             Shape (n,) or (batch, n), float64; the initial state if left out. It is not changed.
+        engine
+            How plays are evaluated: the cheapest way, ``"auto"``; sample by sample, ``"loop"``; in
+            time lanes, ``"lanes"``, with the same bits; or by the ``"memory-curve"``.
+            ``hyst.operators.evaluation.explain`` tells what ``"auto"`` takes, and why.
+        threads
+            How many threads may work on it, at least 1.
 
         Returns
         -------
@@ -175,15 +191,18 @@ class Operator(ABC):
         Raises
         ------
         InputError
-            If ``u`` or ``state`` cannot be used.
+            If ``u`` or ``state`` cannot be used, there is no such engine, or ``threads`` is not a
+            positive integer.
         """
-        signal = as_signal(u)
+        signal = as_signal(u, finite=False)
         batch = None if signal.ndim == 1 else signal.shape[0]
         start = self.initial_state() if state is None else state
         memory = as_state(start, self._chain.state_length, batch)
         rows = signal.reshape(1, -1) if batch is None else signal
         y = np.empty_like(rows)
-        self._chain.run(memory, rows, y)
+        bad = self._chain.run(memory, rows, y, as_engine(engine), as_threads(threads))
+        if bad >= 0:
+            refuse_sample(signal, bad, "u")
         return (y, memory) if batch is not None else (y[0], memory[0])
 
     @final
@@ -242,6 +261,49 @@ class Operator(ABC):
         result = np.empty((signal.size, self._chain.parameter_count))
         self._chain.jacobian(memory, signal, result)
         return result
+
+    @final
+    def loss_gradient(
+        self, u: ArrayLike, y: ArrayLike, state: ArrayLike | None = None, *, threads: int = 1
+    ) -> tuple[float, Array]:
+        """Give the loss ``1/2 sum_k (f(u)_k - y_k)^2`` and its derivative by the parameters.
+
+        For a bank of plays the Jacobian is not stored and the cost is that of a few evaluations.
+
+        Parameters
+        ----------
+        u
+            Shape (N,), finite, N >= 1.
+        y
+            Shape (N,), finite, the output wanted.
+        state
+            As in ``run``.
+        threads
+            How many threads may work on it, at least 1.
+
+        Returns
+        -------
+        loss : float
+            In squared output units.
+        gradient : numpy.ndarray
+            Shape (m,), ``jacobian(u).T @ (f(u) - y)``, m = ``len(self.parameters())``.
+
+        Raises
+        ------
+        InputError
+            If ``u`` and ``y`` are not two records of one length, or ``state`` or ``threads`` cannot
+            be used.
+        """
+        signal, wanted = as_signal(u), as_signal(y, "y")
+        if signal.ndim != 1 or wanted.shape != signal.shape:
+            raise InputError(
+                f"u has shape {signal.shape} and y {wanted.shape}; give one record of each, (N,)"
+            )
+        start = self.initial_state() if state is None else state
+        memory = as_state(start, self._chain.state_length, None)[0]
+        gradient = np.empty(self._chain.parameter_count)
+        loss = self._chain.loss_gradient(memory, signal, wanted, gradient, as_threads(threads))
+        return loss, gradient
 
     @final
     def __matmul__(self, inner: Operator) -> Operator:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst import _engine
 from hyst.errors import InputError, NotInvertibleError
 
 Array = NDArray[np.float64]
@@ -27,14 +28,34 @@ def _as_real_array(values: Any, name: str) -> Array:
 
 
 def _refuse_non_finite(array: Array, name: str) -> None:
-    finite = np.isfinite(array)
-    if not finite.all():
-        index = tuple(int(i) for i in np.argwhere(~finite)[0])
-        where = index[0] if len(index) == 1 else index
-        raise InputError(f"{name}[{where}] is {array[index]}; every number must be finite")
+    bad = _engine.first_non_finite(np.ascontiguousarray(array).reshape(-1))
+    if bad >= 0:
+        refuse_sample(array, bad, name)
 
 
-def as_signal(u: ArrayLike, name: str = "u") -> Array:
+def refuse_sample(array: Array, bad: int, name: str) -> NoReturn:
+    """Refuse a number that is not finite.
+
+    Parameters
+    ----------
+    array
+        The array it was found in.
+    bad
+        Its index in the flattened array.
+    name
+        What messages call the array.
+
+    Raises
+    ------
+    InputError
+        Always.
+    """
+    index = tuple(int(i) for i in np.unravel_index(bad, array.shape))
+    where = index[0] if len(index) == 1 else index
+    raise InputError(f"{name}[{where}] is {array[index]}; every number must be finite")
+
+
+def as_signal(u: ArrayLike, name: str = "u", *, finite: bool = True) -> Array:
     """Check a signal and give it as contiguous float64.
 
     Parameters
@@ -43,6 +64,8 @@ def as_signal(u: ArrayLike, name: str = "u") -> Array:
         Shape (N,) or (batch, N), real, finite, N >= 1.
     name
         What messages call it.
+    finite
+        False leaves it to the engine, which looks while it works, to find what is not finite.
 
     Returns
     -------
@@ -60,7 +83,8 @@ def as_signal(u: ArrayLike, name: str = "u") -> Array:
         raise InputError(f"{name} has {signal.ndim} dimensions; give (N,) or (batch, N)")
     if signal.size == 0:
         raise InputError(f"{name} is empty; give at least one sample")
-    _refuse_non_finite(signal, name)
+    if finite:
+        _refuse_non_finite(signal, name)
     return signal
 
 

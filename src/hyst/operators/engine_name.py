@@ -1,0 +1,56 @@
+"""The engines that evaluate records, by name."""
+
+from __future__ import annotations
+
+from numbers import Integral
+from typing import Literal, TypeAlias, get_args
+
+from hyst.errors import InputError
+
+EngineName: TypeAlias = Literal["auto", "loop", "lanes", "memory-curve"]
+
+
+def as_engine(name: str) -> str:
+    """Check the name of an engine.
+
+    Parameters
+    ----------
+    name
+        One of ``EngineName``.
+
+    Returns
+    -------
+    str
+        ``name`` itself.
+
+    Raises
+    ------
+    InputError
+        If there is no such engine.
+    """
+    if name not in get_args(EngineName):
+        raise InputError(f"engine is {name!r}; give one of {', '.join(get_args(EngineName))}")
+    return name
+
+
+def as_threads(count: object) -> int:
+    """Check a number of threads.
+
+    Parameters
+    ----------
+    count
+        1 to 1024.
+
+    Returns
+    -------
+    int
+        ``count`` itself.
+
+    Raises
+    ------
+    InputError
+        If it is not an integer from 1 to 1024.
+    """
+    if not isinstance(count, Integral) or isinstance(count, bool) or not 1 <= count <= 1024:
+        raise InputError(f"threads is {count!r}; give an integer from 1 to 1024")
+    return int(count)
