@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from numbers import Integral
-from typing import Literal, TypeAlias, get_args
+import operator
+from typing import Literal, SupportsIndex, TypeAlias, get_args
+
+import numpy as np
 
 from hyst.errors import InputError
 
@@ -33,7 +35,7 @@ def as_engine(name: str) -> str:
     return name
 
 
-def as_threads(count: object) -> int:
+def as_threads(count: SupportsIndex) -> int:
     """Check a number of threads.
 
     Parameters
@@ -51,6 +53,8 @@ def as_threads(count: object) -> int:
     InputError
         If it is not an integer from 1 to 1024.
     """
-    if not isinstance(count, Integral) or isinstance(count, bool) or not 1 <= count <= 1024:
+    if not isinstance(count, int | np.integer) or isinstance(count, bool):
         raise InputError(f"threads is {count!r}; give an integer from 1 to 1024")
-    return int(count)
+    if not 1 <= (number := operator.index(count)) <= 1024:
+        raise InputError(f"threads is {count!r}; give an integer from 1 to 1024")
+    return number
