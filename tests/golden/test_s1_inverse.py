@@ -61,7 +61,8 @@ def test_the_printed_inverse_is_that_of_unrounded_weights() -> None:
 
     Those belong to weights that the paper printed as 1.1 and 1.7 (two digits): solving eqs. 7-8
     for the weights that do give the printed inverse leads to about 1.134 and 1.692, which round to
-    them and continue the ratio of 1.49 of the others. Every hyst number above follows from the printed weights.
+    them and continue the ratio of 1.49 of the others. Every hyst number above follows from the
+    printed weights.
     """
     inverse = model().inverse()
     away_s = np.abs(inverse.r / S_PRINTED - 1.0)

@@ -217,10 +217,11 @@ class PrandtlIshlinskii(Operator):
     def _has_admissible_memory(self) -> bool:
         """Neighbouring plays differ by no more than their thresholds, those of one not at all."""
         r, z = self.r[self.r > 0.0], self.z0[self.r > 0.0]
-        gaps = np.diff(r)
-        # What rounding may add to a memory that an earlier run has left.
-        slack = 1e-12 * (np.abs(z).max(initial=0.0) + np.abs(r).max(initial=0.0))
-        return bool((np.abs(np.diff(z)) <= np.where(gaps > 0.0, gaps + slack, 0.0)).all())
+        with np.errstate(over="ignore"):
+            gaps = np.diff(r)
+            # What rounding may add to a memory that an earlier run has left.
+            slack = 1e-12 * (np.abs(z).max(initial=0.0) + np.abs(r).max(initial=0.0))
+            return bool((np.abs(np.diff(z)) <= np.where(gaps > 0.0, gaps + slack, 0.0)).all())
 
     def _require_invertible(self) -> None:
         p0, p, r, _ = self._merged()
@@ -232,6 +233,7 @@ class PrandtlIshlinskii(Operator):
                 "input turns; identify or give p0 > 0"
             )
         slopes = cumulative(p0, p)
+        refuse_overflow(slopes)
         wrong = np.flatnonzero(slopes <= rounding_of_cumulative(p0, p))
         if wrong.size:
             j = int(wrong[0])

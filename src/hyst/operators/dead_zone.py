@@ -241,6 +241,7 @@ class DeadZone(Operator):
         """Weights and thresholds of the inverse on one side of 0."""
         distance, weights = self._side(sign)
         slopes = cumulative(slope, weights)
+        refuse_overflow(slopes)
         wrong = np.flatnonzero(slopes * np.sign(slope) <= rounding_of_cumulative(slope, weights))
         if wrong.size:
             piece = int(wrong[0])
