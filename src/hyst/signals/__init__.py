@@ -2,19 +2,35 @@
 
 from __future__ import annotations
 
+from hyst.signals.drive import Drive, Limits
 from hyst.signals.loop_metrics import hysteresis_percent, loop_area
 from hyst.signals.metrics import Metrics, error_metrics
+from hyst.signals.multisine import multisine
 from hyst.signals.noise import estimate_noise, suggest_dead_band
+from hyst.signals.persistence import Persistence, persistence
 from hyst.signals.record import Record
 from hyst.signals.reversals import reversals
+from hyst.signals.sequences import decaying_triangle, forc, prbs, staircase, triangle
+from hyst.signals.swept_sine import swept_sine
 
 __all__ = [
+    "Drive",
+    "Limits",
     "Metrics",
+    "Persistence",
     "Record",
+    "decaying_triangle",
     "error_metrics",
     "estimate_noise",
+    "forc",
     "hysteresis_percent",
     "loop_area",
+    "multisine",
+    "persistence",
+    "prbs",
     "reversals",
+    "staircase",
     "suggest_dead_band",
+    "swept_sine",
+    "triangle",
 ]

@@ -1,0 +1,137 @@
+"""Multisine: many frequencies at once, exactly periodic."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.errors import InputError
+from hyst.signals.drive import Drive, Limits, as_count, as_positive, fitted
+
+Array = NDArray[np.float64]
+
+_LINES = ("all", "odd", "odd-random")
+_PHASES = ("random", "schroeder")
+
+
+def multisine(
+    dt: float,
+    samples: int,
+    *,
+    amplitude: float | None = None,
+    rms: float | None = None,
+    band: tuple[float, float] | None = None,
+    lines: str = "all",
+    phases: str = "random",
+    periods: int = 1,
+    offset: float = 0.0,
+    max_rate: float = math.inf,
+    max_acceleration: float = math.inf,
+    seed: int = 0,
+) -> Drive:
+    """Make ``u_k = offset + sum_l a cos(2 pi l k / N + phi_l)`` over the lines of a band.
+
+    Random phases make the values Gaussian, for which a nonlinearity disturbs the linear part
+    least; odd lines keep even distortion out of the lines that are measured; Schroeder phases keep
+    the peaks low.
+
+    Parameters
+    ----------
+    dt
+        Sample time, s.
+    samples
+        N, samples of one period; the lines are 1 / (N dt) apart.
+    amplitude
+        Largest deviation from the offset, input units. Give it or ``rms``.
+    rms
+        Root mean square deviation from the offset.
+    band
+        Lowest and highest frequency, Hz; from one line to just below half the sample rate if left
+        out.
+    lines
+        ``"all"``, ``"odd"``, or ``"odd-random"``: one odd line in each group of four is left out,
+        so that its level shows odd distortion.
+    phases
+        ``"random"`` or ``"schroeder"``.
+    periods
+        How often the period is repeated.
+    offset
+        Mean, input units.
+    max_rate, max_acceleration
+        Limits, as of ``Limits``; the signal is scaled down to meet them.
+    seed
+        Of the random phases; equal seeds give equal signals.
+
+    Returns
+    -------
+    Drive
+
+    Raises
+    ------
+    InputError
+        If there is no line in the band, or an argument cannot be used.
+
+    Notes
+    -----
+    Pintelon and Schoukens, System Identification, 2nd ed. (2012), ch. 4; Schroeder, IEEE Trans.
+    Inf. Theory 16 (1970), 85-89.
+
+    Examples
+    --------
+    >>> drive = multisine(0.01, 1000, rms=30.0, periods=2)
+    >>> len(drive), round(drive.rms, 9), drive.period
+    (2000, 30.0, 1000)
+    """
+    time, count = as_positive(dt, "dt"), as_count(samples, "samples", 4)
+    rng = np.random.default_rng(seed)
+    chosen = _lines(time, count, band, lines, rng)
+    angles = _angles(chosen.size, phases, rng)
+    spectrum = np.zeros(count // 2 + 1, dtype=np.complex128)
+    spectrum[chosen] = np.exp(1j * angles)
+    period = np.fft.irfft(spectrum, count)
+    period *= _factor(period, amplitude, rms)
+    period, notes = fitted(period, time, Limits(max_rate, max_acceleration), offset)
+    u = np.tile(period, as_count(periods, "periods")) + offset
+    return Drive(u, time, "multisine", count, notes)
+
+
+def _lines(
+    dt: float, samples: int, band: tuple[float, float] | None, lines: str, rng: np.random.Generator
+) -> NDArray[np.intp]:
+    if lines not in _LINES:
+        raise InputError(f"lines is {lines!r}; choose one of {', '.join(_LINES)}")
+    last = (samples - 1) // 2
+    low, high = band if band is not None else (0.0, 0.5 / dt)
+    first = max(1, math.ceil(low * samples * dt - 1e-9))
+    last = min(last, math.floor(high * samples * dt + 1e-9))
+    chosen = np.arange(first, last + 1)
+    if lines != "all":
+        chosen = chosen[chosen % 2 == 1]
+    if lines == "odd-random" and chosen.size >= 4:
+        groups = chosen.size // 4
+        chosen = np.delete(chosen, 4 * np.arange(groups) + rng.integers(0, 4, groups))
+    if chosen.size == 0:
+        raise InputError(
+            f"no line lies between {low:.6g} and {high:.6g} Hz; lines are "
+            f"{1.0 / (samples * dt):.6g} Hz apart, up to {0.5 / dt:.6g} Hz"
+        )
+    return chosen
+
+
+def _angles(count: int, phases: str, rng: np.random.Generator) -> Array:
+    if phases == "random":
+        return rng.uniform(0.0, 2.0 * np.pi, count)
+    if phases == "schroeder":
+        l = np.arange(1, count + 1)  # noqa: E741  the field's letter for a line
+        return np.asarray(-np.pi * l * (l - 1) / count)
+    raise InputError(f"phases is {phases!r}; choose one of {', '.join(_PHASES)}")
+
+
+def _factor(period: Array, amplitude: float | None, rms: float | None) -> float:
+    if (amplitude is None) == (rms is None):
+        raise InputError("give either amplitude or rms")
+    if amplitude is not None:
+        return as_positive(amplitude, "amplitude") * (1.0 - 1e-15) / float(np.abs(period).max())
+    return as_positive(rms, "rms") / float(period.std()) if rms is not None else 0.0
