@@ -72,6 +72,40 @@ def test_columns_by_index_rate_labels_validation_and_several_records(
     assert "validation 2" in ended.out
 
 
+def test_time_in_milliseconds_and_repaired_rows(run: Run, folder: Path) -> None:
+    u = drive()
+    write_csv(folder / "loop.csv", "t,u,y", np.arange(u.size) * 10.0, u, STAGE(u))
+    lines = (folder / "loop.csv").read_text().splitlines()
+    lines[99] = "980.0,nan,1.0"
+    (folder / "loop.csv").write_text("\n".join(lines) + "\n")
+    arguments = ("identify", "loop.csv", *COLUMNS, "--time", "t", "--time-unit", "ms", *QUICK)
+    assert run(*arguments, "-o", "out").code == 2
+    ended = run(*arguments, "--repair", "-o", "out")
+    assert ended.code == 0, ended.err
+    _, about = hyst.models.load_described(folder / "out" / "model.json")
+    assert about.dt == pytest.approx(0.01, rel=1e-12)
+    assert "left out 1 row" in (folder / "out" / "report.html").read_text()
+
+
+def test_a_fit_that_did_not_converge_is_a_failure_unless_it_is_accepted(
+    run: Run, record_file: Path, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    identify = hyst.identify
+
+    def hurried(records: list[hyst.Record], **options: object) -> hyst.Identified:
+        return identify(records, **(options | {"max_iterations": 1}))  # type: ignore[arg-type]
+
+    monkeypatch.setattr("hyst.identify", hurried)
+    arguments = ("identify", record_file, *COLUMNS, "--time", "t", "--family", "mpi", "--plays", 3)
+    refused = run(*arguments, "-o", "out")
+    assert refused.code == 1
+    assert "did not converge" in refused.err
+    assert not (folder / "out").exists()
+    accepted = run(*arguments, "--allow-unconverged", "-o", "out")
+    assert accepted.code == 0, accepted.err
+    assert (folder / "out" / "report.html").is_file()
+
+
 def test_auto_shows_what_it_compared_and_what_it_chose(run: Run, record_file: Path) -> None:
     ended = run(
         *("identify", record_file, *COLUMNS, "--time", "t", "--plays", 1, "--delay", 0),

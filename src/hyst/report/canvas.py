@@ -43,6 +43,8 @@ _LOOK: Any = {
     "figure.titlesize": 11.5,
     "figure.titleweight": "bold",
     "lines.linewidth": 1.2,
+    # Without this a noisy line of a million samples can exceed the renderer's memory.
+    "agg.path.chunksize": 20_000,
     # Names come from the user's file: a dollar sign in one starts no formula.
     "text.parse_math": False,
 }

@@ -14,7 +14,7 @@ from hyst.report.fitted_record import FittedRecord
 
 Array = NDArray[np.float64]
 
-_MOST_LAGS = 1000
+_MOST_LAGS = 20_000
 
 
 @drawn
