@@ -25,8 +25,11 @@ if TYPE_CHECKING:
     from hyst.models import (
         GeneralizedPrandtlIshlinskii,
         LinearDynamics,
+        MasingOperator,
+        MemoryElement,
         ModifiedPrandtlIshlinskii,
         PrandtlIshlinskii,
+        RambergOsgood,
         RateDependentPrandtlIshlinskii,
     )
     from hyst.models.model_loading import load
@@ -48,6 +51,9 @@ _HOME = {
     "ModifiedPrandtlIshlinskii": "hyst.models",
     "PrandtlIshlinskii": "hyst.models",
     "RateDependentPrandtlIshlinskii": "hyst.models",
+    "MasingOperator": "hyst.models",
+    "MemoryElement": "hyst.models",
+    "RambergOsgood": "hyst.models",
     "load": "hyst.models",
     "Affine": "hyst.operators",
     "Composition": "hyst.operators",
@@ -79,6 +85,8 @@ __all__ = [
     "Identified",
     "InputError",
     "LinearDynamics",
+    "MasingOperator",
+    "MemoryElement",
     "MissingExtraError",
     "ModifiedPrandtlIshlinskii",
     "NotIdentifiableError",
@@ -86,6 +94,7 @@ __all__ = [
     "Operator",
     "Play",
     "PrandtlIshlinskii",
+    "RambergOsgood",
     "RateDependentPrandtlIshlinskii",
     "Record",
     "SolverError",

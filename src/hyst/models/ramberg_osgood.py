@@ -1,0 +1,264 @@
+"""The Ramberg-Osgood model: hysteresis from three constants."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hyst import _engine
+from hyst.errors import InputError
+from hyst.models.masing import (
+    DEPTH,
+    MasingOperator,
+    Memory,
+    as_memory,
+    memory_entries,
+    reversal_traits,
+)
+from hyst.models.power_law import PowerLaw
+from hyst.operators.base import Operator
+from hyst.operators.checks import as_number
+from hyst.operators.parameters import Parameters, as_parameter_vector
+from hyst.operators.registry import entries, register
+from hyst.operators.traits import Traits
+
+Array = NDArray[np.float64]
+
+_SMALLEST = float(np.nextafter(0.0, 1.0))
+
+
+@register
+@final
+@dataclass(frozen=True, eq=False)
+class RambergOsgood(Operator):
+    """Ramberg-Osgood model: ``dy/du = c1 + c2 p^c3``, p the way since the last reversal.
+
+    From a reversal (u_i, y_i) on ``y = y_i +- (c1 p + c2 p^(c3 + 1) / (c3 + 1))``. On the first
+    loading, from 0, the coefficient is ``2^c3 c2`` in the place of c2.
+
+    Parameters
+    ----------
+    c1
+        Slope right after a reversal, > 0, output units per input unit.
+    c2
+        Growth of the slope, >= 0.
+    c3
+        Its power, > 0.
+    memory
+        ``"masing"``: reversals are nested and every loop closes, as those of real actuators do.
+        ``"last-reversal"``: the published model, which forgets everything at each reversal and
+        drifts after minor loops.
+    depth
+        Reversals there is room for with ``"masing"``; see ``MasingOperator``.
+    dead_band
+        With ``"last-reversal"``: by how much the input must go back before that counts as a
+        reversal, input units.
+
+    Raises
+    ------
+    InputError
+        If c1 or c3 is not positive, c2 is negative, or an argument is not allowed. Softening curves
+        (-1 < c3 < 0) and c1 = 0 are taken by ``MasingOperator(PowerLaw(c1, c2, c3))``.
+
+    Notes
+    -----
+    S3 eqs. 2-3 and theorem 4. No differential equation has to be solved: forwards a sample takes
+    one power evaluation, backwards at most six (see ``InverseCurve``).
+
+    Examples
+    --------
+    >>> model = RambergOsgood(1.0, 1.0, 1.0)
+    >>> model([0.0, 3.0, 1.0, 2.0, 1.0, 0.0]).round(12)
+    array([ 0. , 12. ,  8. ,  9.5,  8. ,  4.5])
+    >>> model.inverse()([0.0, 12.0, 8.0, 9.5, 8.0, 4.5]).round(12)
+    array([0., 3., 1., 2., 1., 0.])
+    """
+
+    c1: float
+    c2: float
+    c3: float
+    memory: Memory = "masing"
+    depth: int = DEPTH
+    dead_band: float = 0.0
+
+    kind = "ramberg-osgood"
+
+    def __post_init__(self) -> None:
+        for name in ("c1", "c2", "c3"):
+            object.__setattr__(self, name, as_number(getattr(self, name), name))
+        for name in ("c1", "c3"):
+            if getattr(self, name) <= 0.0:
+                raise InputError(
+                    f"{name} is {getattr(self, name):.6g}; a Ramberg-Osgood model needs it "
+                    "positive (MasingOperator(PowerLaw(...)) takes c1 = 0 and -1 < c3 < 0)"
+                )
+        if self.c2 < 0.0:
+            raise InputError(
+                f"c2 is {self.c2:.6g}; the slope c1 + c2 p^c3 would turn negative at "
+                f"p = {(self.c1 / -self.c2) ** min(1.0 / self.c3, 300.0):.6g}, so give 0 or more"
+            )
+        checked = as_memory(self.memory, self.depth, self.dead_band)
+        object.__setattr__(self, "depth", int(self.depth))
+        object.__setattr__(self, "dead_band", checked.dead_band)
+
+    @classmethod
+    def from_skeleton(
+        cls,
+        y_star: float,
+        u_star: float,
+        alpha: float,
+        gamma: float,
+        memory: Memory = "masing",
+    ) -> RambergOsgood:
+        """Give the model of a skeleton curve ``y/y* = u/u* (1 + alpha |u/u*|^(gamma - 1))``.
+
+        ``c1 = y*/u*``, ``c2 = (y*/u*) alpha gamma / (2 u*)^(gamma - 1)``, ``c3 = gamma - 1``.
+
+        Parameters
+        ----------
+        y_star, u_star
+            > 0, output and input units.
+        alpha
+            >= 0.
+        gamma
+            > 1.
+        memory
+            As in the class.
+
+        Returns
+        -------
+        RambergOsgood
+
+        Raises
+        ------
+        InputError
+            If a constant is out of its range.
+
+        Notes
+        -----
+        S3 eq. 2 and theorem 4 (theorem 10 drops the factor y*/u* of c2).
+
+        Examples
+        --------
+        >>> RambergOsgood.from_skeleton(y_star=2.0, u_star=1.0, alpha=0.5, gamma=3.0)([1.0])
+        array([3.])
+        """
+        given = {"y_star": y_star, "u_star": u_star, "gamma - 1": as_number(gamma, "gamma") - 1.0}
+        for name, value in given.items():
+            if as_number(value, name) <= 0.0:
+                raise InputError(f"{name} is {value:.6g}; it must be positive")
+        slope, power = y_star / u_star, gamma - 1.0
+        growth = slope * as_number(alpha, "alpha") * gamma / (2.0 * u_star) ** power
+        return cls(slope, growth, power, memory)
+
+    def skeleton(self, u: ArrayLike) -> Array:
+        """Give the initial loading curve (S3 eq. 2), odd.
+
+        Parameters
+        ----------
+        u
+            Input units.
+
+        Returns
+        -------
+        numpy.ndarray
+            In the shape of ``u``.
+        """
+        return self.curve(u)
+
+    def slope(self, p: ArrayLike) -> Array:
+        """Give ``M(p) = c1 + c2 p^c3``, the slope of a branch (S3 eq. 6).
+
+        Parameters
+        ----------
+        p
+            Way since the last reversal, >= 0, input units.
+
+        Returns
+        -------
+        numpy.ndarray
+            In the shape of ``p``.
+        """
+        return np.asarray(self.c1 + self.c2 * np.asarray(p, dtype=np.float64) ** self.c3)
+
+    @property
+    def curve(self) -> PowerLaw:
+        """The initial loading curve."""
+        return PowerLaw(self.c1, self.c2, self.c3)
+
+    def traits(self) -> Traits:
+        """Give the traits; with the last reversal alone, loops do not close after minor loops."""
+        memory = as_memory(self.memory, self.depth, self.dead_band)
+        return reversal_traits(memory, invertible=True)
+
+    def initial_state(self) -> Array:
+        """Give the state without memory: last input and output, counts, and room for reversals."""
+        return self._as_masing().initial_state()
+
+    def overflowed(self, state: ArrayLike) -> bool:
+        """Tell whether a reversal has found no room and its loop was traced without area.
+
+        Parameters
+        ----------
+        state
+            As ``run`` gave it.
+
+        Returns
+        -------
+        bool
+        """
+        return self._as_masing().overflowed(state)
+
+    def inverse(self) -> MasingOperator:
+        """Give the exact inverse in the same memory: the operator of the inverse loading curve.
+
+        Notes
+        -----
+        S3 theorem 10, without the differential equation.
+        """
+        return self._as_masing().inverse()
+
+    def parameters(self) -> Parameters:
+        """Give c1, c2, c3."""
+        return Parameters(
+            values=np.array([self.c1, self.c2, self.c3]),
+            names=("c1", "c2", "c3"),
+            lower=np.array([_SMALLEST, 0.0, _SMALLEST]),
+            upper=np.full(3, np.inf),
+        )
+
+    def with_parameters(self, theta: Sequence[float] | Array) -> RambergOsgood:
+        """Give the model of other constants with the same memory."""
+        c1, c2, c3 = as_parameter_vector(theta, 3).tolist()
+        return RambergOsgood(c1, c2, c3, self.memory, self.depth, self.dead_band)
+
+    def lipschitz_constant(self) -> float:
+        """Give infinity, for the slope grows without bound; c1 where c2 is 0."""
+        return self._as_masing().lipschitz_constant()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give kind, constants and memory."""
+        constants = {"c1": self.c1, "c2": self.c2, "c3": self.c3}
+        return {"kind": self.kind, **constants, **memory_entries(self)}
+
+    @classmethod
+    def from_dict(cls, data: dict[str, Any]) -> RambergOsgood:
+        """Rebuild from ``to_dict()``.
+
+        Raises
+        ------
+        InputError
+            If an entry is missing, unknown or not allowed.
+        """
+        return cls(**entries(data, ("c1", "c2", "c3", "memory"), ("depth", "dead_band")))
+
+    def append_to(self, chain: _engine.Chain) -> None:
+        """Append this stage to a chain of the engine."""
+        self._as_masing().append_to(chain)
+
+    def _as_masing(self) -> MasingOperator:
+        return MasingOperator(self.curve, self.memory, self.depth, self.dead_band)
