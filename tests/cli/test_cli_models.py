@@ -118,7 +118,7 @@ def test_no_range_in_the_file_means_no_limits_and_says_so(run: Run, folder: Path
 @pytest.mark.parametrize(
     ("arguments", "part"),
     [
-        (("--method", "trajectory"), "exact"),
+        (("--method", "oracle"), "exact"),
         (("--outside", "ignore"), "clip"),
         (("--limits", "0,4", "--no-limits"), "--no-limits"),
         (("--limits", "0"), "--limits"),

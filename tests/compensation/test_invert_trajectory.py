@@ -188,8 +188,8 @@ def test_unusable_ranges(input_range: tuple[float, float]) -> None:
 
 
 def test_unknown_method_lists_those_there_are() -> None:
-    with pytest.raises(InputError, match=r"'trajectory'.*exact"):
-        invert_trajectory(PI, [0.0], method="trajectory")
+    with pytest.raises(InputError, match=r"'oracle'.*exact"):
+        invert_trajectory(PI, [0.0], method="oracle")
 
 
 def test_unknown_way_out_lists_both() -> None:
