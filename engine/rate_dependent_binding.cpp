@@ -53,12 +53,12 @@ double step(const Chain &chain, Signal state, Signal target, Signal u, double ro
 }
 
 std::pair<std::size_t, std::size_t> exact(const Chain &chain, Vector state, Signal target,
-                                          Vector u) {
+                                          Vector u, double low, double high) {
     const hyst_rate_dependent_pi &plays = plays_of(chain, state.shape(0));
     if (u.shape(0) != target.shape(0)) throw std::invalid_argument("u and target differ in length");
     const nb::gil_scoped_release released;
     const SampleExact result =
-        sample_exact(plays, state.data(), target.data(), u.data(), target.shape(0));
+        sample_exact(plays, state.data(), target.data(), u.data(), target.shape(0), low, high);
     return {result.solved, result.several};
 }
 
@@ -79,7 +79,7 @@ void bind_rate_dependent_inversion(nb::module_ &module) {
                nb::arg("u"), nb::arg("roughness"), nb::arg("rounding"), nb::arg("limits"),
                nb::arg("damping"), nb::arg("result").noconvert());
     module.def("sample_exact", &exact, nb::arg("chain"), nb::arg("state").noconvert(),
-               nb::arg("target"), nb::arg("u").noconvert());
+               nb::arg("target"), nb::arg("u").noconvert(), nb::arg("low"), nb::arg("high"));
 }
 
 }  // namespace hyst

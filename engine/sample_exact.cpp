@@ -103,7 +103,7 @@ double nearest(SampleEquation &equation, double side, double miss_at_0, std::vec
 }  // namespace
 
 SampleExact sample_exact(const hyst_rate_dependent_pi &model, double *state, const double *target,
-                         double *u, std::size_t samples) {
+                         double *u, std::size_t samples, double low, double high) {
     SampleExact result{0, 0};
     SampleEquation equation(model);
     std::vector<double> at;
@@ -119,7 +119,7 @@ SampleExact sample_exact(const hyst_rate_dependent_pi &model, double *state, con
             change = std::fabs(up) <= std::fabs(down) ? up : down;
         }
         result.several += roots > 1;
-        u[k] = equation.base() + change;
+        u[k] = std::min(std::max(equation.base() + change, low), high);
         hyst_rate_dependent_pi_step(&model, state, u[k]);
         ++result.solved;
     }

@@ -13,8 +13,8 @@ struct SampleExact {
 };
 
 // Solves  y(u_k) = target_k  given the state that u_0 .. u_{k-1} left; of several solutions the one
-// nearest to u_{k-1}. The state is carried in and out.
+// nearest to u_{k-1}. u is held within [low, high]. The state is carried in and out.
 SampleExact sample_exact(const hyst_rate_dependent_pi &model, double *state, const double *target,
-                         double *u, std::size_t samples);
+                         double *u, std::size_t samples, double low, double high);
 
 }  // namespace hyst

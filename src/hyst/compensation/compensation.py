@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -28,6 +29,12 @@ class Compensation:
         How the command was computed.
     clipped
         Number of samples at which the command was held at an end of the input range.
+    status
+        ``solved`` in one pass, ``converged`` or ``iteration limit``.
+    iterations
+        Steps of the solver.
+    notes
+        What the user should know of how well the problem was posed, in sentences.
 
     Examples
     --------
@@ -41,6 +48,9 @@ class Compensation:
     y_predicted: Array
     method: str
     clipped: int
+    status: str = "solved"
+    iterations: int = 1
+    notes: tuple[str, ...] = ()
 
     @cached_property
     def predicted_error(self) -> Array:
@@ -57,6 +67,23 @@ class Compensation:
         """Largest absolute predicted error, output units."""
         return float(np.max(np.abs(self.predicted_error)))
 
+    @property
+    def total_variation(self) -> float | None:
+        """Total variation of the command over that of the reference; None for one at rest."""
+        return _ratio(np.sum, self.u, self.y_ref)
+
+    @property
+    def peak_rate(self) -> float | None:
+        """Largest rate of the command over that of the reference; None for one at rest."""
+        return _ratio(np.max, self.u, self.y_ref)
+
+    @property
+    def reversals(self) -> int:
+        """How often the command turns; many more than the reference's mean that it chatters."""
+        moves = np.diff(self.u)
+        turns = np.diff(np.sign(moves[moves != 0.0]))
+        return int(np.count_nonzero(turns))
+
     def percent_of_range(self, value: float) -> float | None:
         """Give an error in percent of the range of the wanted output.
 
@@ -72,3 +99,8 @@ class Compensation:
         """
         extent = float(np.ptp(self.y_ref))
         return 100.0 * value / extent if extent > 0.0 else None
+
+
+def _ratio(measure: Callable[..., float], u: Array, y_ref: Array) -> float | None:
+    wanted = float(measure(np.abs(np.diff(y_ref)), initial=0.0))
+    return float(measure(np.abs(np.diff(u)), initial=0.0)) / wanted if wanted > 0.0 else None

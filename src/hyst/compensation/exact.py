@@ -61,7 +61,7 @@ def invert_exactly(
     u, _ = inverse.run(reference, inverse_state)
     clipped = 0
     if input_range is not None:
-        low, high = _checked(input_range)
+        low, high = range_of_input(input_range)
         slack = _ROUNDING * (high - low)
         outside = (u < low - slack) | (u > high + slack)
         if outside.any() and not clip:
@@ -83,7 +83,23 @@ def _memory_after(
     return state, inverse.run(y)[1]
 
 
-def _checked(input_range: tuple[float, float]) -> tuple[float, float]:
+def range_of_input(input_range: tuple[float, float]) -> tuple[float, float]:
+    """Check the range of the input.
+
+    Parameters
+    ----------
+    input_range
+        Lowest and highest input.
+
+    Returns
+    -------
+    tuple of float
+
+    Raises
+    ------
+    InputError
+        If it is not two finite ascending numbers.
+    """
     ends = finite_vector(input_range, "input_range")
     if ends.size != 2 or not ends[0] < ends[1]:
         raise InputError(

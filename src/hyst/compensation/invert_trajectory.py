@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Literal
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from hyst.compensation.compensation import Compensation
 from hyst.compensation.exact import invert_exactly
-from hyst.errors import InputError
+from hyst.compensation.explicit import drive_explicitly
+from hyst.compensation.preview import drive_with_preview
+from hyst.compensation.rate_dependent_task import RateDependentTask, prepare_task
+from hyst.compensation.sample_exact import drive_sample_by_sample
+from hyst.compensation.solved_drive import ITERATION_LIMIT, SolvedDrive
+from hyst.compensation.trajectory import drive_along_trajectory
+from hyst.errors import InputError, SolverError
 from hyst.operators import Operator
 
-_METHODS = {"exact": invert_exactly}
+METHODS = ("exact", "explicit", "sample-exact", "preview", "trajectory")
 
 
 def invert_trajectory(
@@ -22,29 +30,55 @@ def invert_trajectory(
     input_range: tuple[float, float] | None = None,
     outside: Literal["refuse", "clip"] = "refuse",
     history: ArrayLike | None = None,
+    rate_limit: float | None = None,
+    preview: int = 20,
+    max_iterations: int = 1000,
+    allow_unconverged: bool = False,
+    progress: Callable[[float], None] | None = None,
 ) -> Compensation:
     """Find the input that makes a model follow a wanted output.
 
     ``exact``: ``u = model.inverse()(y_ref)``, with the memory of both starting in the same state.
+    The other methods are for rate-dependent plays, with maps before and after them or without:
+
+    ``explicit``: the explicit inverse of S4 eqs. 12-16, causal and smooth. It takes the rate of the
+    reference for that of the drive and leaves an error.
+    ``sample-exact``: every sample solved exactly, causal; the drive may chatter.
+    ``preview``: causal but for the next ``preview`` samples of the reference, planned anew at every
+    sample.
+    ``trajectory``: the whole reference known; the simulated error is minimised.
+
+    The predicted error is always that of the model driven by the command, thresholds from the
+    command's own rate.
 
     Parameters
     ----------
     model
-        An operator with an exact inverse.
+        An operator; for ``exact`` one with an exact inverse.
     y_ref
         Wanted output, shape (N,), finite, output units.
     method
-        ``"exact"``, the only one so far.
+        One of ``METHODS``.
     input_range
         Lowest and highest input allowed, input units; no limits if left out.
     outside
         What to do about a reference that would take the input out of its range: ``"refuse"``, or
-        ``"clip"``: hold the input at the end of the range and let the memory of the inverse follow
-        the output really reached, so that tracking is exact again as soon as the reference is back
-        in reach.
+        ``"clip"``: hold the input at the end of the range. ``exact`` then lets the memory of the
+        inverse follow the output really reached, so that tracking is exact again as soon as the
+        reference is back in reach; ``sample-exact``, ``preview`` and ``trajectory`` do so anyway.
     history
         Inputs the actuator has passed just before the first sample, shape (M,), input units; they
         set its memory. Left out, the model starts from its own initial state.
+    rate_limit
+        Largest rate of the input, input units per second, for ``preview`` and ``trajectory``.
+    preview
+        Samples of the reference known beyond the present one, >= 1, for ``preview``.
+    max_iterations
+        Of each stage of ``trajectory``.
+    allow_unconverged
+        Give the best command with its status instead of raising if ``trajectory`` did not converge.
+    progress
+        Called with the share done, 0 to 1.
 
     Returns
     -------
@@ -54,11 +88,13 @@ def invert_trajectory(
     Raises
     ------
     InputError
-        If a signal is empty or not finite (the first bad index is named), the method or
-        ``outside`` is unknown, the range is not two finite ascending numbers, or, with
-        ``"refuse"``, the reference is out of reach.
+        If a signal is empty or not finite (the first bad index is named), the method, ``outside``
+        or another option is not one there is, the range is not two finite ascending numbers, the
+        method is not for this model, or, with ``"refuse"``, the reference is out of reach.
     NotInvertibleError
-        If the model has no exact inverse.
+        If the model has no exact inverse and the method needs one, or p0 is not positive.
+    SolverError
+        If the trajectory inversion did not converge and ``allow_unconverged`` is false.
 
     Examples
     --------
@@ -70,9 +106,71 @@ def invert_trajectory(
     >>> done.predicted_error
     array([ 0.,  0., -2.,  0.])
     """
-    if method not in _METHODS:
-        known = ", ".join(_METHODS)
+    if method not in METHODS:
+        known = ", ".join(METHODS)
         raise InputError(f"unknown method {method!r}; the methods there are: {known}")
     if outside not in ("refuse", "clip"):
         raise InputError(f"outside is {outside!r}; choose 'refuse' or 'clip'")
-    return _METHODS[method](model, y_ref, input_range, outside == "clip", history)
+    clip = outside == "clip"
+    change_limited = rate_limit is not None
+    if change_limited and method not in ("preview", "trajectory"):
+        raise InputError(f"method {method!r} knows no rate limit; use 'preview' or 'trajectory'")
+    if method == "exact":
+        return invert_exactly(model, y_ref, input_range, clip, history)
+    task = prepare_task(model, y_ref, input_range, clip, history)
+    say = progress or _silent
+    if method == "explicit":
+        found = drive_explicitly(task)
+    elif method == "sample-exact":
+        found = drive_sample_by_sample(task)
+    elif method == "preview":
+        found = drive_with_preview(
+            task, _as_count(preview, "preview"), _change(task, rate_limit), say
+        )
+    else:
+        limit = _as_count(max_iterations, "max_iterations")
+        found = drive_along_trajectory(task, _change(task, rate_limit), limit, say)
+    done = _compensation(task, found, method)
+    if found.status == ITERATION_LIMIT and not allow_unconverged:
+        raise SolverError(
+            f"the trajectory inversion did not converge in {max_iterations} iterations a stage; "
+            f"its best command leaves an error of {done.max_abs:.4g} (rms {done.rms:.4g}); raise "
+            "max_iterations, or accept it with allow_unconverged"
+        )
+    return done
+
+
+def _silent(_: float) -> None:
+    """Report progress to nobody."""
+
+
+def _compensation(task: RateDependentTask, found: SolvedDrive, method: str) -> Compensation:
+    """Drive the whole model with the command and see what it does."""
+    u = task.input_of(found.drive)
+    y_predicted, _ = task.model.run(u, task.start)
+    at_end = int(np.count_nonzero((found.drive <= task.low) | (found.drive >= task.high)))
+    return Compensation(
+        u, task.y_ref, y_predicted, method, at_end, found.status, found.iterations, found.notes
+    )
+
+
+def _as_count(value: int, name: str) -> int:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
+        raise InputError(f"{name} is {value!r}; give a whole number, at least 1")
+    return int(value)
+
+
+def _change(task: RateDependentTask, rate_limit: float | None) -> float:
+    """Largest change of the drive per sample."""
+    if rate_limit is None:
+        return float("inf")
+    if not (np.isfinite(rate_limit) and rate_limit > 0.0):
+        raise InputError(
+            f"rate_limit is {rate_limit}; give a positive rate, input units per second"
+        )
+    if task.before is not None:
+        raise InputError(
+            "the model has a map before its plays, so the rate of its input is not that of the "
+            "drive; leave out rate_limit"
+        )
+    return float(rate_limit) * task.plays.dt

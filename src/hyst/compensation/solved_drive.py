@@ -1,0 +1,36 @@
+"""What a method of inversion hands over."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+SOLVED = "solved"
+CONVERGED = "converged"
+ITERATION_LIMIT = "iteration limit"
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedDrive:
+    """A drive of the plays and how it was found.
+
+    Parameters
+    ----------
+    drive
+        Shape (N,), input units of the plays.
+    status
+        ``solved`` (in one pass), ``converged`` or ``iteration limit``.
+    iterations
+        Steps tried.
+    notes
+        What the user should know, in sentences.
+    """
+
+    drive: Array
+    status: str
+    iterations: int
+    notes: tuple[str, ...]
