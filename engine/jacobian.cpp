@@ -7,6 +7,9 @@
 #include <cmath>
 #include <vector>
 
+#include "evaluation.hpp"
+#include "simd/kernels.hpp"
+
 #include "linear_jacobian.hpp"
 #include "masing_jacobian.hpp"
 #include "memory_element_jacobian.hpp"
@@ -112,7 +115,20 @@ void play_or_stop(const hyst_stage &stage, double start, const Tangents &t) {
     }
 }
 
-void prandtl_ishlinskii(const hyst_pi &pi, const double *start, const Tangents &t) {
+// A bank whose input does not depend on any parameter: nothing to remember but each play's way.
+void first_prandtl_ishlinskii(const hyst_stage &stage, const double *start, const Tangents &t) {
+    const hyst_pi &pi = stage.as.pi;
+    std::vector<double> z(start, start + pi.count), direction(pi.count, 0.0);
+    for (std::size_t k = 0; k < t.samples; ++k) t.own(k)[0] = t.signal[k];
+    kernels().derivative_rows(pi, z.data(), direction.data(), t.signal, t.samples, t.own(0) + 1,
+                              t.own(0) + 1 + pi.count, t.stride);
+    std::copy(start, start + pi.count, z.begin());
+    evaluate_stage(stage, z.data(), t.signal, t.signal, t.samples, {});
+}
+
+void prandtl_ishlinskii(const hyst_stage &stage, const double *start, const Tangents &t) {
+    if (t.incoming == 0) return first_prandtl_ishlinskii(stage, start, t);
+    const hyst_pi &pi = stage.as.pi;
     std::vector<RememberingPlay> plays;
     for (std::size_t i = 0; i < pi.count; ++i) plays.emplace_back(start[i], t.incoming);
     for (std::size_t k = 0; k < t.samples; ++k) {
@@ -236,7 +252,7 @@ void pass(const hyst_stage &stage, double dt, const double *state, const Tangent
     case HYST_DIRECTION_DEAD_ZONE:
         return dead_zone(stage.as.dead_zone, state, t);
     case HYST_PI:
-        return prandtl_ishlinskii(stage.as.pi, state, t);
+        return prandtl_ishlinskii(stage, state, t);
     case HYST_RATE_DEPENDENT_PI:
         return rate_dependent_pi(stage.as.rate_dependent_pi, dt, state, t);
     case HYST_STATE_SPACE:
