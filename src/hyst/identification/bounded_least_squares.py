@@ -21,6 +21,9 @@ Linearize = Callable[[Array], tuple[Array, Array]]
 CONVERGED = "converged"
 ITERATION_LIMIT = "iteration limit"
 
+LEAST_DAMPING = 1e-12
+"""Of the scaled normal matrix: it keeps the matrix numerically definite, and moves nothing."""
+
 
 @dataclass(frozen=True, eq=False)
 class Solution:
@@ -116,6 +119,7 @@ def minimize(
             residual, jacobian = problem.linearize(theta)
             cost = float(residual @ residual)
             damping *= max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3)
+            damping = max(damping, LEAST_DAMPING)
             growth = 2.0
         else:
             damping, growth = damping * growth, growth * 2.0
