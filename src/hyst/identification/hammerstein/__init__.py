@@ -1,0 +1,1 @@
+"""Hammerstein identification: hysteresis followed by linear dynamics."""
