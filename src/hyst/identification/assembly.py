@@ -58,12 +58,12 @@ def assemble(
         parameter_values=operator.parameters().values[free],
         standard_errors=errors[free],
         undetermined=notes,
-        metrics=_metrics(data, operator, validation),
+        metrics=metrics_by_record(data, operator, validation),
         candidates=candidates,
         status=fit.solution.status,
         iterations=fit.solution.iterations,
         used=data.used(),
-        description=_describe(data, fit.family),
+        description=describe(data, fit.family),
     )
 
 
@@ -109,7 +109,25 @@ def _not_told_apart(
     return f"the records do not tell apart {listed}; their values are one choice of many"
 
 
-def _metrics(data: Data, operator: Operator, validation: Sequence[Record]) -> dict[str, Metrics]:
+def metrics_by_record(
+    data: Data, operator: Operator, validation: Sequence[Record]
+) -> dict[str, Metrics]:
+    """Give the errors of a model over its own and other records.
+
+    Parameters
+    ----------
+    data
+        The records of the fit.
+    operator
+        The model.
+    validation
+        Records that took no part.
+
+    Returns
+    -------
+    dict
+        By name: ``training``, ``validation 1``, ..., each with and without a free offset.
+    """
     metrics = _pair("training", data, operator)
     for number, record in enumerate(validation, 1):
         name = "validation" if len(validation) == 1 else f"validation {number}"
@@ -129,7 +147,20 @@ def _pair(name: str, data: Data, operator: Operator) -> dict[str, Metrics]:
     }
 
 
-def _describe(data: Data, family: str) -> ModelDescription:
+def describe(data: Data, family: str) -> ModelDescription:
+    """Give names, units and ranges of the records for the model file.
+
+    Parameters
+    ----------
+    data
+        The records of the fit.
+    family
+        The family of the model.
+
+    Returns
+    -------
+    ModelDescription
+    """
     first = data.records[0]
     return ModelDescription(
         input_name=first.input_name,
