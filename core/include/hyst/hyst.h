@@ -5,6 +5,8 @@
 #include "hyst/chain.h"
 #include "hyst/dead_zone.h"
 #include "hyst/guard.h"
+#include "hyst/isotonic.h"
+#include "hyst/joint_estimator.h"
 #include "hyst/linear_dynamics.h"
 #include "hyst/loading_curve.h"
 #include "hyst/masing.h"
@@ -12,7 +14,9 @@
 #include "hyst/play.h"
 #include "hyst/power.h"
 #include "hyst/prandtl_ishlinskii.h"
+#include "hyst/radius_estimator.h"
 #include "hyst/rate_dependent_prandtl_ishlinskii.h"
 #include "hyst/real.h"
+#include "hyst/ud_factor.h"
 
 #endif

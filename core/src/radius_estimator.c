@@ -1,0 +1,221 @@
+/* Radii of plays from the measured slope and one linear regression: one sample. */
+#include "hyst/radius_estimator.h"
+
+#include "hyst/guard.h"
+#include "hyst/isotonic.h"
+#include "hyst/ud_factor.h"
+
+#define ZERO HYST_REAL(0.0)
+#define ONE HYST_REAL(1.0)
+
+hyst_radius_layout hyst_radius_places(const hyst_radius *radius)
+{
+    hyst_radius_layout at;
+    const size_t n = radius->plays;
+    at.r = HYST_RADIUS_R;
+    at.free = at.r + n;
+    at.home = at.free + n;
+    at.side = at.home + n;
+    at.age = at.side + n;
+    at.d = at.age + n;
+    at.u = at.d + n;
+    at.scratch = at.u + (n > 0 ? hyst_ud_length(n) : 0);
+    at.length = at.scratch + 6 * n;
+    return at;
+}
+
+void hyst_radius_start(const hyst_radius *radius, hyst_real *state, const hyst_real *z0)
+{
+    const hyst_radius_layout at = hyst_radius_places(radius);
+    for (size_t i = 0; i < HYST_RADIUS_R; ++i) {
+        state[i] = ZERO;
+    }
+    for (size_t i = at.home; i < at.length; ++i) {
+        state[i] = ZERO;
+    }
+    for (size_t i = 0; i < radius->plays; ++i) {
+        state[at.free + i] = state[at.r + i];
+        state[at.home + i] = z0[i];
+        state[at.d + i] = radius->limit[i];
+    }
+    state[HYST_RADIUS_REGIME] = -ONE;
+}
+
+/* Every play that was on its envelope leaves it where the input turned. */
+static void turn(const hyst_radius *radius, const hyst_radius_layout *at, hyst_real *state,
+                 hyst_real direction)
+{
+    for (size_t i = 0; i < radius->plays; ++i) {
+        if ((hyst_real)i < state[HYST_RADIUS_MOST]) {
+            if (state[at->side + i] * direction < ZERO) {
+                state[at->age + i] = ZERO;
+            }
+            state[at->home + i] = state[HYST_RADIUS_EXTREME];
+            state[at->side + i] = direction;
+        }
+    }
+    state[HYST_RADIUS_DIRECTION] = direction;
+    state[HYST_RADIUS_MEAN_U] = state[HYST_RADIUS_EXTREME];
+    state[HYST_RADIUS_MEAN_Y] = state[HYST_RADIUS_OUTPUT];
+    state[HYST_RADIUS_UU] = ZERO;
+    state[HYST_RADIUS_UY] = ZERO;
+    state[HYST_RADIUS_SINCE] = ZERO;
+    state[HYST_RADIUS_MOST] = ZERO;
+    state[HYST_RADIUS_REGIME] = -ONE;
+}
+
+static void follow_input(const hyst_radius *radius, const hyst_radius_layout *at,
+                         hyst_real *state, hyst_real u, hyst_real y)
+{
+    const hyst_real s = state[HYST_RADIUS_DIRECTION];
+    const hyst_real away = u - state[HYST_RADIUS_EXTREME];
+    const hyst_real back = s < ZERO ? away : -away;
+    if (!(s > ZERO || s < ZERO)) {
+        if (away > radius->dead_band || -away > radius->dead_band) {
+            turn(radius, at, state, away > ZERO ? ONE : -ONE);
+        }
+    } else if (back > radius->dead_band) {
+        turn(radius, at, state, -s);
+    }
+    if ((u - state[HYST_RADIUS_EXTREME]) * state[HYST_RADIUS_DIRECTION] > ZERO) {
+        state[HYST_RADIUS_EXTREME] = u;
+        state[HYST_RADIUS_OUTPUT] = y;
+    }
+    for (size_t i = 0; i < radius->plays; ++i) {
+        state[at->age + i] += ONE;
+    }
+}
+
+/* The regime of the slope model that is nearest to the measured slope. */
+static void find_regime(const hyst_radius *radius, hyst_real *state, hyst_real u, hyst_real y)
+{
+    const hyst_real du = u - state[HYST_RADIUS_MEAN_U];
+    const hyst_real dy = y - state[HYST_RADIUS_MEAN_Y];
+    const hyst_real share = ONE - radius->memory;
+    state[HYST_RADIUS_UU] = radius->memory * state[HYST_RADIUS_UU] + du * du;
+    state[HYST_RADIUS_UY] = radius->memory * state[HYST_RADIUS_UY] + du * dy;
+    state[HYST_RADIUS_MEAN_U] += share * du;
+    state[HYST_RADIUS_MEAN_Y] += share * dy;
+    state[HYST_RADIUS_SINCE] += ONE;
+    if (!(state[HYST_RADIUS_UU] > ZERO) || state[HYST_RADIUS_SINCE] <= radius->dead_time) {
+        state[HYST_RADIUS_REGIME] = -ONE;
+        return;
+    }
+    const hyst_real slope = state[HYST_RADIUS_UY] / state[HYST_RADIUS_UU];
+    hyst_real sum = radius->p0;
+    size_t regime = 0;
+    size_t i = 0;
+    /* Up to the middle between two slopes it is the lower one. */
+    for (; i < radius->plays && slope > sum + HYST_REAL(0.5) * radius->p[i]; ++i) {
+        sum += radius->p[i];
+        regime = i + 1;
+    }
+    const hyst_real off = slope - sum;
+    const hyst_real gap = off > ZERO ? (i < radius->plays ? radius->p[i] : radius->p[i - 1])
+                                     : (regime > 0 ? radius->p[regime - 1] : radius->p[0]);
+    const hyst_real most = HYST_REAL(0.5) * radius->tolerance * gap;
+    state[HYST_RADIUS_SLOPE] = slope;
+    if (off <= most && -off <= most) {
+        state[HYST_RADIUS_REGIME] = (hyst_real)regime;
+        if ((hyst_real)regime > state[HYST_RADIUS_MOST]) {
+            state[HYST_RADIUS_MOST] = (hyst_real)regime;
+        }
+    } else {
+        state[HYST_RADIUS_REGIME] = -ONE;
+    }
+}
+
+/* Fills phi and returns the prediction error. */
+static hyst_real regress(const hyst_radius *radius, const hyst_radius_layout *at,
+                         const hyst_real *state, hyst_real u, hyst_real y, hyst_real *phi)
+{
+    hyst_real error = y - radius->p0 * u;
+    for (size_t i = 0; i < radius->plays; ++i) {
+        const int outside = (hyst_real)i < state[HYST_RADIUS_REGIME];
+        const hyst_real from = outside ? u : state[at->home + i];
+        const hyst_real by_r = outside ? -state[HYST_RADIUS_DIRECTION] : state[at->side + i];
+        phi[i] = radius->p[i] * by_r;
+        error -= radius->p[i] * from + phi[i] * state[at->free + i];
+    }
+    return error;
+}
+
+static void descend(const hyst_radius *radius, const hyst_radius_layout *at, hyst_real *state,
+                    const hyst_real *phi, hyst_real error, hyst_real *r)
+{
+    for (size_t i = 0; i < radius->plays; ++i) {
+        r[i] = state[at->free + i] + radius->gain[i] * phi[i] * error;
+    }
+}
+
+static void least_squares(const hyst_radius *radius, const hyst_radius_layout *at,
+                          hyst_real *state, const hyst_real *phi, hyst_real error, hyst_real *r)
+{
+    const size_t n = radius->plays;
+    hyst_real *gain = r + n;
+    hyst_real *scale = gain + n;
+    hyst_real *variance = scale + n;
+    hyst_ud_variances(n, state + at->u, state + at->d, variance);
+    for (size_t i = 0; i < n; ++i) {
+        const int room = variance[i] * radius->growth * radius->growth <= radius->limit[i];
+        scale[i] = room ? radius->growth : ONE;
+    }
+    hyst_ud_scale(n, state + at->u, state + at->d, scale);
+    const hyst_real a = hyst_ud_update(n, state + at->u, state + at->d, phi, ONE, gain, scale);
+    for (size_t i = 0; i < n; ++i) {
+        r[i] = state[at->free + i] + gain[i] * (error / a);
+    }
+}
+
+int hyst_radius_step(const hyst_radius *radius, hyst_real *state, hyst_real u, hyst_real y)
+{
+    const hyst_radius_layout at = hyst_radius_places(radius);
+    const size_t n = radius->plays;
+    hyst_real *phi = state + at.scratch;
+    hyst_real *r = phi + n;
+    if (!hyst_is_finite(u) || !hyst_is_finite(y)) {
+        state[HYST_RADIUS_SKIPPED] += ONE;
+        return 0;
+    }
+    if (!(state[HYST_RADIUS_STARTED] > ZERO)) {
+        state[HYST_RADIUS_STARTED] = ONE;
+        state[HYST_RADIUS_INPUT] = state[HYST_RADIUS_EXTREME] = u;
+        state[HYST_RADIUS_OUTPUT] = y;
+        return 0;
+    }
+    /* While the input rests the regime is what it was. */
+    if (u < state[HYST_RADIUS_INPUT] || u > state[HYST_RADIUS_INPUT]) {
+        follow_input(radius, &at, state, u, y);
+        find_regime(radius, state, u, y);
+    }
+    state[HYST_RADIUS_INPUT] = u;
+    if (n == 0 || state[HYST_RADIUS_REGIME] < ZERO) {
+        return 0;
+    }
+    const hyst_real error = regress(radius, &at, state, u, y, phi);
+    if (radius->least_squares) {
+        least_squares(radius, &at, state, phi, error, r);
+    } else {
+        descend(radius, &at, state, phi, error, r);
+    }
+    hyst_real sum = error;
+    for (size_t i = 0; i < n; ++i) {
+        sum += r[i];
+    }
+    if (!hyst_is_finite(sum)) {
+        state[HYST_RADIUS_SKIPPED] += ONE;
+        return 0;
+    }
+    /* Least squares goes on from where it was: its estimate of each radius takes the others' into
+     * account, which a projection of some of them would undo. The gradient is projected itself. */
+    for (size_t i = 0; i < n; ++i) {
+        state[at.free + i] = state[at.r + i] = r[i];
+    }
+    hyst_isotonic(n, state + at.r, ZERO, radius->most_radius);
+    for (size_t i = 0; i < n && !radius->least_squares; ++i) {
+        state[at.free + i] = state[at.r + i];
+    }
+    state[HYST_RADIUS_ERROR] = error;
+    state[HYST_RADIUS_UPDATES] += ONE;
+    return 1;
+}
