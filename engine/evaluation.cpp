@@ -54,27 +54,6 @@ void take_cheapest(Choice &choice, std::size_t samples) {
     }
 }
 
-Choice choose(const hyst_stage &stage, const double *state, const double *u, std::size_t samples,
-              Engine wanted) {
-    if (!Lanes::can_take(stage)) {
-        const bool plays = stage.kind == HYST_PI || stage.kind == HYST_RATE_DEPENDENT_PI;
-        return {stage.kind, Engine::loop, plays ? "its thresholds do not ascend from zero or more"
-                                                : "it has no plays",
-                kNot, kNot, kNot, {}};
-    }
-    Choice choice = estimate(stage, state, u, samples);
-    if (wanted == Engine::automatic) {
-        take_cheapest(choice, samples);
-    } else if (wanted == Engine::memory_curve && !memory_curve_can_take(stage, state)) {
-        choice.engine = Engine::lanes;
-        choice.reason = "the memory curve cannot take this stage or this state";
-    } else {
-        choice.engine = wanted;
-        choice.reason = "asked for";
-    }
-    return choice;
-}
-
 bool run_memory_curve(const hyst_pi &pi, const double *state, const double *u, double *y,
                       std::size_t samples) {
     MemoryCurve curve(pi, state);
@@ -165,6 +144,27 @@ bool runs_rows_in_lanes(const Chain &chain, const Options &options, std::size_t 
 }
 
 }  // namespace
+
+Choice choose(const hyst_stage &stage, const double *state, const double *u, std::size_t samples,
+              Engine wanted) {
+    if (!Lanes::can_take(stage)) {
+        const bool plays = stage.kind == HYST_PI || stage.kind == HYST_RATE_DEPENDENT_PI;
+        return {stage.kind, Engine::loop, plays ? "its thresholds do not ascend from zero or more"
+                                                : "it has no plays",
+                kNot, kNot, kNot, {}};
+    }
+    Choice choice = estimate(stage, state, u, samples);
+    if (wanted == Engine::automatic) {
+        take_cheapest(choice, samples);
+    } else if (wanted == Engine::memory_curve && !memory_curve_can_take(stage, state)) {
+        choice.engine = Engine::lanes;
+        choice.reason = "the memory curve cannot take this stage or this state";
+    } else {
+        choice.engine = wanted;
+        choice.reason = "asked for";
+    }
+    return choice;
+}
 
 bool evaluate_stage(const hyst_stage &stage, double *state, const double *u, double *y,
                     std::size_t samples, const Options &options) {

@@ -27,6 +27,10 @@ struct Choice {
     Roughness rough;
 };
 
+// What a stage is evaluated by if `wanted` is wanted; u is its input.
+Choice choose(const hyst_stage &stage, const double *state, const double *u, std::size_t samples,
+              Engine wanted);
+
 // `rows` records of `samples` each, one after the other in memory; states likewise. Returns the flat
 // index of the first sample of u that is not finite, or rows * samples; in the first case states are
 // as before and y is meaningless. u and y do not overlap. choices, if not null, receives one entry for each stage, for the first record.

@@ -7,6 +7,7 @@
 #include "hyst/play.h"
 #include "jacobian.hpp"
 #include "lanes.hpp"
+#include "memory_curve.hpp"
 #include "parallel.hpp"
 #include "simd/kernels.hpp"
 
@@ -64,9 +65,10 @@ double sum_of(const double *values, std::size_t count) {
 }
 
 // A part of the record in time lanes; what is left over is taken step by step.
-void in_lanes(const hyst_pi &pi, Memory memory, const double *u, const double *target,
+void in_lanes(const hyst_pi &pi, const Memory &start, const double *u, const double *target,
               std::size_t samples, Sums &sums) {
     const Kernels &fast = kernels();
+    Memory memory = start;
     const std::size_t width = fast.width, n = pi.count;
     const std::size_t length = samples / width / width * width;
     std::vector<double> z(n * width), direction(n * width), by_p(n * width), by_direction(n * width);
@@ -89,13 +91,48 @@ void in_lanes(const hyst_pi &pi, Memory memory, const double *u, const double *t
     step_by_step(pi, memory, u + done, target + done, samples - done, sums);
 }
 
+// The choice that evaluation makes of the same record.
+bool takes_curve(const hyst_pi &pi, const double *z, const double *u, std::size_t samples,
+                 Engine wanted) {
+    hyst_stage stage{};
+    stage.kind = HYST_PI;
+    stage.as.pi = pi;
+    return choose(stage, z, u, samples, wanted).engine == Engine::memory_curve;
+}
+
+// A part of the record along the memory curve.
+void along_curve(const hyst_pi &pi, const Memory &memory, const double *u, const double *target,
+                 std::size_t samples, Sums &sums) {
+    constexpr std::size_t block = 4096;
+    const Kernels &fast = kernels();
+    const std::size_t n = pi.count;
+    const MemoryCurve curve(pi, memory.z.data());
+    std::vector<double> by_input(n + 1), by_way(n + 1), from_start(n), y(block);
+    CurveGradientData data{curve.data(), by_input.data(), by_way.data(), from_start.data(),
+                           0.0,          0.0,             0.0};
+    for (std::size_t k = 0; k < samples; k += block) {
+        fast.curve_gradient(data, u + k, target + k, y.data(), std::min(block, samples - k));
+    }
+    fast.finish_curve_gradient(data);
+    sums.loss += data.loss;
+    sums.by_p0 += data.by_p0;
+    double input = 0.0, way = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+        input += by_input[i];
+        way += by_way[i];
+        sums.by_p[i] += input + pi.r[i] * way + memory.z[i] * from_start[i];
+        sums.by_direction[i] += way + memory.direction[i] * from_start[i];
+    }
+}
+
 }  // namespace
 
 double pi_loss_gradient(const hyst_pi &pi, double *z, const double *u, const double *target,
-                        std::size_t samples, std::size_t threads, double *gradient) {
+                        std::size_t samples, const Options &options, double *gradient) {
     const std::size_t n = pi.count;
-    const std::size_t parts = std::max<std::size_t>(1, std::min(threads, samples / 16384));
+    const std::size_t parts = std::max<std::size_t>(1, std::min(options.threads, samples / 16384));
     const std::size_t length = samples / parts;
+    const bool curved = takes_curve(pi, z, u, samples, options.engine);
     std::vector<Memory> starts;
     Memory memory{{z, z + n}, std::vector<double>(n, 0.0)};
     for (std::size_t part = 0; part < parts; ++part) {
@@ -104,10 +141,11 @@ double pi_loss_gradient(const hyst_pi &pi, double *z, const double *u, const dou
         memory.jump(pi, u + first, part + 1 < parts ? length : samples - first);
     }
     std::vector<Sums> sums(parts, Sums(n));
-    parallel(parts, threads, [&](std::size_t part) {
+    parallel(parts, options.threads, [&](std::size_t part) {
         const std::size_t first = part * length;
         const std::size_t count = part + 1 < parts ? length : samples - first;
-        in_lanes(pi, starts[part], u + first, target + first, count, sums[part]);
+        const auto add = curved ? along_curve : in_lanes;
+        add(pi, starts[part], u + first, target + first, count, sums[part]);
     });
     for (std::size_t part = 1; part < parts; ++part) sums[0].add(sums[part]);
     gradient[0] = sums[0].by_p0;
@@ -118,15 +156,15 @@ double pi_loss_gradient(const hyst_pi &pi, double *z, const double *u, const dou
 }
 
 double loss_gradient(const Chain &chain, double *state, const double *u, const double *target,
-                     std::size_t samples, std::size_t threads, double *gradient) {
+                     std::size_t samples, const Options &options, double *gradient) {
     const hyst_stage *stage = chain.stages().data();
     if (chain.stages().size() == 1 && stage->kind == HYST_PI && Lanes::can_take(*stage)) {
-        return pi_loss_gradient(stage->as.pi, state, u, target, samples, threads, gradient);
+        return pi_loss_gradient(stage->as.pi, state, u, target, samples, options, gradient);
     }
     const std::size_t width = chain.parameter_count();
     std::vector<double> y(samples), rows(samples * width), start(state, state + chain.state_length());
     jacobian(chain, start.data(), u, samples, rows.data());
-    evaluate(chain, state, u, y.data(), 1, samples, {Engine::automatic, threads}, nullptr);
+    evaluate(chain, state, u, y.data(), 1, samples, options, nullptr);
     double loss = 0.0;
     std::fill(gradient, gradient + width, 0.0);
     for (std::size_t k = 0; k < samples; ++k) {

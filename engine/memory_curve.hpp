@@ -29,6 +29,8 @@ public:
         return kernels().memory_curve(data_, u, y, count);
     }
 
+    const MemoryCurveData &data() const { return data_; }
+
 private:
     void build_index(const hyst_pi &pi);
 

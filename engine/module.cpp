@@ -15,6 +15,7 @@
 #include "gram.hpp"
 #include "jacobian.hpp"
 #include "memory_stages_binding.hpp"
+#include "online_binding.hpp"
 #include "parallel.hpp"
 #include "rate_dependent_binding.hpp"
 #include "simd/kernels.hpp"
@@ -81,14 +82,14 @@ nb::list explain(const hyst::Chain &chain, Matrix state, Batch u, Matrix y,
     return told;
 }
 
-// The bank of plays a gradient is wanted of: a chain that is one Prandtl-Ishlinskii stage.
 double loss_gradient(const hyst::Chain &chain, Vector state, Signal u, Signal target,
-                     Vector gradient, std::size_t threads) {
+                     Vector gradient, const std::string &engine, std::size_t threads) {
     require(state.shape(0) == chain.state_length(), "state has the wrong length");
     require(target.shape(0) == u.shape(0), "the target must have the length of u");
     require(gradient.shape(0) == chain.parameter_count(), "the gradient has the wrong length");
+    const hyst::Options options{engine_named(engine), threads};
     const nb::gil_scoped_release released;
-    return hyst::loss_gradient(chain, state.data(), u.data(), target.data(), u.shape(0), threads,
+    return hyst::loss_gradient(chain, state.data(), u.data(), target.data(), u.shape(0), options,
                                gradient.data());
 }
 
@@ -208,7 +209,7 @@ NB_MODULE(_engine, module) {
              nb::arg("y").noconvert(), nb::arg("engine") = "auto")
         .def("loss_gradient", &loss_gradient, nb::arg("state").noconvert(),
              nb::arg("u").noconvert(), nb::arg("target").noconvert(),
-             nb::arg("gradient").noconvert(), nb::arg("threads") = 1)
+             nb::arg("gradient").noconvert(), nb::arg("engine") = "auto", nb::arg("threads") = 1)
         .def("jacobian", &jacobian, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
              nb::arg("result").noconvert());
     module.def("play_gram", &gram, nb::arg("r"), nb::arg("z").noconvert(),
@@ -227,6 +228,7 @@ NB_MODULE(_engine, module) {
     module.def("instruction_set", [] { return hyst::kernels().name; });
     module.def("use_instruction_set", &use_instruction_set, nb::arg("name"));
     module.def("stepper", &stepper, nb::arg("chain"), nb::arg("state"), nb::arg("y_safe"));
+    hyst::bind_online_estimation(module);
     hyst::bind_rate_dependent_inversion(module);
     if (!hyst::register_stepper(module.ptr())) throw nb::python_error();
 }

@@ -1,4 +1,5 @@
 // Compiled once per instruction set, without contraction; the table of all its kernels.
+#include "curve_gradient_kernel.hpp"
 #include "jump_kernel.hpp"
 #include "kernels.hpp"
 #include "lanes_kernel.hpp"
@@ -59,6 +60,8 @@ const Kernels kKernelTable = {HYST_TEXT(HYST_INSTRUCTION_SET),
                               first_non_finite,
                               affine,
                               dead_zone,
+                              curve_gradient,
+                              finish_curve_gradient,
                               sum_gradient,
                               derivative_rows,
                               play_rows,

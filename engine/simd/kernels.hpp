@@ -30,6 +30,7 @@ struct Segment {
     int way;          // 1: it rose, z = e - r; -1: it fell, z = e + r
     std::size_t end;  // first play beyond the segment
     double tail;      // sum of p z over the plays beyond it
+    double errors_before;  // for gradients: sum of all errors until the movement ended
 };
 
 struct MemoryCurveData {
@@ -42,6 +43,14 @@ struct MemoryCurveData {
     double cells_per_unit;
     Segment *stack;  // count + 2: at most one segment a play, and an empty one on top
     std::size_t depth;
+};
+
+// Sums of the gradient along a memory curve; see curve_gradient_kernel.hpp.
+struct CurveGradientData {
+    MemoryCurveData curve;
+    double *by_input, *by_way;  // differences over the plays, count + 1
+    double *from_start;         // sum of the errors while play i held its start
+    double errors, by_p0, loss;
 };
 
 // The loss gradient's view of a bank: everything is in packs, one for each play.
@@ -87,6 +96,10 @@ struct Kernels {
     void (*affine)(double gain, double offset, const double *u, double *y, std::size_t count);
     void (*dead_zone)(const hyst_dead_zone &map, const double *u, double *y, std::size_t count);
 
+    // u is finite. y: scratch of `count`. Call the second when the record is over.
+    void (*curve_gradient)(CurveGradientData &data, const double *u, const double *target,
+                           double *y, std::size_t count);
+    void (*finish_curve_gradient)(CurveGradientData &data);
     GradientSums (*gradient_lanes)(const GradientBank &bank, const double *u, const double *target,
                                    std::size_t samples, std::size_t stride);
     // Every play's memory and direction after each sample, one row of `stride` doubles a sample.

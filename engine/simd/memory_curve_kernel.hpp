@@ -55,47 +55,63 @@ inline double push(MemoryCurveData &curve, const Segment &segment, double limit)
     return limit;
 }
 
+// Told which plays the input starts to push, and at each reversal; evaluation has no use for it.
+struct NoObserver {
+    void reversed(Segment &) {}
+    void pushes(const Segment &, std::size_t, std::size_t) {}
+    void pushes_from_start(std::size_t) {}
+};
+
 // The input has passed all segments: which of the plays that still hold their start does it push?
-template <int way>
-inline double settle_on_start(MemoryCurveData &curve, double u, std::size_t first) {
+template <int way, class Observer>
+inline double settle_on_start(MemoryCurveData &curve, double u, std::size_t first,
+                              Observer &observer) {
     const hyst_pi &pi = *curve.pi;
     std::size_t i = first;
-    while (i < pi.count && way * curve.start[i] + pi.r[i] < way * u) ++i;
-    return push(curve, {u, way, i, curve.start_sum[i]},
+    for (; i < pi.count && way * curve.start[i] + pi.r[i] < way * u; ++i) {
+        observer.pushes_from_start(i);
+    }
+    return push(curve, {u, way, i, curve.start_sum[i], 0.0},
                 i < pi.count ? curve.start[i] + way * pi.r[i] : way * kNoLimit);
 }
 
 // The input moves to u, up for way = 1, down for -1. Segments it passes are wiped out. Returns how
 // far the input may go on before it reaches the next play or segment.
-template <int way>
-inline double turn(MemoryCurveData &curve, double u) {
+template <int way, class Observer>
+inline double turn(MemoryCurveData &curve, double u, Observer &observer) {
     std::size_t first = 0;  // plays before it are pushed by u
     if (curve.depth > 0 && curve.stack[curve.depth - 1].way == way) {
         first = curve.stack[--curve.depth].end;
+    } else if (curve.depth > 0) {
+        observer.reversed(curve.stack[curve.depth - 1]);
     }
     for (; curve.depth > 0; --curve.depth) {
         const Segment reached = curve.stack[curve.depth - 1];
         if (reached.way == way) {
             // Left by an input that moved the same way: wiped out where u goes further than it did.
             if (way * reached.e >= way * u) {
-                return push(curve, {u, way, first, sum_from(curve, reached, first)}, reached.e);
+                return push(curve, {u, way, first, sum_from(curve, reached, first), 0.0}, reached.e);
             }
+            observer.pushes(reached, first, reached.end);
         } else {
+            const std::size_t before = first;
             first = first_not_passed(curve, way * (u - reached.e), first, reached.end);
+            observer.pushes(reached, before, first);
             if (first < reached.end) {
-                return push(curve, {u, way, first, sum_from(curve, reached, first)},
+                return push(curve, {u, way, first, sum_from(curve, reached, first), 0.0},
                             reached.e + way * 2.0 * curve.pi->r[first]);
             }
         }
         first = reached.end;
     }
-    return settle_on_start<way>(curve, u, first);
+    return settle_on_start<way>(curve, u, first, observer);
 }
 
 // One sample by turn, and those after it that stay on its line. Returns how many.
-template <int way>
-inline std::size_t sweep(MemoryCurveData &curve, const double *u, double *y, std::size_t count) {
-    const double limit = turn<way>(curve, u[0]);
+template <int way, class Observer>
+inline std::size_t sweep(MemoryCurveData &curve, const double *u, double *y, std::size_t count,
+                         Observer &observer) {
+    const double limit = turn<way>(curve, u[0], observer);
     Segment &top = curve.stack[curve.depth - 1];
     const Line line{top.tail - way * curve.pr_sum[top.end], curve.pi->p0 + curve.p_sum[top.end],
                     limit};
@@ -105,14 +121,22 @@ inline std::size_t sweep(MemoryCurveData &curve, const double *u, double *y, std
     return taken;
 }
 
+// The next movement of the input, up or down, until it pushes another play.
+template <class Observer>
+inline std::size_t move(MemoryCurveData &curve, const double *u, double *y, std::size_t count,
+                        Observer &observer) {
+    const double now = curve.depth > 0 ? curve.stack[curve.depth - 1].e
+                                       : curve.start[0] - curve.pi->r[0];
+    return u[0] > now ? sweep<1>(curve, u, y, count, observer)
+                      : sweep<-1>(curve, u, y, count, observer);
+}
+
 inline std::size_t memory_curve(MemoryCurveData &curve, const double *u, double *y,
                                 std::size_t count) {
+    NoObserver observer;
     std::size_t k = 0;
     while (k < count && u[k] - u[k] == 0.0) {
-        const double now = curve.depth > 0 ? curve.stack[curve.depth - 1].e
-                                           : curve.start[0] - curve.pi->r[0];
-        k += u[k] > now ? sweep<1>(curve, u + k, y + k, count - k)
-                        : sweep<-1>(curve, u + k, y + k, count - k);
+        k += move(curve, u + k, y + k, count - k, observer);
     }
     return k;
 }

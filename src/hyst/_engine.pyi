@@ -64,7 +64,13 @@ class Chain:
         self, state: Array, u: Array, y: Array, engine: str = "auto"
     ) -> list[tuple[str, str, float, float, float, float]]: ...
     def loss_gradient(
-        self, state: Array, u: Array, target: Array, gradient: Array, threads: int = 1
+        self,
+        state: Array,
+        u: Array,
+        target: Array,
+        gradient: Array,
+        engine: str = "auto",
+        threads: int = 1,
     ) -> float: ...
     def jacobian(self, state: Array, u: Array, result: Array) -> None: ...
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 import hyst
 from hyst import _engine
 from hyst.errors import InputError
+from hyst.operators.engine_name import EngineName
 
 Array = NDArray[np.float64]
 
@@ -45,13 +46,15 @@ def expected_plays(name: str, n: int) -> tuple[Array, Array]:
 
 @pytest.mark.parametrize("name", records())
 @pytest.mark.parametrize("n", [1, 7, 19])
-@pytest.mark.parametrize("threads", [1, 2])
-def test_loss_gradient(instruction_set: str, name: str, n: int, threads: int) -> None:
+@pytest.mark.parametrize(("engine", "threads"), [("lanes", 1), ("memory-curve", 1), ("auto", 2)])
+def test_loss_gradient(
+    instruction_set: str, name: str, n: int, engine: EngineName, threads: int
+) -> None:
     u, rng = records()[name], np.random.default_rng(n)
     r, p = np.linspace(0.0, 0.9, n), rng.normal(size=n)
     target = rng.normal(size=u.size)
     model = hyst.PrandtlIshlinskii(p, r, 0.5, 0.5 * r)
-    loss, gradient = model.loss_gradient(u, target, threads=threads)
+    loss, gradient = model.loss_gradient(u, target, engine=engine, threads=threads)
     outputs, ways = expected_plays(name, n)
     error = 0.5 * u + outputs @ p - target
     expected = np.concatenate([[error @ u], error @ outputs, p * (error @ ways)])

@@ -264,7 +264,13 @@ class Operator(ABC):
 
     @final
     def loss_gradient(
-        self, u: ArrayLike, y: ArrayLike, state: ArrayLike | None = None, *, threads: int = 1
+        self,
+        u: ArrayLike,
+        y: ArrayLike,
+        state: ArrayLike | None = None,
+        *,
+        engine: EngineName = "auto",
+        threads: int = 1,
     ) -> tuple[float, Array]:
         """Give the loss ``1/2 sum_k (f(u)_k - y_k)^2`` and its derivative by the parameters.
 
@@ -276,10 +282,8 @@ class Operator(ABC):
             Shape (N,), finite, N >= 1.
         y
             Shape (N,), finite, the output wanted.
-        state
+        state, engine, threads
             As in ``run``.
-        threads
-            How many threads may work on it, at least 1.
 
         Returns
         -------
@@ -291,8 +295,8 @@ class Operator(ABC):
         Raises
         ------
         InputError
-            If ``u`` and ``y`` are not two records of one length, or ``state`` or ``threads`` cannot
-            be used.
+            If ``u`` and ``y`` are not two records of one length, or ``state``, ``engine`` or
+            ``threads`` cannot be used.
         """
         signal, wanted = as_signal(u), as_signal(y, "y")
         if signal.ndim != 1 or wanted.shape != signal.shape:
@@ -302,7 +306,9 @@ class Operator(ABC):
         start = self.initial_state() if state is None else state
         memory = as_state(start, self._chain.state_length, None)[0]
         gradient = np.empty(self._chain.parameter_count)
-        loss = self._chain.loss_gradient(memory, signal, wanted, gradient, as_threads(threads))
+        loss = self._chain.loss_gradient(
+            memory, signal, wanted, gradient, as_engine(engine), as_threads(threads)
+        )
         return loss, gradient
 
     @final
