@@ -14,7 +14,7 @@ from hyst.identification.data import LARGEST_RADIUS, Data, prepare
 from hyst.identification.families import GPI, LINEAR, MPI, PI, Parametrization
 from hyst.identification.fitting import Fitter, model_output, problem_of
 from hyst.models import GeneralizedPrandtlIshlinskii, PrandtlIshlinskii, RambergOsgood
-from hyst.operators import Affine, DeadZone
+from hyst.operators import Affine, DeadZone, Operator
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
@@ -129,21 +129,20 @@ def _generalized(record: Record, options: FrontOptions) -> Front:
 
 
 def _free_envelope(
-    template: Affine | object,
+    template: Operator,
     map_size: int,
     pi: PrandtlIshlinskii,
     swing: float,
     options: FrontOptions,
 ) -> Front:
     n = pi.p.size
-    values = template.parameters().values.copy()  # type: ignore[attr-defined]
+    values = template.parameters().values.copy()
     # Constants: weights and thresholds of the map, p0, p, r, gain, offset.
     plays_at = 2 * map_size
-    places = [
-        *range(plays_at, plays_at + 1 + 2 * n),
-        *range(map_size),
-        values.size - 1,
-    ]
+    places = [*range(plays_at, plays_at + 1 + 2 * n), *range(map_size)]
+    if isinstance(options.knots, int):
+        places += range(map_size + 1, 2 * map_size)
+    places += [values.size - 1]
     transform = np.zeros((values.size, len(places)))
     transform[places, np.arange(len(places))] = 1.0
     theta = values[places]
@@ -154,6 +153,9 @@ def _free_envelope(
     lower[radii], upper[radii] = 1e-4 * swing / 2.0, LARGEST_RADIUS * swing / 2.0
     if options.radii is not None:
         lower[radii] = upper[radii] = theta[radii]
+    if isinstance(options.knots, int):
+        knots = slice(2 * n + 1 + map_size, theta.size - 1)
+        lower[knots], upper[knots] = _reach(theta[knots])
     theta[radii] = np.clip(theta[radii], lower[radii], upper[radii])
     parametrization = Parametrization(
         template,
@@ -161,7 +163,7 @@ def _free_envelope(
         values,
         lower,
         upper,
-        np.eye(n + 1),  # type: ignore[arg-type]
+        np.eye(n + 1),
     )
     gauge = np.zeros(theta.size)
     gauge[: n + 1] = 1.0
@@ -208,6 +210,16 @@ def _knots(u: Array, knots: int | Array) -> Array:
         places = np.unique(knots)
     span = float(np.ptp(u))
     return places[np.abs(places) > 1e-6 * span]
+
+
+def _reach(knots: Array) -> tuple[Array, Array]:
+    """Let each knot move to halfway to its neighbours, and not across 0."""
+    fence = np.sort(np.append(knots, 0.0))
+    halves = 0.5 * (fence[1:] + fence[:-1])
+    edges = np.concatenate([[1.5 * fence[0]], halves, [1.5 * fence[-1]]])
+    place = np.searchsorted(fence, knots)
+    lower, upper = edges[place], edges[place + 1]
+    return np.minimum(lower, knots), np.maximum(upper, knots)
 
 
 def _fit_map(record: Record, knots: Array) -> tuple[Array, float]:

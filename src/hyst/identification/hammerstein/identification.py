@@ -18,7 +18,13 @@ from hyst.identification.bounded_least_squares import CONVERGED, Solution
 from hyst.identification.data import Data, prepare
 from hyst.identification.hammerstein.front import FrontOptions, first_front
 from hyst.identification.hammerstein.identified_hammerstein import IdentifiedHammerstein, Loop
-from hyst.identification.hammerstein.joint import MOST_SAMPLES, Joint, refine, shortened
+from hyst.identification.hammerstein.joint import (
+    MOST_SAMPLES,
+    Joint,
+    refine,
+    refine_coarsely,
+    shortened,
+)
 from hyst.identification.hammerstein.markov import MarkovParameters, choose_markov
 from hyst.identification.hammerstein.realization import Realization, realize
 from hyst.identification.hammerstein.record_checks import check_records
@@ -36,6 +42,9 @@ Array = NDArray[np.float64]
 
 _SIGNIFICANT = 4.0  # standard errors
 _NEGLIGIBLE = 0.02  # of the largest Markov parameter
+_WORTH_A_STATE = 0.8  # to what share of the squared error a further state must lower it
+_TRIAL_ITERATIONS = 25
+_ROUNDING = 1e-16  # share of the output's power: nothing is left to explain
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,18 +112,10 @@ def identify_hammerstein(
     say("Markov parameters")
     markov = choose_markov(data.records, options.fir_order)
     delay = _delay(markov, options.delay)
-    say("realization")
-    realized = _realized(markov, delay, data.records[0].dt, options.state_order)
-    realized = replace(realized, dynamics=_normalized(realized.dynamics))
-    say("signal behind the hysteresis")
-    v, valid, reason = _estimated_v(data.records[0], realized.dynamics)
-    front = first_front(
-        data.records[0].u[: valid.stop], v[: valid.stop], data.records[0].dt, options.front
-    )
-    say("refinement")
     data = _settled(data, markov.order, options.start)
     refined_on = shortened(data, MOST_SAMPLES // len(data.records))
-    joint = Joint(front, realized.dynamics, realized.dynamics.D != 0.0)
+    realized, joint, reason = _first_guess(data, markov, delay, options, say)
+    say("refinement")
     solution = refine(joint, refined_on, options.max_iterations)
     if solution.status != CONVERGED and not options.allow_unconverged:
         raise SolverError(
@@ -123,6 +124,51 @@ def identify_hammerstein(
         )
     sure = uncertainty(joint, refined_on, solution.theta)
     return _result(joint, solution, sure, data, markov, realized, notes + reason, validation)
+
+
+def _first_guess(
+    data: Data,
+    markov: MarkovParameters,
+    delay: int,
+    options: HammersteinOptions,
+    say: Callable[[str], None],
+) -> tuple[Realization, Joint, tuple[str, ...]]:
+    """Realize, invert and fit the hysteresis; choose the order by the refined output error.
+
+    Hysteresis itself looks like slow dynamics to the first step, so the singular values only bound
+    the order from above.
+    """
+    record, dt = data.records[0], data.records[0].dt
+    best, least, power = None, np.inf, float(data.measured() @ data.measured())
+    for order in _orders(markov, delay, dt, options.state_order):
+        say(f"realization of order {order}")
+        realized = _realized(markov, delay, dt, order)
+        realized = replace(realized, dynamics=_normalized(realized.dynamics))
+        v, valid, reason = _estimated_v(record, realized.dynamics)
+        front = first_front(record.u[: valid.stop], v[: valid.stop], dt, options.front)
+        joint = Joint(front, realized.dynamics, realized.dynamics.D != 0.0)
+        guess = (realized, joint, reason)
+        if options.state_order != "auto":
+            return guess
+        cost = refine_coarsely(joint, data, _TRIAL_ITERATIONS).cost
+        if best is None or cost < _WORTH_A_STATE * least:
+            best, least = guess, cost
+            if cost <= _ROUNDING * power:
+                break
+        elif order > 1 and cost > _WORTH_A_STATE * least:
+            break
+    if best is None:
+        raise NotIdentifiableError("no order can be realized; raise fir_order")
+    return best
+
+
+def _orders(
+    markov: MarkovParameters, delay: int, dt: float, state_order: int | str
+) -> Sequence[int]:
+    if state_order != "auto":
+        return (int(state_order),)
+    largest = _realized(markov, delay, dt, "auto").dynamics.order
+    return range(1, largest + 1)
 
 
 def _delay(markov: MarkovParameters, wanted: int | str) -> int:

@@ -24,6 +24,7 @@ from hyst.operators import Operator
 Array = NDArray[np.float64]
 
 _WARM_UP = 8_000  # samples of each record for the first, coarse iterations
+_TOLERANCE = 2e-2  # of the residual variance: at most a seventh of a standard error is left
 MOST_SAMPLES = 300_000
 """The Jacobian is held in memory; of longer records the beginning is refined on."""
 
@@ -159,7 +160,12 @@ def refine(joint: Joint, data: Data, max_iterations: int) -> Solution:
     coarse = shortened(data, _WARM_UP)
     if coarse is not data:
         theta = minimize(_problem(joint, coarse), theta, max_iterations, 1e-1).theta
-    return minimize(_problem(joint, data), theta, max_iterations)
+    return minimize(_problem(joint, data), theta, max_iterations, _TOLERANCE)
+
+
+def refine_coarsely(joint: Joint, data: Data, max_iterations: int) -> Solution:
+    """Refine on the beginning of the records, to compare first guesses."""
+    return minimize(_problem(joint, shortened(data, _WARM_UP)), joint.start(), max_iterations, 1.0)
 
 
 def shortened(data: Data, samples: int) -> Data:

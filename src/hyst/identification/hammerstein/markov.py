@@ -162,7 +162,10 @@ def choose_markov(records: Sequence[Record], order: int | str, start: int = 0) -
     orders = [each for each in ORDERS if 8 * (each + 2) <= longest] or [ORDERS[0]]
     best = fit_markov(records, orders[0], start)
     for larger in orders[1:]:
-        found = fit_markov(records, larger, start)
+        try:
+            found = fit_markov(records, larger, start)
+        except NotIdentifiableError:
+            break  # the input excites the shorter response only
         if found.residual_rms**2 > best.residual_rms**2 * (1.0 - _ENOUGH) and best.tail < 1e-3:
             break
         best = found
@@ -192,7 +195,7 @@ def _by_qr(records: Sequence[Record], order: int, start: int, scale: Array) -> t
         if not found.sufficient and len(records) == 1:
             raise NotIdentifiableError(f"the input is {found.advice()}")
     factors = [lagged_factor(r.u[start:], r.y[start:], order) for r in records]
-    factor = np.linalg.qr(np.concatenate(factors), mode="r")
+    factor = np.asarray(np.linalg.qr(np.concatenate(factors), mode="r"))
     triangle, target = factor[:-1, :-1] / scale, factor[:-1, -1]
     values = np.linalg.svd(triangle, compute_uv=False)
     if values[-1] <= 1e-10 * values[0]:

@@ -1,0 +1,78 @@
+"""From the options of ``identify`` to a Hammerstein identification."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hyst.errors import InputError
+from hyst.identification.hammerstein.front import FrontOptions
+from hyst.identification.hammerstein.identification import HammersteinOptions, identify_hammerstein
+from hyst.identification.hammerstein.identified_hammerstein import IdentifiedHammerstein
+from hyst.signals import Record
+
+HAMMERSTEIN = "hammerstein"
+AUTOMATIC_PLAYS = 4
+_MOST_PLAYS = 50
+
+
+def identify_with_dynamics(
+    records: Record | Sequence[Record],
+    *,
+    hysteresis: str,
+    orders: tuple[int | str, int | str],
+    plays: int | str,
+    radii: NDArray[np.float64] | None,
+    knots: int | ArrayLike,
+    weights: str,
+    delay: int | str,
+    start: int | str,
+    validation: Record | Sequence[Record],
+    limits: tuple[int, bool],
+    say: Callable[[str], None],
+) -> IdentifiedHammerstein:
+    """Identify hysteresis and dynamics with the options of ``identify``, checked.
+
+    Raises
+    ------
+    InputError, NotIdentifiableError, SolverError
+        As ``identify_hammerstein``.
+    """
+    count = AUTOMATIC_PLAYS if plays == "auto" else _whole(plays, "plays", 1, _MOST_PLAYS)
+    front = FrontOptions(
+        family=hysteresis,
+        plays=count if radii is None else int(radii.size),
+        knots=_as_knots(knots),
+        radii=radii,
+        rule=weights,
+    )
+    options = HammersteinOptions(
+        fir_order=orders[0],
+        state_order=orders[1],
+        delay=delay if delay == "auto" else _whole(delay, "delay", 0, 10_000),
+        front=front,
+        start=start,
+        max_iterations=limits[0],
+        allow_unconverged=limits[1],
+    )
+    judged = (validation,) if isinstance(validation, Record) else tuple(validation)
+    return identify_hammerstein(records, options, judged, say)
+
+
+def _as_knots(knots: Any) -> int | NDArray[np.float64]:
+    if isinstance(knots, int | np.integer):
+        return _whole(knots, "knots", 1, 50)
+    places = np.asarray(knots, dtype=np.float64)
+    if places.ndim != 1 or places.size == 0 or not np.isfinite(places).all():
+        raise InputError("knots must be a number of knots or a list of finite places")
+    return places
+
+
+def _whole(value: Any, name: str, least: int, most: int) -> int:
+    is_whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    if not is_whole or not least <= value <= most:
+        raise InputError(f"{name} is {value!r}; give {least} to {most}, or 'auto'")
+    return int(value)
