@@ -16,6 +16,7 @@ from hyst.identification.data import Data, prepare
 from hyst.identification.delay import estimate_delay
 from hyst.identification.families import FAMILIES, LINEAR, PI
 from hyst.identification.fitting import AUTO, MOST_STARTS, Fit, Fitter
+from hyst.identification.hammerstein.from_options import HAMMERSTEIN, identify_with_dynamics
 from hyst.identification.identified import Candidate, Identified
 from hyst.identification.selection import SIZES, choose
 from hyst.identification.weight_rules import RULES
@@ -36,6 +37,9 @@ def identify(
     weights: str = "auto",
     delay: int | Literal["auto"] = "auto",
     start: int | Literal["auto"] = "auto",
+    hysteresis: str = "mpi",
+    fir_order: int | Literal["auto"] = "auto",
+    state_order: int | Literal["auto"] = "auto",
     validation: Record | Sequence[Record] = (),
     max_iterations: int = 200,
     allow_unconverged: bool = False,
@@ -73,6 +77,11 @@ def identify(
         First sample to use. ``"auto"``: the first at which the memory is known whatever was before,
         because the input has passed its range; all samples with no memory before them if that would
         leave less than half of the record.
+    hysteresis, fir_order, state_order
+        Only with ``family="hammerstein"``, which identifies a hysteresis (``linear``, ``pi``,
+        ``gpi``, ``mpi`` or ``ramberg-osgood``) and linear dynamics behind it: the last lag of the
+        first step and the number of states, or ``"auto"``. The result is an
+        ``IdentifiedHammerstein``; ``"auto"`` plays are 4.
     validation
         Records to judge the model by; they do not take part in the fit.
     max_iterations
@@ -106,6 +115,22 @@ def identify(
     True
     """
     say = progress or _silent
+    if family == HAMMERSTEIN:
+        with threadpool_limits(1, user_api="blas"):
+            return identify_with_dynamics(
+                records,
+                hysteresis=hysteresis,
+                orders=(fir_order, state_order),
+                plays=plays,
+                radii=None if radii is None else _as_radii(radii),
+                knots=knots,
+                weights=_as_rule(weights),
+                delay=delay,
+                start=start,
+                validation=validation,
+                limits=(max_iterations, allow_unconverged),
+                say=say,
+            )
     fixed = None if radii is None else _as_radii(radii)
     families, sizes = _as_families(family, fixed), _as_sizes(plays, fixed)
     with threadpool_limits(1, user_api="blas"):
