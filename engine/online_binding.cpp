@@ -1,0 +1,224 @@
+// The estimators of the core, one sample or one record at a time. The state is a flat array that
+// Python owns; what is checked here is only that nothing is written outside an array.
+#include "online_binding.hpp"
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "hyst/hyst.h"
+
+#include <cstddef>
+#include <map>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace nb = nanobind;
+
+namespace hyst {
+namespace {
+
+using State = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Rows = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Signal = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+void require(bool holds, const char *message) {
+    if (!holds) throw std::invalid_argument(message);
+}
+
+// Terms of a map, threshold 0 first, then the positive ones ascending, then the negative ones.
+struct Map {
+    std::vector<double> threshold;
+    double least_slope, most_slope;
+
+    hyst_joint_map view() const {
+        std::size_t positive = 0;
+        for (double each : threshold) positive += each > 0.0;
+        return {threshold.size(), positive, threshold.data(), least_slope, most_slope};
+    }
+};
+
+class Joint {
+public:
+    Joint(std::size_t plays, std::vector<double> limit, Map front, Map back)
+        : limit_(std::move(limit)), front_(std::move(front)), back_(std::move(back)) {
+        config_ = {};
+        config_.plays = plays;
+        config_.front = front_.view();
+        config_.back = back_.view();
+        config_.limit = limit_.data();
+        places_ = hyst_joint_places(&config_);
+        require(limit_.size() == places_.m, "limit must have one entry for each parameter");
+    }
+    Joint(const Joint &) = delete;
+    Joint &operator=(const Joint &) = delete;
+
+    void set_bounds(double least_slope, double most_slope, double most_radius) {
+        config_.least_slope = least_slope;
+        config_.most_slope = most_slope;
+        config_.most_radius = most_radius;
+    }
+    void set_memory(double forgetting, double fading, double noise_memory, double least_noise,
+                    double least_share, double patience) {
+        config_.forgetting = forgetting;
+        config_.fading = fading;
+        config_.noise_memory = noise_memory;
+        config_.least_noise = least_noise;
+        config_.least_share = least_share;
+        config_.patience = patience;
+    }
+    std::map<std::string, std::size_t> places() const {
+        return {{"m", places_.m},       {"theta", places_.theta}, {"d", places_.d},
+                {"u", places_.u},       {"z", places_.z},         {"side", places_.side},
+                {"age", places_.age},   {"home", places_.home},   {"far", places_.far},
+                {"psi", places_.psi},   {"length", places_.length}};
+    }
+    void start(State state, double noise, double extra_forgetting) const {
+        hyst_joint_start(&config_, checked(state), noise, extra_forgetting);
+    }
+    int step(State state, double u, double y) const {
+        return hyst_joint_step(&config_, checked(state), u, y);
+    }
+    // A row of theta and of its variances after every `every` samples; all prediction errors.
+    void run(State state, Signal u, Signal y, std::size_t every, Rows theta, Rows variance,
+             State error) const {
+        double *values = checked(state);
+        const std::size_t samples = u.shape(0);
+        require(y.shape(0) == samples && error.shape(0) == samples, "u, y and error differ in length");
+        require(every > 0 && theta.shape(0) == samples / every && theta.shape(1) == places_.m &&
+                    variance.shape(0) == theta.shape(0) && variance.shape(1) == places_.m,
+                "theta and variance have the wrong shape");
+        nb::gil_scoped_release unlocked;
+        for (std::size_t k = 0; k < samples; ++k) {
+            const int end = hyst_joint_step(&config_, values, u.data()[k], y.data()[k]);
+            error.data()[k] = end == HYST_JOINT_UPDATED ? values[HYST_JOINT_ERROR] : 0.0;
+            if ((k + 1) % every == 0) store(values, k / every, theta, variance);
+        }
+    }
+
+private:
+    double *checked(const State &state) const {
+        require(state.shape(0) == places_.length, "state has the wrong length");
+        return state.data();
+    }
+    void store(const double *state, std::size_t row, const Rows &theta, const Rows &variance) const {
+        const std::size_t m = places_.m;
+        for (std::size_t j = 0; j < m; ++j) theta.data()[row * m + j] = state[places_.theta + j];
+        hyst_ud_variances(m, state + places_.u, state + places_.d, variance.data() + row * m);
+    }
+
+    std::vector<double> limit_;
+    Map front_, back_;
+    hyst_joint config_;
+    hyst_joint_layout places_;
+};
+
+class Radius {
+public:
+    Radius(double p0, std::vector<double> p, std::vector<double> gain, std::vector<double> limit)
+        : p_(std::move(p)), gain_(std::move(gain)), limit_(std::move(limit)) {
+        config_ = {};
+        config_.plays = p_.size();
+        config_.p0 = p0;
+        config_.p = p_.data();
+        config_.gain = gain_.data();
+        config_.limit = limit_.data();
+        places_ = hyst_radius_places(&config_);
+        require(gain_.size() == p_.size() && limit_.size() == p_.size(),
+                "gain and limit must have one entry for each play");
+    }
+    Radius(const Radius &) = delete;
+    Radius &operator=(const Radius &) = delete;
+
+    void set_method(bool least_squares, double growth, double most_radius) {
+        config_.least_squares = least_squares;
+        config_.growth = growth;
+        config_.most_radius = most_radius;
+    }
+    void set_slope_filter(double memory, double dead_time, double dead_band, double tolerance) {
+        config_.memory = memory;
+        config_.dead_time = dead_time;
+        config_.dead_band = dead_band;
+        config_.tolerance = tolerance;
+    }
+    std::map<std::string, std::size_t> places() const {
+        return {{"r", places_.r},       {"home", places_.home}, {"side", places_.side},
+                {"age", places_.age},   {"d", places_.d},       {"u", places_.u},
+                {"length", places_.length}};
+    }
+    void start(State state, Signal z0) const {
+        require(z0.shape(0) == p_.size(), "z0 must have one entry for each play");
+        hyst_radius_start(&config_, checked(state), z0.data());
+    }
+    bool step(State state, double u, double y) const {
+        return hyst_radius_step(&config_, checked(state), u, y) != 0;
+    }
+    void run(State state, Signal u, Signal y, std::size_t every, Rows r, State error) const {
+        double *values = checked(state);
+        const std::size_t samples = u.shape(0);
+        require(y.shape(0) == samples && error.shape(0) == samples, "u, y and error differ in length");
+        require(every > 0 && r.shape(0) == samples / every && r.shape(1) == p_.size(),
+                "r has the wrong shape");
+        nb::gil_scoped_release unlocked;
+        for (std::size_t k = 0; k < samples; ++k) {
+            const int used = hyst_radius_step(&config_, values, u.data()[k], y.data()[k]);
+            error.data()[k] = used ? values[HYST_RADIUS_ERROR] : 0.0;
+            for (std::size_t i = 0; i < p_.size() && (k + 1) % every == 0; ++i) {
+                r.data()[k / every * p_.size() + i] = values[places_.r + i];
+            }
+        }
+    }
+
+private:
+    double *checked(const State &state) const {
+        require(state.shape(0) == places_.length, "state has the wrong length");
+        return state.data();
+    }
+
+    std::vector<double> p_, gain_, limit_;
+    hyst_radius config_;
+    hyst_radius_layout places_;
+};
+
+void project_radii(State r, double most) {
+    hyst_isotonic(r.shape(0), r.data(), 0.0, most);
+}
+
+}  // namespace
+
+void bind_online_estimation(nb::module_ &module) {
+    nb::class_<Joint>(module, "JointEstimation")
+        .def("__init__",
+             [](Joint *self, std::size_t plays, std::vector<double> limit, std::vector<double> front,
+                std::vector<double> back, double least_map_slope, double most_map_slope) {
+                 new (self) Joint(plays, std::move(limit),
+                                  {std::move(front), least_map_slope, most_map_slope},
+                                  {std::move(back), least_map_slope, most_map_slope});
+             })
+        .def("set_bounds", &Joint::set_bounds)
+        .def("set_memory", &Joint::set_memory)
+        .def("places", &Joint::places)
+        .def("start", &Joint::start, nb::arg("state").noconvert(), nb::arg("noise"),
+             nb::arg("extra_forgetting"))
+        .def("step", &Joint::step, nb::arg("state").noconvert(), nb::arg("u"), nb::arg("y"))
+        .def("run", &Joint::run, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
+             nb::arg("y").noconvert(), nb::arg("every"), nb::arg("theta").noconvert(),
+             nb::arg("variance").noconvert(), nb::arg("error").noconvert());
+    nb::class_<Radius>(module, "RadiusEstimation")
+        .def(nb::init<double, std::vector<double>, std::vector<double>, std::vector<double>>())
+        .def("set_method", &Radius::set_method)
+        .def("set_slope_filter", &Radius::set_slope_filter)
+        .def("places", &Radius::places)
+        .def("start", &Radius::start, nb::arg("state").noconvert(), nb::arg("z0").noconvert())
+        .def("step", &Radius::step, nb::arg("state").noconvert(), nb::arg("u"), nb::arg("y"))
+        .def("run", &Radius::run, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
+             nb::arg("y").noconvert(), nb::arg("every"), nb::arg("r").noconvert(),
+             nb::arg("error").noconvert());
+    module.def("project_radii", &project_radii, nb::arg("r").noconvert(), nb::arg("most"));
+}
+
+}  // namespace hyst

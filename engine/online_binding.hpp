@@ -1,0 +1,10 @@
+// What Python sees of estimation while the system runs.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace hyst {
+
+void bind_online_estimation(nanobind::module_ &module);
+
+}  // namespace hyst
