@@ -18,6 +18,7 @@ from hyst.identification.families import FAMILIES, LINEAR, PI
 from hyst.identification.fitting import AUTO, MOST_STARTS, Fit, Fitter
 from hyst.identification.hammerstein.from_options import HAMMERSTEIN, identify_with_dynamics
 from hyst.identification.identified import Candidate, Identified
+from hyst.identification.rate_dependent import RDPI, identify_rate_dependent
 from hyst.identification.selection import SIZES, choose
 from hyst.identification.weight_rules import RULES
 from hyst.signals import Record
@@ -35,6 +36,8 @@ def identify(
     radii: ArrayLike | None = None,
     knots: int = 6,
     weights: str = "auto",
+    spacing: str = "even",
+    record_weights: str | ArrayLike = "equal",
     delay: int | Literal["auto"] = "auto",
     start: int | Literal["auto"] = "auto",
     hysteresis: str = "mpi",
@@ -70,6 +73,12 @@ def identify(
         ``"non-negative"``; ``"invertible"``: single weights may be negative as long as the
         cumulative ones are positive, for loops that flatten after a reversal, as friction's do; or
         ``"auto"``: the latter where it lowers the residual by more than a tenth.
+    spacing
+        Of ``rdpi``, the rate-dependent family for records at several frequencies: radii at rest
+        ``"even"`` (multiples of the first) or ``"free"``.
+    record_weights
+        Of ``rdpi``: ``"equal"``, ``"hysteresis"`` (the hysteresis percent of each record over that
+        of the first), or a positive number for each record.
     delay
         Whole samples by which the output lags the input, or ``"auto"``. The model is identified
         without it; ``Identified.predict`` adds it.
@@ -131,6 +140,20 @@ def identify(
                 limits=(max_iterations, allow_unconverged),
                 say=say,
             )
+    if family == RDPI:
+        return identify_rate_dependent(
+            records,
+            plays=plays,
+            radii=radii,
+            spacing=spacing,
+            record_weights=record_weights,
+            delay=delay,
+            start=start,
+            validation=validation,
+            max_iterations=max_iterations,
+            allow_unconverged=allow_unconverged,
+            progress=progress,
+        )
     fixed = None if radii is None else _as_radii(radii)
     families, sizes = _as_families(family, fixed), _as_sizes(plays, fixed)
     with threadpool_limits(1, user_api="blas"):
