@@ -19,7 +19,7 @@ def test_memristor_of_example_2() -> None:
     charge = 0.5 * (1.0 - np.cos(W * T)) / W
     memristor = MemoryElement(MemoryFunction.polynomial([2.0, 1.0, 1.0]), DT)
     expected = (2.0 + charge + charge**2) * current
-    # The input held over a step: the charge is off by dt |I| / 2 at most, V by R' |I| < 1 times that.
+    # The input held over a step: the charge is off by dt |I| / 2, V by R' |I| < 1 times that.
     assert np.abs(memristor(current) - expected).max() < 1.0 * 0.5 * DT
     assert memristor([0.0, 0.0]).tolist() == [0.0, 0.0]
 

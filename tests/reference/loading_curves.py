@@ -6,6 +6,7 @@ found afresh for every sample, by walking the record and striking out what has b
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 
 import numpy as np
@@ -49,7 +50,7 @@ def masing_output(f: Curve, u: ArrayLike) -> float:
     if not kept:
         return 0.0
     y = np.sign(kept[0]) * f(abs(kept[0]))
-    for before, after in zip(kept, kept[1:], strict=False):
+    for before, after in itertools.pairwise(kept):
         y += np.sign(after - before) * 2.0 * f(abs(after - before) / 2.0)
     return float(y)
 
@@ -65,7 +66,7 @@ def last_reversal(f: Curve, u: Array) -> Array:
     for k in range(u.size):
         points = turning_points(u[: k + 1])
         total = 0.0
-        for number, (before, after) in enumerate(zip(points, points[1:], strict=False)):
+        for number, (before, after) in enumerate(itertools.pairwise(points)):
             way = after - before
             part = f(abs(way)) if number == 0 else 2.0 * f(abs(way) / 2.0)
             total += np.sign(way) * part

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 import hyst
-from hyst.cli.arguments import InputColumn, whole_or_auto
+from hyst.cli.arguments import InputColumn, numbers, whole_or_auto
 from hyst.cli.console import at_work, show_files, show_table
 
 Data = Annotated[
@@ -36,9 +36,24 @@ TimeUnit = Annotated[
 Repair = Annotated[
     bool, typer.Option("--repair", help="Leave out bad rows and resample uneven time.")
 ]
-Family = Annotated[str, typer.Option(help="linear, pi, gpi, mpi; auto compares them.")]
+Family = Annotated[
+    str, typer.Option(help="linear, pi, gpi, mpi; auto compares them. Or rdpi, ramberg-osgood.")
+]
+Memory = Annotated[
+    str, typer.Option(help="Of ramberg-osgood: masing (loops close) or last-reversal (drifts).")
+]
+Regression = Annotated[
+    str, typer.Option(help="Of ramberg-osgood: fit the output, or its slope over the input.")
+]
 Plays = Annotated[str, typer.Option(metavar="N|auto", help="Number of plays.")]
 Knots = Annotated[int, typer.Option(help="Knots of the map of gpi and mpi.")]
+Spacing = Annotated[str, typer.Option(help="Of rdpi: radii even or free.")]
+RecordWeights = Annotated[
+    str,
+    typer.Option(
+        metavar="WEIGHTS", help="Of rdpi: equal, hysteresis, or a number a record, as 1,1.56,2."
+    ),
+]
 Weights = Annotated[
     str, typer.Option(help="auto, non-negative, or invertible: negative where the inverse allows.")
 ]
@@ -73,6 +88,10 @@ def identify(
     plays: Plays = "auto",
     knots: Knots = 6,
     weights: Weights = "auto",
+    memory: Memory = "masing",
+    regression: Regression = "output",
+    spacing: Spacing = "even",
+    record_weights: RecordWeights = "equal",
     delay: Delay = "auto",
     start: Start = "auto",
     validate: Validate = None,
@@ -105,6 +124,14 @@ def identify(
             plays=whole_or_auto(plays, "plays"),
             knots=knots,
             weights=weights,
+            memory=memory,
+            regression=regression,
+            spacing=spacing,
+            record_weights=(
+                numbers(record_weights, "record-weights")
+                if "," in record_weights
+                else record_weights
+            ),
             delay=whole_or_auto(delay, "delay"),
             start=whole_or_auto(start, "start"),
             validation=validation,

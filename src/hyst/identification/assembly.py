@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hyst.identification.covariance import robust_covariance, undetermined_combination
 from hyst.identification.data import Data, prepare
-from hyst.identification.families import Parametrization
+from hyst.identification.families import RAMBERG_OSGOOD, Parametrization
 from hyst.identification.fitting import Fit, Fitter, model_jacobian, model_output
 from hyst.identification.identified import Candidate, Identified
 from hyst.operators import ModelDescription, Operator
@@ -48,6 +48,9 @@ def assemble(
     data, parametrization, operator = fitter.data, fit.parametrization, fit.operator
     free = parametrization.transform.any(axis=1)
     errors, not_told_apart = _standard_errors(data, fit)
+    if fit.family == RAMBERG_OSGOOD and fitter.power_law.regression == "slope":
+        # Those of a fit of the output would be too small for one of slopes.
+        errors, not_told_apart = np.full(errors.size, np.nan), ()
     names = np.array(operator.parameters().names)
     notes = left_out + _idle_plays(plays_wanted, parametrization.plays) + not_told_apart
     return Identified(

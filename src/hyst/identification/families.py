@@ -14,19 +14,27 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.identification.separable import LARGEST_POWER, SMALLEST_POWER, PowerLawFit
 from hyst.identification.weight_rules import NON_NEGATIVE, basis
 from hyst.models import (
     GeneralizedPrandtlIshlinskii,
     ModifiedPrandtlIshlinskii,
     PrandtlIshlinskii,
+    RambergOsgood,
 )
+from hyst.models.masing import as_mode
 from hyst.operators import Affine, DeadZone, Operator
 
 Array = NDArray[np.float64]
 
 LINEAR, PI, GPI, MPI = "linear", "pi", "gpi", "mpi"
 FAMILIES = (LINEAR, PI, GPI, MPI)
-"""From the simplest to the richest."""
+"""From the simplest to the richest: what ``auto`` compares."""
+
+RAMBERG_OSGOOD = "ramberg-osgood"
+"""Without plays, and only if it is asked for by name."""
+
+WITHOUT_PLAYS = (LINEAR, RAMBERG_OSGOOD)
 
 SMALLEST_MAP_SLOPE = 0.02
 """Of an envelope or output map, whose slope around 0 is 1."""
@@ -185,6 +193,43 @@ def _linear(start: Start) -> tuple[Parametrization, Array]:
             basis=np.eye(1),
         ),
         np.array([start.p0, start.offset]),
+    )
+
+
+def parametrize_power_law(
+    fit: PowerLawFit, sign: float, mean_slope: float, memory: str
+) -> tuple[Parametrization, Array]:
+    """Give the parametrization of a Ramberg-Osgood model and theta = (c1, c2, c3, offset).
+
+    Parameters
+    ----------
+    fit
+        Where to start.
+    sign
+        +1, or -1 where the output falls as the input rises.
+    mean_slope
+        Of the records, output units per input unit.
+    memory
+        How reversals are remembered.
+
+    Returns
+    -------
+    Parametrization
+    theta : numpy.ndarray
+    """
+    model = RambergOsgood(fit.c1, fit.c2, fit.c3, as_mode(memory), dead_band=fit.dead_band)
+    transform = np.zeros((5, 4))
+    transform[[0, 1, 2, 4], range(4)] = 1.0
+    return (
+        Parametrization(
+            template=Affine(sign, fit.offset) @ model,
+            transform=transform,
+            fixed=np.array([0.0, 0.0, 0.0, sign, 0.0]),
+            lower=np.array([SMALLEST_SLOPE * mean_slope, 0.0, SMALLEST_POWER, -np.inf]),
+            upper=np.array([np.inf, np.inf, LARGEST_POWER, np.inf]),
+            basis=np.eye(1),
+        ),
+        np.array([fit.c1, fit.c2, fit.c3, fit.offset]),
     )
 
 

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.bounded_least_squares import Problem, Solution, minimize
+from hyst.identification.bounded_least_squares import CONVERGED, Problem, Solution, minimize
 from hyst.identification.data import Data
 from hyst.identification.families import (
     GPI,
     LINEAR,
     MPI,
+    RAMBERG_OSGOOD,
     Parametrization,
     Start,
     parametrize,
+    parametrize_power_law,
 )
 from hyst.identification.radius_search import search_radii
+from hyst.identification.separable import PowerLawOptions, fit_power_law
 from hyst.identification.weight_rules import INVERTIBLE, NON_NEGATIVE, RULES
 from hyst.identification.weights import Weights, fit_weights
 from hyst.models import PrandtlIshlinskii
@@ -159,12 +162,15 @@ class Fitter:
         Shape (n,), radii to keep, input units; None if they are to be found.
     wanted_rule
         What the weights may be: ``non-negative``, ``invertible`` or ``auto``.
+    power_law
+        How a power law is identified, for ``ramberg-osgood``.
     """
 
     data: Data
     knots: int
     radii: Array | None = None
     wanted_rule: str = AUTO
+    power_law: PowerLawOptions = field(default_factory=PowerLawOptions)
 
     def fit(self, family: str, plays: int, starts: int = 1, max_iterations: int = 100) -> Fit:
         """Fit a family with a given number of plays; the best of several starts is kept.
@@ -172,7 +178,7 @@ class Fitter:
         Parameters
         ----------
         family
-            ``linear``, ``pi``, ``gpi`` or ``mpi``.
+            ``linear``, ``ramberg-osgood``, ``pi``, ``gpi`` or ``mpi``.
         plays
             Number of plays.
         starts
@@ -185,6 +191,8 @@ class Fitter:
         -------
         Fit
         """
+        if family == RAMBERG_OSGOOD:
+            return self._fit_power_law(max_iterations)
         guesses = self._first_radii(0 if family == LINEAR else plays)[:starts]
         fits = [self._fit_from(family, r, max_iterations) for r in guesses]
         return min(fits, key=lambda fit: fit.solution.cost)
@@ -292,6 +300,25 @@ class Fitter:
         solution = minimize(problem_of(self.data, parametrization), theta, max_iterations)
         return Fit(family, parametrization, solution)
 
+    def _fit_power_law(self, max_iterations: int) -> Fit:
+        """Fit by variable projection; a fit of the output then ends in all constants at once."""
+        found = fit_power_law(self.data, self.power_law, self.sign)
+        parametrization, theta = parametrize_power_law(
+            found, self.sign, self._mean_slope, self.power_law.memory
+        )
+        problem = problem_of(self.data, parametrization)
+        if self.power_law.regression == "slope":
+            residual = problem.residual(theta)
+            cost = float(residual @ residual)
+            solution = Solution(theta, cost, found.evaluations, CONVERGED)
+        else:
+            solution = minimize(problem, theta, max_iterations)
+        return Fit(RAMBERG_OSGOOD, parametrization, solution)
+
+    @property
+    def _mean_slope(self) -> float:
+        return float(np.ptp(self.data.measured())) / (2.0 * self.data.half_range)
+
     def _start(self, family: str, weights: Weights) -> Start:
         return Start(
             p0=weights.p0,
@@ -301,7 +328,7 @@ class Fitter:
             sign=self.sign,
             knots=self._knots(family, weights),
             largest_radius=self.data.largest_radius,
-            mean_slope=float(np.ptp(self.data.measured())) / (2.0 * self.data.half_range),
+            mean_slope=self._mean_slope,
             rule=self.rule,
             fixed_radii=self.radii is not None,
         )

@@ -14,12 +14,13 @@ from hyst.identification.assembly import assemble
 from hyst.identification.bounded_least_squares import CONVERGED
 from hyst.identification.data import Data, prepare
 from hyst.identification.delay import estimate_delay
-from hyst.identification.families import FAMILIES, LINEAR, PI
+from hyst.identification.families import FAMILIES, LINEAR, PI, RAMBERG_OSGOOD, WITHOUT_PLAYS
 from hyst.identification.fitting import AUTO, MOST_STARTS, Fit, Fitter
 from hyst.identification.hammerstein.from_options import HAMMERSTEIN, identify_with_dynamics
 from hyst.identification.identified import Candidate, Identified
 from hyst.identification.rate_dependent import RDPI, identify_rate_dependent
 from hyst.identification.selection import SIZES, choose
+from hyst.identification.separable import PowerLawOptions
 from hyst.identification.weight_rules import RULES
 from hyst.signals import Record
 
@@ -36,6 +37,9 @@ def identify(
     radii: ArrayLike | None = None,
     knots: int = 6,
     weights: str = "auto",
+    memory: str = "masing",
+    regression: str = "output",
+    signal_to_noise: float = 3.0,
     spacing: str = "even",
     record_weights: str | ArrayLike = "equal",
     delay: int | Literal["auto"] = "auto",
@@ -51,8 +55,8 @@ def identify(
     """Identify a hysteresis model, a constant offset and a whole-sample delay from records.
 
     Families: ``linear`` (a straight line), ``pi`` (Prandtl-Ishlinskii), ``gpi`` (an envelope map
-    before the plays), ``mpi`` (a map after them). Cumulative weights and the slopes of the maps
-    are kept positive, so the result can always be inverted.
+    before the plays), ``mpi`` (a map after them), ``ramberg-osgood`` (three constants). Cumulative
+    weights and the slopes of the maps are kept positive, so the result can always be inverted.
 
     Parameters
     ----------
@@ -60,8 +64,8 @@ def identify(
         One or more records of one actuator with one sample time. They are not joined: each has its
         own memory.
     family
-        One family, or ``"auto"``: all of them compared by blocked cross-validation; the simplest
-        within one standard error of the best is taken.
+        One family, or ``"auto"``: all but ``ramberg-osgood`` compared by blocked cross-validation;
+        the simplest within one standard error of the best is taken.
     plays
         Number of plays, 1 to 200, or ``"auto"``: chosen in the same way. Plays whose weight comes
         out zero are left out of the model.
@@ -73,6 +77,13 @@ def identify(
         ``"non-negative"``; ``"invertible"``: single weights may be negative as long as the
         cumulative ones are positive, for loops that flatten after a reversal, as friction's do; or
         ``"auto"``: the latter where it lowers the residual by more than a tenth.
+    memory
+        Of ``ramberg-osgood``: ``"masing"`` (nested reversals) or ``"last-reversal"``.
+    regression
+        Of ``ramberg-osgood``: ``"output"`` fits y; ``"slope"`` fits dy/du, as S3 does, which is
+        more sensitive to noise and gives no standard errors.
+    signal_to_noise
+        With ``"slope"``: what a difference of y must be in units of its noise to take part.
     spacing
         Of ``rdpi``, the rate-dependent family for records at several frequencies: radii at rest
         ``"even"`` (multiples of the first) or ``"free"``.
@@ -163,7 +174,8 @@ def identify(
         data = data.delayed(_as_delay(delay, data))
         fixed, left_out = _within_reach(fixed, data)
         sizes = sizes if fixed is None else (fixed.size,)
-        fitter = Fitter(data, _as_knots(knots), fixed, _as_rule(weights))
+        power_law = PowerLawOptions(memory, regression, signal_to_noise)
+        fitter = Fitter(data, _as_knots(knots), fixed, _as_rule(weights), power_law)
         _require_samples(data, families, sizes, knots)
         chosen_family, chosen_plays, candidates = _select(fitter, families, sizes, say)
         say(f"final fit: {chosen_family}")
@@ -186,8 +198,8 @@ def _select(
     fitter: Fitter, families: Sequence[str], sizes: Sequence[int], say: Callable[[str], None]
 ) -> tuple[str, int, tuple[Candidate, ...]]:
     """Compare what there is to choose from; nothing if there is no choice."""
-    if len(families) == 1 and (len(sizes) == 1 or families[0] == LINEAR):
-        return families[0], 0 if families[0] == LINEAR else sizes[0], ()
+    if len(families) == 1 and (len(sizes) == 1 or families[0] in WITHOUT_PLAYS):
+        return families[0], 0 if families[0] in WITHOUT_PLAYS else sizes[0], ()
     choice = choose(fitter, families, sizes, say)
     return choice.family, choice.plays, choice.candidates
 
@@ -215,11 +227,11 @@ def _working_plays(fit: Fit, data: Data) -> NDArray[np.bool_]:
 def _as_families(family: str, radii: Array | None) -> tuple[str, ...]:
     if family == "auto":
         return FAMILIES if radii is None else FAMILIES[1:]
-    if family not in FAMILIES:
-        known = ", ".join(("auto", *FAMILIES))
+    if family not in (*FAMILIES, RAMBERG_OSGOOD):
+        known = ", ".join(("auto", *FAMILIES, RAMBERG_OSGOOD))
         raise InputError(f"unknown family {family!r}; choose one of {known}")
-    if family == LINEAR and radii is not None:
-        raise InputError("family 'linear' has no plays; leave out radii")
+    if family in WITHOUT_PLAYS and radii is not None:
+        raise InputError(f"family {family!r} has no plays; leave out radii")
     return (family,)
 
 
@@ -286,7 +298,7 @@ def _within_reach(radii: Array | None, data: Data) -> tuple[Array | None, tuple[
 
 def _require_samples(data: Data, families: Sequence[str], sizes: Sequence[int], knots: int) -> None:
     samples = data.measured().size
-    least = {LINEAR: 2, PI: 2 * sizes[0] + 2}
+    least = {LINEAR: 2, RAMBERG_OSGOOD: 4, PI: 2 * sizes[0] + 2}
     needed = min(least.get(family, 2 * sizes[0] + 2 + knots) for family in families)
     if samples <= needed:
         raise NotIdentifiableError(

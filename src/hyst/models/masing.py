@@ -33,6 +33,30 @@ _OVERFLOW = 3
 """Place in the state; see core/include/hyst/masing.h."""
 
 
+def as_mode(memory: str) -> Memory:
+    """Check the name of a memory.
+
+    Parameters
+    ----------
+    memory
+        ``"masing"`` or ``"last-reversal"``.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+    """
+    if memory == "masing":
+        return "masing"
+    if memory == "last-reversal":
+        return "last-reversal"
+    raise InputError(f"memory is {memory!r}; choose 'masing' or 'last-reversal'")
+
+
 def as_memory(memory: str, depth: int, dead_band: float) -> ReversalMemory:
     """Check how reversals are to be remembered.
 
@@ -54,8 +78,7 @@ def as_memory(memory: str, depth: int, dead_band: float) -> ReversalMemory:
     InputError
         If one of them is not allowed.
     """
-    if memory not in ("masing", "last-reversal"):
-        raise InputError(f"memory is {memory!r}; choose 'masing' or 'last-reversal'")
+    as_mode(memory)
     if isinstance(depth, bool) or not isinstance(depth, int | np.integer):
         raise InputError(f"depth is {depth!r}; give a whole number of reversals")
     if not 1 <= depth <= 100_000:

@@ -14,6 +14,7 @@ from hyst.signals import Record
 
 FAMILY_NAMES = {
     "linear": "straight line",
+    "ramberg-osgood": "Ramberg-Osgood model",
     "pi": "Prandtl-Ishlinskii model",
     "gpi": "generalized Prandtl-Ishlinskii model",
     "mpi": "modified Prandtl-Ishlinskii model",
@@ -22,6 +23,10 @@ FAMILY_NAMES = {
 _PLAYS = "P[w](t) = p0 w(t) + \u03a3 p\u1d62 F\u1d63\u1d62[w](t)"
 _EQUATIONS = {
     "linear": ("y(t) = gain \u00b7 u(t) + offset",),
+    "ramberg-osgood": (
+        "y(t) = {sign}R[u](t) + offset",
+        "dR/du = c1 + c2 p^c3,  p = |u - u at the last reversal|",
+    ),
     "pi": ("y(t) = {sign}P[u](t) + offset", _PLAYS),
     "gpi": ("y(t) = {sign}P[\u03b3(u)](t) + offset", _PLAYS),
     "mpi": ("y(t) = {sign}\u039b(P[u](t)) + offset", _PLAYS),
@@ -38,6 +43,12 @@ _MAP_TEXT = {
     "so that it may be asymmetric.",
 }
 _LINEAR_TEXT = "This model has no hysteresis: the output depends on the present input alone."
+
+_POWER_LAW_TEXT = (
+    "Right after a reversal the output follows the input with the slope c1; the further the input "
+    "goes, the steeper it gets. With nested memory a branch that closes a loop goes on along the "
+    "branch the loop started from, so that minor loops close."
+)
 
 
 def family_name(family: str) -> str:
@@ -63,6 +74,8 @@ def explanations(family: str) -> tuple[str, ...]:
     """Say what the signs in the equations mean."""
     if family == "linear":
         return (_LINEAR_TEXT,)
+    if family == "ramberg-osgood":
+        return (_POWER_LAW_TEXT,)
     return tuple(text for text in (_PLAY_TEXT, _MAP_TEXT.get(family, "")) if text)
 
 
