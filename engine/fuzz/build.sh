@@ -1,0 +1,27 @@
+#!/bin/sh
+# Builds the fuzz target into the folder given. Needs clang with libFuzzer.
+#   sh engine/fuzz/build.sh build/fuzz && build/fuzz/engines -max_total_time=600
+set -eu
+cd "$(dirname "$0")/../.."
+to=${1:?give a folder}
+mkdir -p "$to"
+checks="-g -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined"
+strict="-std=c++17 -ffp-contract=off -Icore/include -DHYST_X86 $checks"
+kernels() {
+    for part in exact sum; do
+        clang++ $strict -Wno-psabi -DHYST_INSTRUCTION_SET="$@" -c engine/simd/${part}_kernels.cpp \
+            -o "$to/${part}_$1.o"
+    done
+}
+kernels baseline
+kernels avx2 -mavx2 -mfma
+kernels avx512 -mavx512f -mavx512dq -mavx512vl -mfma
+while read -r source; do
+    clang -std=c99 -ffp-contract=off -Icore/include $checks -c "core/$source" \
+        -o "$to/core_$(basename "$source" .c).o"
+done < core/SOURCES
+for source in engine/simd/kernels.cpp engine/*.cpp; do
+    case $source in *module.cpp | *_binding.cpp | *stepper.cpp) continue ;; esac
+    clang++ $strict -c "$source" -o "$to/$(basename "$source" .cpp).o"
+done
+clang++ $strict -fsanitize=fuzzer engine/fuzz/engines.cpp "$to"/*.o -lpthread -o "$to/engines"

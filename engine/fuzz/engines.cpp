@@ -1,0 +1,106 @@
+// Fuzz target for libFuzzer: every engine on every instruction set against the core's loop.
+// engine/fuzz/build.sh builds it; docs/engine.md says how long it has run.
+//
+// The bytes are a bank, its memory and a record. Numbers come from a few bytes in three ways, so
+// that ties, plateaus and rounding all happen: small multiples of 1/8, differences of those by
+// rounding, and any double at all.
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <algorithm>
+#include <vector>
+
+#include "../evaluation.hpp"
+#include "../gradient.hpp"
+#include "../simd/kernels.hpp"
+
+namespace {
+
+struct Bytes {
+    const std::uint8_t *next;
+    std::size_t left;
+
+    std::uint8_t byte() {
+        if (left == 0) return 0;
+        --left;
+        return *next++;
+    }
+    double number() {
+        const std::uint8_t way = byte();
+        const double eighths = static_cast<std::int8_t>(byte()) / 8.0;
+        if (way < 160) return eighths;
+        if (way < 224) return eighths * 0.1 + way * 1e-17;
+        std::uint64_t bits = 0;
+        for (int i = 0; i < 8; ++i) bits = bits << 8 | byte();
+        double any;
+        std::memcpy(&any, &bits, sizeof any);
+        return any;
+    }
+    double finite() {
+        const double any = number();
+        return std::isfinite(any) ? any : 1.0;
+    }
+};
+
+void demand(bool holds, const char *what) {
+    if (holds) return;
+    std::fprintf(stderr, "differs: %s, %s\n", what, hyst::kernels().name);
+    std::abort();
+}
+
+bool same(const std::vector<double> &a, const std::vector<double> &b) {
+    return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
+    Bytes bytes{data, size};
+    const std::uint8_t kind = bytes.byte();
+    const std::size_t n = 1 + bytes.byte() % 12;
+    std::vector<double> r, p, z, u;
+    for (std::size_t i = 0; i < n; ++i) r.push_back(std::fabs(bytes.finite()));
+    if (kind % 8 != 0) std::sort(r.begin(), r.end());
+    for (std::size_t i = 0; i < n; ++i) p.push_back(static_cast<std::int8_t>(bytes.byte()) / 16.0);
+    const bool starts = kind & 8;
+    for (std::size_t i = 0; i < n; ++i) z.push_back(starts ? bytes.finite() : 0.0);
+    const bool repeats = kind & 16;
+    while (bytes.left > 0 && u.size() < 1500) {
+        u.push_back(kind & 32 ? bytes.number() : bytes.finite());
+        for (std::size_t times = repeats ? bytes.byte() % 64 : 0; times > 0; --times) {
+            u.push_back(u.back() + (times % 5) * 0.125);
+        }
+    }
+    if (u.empty()) return 0;
+
+    hyst::Chain chain;
+    if (kind & 64) {
+        chain.add_rate_dependent_pi(0.3, p, r, {0.25, {0.125}, {}, {}}, 1.0);
+        z.insert(z.end(), {0.5, kind & 128 ? 1.0 : 0.0});
+    } else {
+        chain.add_pi(0.3, p, r);
+    }
+    for (auto each = hyst::available_kernels(); *each != nullptr; ++each) {
+        hyst::use_kernels((*each)->name);
+        std::vector<double> state = z, y(u.size());
+        const std::size_t taken = hyst::evaluate(chain, state.data(), u.data(), y.data(), 1, u.size(),
+                                                 {hyst::Engine::loop, 1}, nullptr);
+        for (hyst::Engine engine : {hyst::Engine::lanes, hyst::Engine::memory_curve}) {
+            std::vector<double> state_found = z, y_found(u.size());
+            const std::size_t found =
+                hyst::evaluate(chain, state_found.data(), u.data(), y_found.data(), 1, u.size(),
+                               {engine, 1}, nullptr);
+            demand(found == taken, "the first bad sample");
+            demand(same(state_found, state), "the state");
+            if (taken == u.size() && engine == hyst::Engine::lanes) demand(same(y_found, y), "y");
+        }
+        if (taken == u.size()) {
+            std::vector<double> gradient(chain.parameter_count());
+            hyst::loss_gradient(chain, z.data(), u.data(), y.data(), u.size(),
+                                {hyst::Engine::memory_curve, 1}, gradient.data());
+        }
+    }
+    return 0;
+}
