@@ -168,7 +168,7 @@ class PrandtlIshlinskii(Operator):
 
     def lipschitz_constant(self) -> float:
         """Give the sum of the absolute weights."""
-        return float(abs(self.p0) + np.abs(self.p).sum())
+        return float(cumulative(abs(self.p0), np.abs(self.p))[-1])
 
     def to_dict(self) -> dict[str, Any]:
         """Give kind, weights, thresholds and, where there is one, the initial memory."""
@@ -203,7 +203,8 @@ class PrandtlIshlinskii(Operator):
         """
         r, first, place = np.unique(self.r, return_index=True, return_inverse=True)
         p = np.zeros(r.size)
-        np.add.at(p, place, self.p)
+        with np.errstate(over="ignore"):
+            np.add.at(p, place, self.p)
         linear = int(r.size > 0 and r[0] == 0.0)
         p0 = self.p0 + float(p[:linear].sum())
         return p0, p[linear:], r[linear:], self.z0[first][linear:]
@@ -215,13 +216,12 @@ class PrandtlIshlinskii(Operator):
         return bool(cumulative(p0, p).min() >= 0.0) and self._has_admissible_memory()
 
     def _has_admissible_memory(self) -> bool:
-        """Neighbouring plays differ by no more than their thresholds, those of one not at all."""
+        """Neighbouring plays differ by no more than their thresholds."""
         r, z = self.r[self.r > 0.0], self.z0[self.r > 0.0]
         with np.errstate(over="ignore"):
-            gaps = np.diff(r)
             # What rounding may add to a memory that an earlier run has left.
             slack = 1e-12 * (np.abs(z).max(initial=0.0) + np.abs(r).max(initial=0.0))
-            return bool((np.abs(np.diff(z)) <= np.where(gaps > 0.0, gaps + slack, 0.0)).all())
+            return bool((np.abs(np.diff(z)) <= np.diff(r) + slack).all())
 
     def _require_invertible(self) -> None:
         p0, p, r, _ = self._merged()

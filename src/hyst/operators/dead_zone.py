@@ -222,14 +222,15 @@ class DeadZone(Operator):
         )
 
     def _linear_part(self) -> float:
-        return float(self.weights[self.thresholds == 0.0].sum())
+        return float(cumulative(0.0, self.weights[self.thresholds == 0.0])[-1])
 
     def _side(self, sign: float) -> tuple[Array, Array]:
         """Distances of the thresholds on one side of 0, ascending, and their summed weights."""
         chosen = sign * self.thresholds > 0.0
         distance, place = np.unique(sign * self.thresholds[chosen], return_inverse=True)
         summed = np.zeros(distance.size)
-        np.add.at(summed, place, self.weights[chosen])
+        with np.errstate(over="ignore"):
+            np.add.at(summed, place, self.weights[chosen])
         return distance, summed
 
     def _slopes(self) -> Array:
