@@ -12,6 +12,7 @@ import typer
 import hyst
 from hyst.cli.compensate import compensate
 from hyst.cli.demo import demo
+from hyst.cli.excite import excite
 from hyst.cli.identify import identify
 from hyst.cli.info import info
 from hyst.cli.simulate import simulate
@@ -25,7 +26,7 @@ app = typer.Typer(
     help="From a measured hysteresis loop to a model, its exact inverse and a command.",
     epilog="Exit code: 0 done, 2 bad input, 1 failure.",
 )
-for verb in (identify, simulate, compensate, info, demo):
+for verb in (excite, identify, simulate, compensate, info, demo):
     app.command(verb.__name__)(verb)
 
 

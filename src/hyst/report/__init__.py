@@ -9,6 +9,9 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from hyst.report.drive_figure import draw_drive
+    from hyst.report.drive_table import drive_table
+    from hyst.report.dynamics_figures import dynamics_sections
     from hyst.report.identification_report import Section, write_report
     from hyst.report.tables import (
         Table,
@@ -31,7 +34,10 @@ _HOME = {
     "constants_table": "tables",
     "delay_sentence": "words",
     "description_table": "tables",
+    "draw_drive": "drive_figure",
     "draw_tracking": "tracking_figure",
+    "drive_table": "drive_table",
+    "dynamics_sections": "dynamics_figures",
     "in_short": "words",
     "invertible_sentence": "words",
     "metrics_table": "tables",
@@ -48,7 +54,10 @@ __all__ = [
     "constants_table",
     "delay_sentence",
     "description_table",
+    "draw_drive",
     "draw_tracking",
+    "drive_table",
+    "dynamics_sections",
     "in_short",
     "invertible_sentence",
     "metrics_table",

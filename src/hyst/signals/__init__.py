@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hyst.signals.design import design
 from hyst.signals.drive import Drive, Limits
 from hyst.signals.loop_metrics import hysteresis_percent, loop_area
 from hyst.signals.metrics import Metrics, error_metrics
@@ -20,6 +21,7 @@ __all__ = [
     "Persistence",
     "Record",
     "decaying_triangle",
+    "design",
     "error_metrics",
     "estimate_noise",
     "forc",

@@ -1,0 +1,127 @@
+"""hyst excite: design a drive and say what it is good for, before anyone runs it."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import hyst
+from hyst.cli.arguments import numbers
+from hyst.cli.console import note, show_files, show_table
+
+KINDS = (
+    "multisine",
+    "odd-multisine",
+    "schroeder",
+    "prbs",
+    "swept-sine",
+    "triangle",
+    "decaying-triangle",
+    "forc",
+    "staircase",
+)
+
+Kind = Annotated[str, typer.Option(help=f"One of {', '.join(KINDS)}.", show_default=False)]
+Rate = Annotated[float, typer.Option(metavar="HZ", help="Samples per second.", show_default=False)]
+Amplitude = Annotated[float, typer.Option(help="Largest distance from the offset, input units.")]
+Rms = Annotated[
+    float | None,
+    typer.Option(help="Of multisines, in the place of the amplitude.", show_default=False),
+]
+Offset = Annotated[float, typer.Option(help="Middle of the drive, input units.")]
+Duration = Annotated[
+    float, typer.Option(metavar="S", help="Of one period, or of the hold of a staircase, s.")
+]
+Periods = Annotated[int, typer.Option(help="Periods, cycles, curves or steps.")]
+Band = Annotated[
+    str | None,
+    typer.Option(metavar="LOW,HIGH", help="Frequencies of multisine and sweep, Hz."),
+]
+MaxRate = Annotated[
+    float | None,
+    typer.Option(help="Largest rate, input units per second.", show_default=False),
+]
+MaxAcceleration = Annotated[
+    float | None,
+    typer.Option(help="Largest acceleration, input units per second squared.", show_default=False),
+]
+Decay = Annotated[float, typer.Option(help="Of decaying-triangle: factor from cycle to cycle.")]
+Clock = Annotated[int, typer.Option(help="Of prbs: samples of one bit.")]
+Register = Annotated[int, typer.Option(help="Of prbs: the period has 2^N - 1 bits.")]
+FirOrder = Annotated[int, typer.Option(help="Impulse response the drive is to determine.")]
+Seed = Annotated[int, typer.Option(help="Of random phases; equal seeds give equal drives.")]
+Name = Annotated[str, typer.Option(metavar="LABEL", help='Header of the column, as "drive [V]".')]
+Out = Annotated[
+    Path, typer.Option("-o", "--out", metavar="FILE", show_default=False, help="CSV to write.")
+]
+
+
+def excite(
+    kind: Kind,
+    rate: Rate,
+    out: Out,
+    amplitude: Amplitude = 1.0,
+    rms: Rms = None,
+    offset: Offset = 0.0,
+    duration: Duration = 1.0,
+    periods: Periods = 1,
+    band: Band = None,
+    max_rate: MaxRate = None,
+    max_acceleration: MaxAcceleration = None,
+    decay: Decay = 0.85,
+    clock: Clock = 1,
+    register: Register = 10,
+    fir_order: FirOrder = 30,
+    seed: Seed = 0,
+    name: Name = "u",
+) -> None:
+    """Design an input within limits; write it with a figure, and say what it can determine."""
+    if not (math.isfinite(rate) and rate > 0.0):
+        raise hyst.InputError(f"--rate is {rate}; give samples per second, above 0")
+    ends = None if band is None else numbers(band, "band")
+    if ends is not None and len(ends) != 2:
+        raise hyst.InputError(f"--band is {band!r}; give the lowest and the highest frequency")
+    limits = {
+        "max_rate": math.inf if max_rate is None else max_rate,
+        "max_acceleration": math.inf if max_acceleration is None else max_acceleration,
+    }
+    drive = hyst.signals.design(
+        kind,
+        dt=1.0 / rate,
+        amplitude=amplitude,
+        rms=rms,
+        offset=offset,
+        samples=max(round(duration * rate), 1),
+        periods=periods,
+        band=None if ends is None else (ends[0], ends[1]),
+        limits=limits,
+        decay=decay,
+        clock=clock,
+        register=register,
+        seed=seed,
+    )
+    _write(drive, out, name)
+    _tell(drive, fir_order, name)
+
+
+def _write(drive: hyst.signals.Drive, out: Path, name: str) -> None:
+    label, unit = hyst.io.split_unit(name)
+    figure = out.with_suffix(".png")
+    hyst.io.write_columns(out, ["time [s]", hyst.io.join_unit(label, unit)], (drive.time, drive.u))
+    with hyst.files.replacing(figure) as temporary:
+        temporary.write_bytes(hyst.report.draw_drive(drive, label, unit))
+    show_files([out, figure])
+
+
+def _tell(drive: hyst.signals.Drive, fir_order: int, name: str) -> None:
+    show_table(hyst.report.drive_table(drive, name))
+    for sentence in drive.notes:
+        note(sentence)
+    if fir_order < len(drive):
+        print(f"for an impulse response of order {fir_order} it is")
+        print(f"  {drive.persistence(fir_order).advice()}")
+    else:
+        note(f"the drive is shorter than the impulse response of order {fir_order}")

@@ -1,0 +1,48 @@
+"""A drive: over time, over frequency, and how often it is where."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from hyst.report.canvas import MEASURED, MODELLED, SECOND, blank, drawn, with_unit
+from hyst.signals import Drive
+
+_SHOWN = 4000  # samples of a long drive that are drawn over time
+
+
+@drawn
+def draw_drive(drive: Drive, name: str, unit: str) -> Figure:
+    """Draw a designed drive.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    name, unit
+        Of the input.
+
+    Returns
+    -------
+    bytes
+        PNG.
+    """
+    figure, (over_time, over_frequency, values) = blank(3, 1, 12.0, 3.9)
+    shown = min(len(drive), max(_SHOWN, drive.period if drive.period <= 10 * _SHOWN else 0))
+    over_time.plot(drive.time[:shown], drive.u[:shown], color=MODELLED, linewidth=0.8)
+    over_time.set_title(drive.kind if shown == len(drive) else f"{drive.kind}, its beginning")
+    over_time.set_xlabel("time [s]")
+    over_time.set_ylabel(with_unit(name, unit))
+    period = drive.u[: drive.period] if drive.period else drive.u
+    spectrum = np.abs(np.fft.rfft(period - period.mean())) * 2.0 / period.size
+    frequency = np.fft.rfftfreq(period.size, drive.dt)
+    shows = spectrum > 1e-6 * spectrum.max(initial=0.0)
+    over_frequency.plot(frequency[shows], spectrum[shows], ".", markersize=2.0, color=SECOND)
+    over_frequency.set_yscale("log")
+    over_frequency.set_xlim(0.0, 0.5 / drive.dt)
+    over_frequency.set_title("Amplitude of its lines")
+    over_frequency.set_xlabel("frequency [Hz], up to half the sample rate")
+    values.hist(drive.u, bins=80, color=MEASURED)
+    values.set_title("How often it is where")
+    values.set_xlabel(with_unit(name, unit))
+    return figure
