@@ -59,6 +59,15 @@ Weights = Annotated[
 ]
 Delay = Annotated[str, typer.Option(metavar="N|auto", help="Samples by which the output lags.")]
 Start = Annotated[str, typer.Option(metavar="N|auto", help="First sample to use.")]
+Hysteresis = Annotated[
+    str, typer.Option(help="Of hammerstein: linear, pi, gpi, mpi or ramberg-osgood.")
+]
+FirOrder = Annotated[
+    str, typer.Option(metavar="N|auto", help="Of hammerstein: last lag of the impulse response.")
+]
+StateOrder = Annotated[
+    str, typer.Option(metavar="N|auto", help="Of hammerstein: order of the linear dynamics.")
+]
 Validate = Annotated[
     list[Path] | None,
     typer.Option(metavar="DATA", show_default=False, help="A record to judge by; repeatable."),
@@ -94,6 +103,9 @@ def identify(
     record_weights: RecordWeights = "equal",
     delay: Delay = "auto",
     start: Start = "auto",
+    hysteresis: Hysteresis = "mpi",
+    fir_order: FirOrder = "auto",
+    state_order: StateOrder = "auto",
     validate: Validate = None,
     input_label: InputLabel = None,
     output_label: OutputLabel = None,
@@ -134,13 +146,19 @@ def identify(
             ),
             delay=whole_or_auto(delay, "delay"),
             start=whole_or_auto(start, "start"),
+            hysteresis=hysteresis,
+            fir_order=whole_or_auto(fir_order, "fir-order"),
+            state_order=whole_or_auto(state_order, "state-order"),
             validation=validation,
             allow_unconverged=allow_unconverged,
             progress=say,
         )
         say("report")
         sources = [str(path) for path in (*data, *(validate or []))]
-        files = hyst.report.write_report(found, records, validation, folder, sources=sources)
+        sections = hyst.report.dynamics_sections(found)
+        files = hyst.report.write_report(
+            found, records, validation, folder, sources=sources, sections=sections
+        )
     _tell(found, records)
     show_files(files)
 
