@@ -23,6 +23,16 @@ InputColumn = Annotated[
     ),
 ]
 
+SampleRate = Annotated[
+    float | None,
+    typer.Option(
+        "--rate",
+        metavar="HZ",
+        show_default=False,
+        help="Samples of the file per second, to check a model that depends on the rate.",
+    ),
+]
+
 
 def whole_or_auto(text: str, name: str) -> int | Literal["auto"]:
     """Read a whole number or the word auto."""
@@ -42,6 +52,13 @@ def numbers(text: str, name: str) -> list[float]:
         raise hyst.InputError(
             f"--{name} is {text!r}; give numbers with commas between them, as 0,3.6"
         ) from None
+
+
+def positive(value: float, name: str) -> float:
+    """Refuse an option that is not above 0."""
+    if not 0.0 < value < float("inf"):
+        raise hyst.InputError(f"--{name} is {value}; give a positive number")
+    return value
 
 
 def require_same_unit(unit: str, model_unit: str, what: str) -> None:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 import hyst
-from hyst.cli.arguments import ModelFile, numbers, require_same_unit
-from hyst.cli.console import show_files, show_table
+from hyst.cli.arguments import ModelFile, SampleRate, numbers, positive, require_same_unit
+from hyst.cli.console import note, progress_bar, show_files, show_table
 
 if TYPE_CHECKING:
     from hyst.operators import ModelDescription
@@ -25,7 +25,24 @@ Column = Annotated[
 Out = Annotated[
     Path, typer.Option("-o", "--out", metavar="FILE", show_default=False, help="CSV to write.")
 ]
-Method = Annotated[str, typer.Option(help="How to invert: exact.")]
+Method = Annotated[
+    str,
+    typer.Option(
+        help="exact; for rate-dependent models explicit, sample-exact, preview or trajectory."
+    ),
+]
+Preview = Annotated[
+    int, typer.Option(metavar="N", help="Samples of the reference known ahead, of preview.")
+]
+RateLimit = Annotated[
+    float | None,
+    typer.Option(
+        metavar="X", show_default=False, help="Largest rate of the input, of preview, trajectory."
+    ),
+]
+AllowUnconverged = Annotated[
+    bool, typer.Option("--allow-unconverged", help="Accept a command that did not converge.")
+]
 Outside = Annotated[
     Literal["refuse", "clip"], typer.Option(help="What to do about a reference out of reach.")
 ]
@@ -58,20 +75,33 @@ def compensate(
     limits: Limits = None,
     no_limits: NoLimits = False,
     history: History = None,
+    preview: Preview = 20,
+    rate_limit: RateLimit = None,
+    rate: SampleRate = None,
+    allow_unconverged: AllowUnconverged = False,
 ) -> None:
     """Turn a wanted output into the input that produces it, and predict how well."""
     model, about = hyst.models.load_described(model_file)
     y_ref, _, unit = hyst.io.read_column(reference, column)
     require_same_unit(unit, about.output_unit, "the reference")
     input_range = _input_range(limits, no_limits, about)
-    done = hyst.compensation.invert_trajectory(
-        model,
-        y_ref,
-        method,
-        input_range=input_range,
-        outside=outside,
-        history=None if history is None else numbers(history, "history"),
-    )
+    if rate is not None:
+        model.require_sample_time(1.0 / positive(rate, "rate"), "the reference")
+    with progress_bar("inverting") as progress:
+        done = hyst.compensation.invert_trajectory(
+            model,
+            y_ref,
+            method,
+            input_range=input_range,
+            outside=outside,
+            history=None if history is None else numbers(history, "history"),
+            rate_limit=rate_limit,
+            preview=preview,
+            allow_unconverged=allow_unconverged,
+            progress=progress,
+        )
+    if model.dt is not None and rate is None:
+        note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
     headers = [
         hyst.io.join_unit(name, unit)
         for name, unit in (
@@ -117,5 +147,13 @@ def _tell(
     if done.clipped:
         print(f"{done.clipped} of {done.u.size} samples are out of reach and were clipped")
     show_table(hyst.report.compensation_table(done, about.output_unit))
+    if done.method != "exact" and done.total_variation is not None:
+        print(
+            f"{done.method}, {done.status}: the command's total variation is "
+            f"{done.total_variation:.3f} of the reference's, its peak rate {done.peak_rate:.3f}; "
+            f"it turns {done.reversals} times"
+        )
+    for sentence in done.notes:
+        print(sentence)
     if about.delay:
         print(hyst.report.delay_sentence(about.delay, about.dt))

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
-from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table as RichTable
 from rich.text import Text
 
@@ -48,7 +48,19 @@ def at_work(what: str) -> Iterator[Callable[[str], None]]:
         yield lambda text: progress.update(task, description=f"{what}: {text}")
 
 
-def _say_nothing(_: str) -> None:
+@contextlib.contextmanager
+def progress_bar(what: str) -> Iterator[Callable[[float], None]]:
+    """Show on a terminal how much of something long is done, and give a way to say it."""
+    if not sys.stderr.isatty():
+        yield _say_nothing
+        return
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task(what, total=1.0)
+        yield lambda share: progress.update(task, completed=share)
+
+
+def _say_nothing(_: object) -> None:
     """Tell nobody."""
 
 

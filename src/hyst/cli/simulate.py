@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import hyst
-from hyst.cli.arguments import InputColumn, ModelFile, require_same_unit
+from hyst.cli.arguments import InputColumn, ModelFile, SampleRate, positive, require_same_unit
 from hyst.cli.console import note, show_files
 
 if TYPE_CHECKING:
@@ -32,9 +32,12 @@ def simulate(
         bool,
         typer.Option("--with-delay", help="Let the output lag as in the record identified from."),
     ] = False,
+    rate: SampleRate = None,
 ) -> None:
     """Compute the output of a model for an input, sample by sample."""
     model, about = hyst.models.load_described(model_file)
+    if rate is not None:
+        model.require_sample_time(1.0 / positive(rate, "rate"))
     u, _, unit = hyst.io.read_column(data, input_column)
     require_same_unit(unit, about.input_unit, "the input")
     y = _delayed(model(u), about.delay if with_delay else 0)

@@ -117,6 +117,10 @@ def identify_rate_dependent(
                 "accept it with allow_unconverged"
             )
         judged = (validation,) if isinstance(validation, Record) else tuple(validation)
+        for record in judged:
+            fit.layout.operator(fit.solution.theta).require_sample_time(
+                record.dt, "a validation record"
+            )
         return _assemble(data, fit, weights, tuple(candidates), judged, notes)
 
 
