@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from hyst.compensation.compensation import Compensation
 from hyst.compensation.exact import invert_exactly
 from hyst.compensation.explicit import drive_explicitly
+from hyst.compensation.noncausal import invert_noncausally
 from hyst.compensation.preview import drive_with_preview
 from hyst.compensation.rate_dependent_task import RateDependentTask, prepare_task
 from hyst.compensation.sample_exact import drive_sample_by_sample
@@ -19,7 +20,7 @@ from hyst.compensation.trajectory import drive_along_trajectory
 from hyst.errors import InputError, SolverError
 from hyst.operators import Operator
 
-METHODS = ("exact", "explicit", "sample-exact", "preview", "trajectory")
+METHODS = ("exact", "noncausal", "explicit", "sample-exact", "preview", "trajectory")
 
 
 def invert_trajectory(
@@ -50,6 +51,9 @@ def invert_trajectory(
 
     The predicted error is always that of the model driven by the command, thresholds from the
     command's own rate.
+
+    ``noncausal``: for linear dynamics behind (or before) a hysteresis; looks ahead through the
+    dynamics, then inverts the hysteresis exactly.
 
     Parameters
     ----------
@@ -117,6 +121,8 @@ def invert_trajectory(
         raise InputError(f"method {method!r} knows no rate limit; use 'preview' or 'trajectory'")
     if method == "exact":
         return invert_exactly(model, y_ref, input_range, clip, history)
+    if method == "noncausal":
+        return invert_noncausally(model, y_ref, input_range, clip, history)
     task = prepare_task(model, y_ref, input_range, clip, history)
     say = progress or _silent
     if method == "explicit":

@@ -1,0 +1,113 @@
+"""Inversion of a hysteresis with linear dynamics behind it: look ahead through the dynamics.
+
+The wanted output passes the stable, two-sided inverse of the dynamics, then the exact inverse of
+the hysteresis. Before and after the trajectory the wanted output is taken to rest.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hyst.compensation.compensation import Compensation
+from hyst.errors import InputError
+from hyst.models import LinearDynamics, StableInverse
+from hyst.operators import Composition, Operator
+from hyst.signals.vector import finite_vector
+
+Array = NDArray[np.float64]
+
+
+def invert_noncausally(
+    model: Operator,
+    y_ref: ArrayLike,
+    input_range: tuple[float, float] | None,
+    clip: bool,
+    history: ArrayLike | None,
+    band: float | None = None,
+) -> Compensation:
+    """Invert a trajectory through linear dynamics, looking ahead.
+
+    Parameters
+    ----------
+    model
+        One ``LinearDynamics`` stage among stages with exact inverses.
+    y_ref, input_range, history
+        As in ``invert_trajectory``.
+    clip
+        Whether to hold the input at an end of its range instead of refusing.
+    band
+        Highest frequency that is inverted, Hz; None inverts all.
+
+    Returns
+    -------
+    Compensation
+
+    Raises
+    ------
+    InputError
+        If the model has not exactly one linear stage, or the input leaves its range.
+    NotInvertibleError
+        If the hysteresis has no exact inverse or the dynamics have no stable one.
+
+    Examples
+    --------
+    >>> from hyst.models import PrandtlIshlinskii
+    >>> G = LinearDynamics.from_transfer_function([0.5], [1.0, -0.5], dt=1e-3)
+    >>> model = G @ PrandtlIshlinskii([0.5], [1.0], p0=1.0)
+    >>> y_ref = 3.0 * np.sin(np.linspace(0.0, 6.0, 200))
+    >>> done = invert_noncausally(model, y_ref, None, False, None)
+    >>> bool(np.abs(done.predicted_error[:-1]).max() < 1e-10)
+    True
+    """
+    before, dynamics, after = _split(model)
+    reference = finite_vector(y_ref, "y_ref")
+    past = None if history is None else finite_vector(history, "history")
+    start = model.initial_state() if past is None else model.run(past)[1]
+    inverse = StableInverse.of(dynamics, band=band)
+    v = inverse(_through(after, reference, None))
+    u = _through(before, v, past)
+    clipped = 0
+    if input_range is not None:
+        low, high = float(input_range[0]), float(input_range[1])
+        outside = (u < low) | (u > high)
+        if outside.any() and not clip:
+            k = int(outside.argmax())
+            raise InputError(
+                f"y_ref needs the input {u[k]:.6g} at sample {k}, outside its range {low:.6g} to "
+                f"{high:.6g}; slow the reference down, limit the band, or choose to clip it"
+            )
+        clipped, u = int(outside.sum()), np.clip(u, low, high)
+    y_predicted, _ = model.run(u, start)
+    edges = inverse.valid(reference.size)
+    note = (
+        f"looks {inverse.preview} samples ahead; exact for samples {edges.start} to "
+        f"{edges.stop - 1}, and before and after as far as the reference rests there; noise gain "
+        f"{inverse.noise_gain:.3g}"
+    )
+    return Compensation(u, reference, y_predicted, "noncausal", clipped, notes=(note,))
+
+
+def _split(model: Operator) -> tuple[Operator | None, LinearDynamics, Operator | None]:
+    stages = list(model.stages) if isinstance(model, Composition) else [model]
+    places = [i for i, stage in enumerate(stages) if isinstance(stage, LinearDynamics)]
+    if len(places) != 1:
+        raise InputError(
+            f"the model has {len(places)} stages of linear dynamics; method 'noncausal' is for "
+            "models with one"
+        )
+    at = places[0]
+    before = Composition(stages[:at]) if at > 0 else None
+    after = Composition(stages[at + 1 :]) if at + 1 < len(stages) else None
+    dynamics = stages[at]
+    assert isinstance(dynamics, LinearDynamics)
+    return before, dynamics, after
+
+
+def _through(operator: Operator | None, signal: Array, past: Array | None) -> Array:
+    """Pass the exact inverse of an operator, with the memory its past has left."""
+    if operator is None:
+        return signal
+    inverse = operator.inverse()
+    state = None if past is None else inverse.run(operator(past))[1]
+    return inverse.run(signal, state)[0]
