@@ -5,6 +5,7 @@
 
 #include "lanes.hpp"
 #include "linear_run.hpp"
+#include "masing_run.hpp"
 #include "memory_curve.hpp"
 #include "parallel.hpp"
 #include "simd/kernels.hpp"
@@ -84,6 +85,8 @@ bool run_part(const hyst_stage &stage, Engine engine, double *state, const doubl
         kernels().dead_zone(stage.as.dead_zone, u, y, samples);
     } else if (stage.kind == HYST_STATE_SPACE) {
         run_state_space(stage.as.state_space, state, u, y, samples);
+    } else if (stage.kind == HYST_MASING) {
+        run_masing(stage.as.masing, state, u, y, samples);
     } else {
         hyst_stage_run(&stage, state, u, y, samples);
     }

@@ -92,7 +92,7 @@ def test_inverse_gives_the_input_back(memory: str, seed: int) -> None:
 
 @pytest.mark.parametrize("memory", MODES)
 def test_small_steps_and_rests_do_not_confuse_the_inverse(memory: str) -> None:
-    # Steps of a few roundings, rests, and tiny reversals: what a computed reference has at its tops.
+    # Steps of a few roundings, rests, tiny reversals: what a computed reference has at its tops.
     rng = np.random.default_rng(3)
     u = np.sin(np.linspace(0.0, 30.0, 4000))
     u[::7] = u[1::7][: u[::7].size]
@@ -102,7 +102,7 @@ def test_small_steps_and_rests_do_not_confuse_the_inverse(memory: str) -> None:
 
 
 def test_masing_loops_close_and_published_ones_drift() -> None:
-    # Down to 0 and up to 1 again, with a small loop on the way: the outer loop is back at its start.
+    # Down to 0 and up to 1 again, with a small loop on the way: back where the outer loop began.
     u = np.array([0.0, 1.0, 0.0, 0.6, 0.3, 1.0])
     closed, forgetful = (RambergOsgood(1.0, 1.0, 1.0, memory=memory)(u) for memory in MODES)
     assert closed[-1] == pytest.approx(closed[1], abs=1e-15)
