@@ -7,7 +7,7 @@ with the weights by Levenberg-Marquardt with the analytic Jacobian.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.optimize
@@ -28,6 +28,8 @@ _WIDENINGS = (0.0, 0.1, 0.25, 0.5, 0.9)
 """Widening at the fastest sample of first guesses, over the largest radius."""
 
 _STARTS = 3
+
+_LEAST_ITERATIONS = 20
 
 _SAME_COST = 0.01
 """Costs that differ by this share of the residual variance are equal."""
@@ -96,9 +98,13 @@ def fit_layout(
     problem = _problem(data, layout, root)
     starts = [start] if start is not None else _first_guesses(data, layout, root)
     solutions = [minimize(problem, theta, max_iterations) for theta in starts]
-    # At a kink the iteration may go back and forth for ever within a fraction of a standard error.
-    least = min(each.cost for each in solutions) * (1.0 + _SAME_COST / root.size)
-    best = min(solutions, key=lambda each: (each.cost > least, each.status != CONVERGED, each.cost))
+    best = min(solutions, key=lambda each: each.cost)
+    if best.status != CONVERGED:
+        # At a kink the iteration may go back and forth for ever within a fraction of a standard
+        # error; it has converged if that many iterations again gain nothing.
+        again = minimize(problem, best.theta, max(max_iterations, _LEAST_ITERATIONS))
+        same = best.cost - again.cost <= _SAME_COST * again.cost / root.size
+        best = replace(again, status=CONVERGED) if same else best
     return RateDependentFit(layout, best)
 
 
