@@ -62,10 +62,9 @@ public:
         config_.most_slope = most_slope;
         config_.most_radius = most_radius;
     }
-    void set_memory(double forgetting, double fading, double noise_memory, double least_noise,
+    void set_memory(double forgetting, double noise_memory, double least_noise,
                     double least_share, double patience) {
         config_.forgetting = forgetting;
-        config_.fading = fading;
         config_.noise_memory = noise_memory;
         config_.least_noise = least_noise;
         config_.least_share = least_share;
@@ -77,11 +76,14 @@ public:
                 {"age", places_.age},   {"home", places_.home},   {"far", places_.far},
                 {"psi", places_.psi},   {"length", places_.length}};
     }
-    void start(State state, double noise, double extra_forgetting) const {
-        hyst_joint_start(&config_, checked(state), noise, extra_forgetting);
+    void start(State state, double noise) const {
+        hyst_joint_start(&config_, checked(state), noise);
     }
     int step(State state, double u, double y) const {
         return hyst_joint_step(&config_, checked(state), u, y);
+    }
+    double command(State state, double y_ref) const {
+        return hyst_joint_command(&config_, checked(state), y_ref);
     }
     // A row of theta and of its variances after every `every` samples; all prediction errors.
     void run(State state, Signal u, Signal y, std::size_t every, Rows theta, Rows variance,
@@ -202,9 +204,9 @@ void bind_online_estimation(nb::module_ &module) {
         .def("set_bounds", &Joint::set_bounds)
         .def("set_memory", &Joint::set_memory)
         .def("places", &Joint::places)
-        .def("start", &Joint::start, nb::arg("state").noconvert(), nb::arg("noise"),
-             nb::arg("extra_forgetting"))
+        .def("start", &Joint::start, nb::arg("state").noconvert(), nb::arg("noise"))
         .def("step", &Joint::step, nb::arg("state").noconvert(), nb::arg("u"), nb::arg("y"))
+        .def("command", &Joint::command, nb::arg("state").noconvert(), nb::arg("y_ref"))
         .def("run", &Joint::run, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
              nb::arg("y").noconvert(), nb::arg("every"), nb::arg("theta").noconvert(),
              nb::arg("variance").noconvert(), nb::arg("error").noconvert());

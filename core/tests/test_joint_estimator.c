@@ -8,7 +8,7 @@ static const hyst_real limit[] = {R(0.1), R(0.1), R(0.1), R(0.2), R(0.2), R(1.0)
 static hyst_joint two_plays(void)
 {
     const hyst_joint joint = {2,       NO_MAP,  NO_MAP,   R(1e-3), R(10.0),  R(5.0),   R(0.0),
-                              R(1.0), R(200.0), R(1e-12), R(1e-6), R(2000.0), limit};
+                              R(200.0), R(1e-12), R(1e-6), R(2000.0), limit};
     return joint;
 }
 
@@ -22,7 +22,7 @@ static void start(const hyst_joint *joint, hyst_real *state, const hyst_real *th
     for (size_t i = 0; i < joint->plays; ++i) {
         state[at.z + i] = R(0.0);
     }
-    hyst_joint_start(joint, state, noise, R(0.0));
+    hyst_joint_start(joint, state, noise);
 }
 
 /* A triangle of 200 samples from -4 to 4 and back. */

@@ -54,8 +54,7 @@ typedef struct {
     hyst_real least_slope; /* bounds of every cumulative weight, 0 < least < most */
     hyst_real most_slope;
     hyst_real most_radius;
-    hyst_real forgetting;    /* 1 - lambda per sample in the long run, 0 <= .. < 1 */
-    hyst_real fading;        /* factor per sample of the additional forgetting at the start */
+    hyst_real forgetting;    /* 1 - lambda per sample, 0 <= .. < 1 */
     hyst_real noise_memory;  /* samples over which the noise is estimated, >= 1 */
     hyst_real least_noise;   /* > 0, variance of y */
     hyst_real least_share;   /* a variance factor never falls below this share of its limit */
@@ -71,7 +70,6 @@ enum {
     HYST_JOINT_ERROR,     /* prediction error of the last sample */
     HYST_JOINT_VARIANCE,  /* and its variance as predicted */
     HYST_JOINT_NOISE,     /* estimated variance of the noise of y */
-    HYST_JOINT_FADING,    /* additional forgetting that is left */
     HYST_JOINT_STARTED,   /* 1 once there is a last input */
     HYST_JOINT_INPUT,     /* last input */
     HYST_JOINT_UPDATES,   /* samples used */
@@ -96,13 +94,18 @@ hyst_joint_layout hyst_joint_places(const hyst_joint *joint);
 
 /* Sets the whole state but theta and z, which the caller has written: the parameters to start from
  * and the memory that goes with them. noise: variance of y to start from. */
-void hyst_joint_start(const hyst_joint *joint, hyst_real *state, hyst_real noise,
-                      hyst_real extra_forgetting);
+void hyst_joint_start(const hyst_joint *joint, hyst_real *state, hyst_real noise);
 
 typedef enum { HYST_JOINT_UPDATED, HYST_JOINT_WAS_SKIPPED, HYST_JOINT_WAS_REFUSED } hyst_joint_end;
 
 /* One sample of input and measured output. */
 hyst_joint_end hyst_joint_step(const hyst_joint *joint, hyst_real *state, hyst_real u, hyst_real y);
+
+/* The input for which the estimate, with the memory it has, predicts y_ref: the exact inverse of
+ * S1 eqs. 7-8 with the constants and the memory that belong to the present parameters, so that a
+ * command never jumps for any other reason than what has been learnt. Does not change the state.
+ * 12 operations for each play. */
+hyst_real hyst_joint_command(const hyst_joint *joint, const hyst_real *state, hyst_real y_ref);
 
 #ifdef __cplusplus
 }
