@@ -1,1 +1,27 @@
-"""Hammerstein identification: hysteresis followed by linear dynamics."""
+"""Hammerstein identification: hysteresis followed by linear dynamics.
+
+``hyst.identify(record, family="hammerstein")`` takes all steps; here are the single ones.
+"""
+
+from __future__ import annotations
+
+from hyst.identification.hammerstein.best_linear_approximation import (
+    BestLinearApproximation,
+    average_periods,
+    best_linear_approximation,
+)
+from hyst.identification.hammerstein.identified_hammerstein import IdentifiedHammerstein, Loop
+from hyst.identification.hammerstein.markov import MarkovParameters, fit_markov
+from hyst.identification.hammerstein.realization import Realization, realize
+
+__all__ = [
+    "BestLinearApproximation",
+    "IdentifiedHammerstein",
+    "Loop",
+    "MarkovParameters",
+    "Realization",
+    "average_periods",
+    "best_linear_approximation",
+    "fit_markov",
+    "realize",
+]

@@ -43,7 +43,7 @@ Array = NDArray[np.float64]
 _SIGNIFICANT = 4.0  # standard errors
 _NEGLIGIBLE = 0.02  # of the largest Markov parameter
 _WORTH_A_STATE = 0.8  # to what share of the squared error a further state must lower it
-_TRIAL_ITERATIONS = 25
+_TRIAL_ITERATIONS = 60
 _ROUNDING = 1e-16  # share of the output's power: nothing is left to explain
 
 
