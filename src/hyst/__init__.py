@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
-    from hyst import compensation, demo, errors, files, io, models, report, signals
+    from hyst import compensation, demo, errors, files, io, models, report, signals, studies
     from hyst.errors import (
         HystError,
         InputError,
@@ -74,6 +74,7 @@ _PACKAGES = (
     "operators",
     "report",
     "signals",
+    "studies",
 )
 
 __all__ = [
@@ -111,6 +112,7 @@ __all__ = [
     "read_record",
     "report",
     "signals",
+    "studies",
 ]
 
 

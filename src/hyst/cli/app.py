@@ -15,6 +15,7 @@ from hyst.cli.demo import demo
 from hyst.cli.excite import excite
 from hyst.cli.identify import identify
 from hyst.cli.info import info
+from hyst.cli.reproduce import reproduce
 from hyst.cli.simulate import simulate
 
 DONE, FAILURE, BAD_INPUT = 0, 1, 2
@@ -26,7 +27,7 @@ app = typer.Typer(
     help="From a measured hysteresis loop to a model, its exact inverse and a command.",
     epilog="Exit code: 0 done, 2 bad input, 1 failure.",
 )
-for verb in (excite, identify, simulate, compensate, info, demo):
+for verb in (excite, identify, simulate, compensate, info, reproduce, demo):
     app.command(verb.__name__)(verb)
 
 
