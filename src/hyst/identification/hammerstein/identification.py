@@ -22,7 +22,7 @@ from hyst.identification.hammerstein.joint import (
     MOST_SAMPLES,
     Joint,
     refine,
-    refine_coarsely,
+    refined_coarsely,
     shortened,
 )
 from hyst.identification.hammerstein.markov import MarkovParameters, choose_markov
@@ -43,7 +43,7 @@ Array = NDArray[np.float64]
 _SIGNIFICANT = 4.0  # standard errors
 _NEGLIGIBLE = 0.02  # of the largest Markov parameter
 _WORTH_A_STATE = 0.8  # to what share of the squared error a further state must lower it
-_TRIAL_ITERATIONS = 60
+_TRIAL_ITERATIONS = 30
 _ROUNDING = 1e-16  # share of the output's power: nothing is left to explain
 
 
@@ -147,10 +147,8 @@ def _first_guess(
         v, valid, reason = _estimated_v(record, realized.dynamics)
         front = first_front(record.u[: valid.stop], v[: valid.stop], dt, options.front)
         joint = Joint(front, realized.dynamics, realized.dynamics.D != 0.0)
+        joint, cost = refined_coarsely(joint, data, _TRIAL_ITERATIONS)
         guess = (realized, joint, reason)
-        if options.state_order != "auto":
-            return guess
-        cost = refine_coarsely(joint, data, _TRIAL_ITERATIONS).cost
         if best is None or cost < _WORTH_A_STATE * least:
             best, least = guess, cost
             if cost <= _ROUNDING * power:

@@ -23,7 +23,7 @@ from hyst.operators import Operator
 
 Array = NDArray[np.float64]
 
-_WARM_UP = 8_000  # samples of each record for the first, coarse iterations
+_WARM_UP = 8_000  # samples of each record for the coarse refinement
 _TOLERANCE = 2e-2  # of the residual variance: at most a seventh of a standard error is left
 MOST_SAMPLES = 300_000
 """The Jacobian is held in memory; of longer records the beginning is refined on."""
@@ -150,22 +150,47 @@ def refine(joint: Joint, data: Data, max_iterations: int) -> Solution:
     data
         The records.
     max_iterations
-        For the final stage on all samples; the coarse one before has as many.
+        At most.
 
     Returns
     -------
     Solution
     """
-    theta = joint.start()
-    coarse = shortened(data, _WARM_UP)
-    if coarse is not data:
-        theta = minimize(_problem(joint, coarse), theta, max_iterations, 1e-1).theta
-    return minimize(_problem(joint, data), theta, max_iterations, _TOLERANCE)
+    return minimize(_problem(joint, data), joint.start(), max_iterations, _TOLERANCE)
 
 
-def refine_coarsely(joint: Joint, data: Data, max_iterations: int) -> Solution:
-    """Refine on the beginning of the records, to compare first guesses."""
-    return minimize(_problem(joint, shortened(data, _WARM_UP)), joint.start(), max_iterations, 1.0)
+def refined_coarsely(joint: Joint, data: Data, max_iterations: int) -> tuple[Joint, float]:
+    """Refine on the beginning of the records; give the new first guess and its cost.
+
+    A play whose weight came out zero has no gradient by its radius any more: it is set to
+    half of the smallest other radius, and the refinement is tried again.
+    """
+    short = shortened(data, _WARM_UP)
+    best = minimize(_problem(joint, short), joint.start(), max_iterations, 1.0)
+    reseeded = _with_idle_plays_moved(joint, best.theta)
+    if reseeded is not None:
+        again = minimize(_problem(joint, short), reseeded, max_iterations, 1.0)
+        best = min(best, again, key=lambda each: each.cost)
+    theta = joint.canonical(best.theta)
+    front = replace(joint.front, theta=theta[: joint.front_size])
+    return Joint(front, joint.dynamics(theta), joint.feedthrough), best.cost
+
+
+def _with_idle_plays_moved(joint: Joint, theta: Array) -> Array | None:
+    parametrization = joint.front.parametrization
+    n = parametrization.plays
+    lower, upper = joint.bounds()
+    weights, radii = slice(1, n + 1), slice(n + 1, 2 * n + 1)
+    total = float(np.abs(theta[: n + 1]).sum())
+    idle = np.flatnonzero(theta[weights] <= 1e-2 * total)
+    if n == 0 or idle.size == 0 or (lower[radii] == upper[radii]).all():
+        return None
+    moved = theta.copy()
+    for play in idle:
+        others = np.delete(moved[radii], play)
+        moved[n + 1 + play] = 0.5 * float(others.min(initial=float(upper[n + 1])))
+        moved[1 + play] = 0.05 * total
+    return joint.canonical(np.clip(moved, lower, upper))
 
 
 def shortened(data: Data, samples: int) -> Data:
