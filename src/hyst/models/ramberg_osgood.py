@@ -16,6 +16,7 @@ from hyst.models.masing import (
     MasingOperator,
     Memory,
     as_memory,
+    as_mode,
     memory_entries,
     reversal_traits,
 )
@@ -184,6 +185,22 @@ class RambergOsgood(Operator):
             In the shape of ``p``.
         """
         return np.asarray(self.c1 + self.c2 * np.asarray(p, dtype=np.float64) ** self.c3)
+
+    def with_memory(self, memory: str, dead_band: float = 0.0) -> RambergOsgood:
+        """Give the model of the same constants with another memory.
+
+        Parameters
+        ----------
+        memory
+            ``"masing"`` or ``"last-reversal"``.
+        dead_band
+            With ``"last-reversal"``, input units.
+
+        Returns
+        -------
+        RambergOsgood
+        """
+        return RambergOsgood(self.c1, self.c2, self.c3, as_mode(memory), self.depth, dead_band)
 
     @property
     def curve(self) -> PowerLaw:
