@@ -61,8 +61,12 @@ inline GradientSums gradient_lanes(const GradientBank &bank, const double *u, co
     Pack squares{}, by_p0{};
     for (std::size_t k = 0; k < samples; k += kWidth) {
         Pack in[kWidth], wanted[kWidth], error[kWidth];
-        for (std::size_t c = 0; c < kWidth; ++c) in[c] = load(u + c * stride + k);
-        for (std::size_t c = 0; c < kWidth; ++c) wanted[c] = load(target + c * stride + k);
+        for (std::size_t c = 0; c < kWidth; ++c) {
+            in[c] = load(u + c * stride + k);
+            wanted[c] = load(target + c * stride + k);
+            __builtin_prefetch(u + c * stride + k + 64);
+            __builtin_prefetch(target + c * stride + k + 64);
+        }
         transpose(in);
         transpose(wanted);
         forward(bank, in, error);

@@ -84,13 +84,18 @@ struct SinglePlay {
 template <class Stage>
 inline bool lanes(Stage &stage, const double *u, double *y, std::size_t samples,
                   std::size_t stride) {
+    // As many streams as lanes, each way: more than processors follow by themselves.
+    constexpr std::size_t ahead = 64;
     Pack zeros{};  // 0 times a number is 0, 0 times an infinity or a NaN is NaN and stays in the sum
     for (std::size_t k = 0; k < samples; k += kWidth) {
         Pack in[kWidth], out[kWidth];
 #pragma GCC unroll 8
-        for (std::size_t c = 0; c < kWidth; ++c) in[c] = load(u + c * stride + k);
-#pragma GCC unroll 8
-        for (std::size_t c = 0; c < kWidth; ++c) zeros += 0.0 * in[c];
+        for (std::size_t c = 0; c < kWidth; ++c) {
+            in[c] = load(u + c * stride + k);
+            zeros += 0.0 * in[c];
+            __builtin_prefetch(u + c * stride + k + ahead);
+            __builtin_prefetch(y + c * stride + k + ahead, 1);
+        }
         transpose(in);
         stage(in, out);
         transpose(out);
