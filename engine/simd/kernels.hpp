@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "hyst/dead_zone.h"
+#include "hyst/loading_curve.h"
 #include "hyst/prandtl_ishlinskii.h"
 #include "hyst/rate_dependent_prandtl_ishlinskii.h"
 
@@ -68,6 +69,11 @@ struct GradientSums {
     double by_p0;  // sum of error times input
 };
 
+// A branch of a loading curve: y = output +- twice f(|share u - start|).
+struct Branch {
+    double share, start, output, twice;
+};
+
 struct Kernels {
     const char *name;
     std::size_t width;  // lanes
@@ -95,6 +101,9 @@ struct Kernels {
     std::size_t (*first_non_finite)(const double *u, std::size_t count);  // count if there is none
     void (*affine)(double gain, double offset, const double *u, double *y, std::size_t count);
     void (*dead_zone)(const hyst_dead_zone &map, const double *u, double *y, std::size_t count);
+    // Points of one branch of a power law. u and y may be the same.
+    void (*power_law_branch)(const hyst_power_law &f, const Branch &branch, const double *u,
+                             double *y, std::size_t count);
 
     // u is finite. y: scratch of `count`. Call the second when the record is over.
     void (*curve_gradient)(CurveGradientData &data, const double *u, const double *target,

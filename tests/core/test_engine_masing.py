@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyst import MasingOperator, Operator, RambergOsgood
+from hyst import MasingOperator, Operator, RambergOsgood, _engine
 from hyst.models import PiecewiseLinear, PolynomialCurve
 
 LAW = (0.5, 0.3, 1.3)
@@ -55,3 +55,16 @@ def test_what_overflows_ends_where_the_core_says() -> None:
     assert 0 < finite.sum() < 300
     assert y[finite].tolist() == np.array(held)[finite].tolist()
     assert step.state.tobytes() == state.tobytes()
+
+
+def test_every_instruction_set_gives_the_same_bits() -> None:
+    u = 3.0 * smooth(np.random.default_rng(9), 3001)
+    before = _engine.instruction_set()
+    outputs = set()
+    try:
+        for name in _engine.instruction_sets():
+            _engine.use_instruction_set(name)
+            outputs.add(RambergOsgood(*LAW)(u).tobytes())
+    finally:
+        _engine.use_instruction_set(before)
+    assert len(outputs) == 1
