@@ -150,8 +150,8 @@ def derivative(joint: Joint, data: Data, theta: Array) -> Array:
 def refine(joint: Joint, data: Data, max_iterations: int) -> Solution:
     """Minimise the simulated output error over hysteresis and dynamics.
 
-    A hysteresis richer or poorer than the actuator's leaves a long flat valley. So it has converged,
-    too, when a dozen steps lower the squared error by no more than a five-hundredth.
+    A hysteresis richer or poorer than the actuator's leaves a long flat valley. So it has
+    converged, too, when a dozen steps lower the squared error by no more than a five-hundredth.
 
     Parameters
     ----------
