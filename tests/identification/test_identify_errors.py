@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -89,3 +90,24 @@ def test_not_converged_raises_unless_allowed() -> None:
         hyst.identify(noisy, family="mpi", plays=4, max_iterations=1)
     found = hyst.identify(noisy, family="mpi", plays=4, max_iterations=1, allow_unconverged=True)
     assert found.status == "iteration limit"
+
+
+@pytest.mark.parametrize("signal", ["input", "output"])
+@pytest.mark.parametrize("validating", [False, True])
+def test_records_in_different_units(signal: str, validating: bool) -> None:
+    first = replace(GIVEN, **{f"{signal}_unit": "um"})
+    other = replace(GIVEN, **{f"{signal}_unit": "nm"})
+    records, validation = (first, other) if validating else ([first, other], ())
+    with pytest.raises(hyst.InputError, match=f"the {signal} of record 2 .* 'nm'"):
+        hyst.identify(records, family="linear", validation=validation)
+
+
+def test_an_unknown_unit_and_another_sign_for_micro_are_no_other_unit() -> None:
+    others = [replace(GIVEN, output_unit=unit) for unit in ("um", "", "\N{MICRO SIGN}m")]
+    assert hyst.identify(others, family="linear").status == "converged"
+
+
+def test_too_few_samples_to_choose_the_number_of_plays() -> None:
+    u = np.array([0.0, 1.0, -1.0, 1.0, -1.0, 0.5, -0.5, 0.2])
+    with pytest.raises(hyst.NotIdentifiableError, match="too few to choose"):
+        hyst.identify(hyst.Record(u, TRUE_PI(u), 1e-3), family="pi", delay=0)

@@ -63,13 +63,8 @@ def positive(value: float, name: str) -> float:
 
 def require_same_unit(unit: str, model_unit: str, what: str) -> None:
     """Refuse a signal in another unit than the model's; one that says none is believed."""
-    if unit and model_unit and _spelt(unit) != _spelt(model_unit):
+    if hyst.signals.units_differ(unit, model_unit):
         raise hyst.InputError(
             f"{what} is in {unit!r} but the model's in {model_unit!r}; hyst converts no units, so "
             "convert the column, or correct its header"
         )
-
-
-def _spelt(unit: str) -> str:
-    """Spell the two signs for micro as u, which is what keyboards have."""
-    return unit.replace("\u00b5", "u").replace("\u03bc", "u")

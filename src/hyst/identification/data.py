@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.identified import UsedSamples
-from hyst.signals import Record, reversals
+from hyst.signals import Record, reversals, units_differ
 
 Array = NDArray[np.float64]
 
@@ -117,6 +117,32 @@ def prepare(records: Record | Sequence[Record], start: Literal["auto"] | int, de
     else:
         starts, settled = (_as_start(start, given),) * len(given), True
     return Data(given, starts, delay, half_range, settled)
+
+
+def require_same_units(records: Sequence[Record]) -> None:
+    """Refuse records whose signals are in different units; an empty unit agrees with every other.
+
+    Parameters
+    ----------
+    records
+        All that will be compared with one model.
+
+    Raises
+    ------
+    InputError
+        If an input or output has another unit than that of an earlier record.
+    """
+    for signal in ("input", "output"):
+        known = ""
+        for number, record in enumerate(records, 1):
+            unit = getattr(record, f"{signal}_unit", "")  # what is no record is refused later
+            if units_differ(unit, known):
+                raise InputError(
+                    f"the {signal} of record {number} (training first, then validation) is in "
+                    f"{unit!r}, of an earlier one in {known!r}; hyst converts no units, so bring "
+                    "them to one"
+                )
+            known = known or unit
 
 
 def _check(records: tuple[Record, ...]) -> None:

@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_limits
 from hyst.errors import InputError, NotIdentifiableError, SolverError
 from hyst.identification.assembly import assemble
 from hyst.identification.bounded_least_squares import CONVERGED
-from hyst.identification.data import Data, prepare
+from hyst.identification.data import Data, prepare, require_same_units
 from hyst.identification.delay import estimate_delay
 from hyst.identification.families import FAMILIES, LINEAR, PI, RAMBERG_OSGOOD, WITHOUT_PLAYS
 from hyst.identification.fitting import AUTO, MOST_STARTS, Fit, Fitter
@@ -135,6 +135,7 @@ def identify(
     True
     """
     say = progress or _silent
+    require_same_units((*_listed(records), *_listed(validation)))
     if family == HAMMERSTEIN:
         with threadpool_limits(1, user_api="blas"):
             return identify_with_dynamics(
@@ -186,8 +187,11 @@ def identify(
                 f"{fit.solution.iterations} iterations; raise max_iterations, give fewer plays, or "
                 "accept it with allow_unconverged"
             )
-        judged = (validation,) if isinstance(validation, Record) else tuple(validation)
-        return assemble(fitter, fit, chosen_plays, candidates, judged, left_out)
+        return assemble(fitter, fit, chosen_plays, candidates, _listed(validation), left_out)
+
+
+def _listed(records: Record | Sequence[Record]) -> tuple[Record, ...]:
+    return (records,) if isinstance(records, Record) else tuple(records)
 
 
 def _silent(_: str) -> None:

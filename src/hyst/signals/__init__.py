@@ -13,6 +13,7 @@ from hyst.signals.record import Record
 from hyst.signals.reversals import reversals
 from hyst.signals.sequences import decaying_triangle, forc, prbs, staircase, triangle
 from hyst.signals.swept_sine import swept_sine
+from hyst.signals.units import units_differ
 
 __all__ = [
     "Drive",
@@ -35,4 +36,5 @@ __all__ = [
     "suggest_dead_band",
     "swept_sine",
     "triangle",
+    "units_differ",
 ]
