@@ -86,11 +86,11 @@ def _standard_errors(data: Data, fit: Fit) -> tuple[Array, tuple[str, ...]]:
     jacobian = model_jacobian(data, fit.operator) @ transform
     residual = model_output(data, fit.operator) - data.measured()
     inside = (theta > parametrization.lower) & (theta < parametrization.upper)
-    share = undetermined_combination(jacobian[:, inside]) if inside.any() else None
-    notes: tuple[str, ...] = ()
-    if share is not None:
+    notes: list[str] = []
+    # A short record can leave several combinations open, one behind the other.
+    while inside.any() and (share := undetermined_combination(jacobian[:, inside])) is not None:
         involved = np.flatnonzero(inside)[share > 0.1 * share.max()]
-        notes = (_not_told_apart(fit.operator, parametrization, involved),)
+        notes.append(_not_told_apart(fit.operator, parametrization, involved))
         inside[involved] = False
     lengths = [window.stop - window.start for window in data.windows()]
     variance = np.full(transform.shape[0], np.nan)
@@ -100,7 +100,7 @@ def _standard_errors(data: Data, fit: Fit) -> tuple[Array, tuple[str, ...]]:
         known = transform[:, inside].any(axis=1) & ~transform[:, ~inside].any(axis=1)
         spread = np.einsum("ij,jk,ik->i", by_constant, covariance, by_constant)
         variance[known] = spread[known]
-    return np.sqrt(variance), notes
+    return np.sqrt(variance), tuple(notes)
 
 
 def _not_told_apart(

@@ -13,7 +13,11 @@ from hyst.identification.fitting import Fit, model_output, problem_of
 
 Array = NDArray[np.float64]
 
-BLOCKS = 8
+MOST_BLOCKS = 8
+FEWEST_BLOCKS = 2
+SMALLEST_BLOCK = 5
+"""Samples; each block is scored with a free offset, so one alone would always fit."""
+
 REFIT_ITERATIONS = 6
 
 
@@ -31,6 +35,23 @@ class Score:
 
     rms: float
     standard_error: float
+
+
+def fewest_left(samples: int) -> int:
+    """Give how many samples are left to fit to while the largest block is hidden.
+
+    A candidate with as many parameters cannot be judged.
+
+    Parameters
+    ----------
+    samples
+        Number of samples used.
+
+    Returns
+    -------
+    int
+    """
+    return samples - -(-samples // _blocks(samples))
 
 
 def cross_validate(data: Data, fit: Fit) -> Score:
@@ -52,14 +73,19 @@ def cross_validate(data: Data, fit: Fit) -> Score:
     Score
     """
     y = data.measured()
-    block_of = np.arange(y.size) * BLOCKS // y.size
-    errors = np.empty(BLOCKS)
-    for block in range(BLOCKS):
+    blocks = _blocks(y.size)
+    block_of = np.arange(y.size) * blocks // y.size
+    errors = np.empty(blocks)
+    for block in range(blocks):
         left_out = block_of == block
         problem = problem_of(data, fit.parametrization, ~left_out)
         theta = minimize(problem, fit.solution.theta, REFIT_ITERATIONS).theta
         residual = (model_output(data, fit.parametrization.operator(theta)) - y)[left_out]
         errors[block] = residual.var()
     rms = float(np.sqrt(errors.mean()))
-    scatter = float(errors.std(ddof=1) / np.sqrt(BLOCKS))
+    scatter = float(errors.std(ddof=1) / np.sqrt(blocks))
     return Score(rms, scatter / (2.0 * rms) if rms > 0.0 else 0.0)
+
+
+def _blocks(samples: int) -> int:
+    return max(FEWEST_BLOCKS, min(MOST_BLOCKS, samples // SMALLEST_BLOCK))

@@ -35,8 +35,10 @@ def bank_matrix(data: Data, r: Array) -> Array:
     return np.concatenate(blocks)
 
 
-def bank_gram(data: Data, r: Array) -> Array:
+def bank_gram(data: Data, r: Array, u_origin: float = 0.0, y_origin: float = 0.0) -> Array:
     """Sum the inner products of the columns [u, z_1 .. z_n, 1, y] while the records stream by.
+
+    Play outputs move with their input, so input and play outputs share one origin.
 
     Parameters
     ----------
@@ -44,6 +46,8 @@ def bank_gram(data: Data, r: Array) -> Array:
         The records.
     r
         Shape (n,), radii, input units.
+    u_origin, y_origin
+        Subtracted from the columns u and z, and from y: near their means no digits cancel later.
 
     Returns
     -------
@@ -54,9 +58,9 @@ def bank_gram(data: Data, r: Array) -> Array:
     total = np.zeros((width, width))
     for record, window in zip(data.records, data.windows(), strict=True):
         gram = np.zeros((1, width, width))
-        u = record.u[: window.stop]
-        y = record.y[data.delay :]
+        u = record.u[: window.stop] - u_origin
+        y = record.y[data.delay :] - y_origin
         edges = [window.start, window.stop]
-        _engine.play_gram(r.tolist(), np.zeros(r.size), u, y, edges, gram)
+        _engine.play_gram(r.tolist(), np.full(r.size, -u_origin), u, y, edges, gram)
         total += gram[0]
     return total

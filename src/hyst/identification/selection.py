@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from hyst.identification.cross_validation import cross_validate
+import numpy as np
+
+from hyst.errors import NotIdentifiableError
+from hyst.identification.cross_validation import cross_validate, fewest_left
 from hyst.identification.families import FAMILIES, LINEAR
 from hyst.identification.fitting import Fitter
 from hyst.identification.identified import Candidate
@@ -13,6 +16,9 @@ from hyst.identification.identified import Candidate
 SIZES = (1, 2, 3, 4, 6, 8, 10)
 SMALLEST_GAIN = 1e-3
 """A larger model of the same family must lower the score by this share to be worth going on."""
+
+ROUNDING = 1e-6
+"""Scores below this share of the output range are equal: no sensor tells them apart."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +49,8 @@ def choose(
     """Compare families and sizes and take the simplest within one standard error of the best.
 
     Simple means few free parameters; between equals the order of ``FAMILIES`` decides. Sizes of a
-    family are tried upwards until two in a row have not lowered the score.
+    family are tried upwards until two in a row have not lowered the score, or until there are as
+    many parameters as samples to fit them to.
 
     Parameters
     ----------
@@ -60,6 +67,11 @@ def choose(
     -------
     Choice
 
+    Raises
+    ------
+    NotIdentifiableError
+        If there are too few samples to judge any.
+
     Notes
     -----
     Breiman et al., Classification and Regression Trees (1984), sec. 3.4.3: the one standard error
@@ -68,8 +80,14 @@ def choose(
     candidates: list[Candidate] = []
     for family in families:
         candidates += _grow(fitter, family, (0,) if family == LINEAR else sizes, progress)
+    measured = fitter.data.measured()
+    if not candidates:
+        raise NotIdentifiableError(
+            f"{measured.size} samples can be used, too few to choose the number of plays by "
+            "cross-validation; give a longer record or the number of plays"
+        )
     best = min(candidates, key=lambda each: each.score)
-    limit = best.score + best.standard_error
+    limit = max(best.score + best.standard_error, ROUNDING * float(np.ptp(measured)))
     good = [each for each in candidates if each.score <= limit]
     simplest = min(good, key=lambda each: (each.parameters, FAMILIES.index(each.family)))
     marked = tuple(replace(each, chosen=each is simplest) for each in candidates)
@@ -87,8 +105,10 @@ def _grow(
     for plays in sizes:
         progress(f"{family} with {plays} plays" if plays else family)
         fit = fitter.fit(family, plays)
-        score = cross_validate(fitter.data, fit)
         size = fit.parametrization.size
+        if size >= fewest_left(fitter.data.measured().size):
+            break
+        score = cross_validate(fitter.data, fit)
         candidates.append(
             Candidate(family, plays, size, score.rms, score.standard_error, chosen=False)
         )

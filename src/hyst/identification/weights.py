@@ -73,7 +73,10 @@ def fit_weights(data: Data, r: Array, sign: float = 1.0, rule: str = NON_NEGATIV
     SolverError
         If the active-set iteration does not end.
     """
-    gram = bank_gram(data, r)
+    # Raw counts of a converter vary little around a large mean, whose square would swamp them.
+    u_origin = float(np.mean([each.u.mean() for each in data.records]))
+    y_origin = float(data.measured().mean())
+    gram = bank_gram(data, r, u_origin, y_origin)
     count = gram[-2, -2]
     mean = gram[-2] / count
     centred = gram - count * np.outer(mean, mean)
@@ -94,7 +97,7 @@ def fit_weights(data: Data, r: Array, sign: float = 1.0, rule: str = NON_NEGATIV
     return Weights(
         p0=float(weights[0]),
         p=weights[1:],
-        offset=float(mean[-1] - sign * weights @ mean[:-2]),
+        offset=float(y_origin + mean[-1] - sign * weights @ (u_origin + mean[:-2])),
         rms=float(np.sqrt(residual / count)),
         condition=condition,
     )
