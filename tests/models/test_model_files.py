@@ -93,7 +93,7 @@ def test_where_no_file_can_be(tmp_path: Path) -> None:
     [
         ModelDescription(),
         ModelDescription("U/V", "x [ 1 2 ]", "µm", "日本 \"'\\\n[\n 1\n]", family="mpi"),
-        ModelDescription(input_low=-4.9e-21, input_high=1e300, output_low=0.1, output_high=5e-324),
+        ModelDescription(input_low=-4.9e-21, input_high=1e300, output_low=5e-324, output_high=0.1),
         ModelDescription(dt=1.0 / 3.0, delay=7),
     ],
 )
@@ -200,6 +200,8 @@ def entry(*path: str | int, value: Any) -> Callable[[dict[str, Any]], None]:
         (entry("description", "dt", value=None), "'dt' in 'description' is null; leave"),
         (entry("description", "dt", value="fast"), "in 'description', dt is 'fast'; give a finite"),
         (entry("description", "delay", value=0.5), r"in 'description', delay is 0\.5"),
+        (entry("description", "delay", value=-3), r"in 'description', delay is -3"),
+        (entry("description", "dt", value=0.0), r"in 'description', dt is 0\.0"),
         (entry("description", "family", value=["pi"]), "in 'description', family is"),
         (entry("model", value=None), "an object with an entry 'kind'"),
         (entry("model", value=[]), "an object with an entry 'kind'"),

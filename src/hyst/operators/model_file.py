@@ -45,7 +45,8 @@ class ModelDescription:
     Raises
     ------
     InputError
-        If a name or unit is no text, or a number is not finite or, for the delay, not whole.
+        If a name or unit is no text, a number is not finite or, for the delay, not whole, the delay
+        is negative, dt is not positive, or a range is upside down.
     """
 
     input_name: str = "u"
@@ -64,6 +65,16 @@ class ModelDescription:
         for field in fields(self):
             value = _checked(field.name, getattr(self, field.name), str(field.type))
             object.__setattr__(self, field.name, value)
+        if self.delay < 0:
+            raise InputError(f"delay is {self.delay}; give zero or more samples")
+        if self.dt is not None and self.dt <= 0.0:
+            raise InputError(f"dt is {self.dt}; give a sample time above 0, in seconds")
+        for signal in ("input", "output"):
+            low, high = getattr(self, f"{signal}_low"), getattr(self, f"{signal}_high")
+            if low is not None and high is not None and low > high:
+                raise InputError(
+                    f"{signal}_low is {low} and {signal}_high is {high}; give the lower end first"
+                )
 
 
 def write_model(
