@@ -38,6 +38,30 @@ struct RateDependentThreshold {
     Pack high(std::size_t t, const Pack *) const { return high_[t]; }
 };
 
+// `together` plays from the i-th on, through kWidth samples of all lanes.
+template <std::size_t together, class Threshold>
+inline void pass_plays(const hyst_pi &pi, std::size_t i, const Threshold &threshold, const Pack *u,
+                       Pack *y, double *z) {
+    Pack r[together], p[together], memory[together];
+#pragma GCC unroll 2
+    for (std::size_t a = 0; a < together; ++a) {
+        r[a] = broadcast(pi.r[i + a]);
+        p[a] = broadcast(pi.p[i + a]);
+        memory[a] = load(z + (i + a) * kWidth);
+    }
+#pragma GCC unroll 8
+    for (std::size_t t = 0; t < kWidth; ++t) {
+        const Pack low = threshold.low(t, u), high = threshold.high(t, u);
+#pragma GCC unroll 2
+        for (std::size_t a = 0; a < together; ++a) {
+            memory[a] = clamp(minus(low, r[a]), plus(high, r[a]), memory[a]);
+            y[t] += p[a] * memory[a];
+        }
+    }
+#pragma GCC unroll 2
+    for (std::size_t a = 0; a < together; ++a) store(z + (i + a) * kWidth, memory[a]);
+}
+
 // kWidth samples of all lanes. u: in time order; y: out. z: count packs, one for each play.
 template <class Threshold>
 inline void square(const hyst_pi &pi, Threshold &threshold, const Pack *u, Pack *y, double *z) {
@@ -45,16 +69,10 @@ inline void square(const hyst_pi &pi, Threshold &threshold, const Pack *u, Pack 
     const Pack p0 = broadcast(pi.p0);
 #pragma GCC unroll 8
     for (std::size_t t = 0; t < kWidth; ++t) y[t] = p0 * u[t];
-    for (std::size_t i = 0; i < pi.count; ++i) {
-        const Pack r = broadcast(pi.r[i]), p = broadcast(pi.p[i]);
-        Pack memory = load(z + i * kWidth);
-#pragma GCC unroll 8
-        for (std::size_t t = 0; t < kWidth; ++t) {
-            memory = clamp(minus(threshold.low(t, u), r), plus(threshold.high(t, u), r), memory);
-            y[t] += p * memory;
-        }
-        store(z + i * kWidth, memory);
-    }
+    // Two at a time: the min and the max of one play wait for each other, those of two do not.
+    std::size_t i = 0;
+    for (; i + 2 <= pi.count; i += 2) pass_plays<2>(pi, i, threshold, u, y, z);
+    if (i < pi.count) pass_plays<1>(pi, i, threshold, u, y, z);
 }
 
 template <class Threshold>
