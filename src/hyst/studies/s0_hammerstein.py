@@ -84,8 +84,8 @@ def designed_input(samples: int = SAMPLES) -> Array:
 def markov_error(estimate: Array) -> float:
     """Give the relative error after scaling, in percent."""
     true = G.impulse_response(estimate.size)
-    scale = float(estimate @ true) / float(estimate @ estimate)
-    return 100.0 * float(np.linalg.norm(scale * estimate - true) / np.linalg.norm(true))
+    scale = float(estimate @ true) / float(true @ true)
+    return 100.0 * float(np.linalg.norm(estimate / scale - true) / np.linalg.norm(true))
 
 
 def relative_rms(estimate: Array, true: Array) -> float:

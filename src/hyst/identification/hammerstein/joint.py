@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 _WARM_UP = 8_000  # samples of each record for the coarse refinement
 _BURST = 12
-_STALLED = 0.998
+_STALLED = 0.99
 _TOLERANCE = 2e-2  # of the residual variance: at most a seventh of a standard error is left
 MOST_SAMPLES = 300_000
 """The Jacobian is held in memory; of longer records the beginning is refined on."""
@@ -151,7 +151,7 @@ def refine(joint: Joint, data: Data, max_iterations: int) -> Solution:
     """Minimise the simulated output error over hysteresis and dynamics.
 
     A hysteresis richer or poorer than the actuator's leaves a long flat valley. So it has
-    converged, too, when a dozen steps lower the squared error by no more than a five-hundredth.
+    converged, too, when a dozen steps lower the squared error by no more than a hundredth.
 
     Parameters
     ----------
