@@ -82,6 +82,11 @@ public:
     int step(State state, double u, double y) const {
         return hyst_joint_step(&config_, checked(state), u, y);
     }
+    // The memory of the input, in terms of parameters that have been replaced.
+    void remember(State state) const {
+        double *values = checked(state);
+        hyst_joint_set_memory(&config_, &places_, values, values[HYST_JOINT_INPUT]);
+    }
     double command(State state, double y_ref) const {
         return hyst_joint_command(&config_, checked(state), y_ref);
     }
@@ -206,6 +211,7 @@ void bind_online_estimation(nb::module_ &module) {
         .def("places", &Joint::places)
         .def("start", &Joint::start, nb::arg("state").noconvert(), nb::arg("noise"))
         .def("step", &Joint::step, nb::arg("state").noconvert(), nb::arg("u"), nb::arg("y"))
+        .def("remember", &Joint::remember, nb::arg("state").noconvert())
         .def("command", &Joint::command, nb::arg("state").noconvert(), nb::arg("y_ref"))
         .def("run", &Joint::run, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
              nb::arg("y").noconvert(), nb::arg("every"), nb::arg("theta").noconvert(),

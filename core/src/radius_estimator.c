@@ -97,7 +97,8 @@ static void find_regime(const hyst_radius *radius, hyst_real *state, hyst_real u
     state[HYST_RADIUS_MEAN_U] += share * du;
     state[HYST_RADIUS_MEAN_Y] += share * dy;
     state[HYST_RADIUS_SINCE] += ONE;
-    if (!(state[HYST_RADIUS_UU] > ZERO) || state[HYST_RADIUS_SINCE] <= radius->dead_time) {
+    if (radius->plays == 0 || !(state[HYST_RADIUS_UU] > ZERO) ||
+        state[HYST_RADIUS_SINCE] <= radius->dead_time) {
         state[HYST_RADIUS_REGIME] = -ONE;
         return;
     }

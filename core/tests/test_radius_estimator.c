@@ -88,8 +88,20 @@ static void bad_samples_change_nothing_but_their_count(void)
     CHECK_SAME_BITS(state, before, at.length);
 }
 
+static void no_plays_are_no_trouble(void)
+{
+    const hyst_radius radius = {0, R(1.0), NULL, NULL, 0, R(1.0), NULL, R(10.0),
+                                R(0.0), R(0.0), R(0.0), R(1.0)};
+    hyst_real state[64] = {R(0.0)};
+    hyst_radius_start(&radius, state, NULL);
+    CHECK(hyst_radius_step(&radius, state, R(0.0), R(0.0)) == 0);
+    CHECK(hyst_radius_step(&radius, state, R(1.0), R(1.0)) == 0);
+    CHECK(hyst_radius_step(&radius, state, R(0.5), R(0.5)) == 0);
+}
+
 int main(void)
 {
+    no_plays_are_no_trouble();
     gradient_follows_hand_calculation();
     least_squares_follows_hand_calculation();
     goes_on_while_the_input_rests();

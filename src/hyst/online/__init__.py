@@ -1,0 +1,20 @@
+"""Estimation of hysteresis while it runs: radii, all constants, and the inverse with them."""
+
+from __future__ import annotations
+
+from hyst.online.adaptive_inverse import AdaptiveInverse
+from hyst.online.excitation import Excitation, PlayExcitation
+from hyst.online.joint_estimator import JointEstimator
+from hyst.online.loading import load_estimator
+from hyst.online.radius_estimator import RadiusEstimator
+from hyst.online.trajectory import Trajectory
+
+__all__ = [
+    "AdaptiveInverse",
+    "Excitation",
+    "JointEstimator",
+    "PlayExcitation",
+    "RadiusEstimator",
+    "Trajectory",
+    "load_estimator",
+]

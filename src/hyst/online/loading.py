@@ -1,0 +1,50 @@
+"""Read an estimator back."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+from hyst.errors import InputError
+from hyst.online.joint_estimator import JointEstimator
+from hyst.online.radius_estimator import RadiusEstimator
+from hyst.online.saving import FORMAT, VERSION
+
+
+def load_estimator(path: str | os.PathLike[str]) -> JointEstimator | RadiusEstimator:
+    """Read an estimator back; it continues with the same bits as if it had never stopped.
+
+    Parameters
+    ----------
+    path
+        A file that ``save`` of an estimator wrote.
+
+    Returns
+    -------
+    JointEstimator or RadiusEstimator
+
+    Raises
+    ------
+    InputError
+        If the file is not there, is no such file, is of another version, or was damaged.
+    """
+    try:
+        content = json.loads(Path(path).read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path} cannot be read as an estimator: {error}") from None
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise InputError(f"{path} is no estimator; give a file that save() of an estimator wrote")
+    if content.get("version") != VERSION:
+        raise InputError(
+            f"{path} has version {content.get('version')!r} of the format, this hyst reads "
+            f"{VERSION}; use the hyst that wrote it"
+        )
+    kinds: dict[str, type[JointEstimator] | type[RadiusEstimator]] = {
+        "joint": JointEstimator,
+        "radius": RadiusEstimator,
+    }
+    try:
+        return kinds[content["kind"]].restore(content["settings"], content["state"])
+    except (KeyError, TypeError) as error:
+        raise InputError(f"{path} is damaged ({error}); save the estimator again") from None

@@ -1,0 +1,98 @@
+"""The inverse that follows the estimate."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hyst
+from hyst import _engine
+from hyst.online import AdaptiveInverse, JointEstimator
+from online.plants import DT, P, R
+
+P0 = 0.3
+
+
+def drifting(samples: int) -> tuple[np.ndarray, np.ndarray]:
+    """Weight 3 and radius 4 grow by 30 %."""
+    p, r = np.tile(P, (samples, 1)), np.tile(R, (samples, 1))
+    growth = 1.0 + 0.3 * np.arange(samples) / samples
+    p[:, 2] *= growth
+    r[:, 3] *= growth
+    return p, r
+
+
+def test_tracks_a_drift_five_times_better_than_the_frozen_inverse() -> None:
+    samples = 60_000
+    p, r = drifting(samples)
+    y_ref = 50.0 * np.sin(2 * np.pi * np.arange(samples) * DT)
+    start = hyst.PrandtlIshlinskii(P, R, P0)
+    noise = float(np.std(y_ref)) * 10.0 ** (-30.0 / 20.0)
+    scatter = noise * np.random.default_rng(0).standard_normal(samples)
+    estimator = JointEstimator(start, dt=DT, memory=5.0, radius_spread=0.3, noise=noise)
+    inverse, frozen = AdaptiveInverse(estimator, window=2.0), start.inverse().stepper()
+    errors = np.zeros((2, samples))
+    z = np.zeros((2, 5))
+    for k in range(samples):
+        for way, u in enumerate((inverse.command(y_ref[k]), frozen(y_ref[k]))):
+            z[way] = np.clip(z[way], u - r[k], u + r[k])
+            y = P0 * u + float(p[k] @ z[way])
+            errors[way, k] = y - y_ref[k]
+            if way == 0:
+                inverse.update(u, y + scatter[k])
+    adaptive, fixed = np.sqrt(np.mean(errors[:, samples // 6 :] ** 2, axis=1))
+    assert adaptive < fixed / 5.0
+
+
+def test_command_and_model_belong_together() -> None:
+    rng = np.random.default_rng(3)
+    estimator = JointEstimator(
+        hyst.GeneralizedPrandtlIshlinskii(
+            hyst.DeadZone([1.0, -0.3, 0.4], [0.0, 1.0, -1.5]),
+            hyst.PrandtlIshlinskii([0.5, 0.3], [0.5, 1.2], 1.0),
+        ),
+        estimate_maps=True,
+        least_slope=0.1,
+    )
+    for _ in range(300):
+        estimator.update(rng.normal(0.0, 3.0), rng.normal(0.0, 5.0))
+        # The model carries the estimator's memory: one step of its own inverse is the command.
+        y_ref = rng.normal(0.0, 5.0)
+        u = estimator.command(y_ref)
+        assert estimator.model([u])[0] == pytest.approx(y_ref, abs=1e-7)
+        assert estimator.model.inverse()([y_ref])[0] == pytest.approx(u, rel=1e-6, abs=1e-6)
+
+
+def test_a_broken_sensor_makes_it_fall_back_to_the_last_good_model() -> None:
+    start = hyst.PrandtlIshlinskii(P, R, P0)
+    plant = start.stepper()
+    inverse = AdaptiveInverse(JointEstimator(start, dt=DT, memory=0.2), window=1.0)
+    y_ref = 50.0 * np.sin(2 * np.pi * np.arange(12_000) * DT)
+    rng = np.random.default_rng(0)
+    worst = 0.0
+    for k, wanted in enumerate(y_ref):
+        u = inverse.command(wanted)
+        y = plant(u)
+        measured = y if k < 4000 else rng.normal(0.0, 100.0) if k < 8000 else y
+        inverse.update(u, measured)
+        worst = max(worst, abs(y - wanted)) if k > 11_000 else worst
+    # 3 s after the repair; the amplitude is 50.
+    assert worst < 1.0
+    assert inverse.fallbacks >= 4
+    assert inverse.trusts_estimate
+    assert inverse.good_model.is_invertible()
+
+
+def test_engine_runs_a_record_to_the_same_bits() -> None:
+    u = 30.0 * np.sin(np.arange(3000) / 100.0)
+    y = hyst.PrandtlIshlinskii(P, R, P0)(u)
+    by_sample = JointEstimator(hyst.PrandtlIshlinskii(P, 1.2 * R, P0))
+    by_record = JointEstimator(hyst.PrandtlIshlinskii(P, 1.2 * R, P0))
+    for u_k, y_k in zip(u, y, strict=True):
+        by_sample.update(u_k, y_k)
+    trajectory = by_record.run(hyst.Record(u, y, 1.0), every=100)
+    places = _engine.JointEstimation(5, [1.0] * 12, [], [], 1.0, 2.0).places()
+    assert by_sample.state[: places["psi"]].tobytes() == by_record.state[: places["psi"]].tobytes()
+    assert trajectory.values[-1].tobytes() == by_record.parameters.tobytes()
+    assert trajectory.standard_errors[-1] == pytest.approx(by_record.standard_errors, rel=1e-9)
+    assert trajectory.of("r[5]").size == 30

@@ -1,0 +1,148 @@
+"""The paper's law, and recursive least squares on the same regression."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hyst
+from hyst import _engine
+from hyst.online import RadiusEstimator
+from online.plants import DT, FIVE_PLAYS, P, R, record, sine
+
+
+def test_paper_law_reaches_four_percent_then_three_per_mille() -> None:
+    u = sine(200.0)
+    estimator = RadiusEstimator(P, np.zeros(5), gain=10.0, dt=DT)
+    radii = estimator.run(record(u, FIVE_PLAYS(u)), every=20_000).values
+    # A prototype written from the paper's equations alone had these after 20, 60 and 200 s.
+    for row, expected in (
+        (0, [0.416, 0.964, 1.492, 2.233, 3.315]),
+        (2, [0.401, 0.999, 1.488, 2.051, 3.571]),
+        (9, [0.400, 0.999, 1.501, 1.999, 3.601]),
+    ):
+        # It started from other radii, which the first 20 s have not forgotten altogether.
+        assert radii[row] == pytest.approx(expected, abs=0.02 if row == 0 else 2e-3)
+    assert np.abs(radii[2] / R - 1.0).max() < 0.04
+    assert np.abs(radii[9] / R - 1.0).max() < 0.003
+
+
+@pytest.mark.parametrize("start", [0.0, 0.5, 1.5])
+def test_least_squares_reaches_one_per_mille_in_three_periods(start: float) -> None:
+    u = sine(3.0)
+    estimator = RadiusEstimator(
+        P, start * R, gain=100.0, dt=DT, method="least-squares", tolerance=0.1
+    )
+    estimator.run(record(u, FIVE_PLAYS(u)))
+    assert np.abs(estimator.radii / R - 1.0).max() < 1e-3
+
+
+def test_minor_loops_do_not_mislead() -> None:
+    # Plays that stayed inside keep where they left their envelope, reversals ago.
+    t = np.arange(20_000) * DT
+    u = 12.0 * np.sin(2 * np.pi * 0.5 * t) + 3.0 * np.sin(2 * np.pi * 3.1 * t)
+    estimator = RadiusEstimator(
+        P, 1.5 * R, gain=100.0, dt=DT, method="least-squares", tolerance=0.1
+    )
+    estimator.run(record(u, FIVE_PLAYS(u)))
+    assert np.abs(estimator.radii / R - 1.0).max() < 1e-2
+
+
+def test_regime_follows_the_slope() -> None:
+    estimator = RadiusEstimator([1.0, 2.0], [0.5, 1.0], gain=0.0, dt=1.0)
+    model = hyst.PrandtlIshlinskii([1.0, 2.0], [0.5, 1.0])
+    # From 0: both inside, then the first alone, then both; the steps between are mixed.
+    u = [0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0]
+    seen = []
+    for u_k, y_k in zip(u, model(u), strict=True):
+        estimator.update(u_k, y_k)
+        seen.append(estimator.regime)
+    assert seen == [None, 0, 0, 1, 1, 2, 2]
+
+
+def test_filter_and_dead_time_keep_noise_from_choosing_the_regime() -> None:
+    u = sine(20.0)
+    y = FIVE_PLAYS(u) + 0.02 * np.random.default_rng(0).standard_normal(u.size)
+
+    def worst(**options: float) -> float:
+        estimator = RadiusEstimator(P, 1.5 * R, gain=10.0, dt=DT, **options)  # type: ignore[arg-type]
+        estimator.run(record(u, y))
+        return float(np.abs(estimator.radii / R - 1.0).max())
+
+    # 52 dB. Without a filter the slope near a reversal is mostly noise.
+    assert worst(filter_time=0.005, dead_time=0.01) < 0.6 * worst()
+
+
+def test_projection_is_the_nearest_ordered_point() -> None:
+    from scipy.optimize import isotonic_regression
+
+    rng = np.random.default_rng(1)
+    for count in (1, 2, 5, 20):
+        for _ in range(50):
+            x = rng.normal(0.5, 1.0, count)
+            projected = x.copy()
+            _engine.project_radii(projected, 1.0)
+            # Bounds common to all: clipping the isotonic regression is the projection onto both.
+            expected = np.clip(isotonic_regression(x).x, 0.0, 1.0)
+            assert projected == pytest.approx(expected, abs=1e-14 * count)
+
+
+def test_bad_samples_are_skipped_and_counted() -> None:
+    estimator = RadiusEstimator(P, R, gain=10.0, dt=DT)
+    u = sine(0.5)
+    for k, (u_k, y_k) in enumerate(zip(u, FIVE_PLAYS(u), strict=True)):
+        estimator.update(u_k, y_k)
+        if k % 50 == 0:
+            assert not estimator.update(np.nan, y_k)
+            assert not estimator.update(u_k, np.inf)
+    assert estimator.counts["skipped"] == 22
+    assert np.abs(estimator.radii / R - 1.0).max() < 0.01
+
+
+def test_a_weight_of_zero_leaves_its_radius_alone() -> None:
+    weights = np.array([0.3, 0.0, 0.8])
+    model = hyst.PrandtlIshlinskii(weights, [0.4, 1.0, 1.5], 0.1)
+    u = sine(2.0)
+    estimator = RadiusEstimator(weights, [0.5, 1.0, 1.4], 20.0, DT, p0=0.1, method="least-squares")
+    estimator.run(record(u, model(u)))
+    assert estimator.radii[1] == 1.0
+    assert estimator.radii[[0, 2]] == pytest.approx([0.4, 1.5], rel=0.02)
+    assert "weight is 0" in estimator.excitation(1.0, 60.0).plays[1].reason
+
+
+def test_input_that_never_turns_and_no_plays() -> None:
+    estimator = RadiusEstimator(P, R, gain=10.0, dt=DT)
+    u = np.linspace(0.0, 30.0, 1000)
+    estimator.run(record(u, FIVE_PLAYS(u)))
+    assert np.isfinite(estimator.radii).all()
+    empty = RadiusEstimator([], [], gain=1.0, dt=DT, p0=1.0)
+    assert not empty.update(0.0, 0.0)
+    assert not empty.update(1.0, 1.0)
+    assert empty.radii.size == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"p": [0.5, -0.1]}, r"p\[2\] is -0.1"),
+        ({"gain": 1e6}, "diverges"),
+        ({"gain": [1.0, 2.0, 3.0]}, "gain has shape"),
+        ({"gain": -1.0}, "gain has the entry -1"),
+        ({"dt": 0.0}, "dt is 0.0"),
+        ({"dt": np.nan}, "dt is nan"),
+        ({"tolerance": 1.5}, "tolerance is 1.5"),
+        ({"method": "newton"}, "method is 'newton'"),
+        ({"most_radius": 0.5}, "most_radius is 0.5"),
+        ({"memory": -1.0}, "memory is -1.0"),
+    ],
+)
+def test_arguments_that_make_no_sense(arguments: dict[str, object], message: str) -> None:
+    given = {"p": [0.5, 0.2], "r": [0.5, 1.0], "gain": 1.0, "dt": DT} | arguments
+    with pytest.raises(hyst.InputError, match=message):
+        RadiusEstimator(**given)  # type: ignore[arg-type]
+
+
+def test_another_sample_time_is_refused() -> None:
+    u = sine(0.1)
+    with pytest.raises(hyst.InputError, match=r"dt = 0.002 s"):
+        RadiusEstimator(P, R, 10.0, DT).run(record(u, u, dt=2e-3))
