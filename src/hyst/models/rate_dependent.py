@@ -177,7 +177,7 @@ class RateDependentPrandtlIshlinskii(Operator):
     def traits(self) -> Traits:
         """Give the traits; with a rate that counts none of those of plays is left."""
         rest = self.at_rest()
-        plain = self.rate_curve.is_zero or not self.p.any()
+        plain = self.rate_curve.is_zero or self.p.size == 0
         return Traits(
             memoryless=self.p.size == 0 and rest.traits().memoryless,
             rate_independent=plain,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import StrMethodFormatter
 from numpy.typing import NDArray
 
 from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn
@@ -82,6 +83,9 @@ def draw_error_over_frequency(
             if max(values) > 1e-6:
                 colour = _COLOURS.get(method, MEASURED)
                 axes.loglog(frequencies, values, "o-", color=colour, markersize=3.5, label=method)
+        # Powers of ten would need formulas, which names from users' files must not start.
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_formatter(StrMethodFormatter("{x:g}"))
         axes.set_title(model)
         axes.set_xlabel("frequency [Hz]")
         axes.set_ylabel("largest error")
