@@ -1,0 +1,74 @@
+"""hyst excite: drive, figure, what it can determine; and from there to a model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hyst
+from hyst.cli import main
+
+
+def test_writes_a_drive_that_can_be_read_back(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "drive.csv"
+    arguments = ["--kind", "multisine", "--rate", "1000", "--rms", "2", "--duration", "0.5"]
+    arguments += ["--periods", "3", "--fir-order", "20", "--name", "drive [V]", "-o", str(out)]
+    assert main(["excite", *arguments]) == 0
+    u, name, unit = hyst.io.read_column(out, "drive")
+    assert (name, unit, u.size) == ("drive", "V", 1500)
+    assert u.std() == pytest.approx(2.0, rel=1e-6)
+    assert out.with_suffix(".png").read_bytes().startswith(b"\x89PNG")
+    said = capsys.readouterr().out
+    assert "crest factor" in said
+    assert "rank 21 of 21" in said
+
+
+def test_limits_hold_in_the_file(tmp_path: Path) -> None:
+    out = tmp_path / "forc.csv"
+    arguments = ["--kind", "forc", "--rate", "1000", "--amplitude", "5", "--periods", "4"]
+    arguments += ["--max-rate", "100", "--max-acceleration", "20000", "-o", str(out)]
+    assert main(["excite", *arguments]) == 0
+    u, _, _ = hyst.io.read_column(out, "u")
+    # The file holds every digit, so no tolerance for writing; differences round in the last place.
+    assert np.abs(np.diff(u)).max() * 1000.0 <= 100.0
+    assert np.abs(np.diff(u, 2)).max() * 1000.0**2 <= 20000.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["--kind", "noise", "--rate", "100"], "unknown kind 'noise'"),
+        (["--kind", "triangle", "--rate", "100"], "give max_rate"),
+        (["--kind", "multisine", "--rate", "0"], "--rate is 0.0"),
+        (["--kind", "multisine", "--rate", "100", "--band", "1"], "--band is '1'"),
+    ],
+)
+def test_refuses_in_one_sentence(
+    arguments: list[str], says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["excite", *arguments, "-o", str(tmp_path / "drive.csv")]) == 2
+    assert says in capsys.readouterr().err
+
+
+def test_drive_record_identify_from_files(tmp_path: Path) -> None:
+    drive, data, out = (str(tmp_path / name) for name in ("drive.csv", "data.csv", "out"))
+    arguments = ["--kind", "multisine", "--rate", "1000", "--amplitude", "10", "--duration", "4"]
+    assert main(["excite", *arguments, "--name", "drive [V]", "-o", drive]) == 0
+    u, _, _ = hyst.io.read_column(drive, "drive")
+    w = 2.0 * np.pi * 80.0
+    G = hyst.LinearDynamics.from_continuous([1.0], [w**-2, 0.3 / w, 1.0], 1e-3)
+    y = (G @ hyst.PrandtlIshlinskii([0.3, 0.2], [0.5, 2.0], 1.0))(u)
+    y = y + 0.01 * y.std() * np.random.default_rng(0).normal(size=y.size)
+    columns = (np.arange(u.size) * 1e-3, u, y)
+    hyst.io.write_columns(data, ["time [s]", "drive [V]", "position [um]"], columns)
+    arguments = ["--input", "drive", "--output", "position", "--time", "time"]
+    arguments += ["--family", "hammerstein", "--hysteresis", "pi", "--plays", "2", "-o", out]
+    assert main(["identify", data, *arguments]) == 0
+    model = hyst.load(Path(out) / "model.json")
+    assert model.dt == pytest.approx(1e-3)
+    assert (Path(out) / "estimated_loop.png").exists()
+    assert np.std(model(u) - y) < 0.011 * y.std()
