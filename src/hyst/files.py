@@ -28,7 +28,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     Raises
     ------
     InputError
-        If the folder does not exist, or ``path`` is a folder.
+        If the folder does not exist, or ``path`` is a folder or a device.
 
     Examples
     --------
@@ -44,6 +44,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         raise InputError(f"{target}: the folder {target.parent} does not exist; create it first")
     if target.is_dir():
         raise InputError(f"{target} is a folder; name a file")
+    _refuse_special(target)
     with tempfile.TemporaryDirectory(prefix=".hyst-", dir=target.parent) as folder:
         temporary = Path(folder) / target.name
         yield temporary
@@ -67,7 +68,8 @@ def replacing_files(folder: str | os.PathLike[str]) -> Iterator[Path]:
     Raises
     ------
     InputError
-        If the parent does not exist, ``folder`` is a file, or a file would replace a folder.
+        If the parent does not exist, ``folder`` is a file, or a file would replace a folder or a
+        device.
 
     Examples
     --------
@@ -86,6 +88,7 @@ def replacing_files(folder: str | os.PathLike[str]) -> Iterator[Path]:
         for file in files:
             if (target / file.name).is_dir():
                 raise InputError(f"{target / file.name} is a folder; move it or write elsewhere")
+            _refuse_special(target / file.name)
         target.mkdir(exist_ok=True)
         for file in files:
             file.replace(target / file.name)
@@ -113,3 +116,9 @@ def require_folder(folder: str | os.PathLike[str]) -> None:
         raise InputError(f"{target} is a file; name a folder")
     if not target.absolute().parent.is_dir():
         raise InputError(f"{target}: the folder {target.parent} does not exist; create it first")
+
+
+def _refuse_special(target: Path) -> None:
+    """Refuse a device or a pipe: renaming onto it would remove it from the system."""
+    if target.exists() and not target.is_file():
+        raise InputError(f"{target} is a device or a pipe, not a regular file; name a file")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -343,3 +344,13 @@ def test_whole_numbers_are_numbers(file: Path) -> None:
     """What a person would write by hand."""
     changed(file, entry("model", "p", value=[1, 2]), BANK)
     assert load(file) == PrandtlIshlinskii([1.0, 2.0], [1.0, 2.0], p0=0.3, z0=[0.5, 0.25])
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes on this system")
+def test_a_device_or_a_pipe_is_never_replaced(tmp_path: Path) -> None:
+    """Renaming a file onto /dev/null, which root may do, would remove the device."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with pytest.raises(InputError, match="not a regular file"):
+        PrandtlIshlinskii([0.5], [1.0]).save(pipe)
+    assert pipe.is_fifo()
