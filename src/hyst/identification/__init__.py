@@ -4,5 +4,13 @@ from __future__ import annotations
 
 from hyst.identification.from_records import identify
 from hyst.identification.identified import Candidate, Identified, UsedSamples
+from hyst.identification.slopes import Slopes, identify_weights_from_slopes
 
-__all__ = ["Candidate", "Identified", "UsedSamples", "identify"]
+__all__ = [
+    "Candidate",
+    "Identified",
+    "Slopes",
+    "UsedSamples",
+    "identify",
+    "identify_weights_from_slopes",
+]

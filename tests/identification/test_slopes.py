@@ -1,0 +1,59 @@
+"""Plays from the slopes of a loop."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hyst
+from hyst.identification import identify_weights_from_slopes
+
+TRUTH = hyst.PrandtlIshlinskii([0.5, 0.8, 0.3], [0.4, 1.5, 3.6], 0.3)
+
+
+def record(noise: float) -> hyst.Record:
+    u = 15.0 * np.sin(2 * np.pi * np.arange(4000) / 1000.0)
+    return hyst.Record(u, TRUTH(u) + noise * np.random.default_rng(0).standard_normal(u.size), 1e-3)
+
+
+def test_number_weights_and_radii_without_noise() -> None:
+    found = identify_weights_from_slopes(record(0.0)).model
+    # On a stroke the data are a segmented line; what is left is rounding of some thousand samples.
+    assert found.p0 == pytest.approx(0.3, abs=1e-9)
+    assert found.p == pytest.approx([0.5, 0.8, 0.3], abs=1e-9)
+    assert found.r == pytest.approx([0.4, 1.5, 3.6], abs=1e-9)
+
+
+def test_number_weights_and_radii_with_noise() -> None:
+    found = identify_weights_from_slopes(record(0.03)).model
+    # 5 strokes; a slope over a stretch of 0.8 with 15 samples a stroke is known to about 0.02.
+    assert found.p == pytest.approx([0.5, 0.8, 0.3], abs=0.06)
+    assert found.r == pytest.approx([0.4, 1.5, 3.6], abs=0.08)
+
+
+def test_the_plays_one_asks_for() -> None:
+    found = identify_weights_from_slopes(record(0.03), plays=2)
+    assert found.model.p.size == 2
+    assert found.strokes == 7
+    # Fewer pieces fit worse.
+    assert found.rms > identify_weights_from_slopes(record(0.03), plays=3).rms
+
+
+def test_a_straight_line_has_no_plays() -> None:
+    u = np.sin(np.arange(1000) / 30.0)
+    y = 2.0 * u + 0.01 * np.random.default_rng(1).standard_normal(u.size)
+    found = identify_weights_from_slopes(hyst.Record(u, y, 1.0)).model
+    assert found.p.size == 0
+    assert found.p0 == pytest.approx(2.0, abs=0.01)
+
+
+def test_an_input_that_never_turns() -> None:
+    u = np.linspace(0.0, 1.0, 100)
+    with pytest.raises(hyst.NotIdentifiableError, match="0 reversals"):
+        identify_weights_from_slopes(hyst.Record(u, u, 1.0))
+
+
+@pytest.mark.parametrize("plays", [-1, 1.5, "many"])
+def test_a_number_of_plays_that_is_none(plays: object) -> None:
+    with pytest.raises(hyst.InputError, match="plays is"):
+        identify_weights_from_slopes(record(0.0), plays=plays)  # type: ignore[arg-type]
