@@ -36,6 +36,9 @@ RAMBERG_OSGOOD = "ramberg-osgood"
 
 WITHOUT_PLAYS = (LINEAR, RAMBERG_OSGOOD)
 
+KNOWN = (LINEAR, RAMBERG_OSGOOD, PI, GPI, MPI)
+"""All there are; between equally good ones with as many parameters the earlier is taken."""
+
 SMALLEST_MAP_SLOPE = 0.02
 """Of an envelope or output map, whose slope around 0 is 1."""
 

@@ -14,7 +14,14 @@ from hyst.identification.assembly import assemble
 from hyst.identification.bounded_least_squares import CONVERGED
 from hyst.identification.data import Data, prepare, require_same_units
 from hyst.identification.delay import estimate_delay
-from hyst.identification.families import FAMILIES, LINEAR, PI, RAMBERG_OSGOOD, WITHOUT_PLAYS
+from hyst.identification.families import (
+    FAMILIES,
+    KNOWN,
+    LINEAR,
+    PI,
+    RAMBERG_OSGOOD,
+    WITHOUT_PLAYS,
+)
 from hyst.identification.fitting import AUTO, MOST_STARTS, Fit, Fitter
 from hyst.identification.hammerstein.from_options import HAMMERSTEIN, identify_with_dynamics
 from hyst.identification.identified import Candidate, Identified
@@ -64,8 +71,9 @@ def identify(
         One or more records of one actuator with one sample time. They are not joined: each has its
         own memory.
     family
-        One family, or ``"auto"``: all but ``ramberg-osgood`` compared by blocked cross-validation;
-        the simplest within one standard error of the best is taken.
+        One family; several with commas between them, which are compared by blocked
+        cross-validation, the simplest within one standard error of the best being taken; or
+        ``"auto"``: all but ``ramberg-osgood``.
     plays
         Number of plays, 1 to 200, or ``"auto"``: chosen in the same way. Plays whose weight comes
         out zero are left out of the model.
@@ -231,12 +239,14 @@ def _working_plays(fit: Fit, data: Data) -> NDArray[np.bool_]:
 def _as_families(family: str, radii: Array | None) -> tuple[str, ...]:
     if family == "auto":
         return FAMILIES if radii is None else FAMILIES[1:]
-    if family not in (*FAMILIES, RAMBERG_OSGOOD):
-        known = ", ".join(("auto", *FAMILIES, RAMBERG_OSGOOD))
-        raise InputError(f"unknown family {family!r}; choose one of {known}")
-    if family in WITHOUT_PLAYS and radii is not None:
-        raise InputError(f"family {family!r} has no plays; leave out radii")
-    return (family,)
+    families = tuple(dict.fromkeys(each.strip() for each in family.split(",")))
+    for each in families:
+        if each not in KNOWN:
+            known = ", ".join(("auto", *FAMILIES, RAMBERG_OSGOOD))
+            raise InputError(f"unknown family {each!r}; choose one of {known}")
+        if each in WITHOUT_PLAYS and radii is not None:
+            raise InputError(f"family {each!r} has no plays; leave out radii")
+    return families
 
 
 def _as_sizes(plays: int | str, radii: Array | None) -> tuple[int, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from hyst.errors import NotIdentifiableError
 from hyst.identification.cross_validation import cross_validate, fewest_left
-from hyst.identification.families import FAMILIES, LINEAR
+from hyst.identification.families import KNOWN, WITHOUT_PLAYS
 from hyst.identification.fitting import Fitter
 from hyst.identification.identified import Candidate
 
@@ -48,7 +48,7 @@ def choose(
 ) -> Choice:
     """Compare families and sizes and take the simplest within one standard error of the best.
 
-    Simple means few free parameters; between equals the order of ``FAMILIES`` decides. Sizes of a
+    Simple means few free parameters; between equals the order of ``KNOWN`` decides. Sizes of a
     family are tried upwards until two in a row have not lowered the score, or until there are as
     many parameters as samples to fit them to.
 
@@ -79,7 +79,7 @@ def choose(
     """
     candidates: list[Candidate] = []
     for family in families:
-        candidates += _grow(fitter, family, (0,) if family == LINEAR else sizes, progress)
+        candidates += _grow(fitter, family, (0,) if family in WITHOUT_PLAYS else sizes, progress)
     measured = fitter.data.measured()
     if not candidates:
         raise NotIdentifiableError(
@@ -89,7 +89,7 @@ def choose(
     best = min(candidates, key=lambda each: each.score)
     limit = max(best.score + best.standard_error, ROUNDING * float(np.ptp(measured)))
     good = [each for each in candidates if each.score <= limit]
-    simplest = min(good, key=lambda each: (each.parameters, FAMILIES.index(each.family)))
+    simplest = min(good, key=lambda each: (each.parameters, KNOWN.index(each.family)))
     marked = tuple(replace(each, chosen=each is simplest) for each in candidates)
     return Choice(simplest.family, simplest.plays, marked)
 
