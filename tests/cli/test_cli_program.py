@@ -31,6 +31,7 @@ def test_nothing_given_shows_the_help(run: Run) -> None:
     ended = run()
     assert ended.code == 2
     assert "identify" in ended.out
+    assert "Missing verb" in ended.err
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from hyst import DeadZone, GeneralizedPrandtlIshlinskii, Operator, Play, PrandtlIshlinskii
 from hyst.operators import Chained
-from reference.numpy_operators import simulate
 from reference.random_operators import SINGLE, numbers, operators_that, signals
+from reference.rounding import rounding_of
 
 
 @operators_that(lambda operator: operator.traits().return_point_memory)
@@ -33,7 +33,7 @@ def test_an_inner_loop_is_wiped_out(operators: st.SearchStrategy, data: st.DataO
     if isinstance(operator, Chained):
         # Behind a sum with weights of both signs the inner loop may pass its ends by rounding.
         whole = np.concatenate([looped, tail])
-        tolerance = 4.0 * simulate(operator.to_dict(), whole).rounding
+        tolerance = rounding_of(operator, whole)
         assert abs(y_looped[-1] - y[-1]) <= tolerance
         assert np.abs(after_looped - after).max() <= tolerance
     else:

@@ -54,7 +54,7 @@ def only_plain(value: Any) -> bool:
         return all(type(key) is str and only_plain(each) for key, each in value.items())
     if isinstance(value, list):
         return all(map(only_plain, value))
-    return type(value) in (float, str)
+    return type(value) in (float, int, str)
 
 
 @each_example

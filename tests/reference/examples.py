@@ -11,7 +11,20 @@ from hyst import (
     Operator,
     Play,
     PrandtlIshlinskii,
+    RateDependentPrandtlIshlinskii,
     Stop,
+)
+from hyst.models import (
+    LinearDynamics,
+    MasingOperator,
+    MemoryElement,
+    MemoryFunction,
+    PiecewiseLinear,
+    PolynomialCurve,
+    PowerLaw,
+    RambergOsgood,
+    RateCurve,
+    SecondOrderSections,
 )
 
 PI = PrandtlIshlinskii([0.5, 0.25, 0.7], [0.5, 1.5, 4.0], p0=0.3)
@@ -19,11 +32,14 @@ WAVY = PrandtlIshlinskii([0.5, -0.6, 0.4, -0.1], [0.5, 1.0, 2.5, 3.0], p0=0.3)
 ENVELOPE = DeadZone.odd([0.65, 0.2, 0.3], [0.0, 2.0, 5.0])
 LOPSIDED = DeadZone([0.8, 0.6, -0.5, 0.4], [0.0, 1.5, -2.5, 4.0])
 TENT = DeadZone([1.0, -2.0], [0.0, 1.0])
+RATE_DEPENDENT = RateDependentPrandtlIshlinskii(
+    [0.5, 0.25, 0.7], [0.5, 1.5, 4.0], beta=0.02, dt=0.1, p0=0.3
+)
 GPI = GeneralizedPrandtlIshlinskii(ENVELOPE, PI)
 MPI = ModifiedPrandtlIshlinskii(PI, LOPSIDED)
 NESTED = MPI @ Affine(-0.5, 1.0) @ GPI
 
-EXAMPLES: dict[str, Operator] = {
+PLAYS_AND_MAPS: dict[str, Operator] = {
     "play": Play(1.25),
     "play with memory": Play(0.75, z0=2.5),
     "play without width": Play(0.0),
@@ -56,6 +72,18 @@ EXAMPLES: dict[str, Operator] = {
     ),
     "mpi": MPI,
     "mpi onto a tent": ModifiedPrandtlIshlinskii(WAVY, TENT),
+    "rate-dependent": RATE_DEPENDENT,
+    "rate-dependent in name only": RateDependentPrandtlIshlinskii(
+        [0.5, 0.25], [0.5, 1.5], beta=0.0, dt=0.1, p0=0.3
+    ),
+    "rate-dependent with memory": RateDependentPrandtlIshlinskii(
+        [0.5, -0.3], [1.0, 3.0], beta=0.05, dt=0.1, p0=0.2, z0=[0.5, -1.25]
+    ),
+    "rate-dependent by a curve": RateDependentPrandtlIshlinskii(
+        [0.5, 0.3], [0.0, 2.0], RateCurve(0.02, [1e-3], [0.05, -0.04], [5.0, 20.0]), 0.1, 0.4
+    ),
+    "mpi of rate-dependent plays": ModifiedPrandtlIshlinskii(RATE_DEPENDENT, LOPSIDED),
+    "explicit inverse": RATE_DEPENDENT.explicit_inverse(),
     "composition of one": Composition((Play(1.0),)),
     "composition of two banks": PI @ WAVY,
     "composition mixed": Stop(0.5) @ LOPSIDED @ Play(0.75) @ Affine(1.5, 0.25),
@@ -68,3 +96,30 @@ EXAMPLES: dict[str, Operator] = {
         [0.5, -0.3], [1.0, 3.0], p0=0.5, z0=[0.5, -1.25]
     ).inverse(),
 }
+
+LAG = LinearDynamics.from_transfer_function([0.5, 0.1], [1.0, -1.2, 0.5], dt=0.01)
+CHARGE = MemoryFunction.polynomial([1.0, 0.2, 0.1])
+OTHERS: dict[str, Operator] = {
+    "linear": LAG,
+    "linear with delay": LinearDynamics.from_transfer_function([0.5], [1.0, -0.5], 0.01, delay=2),
+    "linear that answers at once": LinearDynamics.from_transfer_function(
+        [1.0, 0.2], [1.0, -0.5], dt=0.01
+    ),
+    "linear without order": LinearDynamics([], [], [], 1.5, dt=0.01),
+    "sections": SecondOrderSections.from_linear(LAG),
+    "masing of a power": MasingOperator(PowerLaw(1.0, 0.5, 0.7)),
+    "masing of plays": MasingOperator(PiecewiseLinear([0.5, -0.3], [1.0, 2.0], p0=0.4)),
+    "masing of a polynomial": MasingOperator(PolynomialCurve([1.0, 0.25])),
+    "masing that forgets": MasingOperator(PowerLaw(1.0, 0.5, 0.7), "last-reversal", dead_band=0.3),
+    "ramberg-osgood": RambergOsgood(1.0, 0.5, 1.2),
+    "ramberg-osgood that forgets": RambergOsgood(1.0, 0.5, 1.2, "last-reversal"),
+    "inverse ramberg-osgood": RambergOsgood(1.0, 0.5, 1.2).inverse(),
+    "memory element": MemoryElement(CHARGE, 0.1, start=0.5),
+    "memory element of rates": MemoryElement(
+        MemoryFunction.power_law(1.0, 0.5, 1.5), 0.1, "absolute", "sign-change"
+    ),
+    "inverse memory element": MemoryElement(CHARGE, 0.1).inverse(),
+    "hysteresis before dynamics": LAG @ PI,
+}
+
+EXAMPLES = {**PLAYS_AND_MAPS, **OTHERS}

@@ -101,6 +101,11 @@ def simulate(model: dict[str, Any], u: Sequence[float] | Array) -> Trace:
     return trace
 
 
+def has_twin(model: dict[str, Any]) -> bool:
+    """Tell whether all parts of a model have a reference implementation here."""
+    return all(stage["kind"] in _SIMULATE for stage in flat(model))
+
+
 def flat(model: dict[str, Any]) -> list[dict[str, Any]]:
     """The operators of a composition in the order the signal passes them."""
     parts = {

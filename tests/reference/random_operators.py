@@ -23,7 +23,19 @@ from hyst import (
     Operator,
     Play,
     PrandtlIshlinskii,
+    RateDependentPrandtlIshlinskii,
     Stop,
+)
+from hyst.models import (
+    LinearDynamics,
+    MasingOperator,
+    MemoryElement,
+    MemoryFunction,
+    PiecewiseLinear,
+    PowerLaw,
+    RambergOsgood,
+    RateCurve,
+    SecondOrderSections,
 )
 from reference.examples import EXAMPLES
 
@@ -53,6 +65,18 @@ def dead_zones(draw: st.DrawFn, variants: tuple[Any, ...] = ("two-sided",)) -> D
     rho = draw(st.lists(numbers(-5.0, 5.0), min_size=1, max_size=6))
     weights = draw(st.lists(numbers(-2.0, 2.0), min_size=len(rho), max_size=len(rho)))
     return DeadZone(weights, rho, draw(st.sampled_from(variants)))
+
+
+@st.composite
+def rate_dependent_banks(draw: st.DrawFn) -> RateDependentPrandtlIshlinskii:
+    r = sorted(draw(st.lists(numbers(0.0, 5.0), max_size=5)))
+    p = draw(st.lists(numbers(-2.0, 2.0), min_size=len(r), max_size=len(r)))
+    knees = draw(st.lists(numbers(0.25, 8.0), max_size=2))
+    slopes = draw(st.lists(numbers(-1.0, 1.0), min_size=len(knees), max_size=len(knees)))
+    powers = draw(st.lists(numbers(0.0, 0.25), max_size=2))
+    curve = RateCurve(draw(numbers(0.0, 2.0)), powers, slopes, knees)
+    dt = draw(st.sampled_from((0.5, 1.0, 2.0)))
+    return RateDependentPrandtlIshlinskii(p, r, curve, dt, draw(numbers(-2.0, 2.0)))
 
 
 affines = st.builds(Affine, numbers(-2.0, 2.0), numbers(-3.0, 3.0))
@@ -122,6 +146,35 @@ invertible: Operators = st.one_of(
     ),
 )
 
+few = st.floats(0.1, 2.0)
+memories = st.sampled_from(("masing", "last-reversal"))
+curves = st.builds(PowerLaw, few, few, few) | st.builds(
+    lambda slopes: PiecewiseLinear(np.diff(slopes), np.arange(1.0, len(slopes)), slopes[0]),
+    st.lists(few, min_size=1, max_size=4),
+)
+functions = st.builds(MemoryFunction.power_law, few, few, few) | st.builds(
+    lambda values: MemoryFunction.table(np.arange(float(len(values))), values),
+    st.lists(few, min_size=1, max_size=4),
+)
+elements = st.builds(
+    MemoryElement,
+    functions,
+    st.floats(0.01, 0.1),
+    st.sampled_from(("signed", "absolute")),
+    st.sampled_from(("never", "sign-change")),
+    numbers(-1.0, 1.0),
+)
+# Poles and zeros inside the unit circle.
+lags = st.builds(
+    lambda zero, poles, gain, delay: LinearDynamics.from_zeros_poles_gain(
+        [zero], poles, gain, 0.01, delay
+    ),
+    st.floats(-0.9, 0.9),
+    st.lists(st.floats(-0.9, 0.9), min_size=1, max_size=3),
+    few,
+    st.integers(0, 2),
+)
+
 RANDOM: dict[str, Operators] = {
     "affine": affines,
     "play": st.builds(Play, numbers(0.0, 5.0), numbers(-4.0, 4.0)),
@@ -130,7 +183,20 @@ RANDOM: dict[str, Operators] = {
     "prandtl-ishlinskii": banks(),
     "generalized-prandtl-ishlinskii": st.builds(GeneralizedPrandtlIshlinskii, maps, banks()),
     "modified-prandtl-ishlinskii": st.builds(ModifiedPrandtlIshlinskii, banks(), maps),
+    "rate-dependent-prandtl-ishlinskii": rate_dependent_banks(),
     "composition": compositions,
+    "linear-dynamics": lags,
+    "second-order-sections": st.builds(
+        lambda numerator, poles: SecondOrderSections(
+            [*numerator, -sum(poles), poles[0] * poles[1]], 0.01
+        ),
+        st.lists(numbers(-2.0, 2.0), min_size=3, max_size=3),
+        st.tuples(st.floats(-0.9, 0.9), st.floats(-0.9, 0.9)),
+    ),
+    "masing": st.builds(MasingOperator, curves, memories),
+    "ramberg-osgood": st.builds(RambergOsgood, few, few, few, memories),
+    "memory-element": elements,
+    "inverse-memory-element": elements.map(lambda element: element.inverse()),
     "inverse": invertible.map(lambda operator: operator.inverse()),
 }
 
@@ -144,9 +210,7 @@ def operators_that(
     cases = [
         pytest.param(st.just(each), id=name) for name, each in EXAMPLES.items() if predicate(each)
     ]
-    cases += [
-        pytest.param(RANDOM[kind].filter(predicate), id=f"random {kind}") for kind in kinds
-    ]
+    cases += [pytest.param(RANDOM[kind].filter(predicate), id=f"random {kind}") for kind in kinds]
     return pytest.mark.parametrize("operators", cases)
 
 
