@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 import hyst
+from hyst.cli.adapt import adapt
 from hyst.cli.compensate import compensate
 from hyst.cli.demo import demo
 from hyst.cli.excite import excite
@@ -27,7 +28,7 @@ app = typer.Typer(
     help="From a measured hysteresis loop to a model, its exact inverse and a command.",
     epilog="Exit code: 0 done, 2 bad input, 1 failure.",
 )
-for verb in (excite, identify, simulate, compensate, info, reproduce, demo):
+for verb in (excite, identify, adapt, simulate, compensate, info, reproduce, demo):
     app.command(verb.__name__)(verb)
 
 
@@ -73,7 +74,8 @@ def _explain(error: Exception) -> tuple[str, int]:
         # Bad input is a ValueError too; a solver that failed or a missing package is not.
         return str(error), BAD_INPUT if isinstance(error, ValueError) else FAILURE
     if hasattr(error, "format_message"):
-        return f"{error.format_message()} (hyst --help shows what there is)", BAD_INPUT
+        said = error.format_message() or "Missing verb."  # no arguments at all come without one
+        return f"{said} (hyst --help shows what there is)", BAD_INPUT
     if isinstance(error, OSError):
         return str(error), FAILURE
     what = f"{type(error).__name__}: {error}"
