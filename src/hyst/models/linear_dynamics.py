@@ -117,8 +117,8 @@ class LinearDynamics(Operator):
 
         Examples
         --------
-        >>> LinearDynamics.from_transfer_function([1.0, 0.5], [1.0, -0.9], 0.01).dc_gain()
-        15.000000000000004
+        >>> round(LinearDynamics.from_transfer_function([1.0, 0.5], [1.0, -0.9], 0.01).dc_gain(), 9)
+        15.0
         """
         return cls(*companion(num, den), dt, delay)
 
@@ -362,16 +362,18 @@ class LinearDynamics(Operator):
         frequency
             Shape (m,), Hz.
         """
-        z = np.exp(2j * np.pi * np.asarray(frequency, dtype=np.float64) * self.dt)
-        return self.value_at(z)
-
-    def value_at(self, z: ArrayLike) -> NDArray[np.complex128]:
-        """Give G(z) at complex numbers z, shape (m,)."""
-        points = np.atleast_1d(np.asarray(z, dtype=np.complex128))
+        angle = 2.0 * np.pi * self.dt * np.atleast_1d(np.asarray(frequency, dtype=np.float64))
+        points = np.exp(1j * angle)
         return values_at(points, self.A, self.B, self.C, self.D) * points ** (-self.delay)
 
     def scaled(self, factor: float) -> LinearDynamics:
-        """Give the system with its output multiplied by a number."""
+        """Give the system with its output multiplied by a number.
+
+        Parameters
+        ----------
+        factor
+            The number.
+        """
         return LinearDynamics(
             self.A, self.B, factor * self.C, factor * self.D, self.dt, self.delay, self.x0
         )

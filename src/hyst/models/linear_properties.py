@@ -21,7 +21,7 @@ def poles_of(A: Array) -> Complex:
 def answers_after(A: Array, B: Array, C: Array, D: float) -> int:
     """Give the relative degree: the first of ``D, CB, CAB, ..`` that is not zero to rounding.
 
-    The order plus one if all of them are.
+    The order plus one if all of them are. A, B, C and D are the matrices of the state space.
     """
     scale = max(abs(D), float(np.linalg.norm(B) * np.linalg.norm(C)))
     if abs(D) > _NEGLIGIBLE * scale:
@@ -50,7 +50,7 @@ def zeros_of(A: Array, B: Array, C: Array, D: float) -> Complex:
 
 
 def values_at(points: Complex, A: Array, B: Array, C: Array, D: float) -> Complex:
-    """Give ``C (z I - A)^-1 B + D`` at complex numbers z, shape (m,)."""
+    """Give ``C (z I - A)^-1 B + D`` at complex points z, shape (m,), from A, B, C and D."""
     result = np.full(points.size, D, dtype=np.complex128)
     n = B.size
     block = max(1, _BLOCK // max(n, 1) ** 2)

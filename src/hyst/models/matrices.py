@@ -16,7 +16,7 @@ LARGEST_ORDER = 64
 def checked_matrices(
     A: ArrayLike, B: ArrayLike, C: ArrayLike, D: ArrayLike
 ) -> tuple[Array, Array, Array, float]:
-    """Check the matrices and give read-only copies: (n, n), (n,), (n,) and a number.
+    """Check A, B, C and D and give read-only copies: (n, n), (n,), (n,) and a number.
 
     Raises
     ------

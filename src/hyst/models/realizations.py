@@ -125,8 +125,8 @@ def sections_of(zeros: ArrayLike, poles: ArrayLike, gain: float) -> Array:
 
     Examples
     --------
-    >>> sections_of([], [0.5, -0.5], 3.0).tolist()
-    [[0.0, 0.0, 3.0, -0.0, -0.25]]
+    >>> (sections_of([], [0.5, -0.5], 3.0) + 0.0).tolist()
+    [[0.0, 0.0, 3.0, 0.0, -0.25]]
     """
     below, above = _conjugate_pairs(poles, "poles"), _conjugate_pairs(zeros, "zeros")
     count = sum(len(each) for each in above)

@@ -18,7 +18,7 @@ _COLORS = (MODELLED, SECOND, "#15803d")
 
 @drawn
 def draw_markov(true: Array, estimates: Mapping[str, Array]) -> Figure:
-    """Draw Markov parameters and their estimates after scaling (fig. 3), as PNG."""
+    """Draw true Markov parameters and estimates of them after scaling (fig. 3), as PNG."""
     figure, (axes,) = blank(1, 1, 7.0, 4.0)
     lags = np.arange(true.size)
     axes.plot(lags, true, "o", color=MEASURED, fillstyle="none", markersize=8.0, label="G")
@@ -32,7 +32,7 @@ def draw_markov(true: Array, estimates: Mapping[str, Array]) -> Figure:
 
 @drawn
 def draw_bode(true: LinearDynamics, estimates: Mapping[str, LinearDynamics]) -> Figure:
-    """Draw frequency responses (fig. 4), as PNG."""
+    """Draw the frequency responses of the true system and of estimates (fig. 4), as PNG."""
     figure, (gain, phase) = blank(2, 1, 10.0, 3.9)
     frequency = np.geomspace(0.1, 0.499 / true.dt, 500)
     systems = {"G": true, **estimates}
@@ -51,7 +51,7 @@ def draw_bode(true: LinearDynamics, estimates: Mapping[str, LinearDynamics]) -> 
 
 @drawn
 def draw_intermediate(time: Array, v: Array, v_hat: Array, title: str) -> Figure:
-    """Draw v and its estimate over time (figs. 5 and 6 top), as PNG."""
+    """Draw v and its estimate v_hat over time (figs. 5 and 6 top) with a title, as PNG."""
     figure, (axes,) = blank(1, 1, 8.0, 3.9)
     axes.plot(time, v, color=MEASURED, linewidth=2.4, label="v")
     axes.plot(time, v_hat, "--", color=MODELLED, label="estimate")
@@ -63,7 +63,7 @@ def draw_intermediate(time: Array, v: Array, v_hat: Array, title: str) -> Figure
 
 @drawn
 def draw_loops(u: Array, v: Array, v_hat: Array, title: str) -> Figure:
-    """Draw the loop and its estimate (fig. 6 bottom), as PNG."""
+    """Draw v and its estimate v_hat over u (fig. 6 bottom) with a title, as PNG."""
     figure, (axes,) = blank(1, 1, 6.0, 4.4)
     axes.plot(u, v, color=MEASURED, linewidth=2.4, label="v over u")
     axes.plot(u, v_hat, "--", color=MODELLED, label="estimate over u")

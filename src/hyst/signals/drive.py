@@ -45,11 +45,25 @@ class Limits:
                 raise InputError(f"{name} is {getattr(self, name)}; give a limit above 0")
 
     def step(self, dt: float, largest: float) -> float:
-        """Give the largest change from sample to sample of values up to ``largest``."""
+        """Give the largest change from sample to sample.
+
+        Parameters
+        ----------
+        dt
+            Sample time, s.
+        largest
+            Largest absolute value, whose rounding is allowed for.
+        """
         return self._without_rounding(self.max_rate * dt, largest, "max_rate")
 
     def bend(self, dt: float, largest: float) -> float:
-        """Give the largest change of that change."""
+        """Give the largest change of that change.
+
+        Parameters
+        ----------
+        dt, largest
+            As of ``step``.
+        """
         return self._without_rounding(self.max_acceleration * dt**2, largest, "max_acceleration")
 
     def _without_rounding(self, limit: float, largest: float, name: str) -> float:
@@ -177,7 +191,7 @@ def fitted(
 
 
 def as_positive(value: float, name: str) -> float:
-    """Check a positive finite number.
+    """Check that a value is a positive finite number; name is what messages call it.
 
     Raises
     ------
@@ -194,7 +208,7 @@ def as_positive(value: float, name: str) -> float:
 
 
 def as_count(value: int, name: str, least: int = 1) -> int:
-    """Check a whole number.
+    """Check that a value is a whole number, at least ``least``; name is what messages call it.
 
     Raises
     ------

@@ -89,14 +89,14 @@ def markov_error(estimate: Array) -> float:
 
 
 def relative_rms(estimate: Array, true: Array) -> float:
-    """Give the rms difference after scaling and shifting, in percent of the range."""
+    """Give the rms distance of an estimate from the true signal, percent of its range, scaled."""
     columns = np.column_stack([estimate, np.ones(estimate.size)])
     fitted = columns @ np.linalg.lstsq(columns, true, rcond=None)[0]
     return 100.0 * float(np.std(fitted - true) / np.ptp(true))
 
 
 def simulate(front: Operator, u: Array, noise: float = 0.0) -> tuple[Array, Record]:
-    """Give v and the record of u and y, with white noise of a share of the output's rms."""
+    """Give v behind a front and the record of u and y, with noise of that share of the rms of y."""
     v = front(u)
     y = G(v)
     y = y + noise * y.std() * np.random.default_rng(0).normal(size=y.size)

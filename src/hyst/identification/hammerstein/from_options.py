@@ -36,6 +36,17 @@ def identify_with_dynamics(
 ) -> IdentifiedHammerstein:
     """Identify hysteresis and dynamics with the options of ``identify``, checked.
 
+    Parameters
+    ----------
+    records, hysteresis, plays, radii, knots, weights, delay, start, validation
+        As of ``identify``; ``knots`` may be the places of the knots of ``gpi``, too.
+    orders
+        ``fir_order`` and ``state_order``.
+    limits
+        ``max_iterations`` and ``allow_unconverged``.
+    say
+        Told what is being done.
+
     Raises
     ------
     InputError, NotIdentifiableError, SolverError

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from hyst.errors import InputError
 from hyst.identification.bounded_least_squares import minimize
-from hyst.identification.data import LARGEST_RADIUS, Data, prepare
+from hyst.identification.data import LARGEST_RADIUS, prepare
 from hyst.identification.families import GPI, LINEAR, MPI, PI, Parametrization
-from hyst.identification.fitting import Fitter, model_output, problem_of
+from hyst.identification.fitting import Fitter, problem_of
 from hyst.models import GeneralizedPrandtlIshlinskii, PrandtlIshlinskii, RambergOsgood
 from hyst.operators import Affine, DeadZone, Operator
 from hyst.signals import Record
@@ -235,8 +235,3 @@ def _fit_map(record: Record, knots: Array) -> tuple[Array, float]:
 def _scaled(radii: Array | None, u: Array, z: Array) -> Array | None:
     """Radii given are those of the plays for a map whose output spans what its input spans."""
     return None if radii is None else radii * float(np.ptp(z)) / float(np.ptp(u))
-
-
-def front_output(front: Front, data: Data) -> Array:
-    """Give the fitted signal behind the hysteresis over the samples used."""
-    return model_output(data, front.parametrization.operator(front.theta))

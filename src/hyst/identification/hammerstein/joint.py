@@ -83,7 +83,7 @@ class Joint:
         return LinearDynamics(feedback, base.B, c, D, base.dt, base.delay)
 
     def project(self, jacobian: Array, result: Array) -> None:
-        """Turn derivatives by all constants into those by theta, written into ``result``."""
+        """Turn the jacobian by all constants into that by theta, written into ``result``."""
         n, transform = self.base.order, self.front.parametrization.transform
         constants, first = transform.shape[0], self.front_size
         used = transform.any(axis=1)  # constants that are free: most columns may be left alone
@@ -130,12 +130,12 @@ class Joint:
 
 
 def simulated(joint: Joint, data: Data, theta: Array) -> Array:
-    """Give the output of the whole model over the samples used."""
+    """Give the output of the whole model of a joint theta over the samples of data used."""
     return model_output(data, joint.dynamics(theta) @ joint.hysteresis(theta))
 
 
 def derivative(joint: Joint, data: Data, theta: Array) -> Array:
-    """Give the derivative of ``simulated`` by theta."""
+    """Give the derivative by theta of what ``simulated`` gives for joint and data."""
     model = joint.dynamics(theta) @ joint.hysteresis(theta)
     windows = data.windows()
     result = np.empty((sum(w.stop - w.start for w in windows), joint.size))
@@ -176,10 +176,11 @@ def refine(joint: Joint, data: Data, max_iterations: int) -> Solution:
 
 
 def refined_coarsely(joint: Joint, data: Data, max_iterations: int) -> tuple[Joint, float]:
-    """Refine on the beginning of the records; give the new first guess and its cost.
+    """Refine a joint guess on the beginning of the data; give a new guess and its cost.
 
     A play whose weight came out zero has no gradient by its radius any more: it is set to
-    half of the smallest other radius, and the refinement is tried again.
+    half of the smallest other radius, and the refinement, of ``max_iterations`` at most, is
+    tried again.
     """
     short = shortened(data, _WARM_UP)
     best = minimize(_problem(joint, short), joint.start(), max_iterations, 1.0)
@@ -210,7 +211,7 @@ def _with_idle_plays_moved(joint: Joint, theta: Array) -> Array | None:
 
 
 def shortened(data: Data, samples: int) -> Data:
-    """Keep the beginning of the records, so many samples of each after its start."""
+    """Keep the beginning of the records of data, so many samples of each after its start."""
     if all(len(r) - s <= samples for r, s in zip(data.records, data.starts, strict=True)):
         return data
     records = tuple(

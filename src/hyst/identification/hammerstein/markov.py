@@ -95,7 +95,7 @@ def fit_markov(records: Record | Sequence[Record], order: int, start: int = 0) -
     --------
     >>> u = np.random.default_rng(0).normal(size=200)
     >>> y = 3.0 + 2.0 * u + np.append(0.0, u[:-1])
-    >>> np.round(fit_markov(Record(u, y, 0.1), 2).values, 9).tolist()
+    >>> (np.round(fit_markov(Record(u, y, 0.1), 2).values, 9) + 0.0).tolist()
     [2.0, 1.0, 0.0]
     """
     given = [records] if isinstance(records, Record) else list(records)

@@ -22,7 +22,8 @@ def parameter_table(
 ) -> tuple[tuple[str, ...], Array, Array, tuple[str, ...]]:
     """Give names, values and standard errors, and sentences on what is not determined.
 
-    The dynamics are told by the coefficients of ``sum b_i q^-i / (1 + sum a_i q^-i)``.
+    They belong to the theta of a joint refinement, and to how sure it is. The dynamics are told by
+    the coefficients of ``sum b_i q^-i / (1 + sum a_i q^-i)``.
     """
     parametrization, size = joint.front.parametrization, joint.front_size
     operator = joint.hysteresis(theta)
@@ -65,7 +66,7 @@ def _not_known(joint: Joint, theta: Array, sure: Uncertainty) -> tuple[str, ...]
 
 
 def metrics_of(data: Data, model: Operator, validation: Sequence[Record]) -> dict[str, Metrics]:
-    """Compare the simulated output with the measured one, training and validation."""
+    """Compare the output of a model with the measured one, for data and for validation."""
     metrics = _pair("training", data, model)
     for number, record in enumerate(validation, 1):
         name = "validation" if len(validation) == 1 else f"validation {number}"
