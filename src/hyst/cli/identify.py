@@ -37,7 +37,8 @@ Repair = Annotated[
     bool, typer.Option("--repair", help="Leave out bad rows and resample uneven time.")
 ]
 Family = Annotated[
-    str, typer.Option(help="linear, pi, gpi, mpi; auto compares them. Or rdpi, ramberg-osgood.")
+    str,
+    typer.Option(help="linear, pi, gpi, mpi; auto compares them. Or rdpi, ramberg-osgood; or a,b."),
 ]
 Memory = Annotated[
     str, typer.Option(help="Of ramberg-osgood: masing (loops close) or last-reversal (drifts).")

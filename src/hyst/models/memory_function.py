@@ -133,7 +133,17 @@ class MemoryFunction:
         return Parameters(self.values, numbered("values", count, 1), lower, free)
 
     def with_parameters(self, theta: Sequence[float] | Array) -> MemoryFunction:
-        """Give the same form with other values, ``theta``."""
+        """Give the same form with other values.
+
+        Parameters
+        ----------
+        theta
+            In the order of ``parameters()``.
+
+        Returns
+        -------
+        MemoryFunction
+        """
         return MemoryFunction(self.form, as_parameter_vector(theta, self.values.size), self.knots)
 
     def __eq__(self, other: object) -> bool:
