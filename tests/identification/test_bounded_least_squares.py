@@ -74,3 +74,20 @@ def test_a_redundant_parameter_does_no_harm() -> None:
 def test_says_when_it_ran_out_of_iterations() -> None:
     problem, _, _ = linear_problem(0)
     assert minimize(problem, np.zeros(6), max_iterations=1).status == ITERATION_LIMIT
+
+
+def test_a_cost_that_hardly_falls_any_more_has_converged() -> None:
+    """Kinks make steps keep a small share of what they promise, here by a Jacobian 2000 times off.
+
+    Every step is accepted and shorter than the last, so the promise alone would never settle.
+    """
+    problem = Problem(
+        lambda theta: (1.0 - 1e-5 * theta, np.array([[-0.02]])),
+        lambda theta: 1.0 - 1e-5 * theta,
+        np.full(1, -np.inf),
+        np.full(1, np.inf),
+        lambda theta: theta,
+    )
+    found = minimize(problem, np.zeros(1), 100)
+    assert found.status == CONVERGED
+    assert found.iterations < 50

@@ -24,6 +24,9 @@ ITERATION_LIMIT = "iteration limit"
 LEAST_DAMPING = 1e-12
 """Of the scaled normal matrix: it keeps the matrix numerically definite, and moves nothing."""
 
+PATIENCE = 20
+"""Steps in which the cost must fall noticeably. Longer than a row of refused steps can be."""
+
 
 @dataclass(frozen=True, eq=False)
 class Solution:
@@ -89,7 +92,8 @@ def minimize(
     tolerance
         It has converged when a full step promises to lower the cost by less than this share of the
         residual variance, which moves no parameter by more than the root of this share of its
-        standard error.
+        standard error. Or, where kinks keep a step from what it promises, when the cost has fallen
+        by less than that in the last ``PATIENCE`` steps.
 
     Returns
     -------
@@ -104,6 +108,7 @@ def minimize(
     theta = problem.canonical(np.clip(theta, problem.lower, problem.upper))
     residual, jacobian = problem.linearize(theta)
     cost, damping, growth = float(residual @ residual), 1e-4, 2.0
+    costs = [cost]
     for iteration in range(1, max_iterations + 1):
         normal, gradient = jacobian.T @ jacobian, jacobian.T @ residual
         step, promise = _projected_step(problem, theta, normal, gradient, damping)
@@ -125,6 +130,10 @@ def minimize(
             damping, growth = damping * growth, growth * 2.0
             if damping > 1e12:
                 return Solution(theta, cost, iteration, CONVERGED)
+        costs.append(cost)
+        earlier = costs[-1 - PATIENCE] if iteration >= PATIENCE else np.inf
+        if earlier - cost <= tolerance * cost / residual.size:
+            return Solution(theta, cost, iteration, CONVERGED)
     return Solution(theta, cost, max_iterations, ITERATION_LIMIT)
 
 
