@@ -164,6 +164,18 @@ def test_halves_give_the_bits_of_the_whole_and_so_does_the_stepper() -> None:
     assert [step(value) for value in u.tolist()] == whole.tolist()
 
 
+@pytest.mark.parametrize("curve", [0.002, RateCurve(0.002, [1e-6], [1e-3], [50.0])])
+def test_all_engines_give_the_bits_of_the_stepper(curve: float | RateCurve) -> None:
+    model = RateDependentPrandtlIshlinskii([0.5, 0.3, 0.2], [0.3, 1.0, 2.0], curve, 1e-3, 0.4)
+    u = 5.0 + 0.1 * np.cumsum(np.random.default_rng(0).normal(size=20011))
+    step = model.stepper()
+    expected = np.array([step(value) for value in u.tolist()])
+    for engine in ("auto", "loop", "lanes"):
+        y, state = model.run(u, engine=engine)
+        assert np.array_equal(y, expected)
+        assert np.array_equal(state, step.state)
+
+
 def test_the_first_sample_has_no_rate() -> None:
     model = RateDependentPrandtlIshlinskii([1.0], [1.0], beta=1.0, dt=0.1, p0=0.5)
     # From rest at 5 the play stands at 4, however far 5 is from 0.

@@ -105,7 +105,21 @@ class Layout:
         return np.asarray(self._radius_matrix @ theta[n + 1 : n + 1 + m])
 
     def theta(self, weights: Array, radii: Array, beta: float, offset: float) -> Array:
-        """Give theta for p0 .. p_n, the radii (the first alone counts if even), beta and offset."""
+        """Give theta for constants.
+
+        Parameters
+        ----------
+        weights
+            p0 .. p_n.
+        radii
+            Shape (n,); the first alone counts if they are even, none if they are given.
+        beta, offset
+            The others.
+
+        Returns
+        -------
+        numpy.ndarray
+        """
         return np.concatenate([weights, radii[: self.radius_count], [beta, offset]])
 
     def canonical(self, theta: Array) -> Array:

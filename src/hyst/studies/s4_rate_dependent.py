@@ -105,11 +105,31 @@ class Case:
         return slice(third, 2 * third)
 
     def error(self, method: str) -> Array:
-        """Give the consistent error of a method over the middle period."""
+        """Give the consistent error of a method over the middle period.
+
+        Parameters
+        ----------
+        method
+            One of those solved for.
+
+        Returns
+        -------
+        numpy.ndarray
+        """
         return self.found[method].predicted_error[self.middle]
 
     def largest(self, method: str) -> float:
-        """Give the largest absolute error."""
+        """Give the largest absolute error over the middle period.
+
+        Parameters
+        ----------
+        method
+            One of those solved for.
+
+        Returns
+        -------
+        float
+        """
         return float(np.abs(self.error(method)).max())
 
     def uncompensated(self) -> float:
@@ -248,7 +268,17 @@ def round_trip() -> Table:
 
 
 def methods_table(case: Case) -> Table:
-    """List what every method leaves of one reference."""
+    """List what every method leaves of one reference.
+
+    Parameters
+    ----------
+    case
+        Solved by all methods.
+
+    Returns
+    -------
+    Table
+    """
     amplitude = float(np.abs(case.y_ref).max())
     rows = []
     for method in METHODS:
@@ -274,7 +304,17 @@ def methods_table(case: Case) -> Table:
 
 
 def frequency_table(cases: list[Case]) -> Table:
-    """List the largest error of every method over frequency."""
+    """List the largest error of every method over frequency.
+
+    Parameters
+    ----------
+    cases
+        Of one model.
+
+    Returns
+    -------
+    Table
+    """
     return Table(
         f"{cases[0].name}: largest consistent error over frequency",
         ("Hz", "dt [ms]", *METHODS),
@@ -290,7 +330,17 @@ def frequency_table(cases: list[Case]) -> Table:
 
 
 def claims_table(cases: dict[float, Case]) -> Table:
-    """Set the paper's measured errors of fig. 6 beside simulated ones of its own model."""
+    """Set the paper's measured errors of fig. 6 beside simulated ones of its own model.
+
+    Parameters
+    ----------
+    cases
+        Of the actuator, by frequency.
+
+    Returns
+    -------
+    Table
+    """
     slow, fast = cases[min(cases)], cases[DRIVEN]
     return Table(
         "Actuator, largest positioning error from low frequency to 100 Hz, fig. 6",
@@ -314,7 +364,17 @@ def claims_table(cases: dict[float, Case]) -> Table:
 
 
 def conclusions(slow: Case, fast: Case) -> Table:
-    """Say in words what the numbers of the example show."""
+    """Say in words what the numbers of the example show.
+
+    Parameters
+    ----------
+    slow, fast
+        The example at two frequencies.
+
+    Returns
+    -------
+    Table
+    """
     slope = fast.model.sample_equation_slope()
     sentences = (
         "The explicit inverse is exact only for thresholds that are given functions of time.",
