@@ -87,6 +87,14 @@ public:
         double *values = checked(state);
         hyst_joint_set_memory(&config_, &places_, values, values[HYST_JOINT_INPUT]);
     }
+    // An input whose output was not measured.
+    void follow(State state, double u) const {
+        double *values = checked(state);
+        hyst_joint_follow(&config_, &places_, values, u);
+        hyst_joint_set_memory(&config_, &places_, values, u);
+        values[HYST_JOINT_INPUT] = u;
+        values[HYST_JOINT_STARTED] = 1.0;
+    }
     double command(State state, double y_ref) const {
         return hyst_joint_command(&config_, checked(state), y_ref);
     }
@@ -211,6 +219,7 @@ void bind_online_estimation(nb::module_ &module) {
         .def("places", &Joint::places)
         .def("start", &Joint::start, nb::arg("state").noconvert(), nb::arg("noise"))
         .def("step", &Joint::step, nb::arg("state").noconvert(), nb::arg("u"), nb::arg("y"))
+        .def("follow", &Joint::follow, nb::arg("state").noconvert(), nb::arg("u"))
         .def("remember", &Joint::remember, nb::arg("state").noconvert())
         .def("command", &Joint::command, nb::arg("state").noconvert(), nb::arg("y_ref"))
         .def("run", &Joint::run, nb::arg("state").noconvert(), nb::arg("u").noconvert(),

@@ -17,9 +17,11 @@
  * excited (it has gone from one envelope to the other within `patience` samples), and only up to
  * the variance the estimate started with. So without excitation nothing winds up.
  *
- * Operations of one step for n plays and m parameters (no maps): about 4 m^2 + 15 m + 20 n of
- * + - * and compare, 3 m + 2 divisions; at n = 5 (m = 12) under 900, at n = 10 (m = 22) under 2600.
- * The state holds hyst_joint_length() numbers, the scratch area included. */
+ * Operations of one step for n plays and m = 2 n + 2 parameters (no maps), + - * / and comparisons:
+ * about 6.5 m^2 + 20 m + 100 n, and 2 m^2 for each of at most HYST_JOINT_PROJECTIONS projections. At
+ * n = 5 that is 1700, at most 2850; at n = 10 it is 4600, at most 8500. 3 m + n + 2 of them divide.
+ * The state holds hyst_joint_places().length numbers, the scratch area included: 251 at n = 5 and
+ * 676 at n = 10, which is 2008 and 5408 bytes in double. */
 #ifndef HYST_JOINT_ESTIMATOR_H
 #define HYST_JOINT_ESTIMATOR_H
 

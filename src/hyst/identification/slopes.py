@@ -120,7 +120,7 @@ def _best_line(
     edges: NDArray[np.int_],
     strokes: int,
 ) -> Slopes:
-    """The line of the number of plays with the least information criterion."""
+    """Give the line of the number of plays with the least information criterion."""
     floor = x.size * (1e-9 * float(np.ptp(y))) ** 2
     best, best_score = None, np.inf
     for count in counts:

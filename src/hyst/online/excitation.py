@@ -114,10 +114,9 @@ def watch(p0: float, p: Array, r: Array, age: Array, patience: float, swing: flo
 def _of_one(p: float, r: float, is_idle: bool, swing: float) -> PlayExcitation:
     if p == 0.0:
         return PlayExcitation(r, True, "its weight is 0, so its radius does not show")
-    if not is_idle:
-        return PlayExcitation(r, False, "")
     if swing <= 2.0 * r:
-        why = f"the input spans {swing:.4g}, less than twice the radius"
-    else:
+        return PlayExcitation(r, True, f"the input spans {swing:.4g}, less than twice the radius")
+    if is_idle:
         why = "it has not gone from one envelope to the other for as long as the estimator waits"
-    return PlayExcitation(r, True, why)
+        return PlayExcitation(r, True, why)
+    return PlayExcitation(r, False, "")

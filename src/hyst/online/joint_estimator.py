@@ -8,10 +8,10 @@ from collections.abc import Iterable
 from typing import Any, final
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from hyst import _engine
-from hyst.errors import InputError, NotInvertibleError
+from hyst.errors import InputError
 from hyst.online.checks import (
     finite_or_none,
     given_or,
@@ -23,10 +23,12 @@ from hyst.online.excitation import Excitation, watch
 from hyst.online.parts import take_apart
 from hyst.online.prior import covariance_of, factors, start_covariance
 from hyst.online.saving import restored_state, save_estimator
+from hyst.online.start import checked_start
 from hyst.online.trajectory import Trajectory
 from hyst.operators import Operator
 from hyst.operators.registry import operator_from_dict
 from hyst.signals import Record
+from hyst.signals.vector import finite_vector
 
 Array = NDArray[np.float64]
 
@@ -143,7 +145,7 @@ class JointEstimator:
             ),
             "patience": patience_samples * self.dt,
         }
-        self._theta_at_start = self._checked_start(theta)
+        self._theta_at_start = checked_start(self._parts, theta, self.settings)
         prior = self._prior(self._theta_at_start)
         self._core = self._new_core(np.diag(prior), patience_samples)
         self._at = self._core.places()
@@ -255,6 +257,24 @@ class JointEstimator:
         errors = np.sqrt(np.maximum(variance, 0.0))
         return Trajectory(time, self.names, theta, errors, error * after.gain)
 
+    def follow(self, u: ArrayLike) -> None:
+        """Let the memory follow inputs whose outputs were not measured; learns nothing.
+
+        Parameters
+        ----------
+        u
+            Shape (N,), what the actuator has passed, finite.
+
+        Raises
+        ------
+        InputError
+            If it is not a finite vector.
+        """
+        before = self._parts.before
+        for u_k in finite_vector(u, "u").tolist():
+            v = u_k if before is None else before.gain * u_k + before.offset
+            self._core.follow(self.state, v)
+
     def command(self, y_ref: float) -> float:
         """Give the input for which the present estimate predicts a wanted output; learns nothing.
 
@@ -282,7 +302,9 @@ class JointEstimator:
         at = self._at
         kept = self.state.copy()
         if model is not None:
-            self._theta_at_start = self._checked_start(take_apart(model).theta())
+            self._theta_at_start = checked_start(
+                self._parts, take_apart(model).theta(), self.settings
+            )
         self._begin(self._prior(self._theta_at_start))
         for first, last in ((3, 10), (at["side"], at["psi"])):
             self.state[first:last] = kept[first:last]
@@ -318,40 +340,6 @@ class JointEstimator:
         estimator = cls(model, memory=math.inf if memory is None else memory, **given)
         restored_state(estimator.state, state)
         return estimator
-
-    def _checked_start(self, theta: Array) -> Array:
-        least, most = self.settings["least_slope"], self.settings["most_slope"]
-        n = self._parts.pi.p.size
-        if not least < most:
-            raise InputError(
-                f"least_slope is {least:.6g} and most_slope {most:.6g}; give the smaller one first"
-            )
-        if n and self.settings["most_radius"] < theta[2 * n]:
-            raise InputError(
-                f"most_radius is {self.settings['most_radius']:.6g}, but the model starts with "
-                f"r[{n}] = {theta[2 * n]:.6g}; raise the bound or start below it"
-            )
-        start = theta.copy()
-        if "p0" in self.settings["held"] and start[0] < least:
-            raise InputError(
-                f"p0 is held at {start[0]:.6g}, below least_slope = {least:.6g}; such a model "
-                "has no inverse, so let p0 be estimated or raise it"
-            )
-        start[0] = max(start[0], least)
-        slopes = np.cumsum(start[: n + 1])
-        if slopes.min() < least or slopes.max() > most:
-            raise InputError(
-                f"the cumulative weights go from {slopes.min():.6g} to {slopes.max():.6g}, outside "
-                f"{least:.6g} to {most:.6g}; widen the bounds or start within them"
-            )
-        self._require_invertible(start)
-        return start
-
-    def _require_invertible(self, theta: Array) -> None:
-        try:
-            self._parts.assemble(theta, self._parts.pi.z0).inverse()
-        except NotInvertibleError as error:
-            raise NotInvertibleError(f"the estimation cannot start: {error}") from None
 
     def _prior(self, theta: Array) -> Array:
         settings = self.settings

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from hyst.report.drive_figure import draw_drive
     from hyst.report.drive_table import drive_table
     from hyst.report.dynamics_figures import dynamics_sections
+    from hyst.report.estimation_figure import draw_estimates
     from hyst.report.identification_report import Section, write_report
     from hyst.report.tables import (
         Table,
@@ -35,6 +36,7 @@ _HOME = {
     "delay_sentence": "words",
     "description_table": "tables",
     "draw_drive": "drive_figure",
+    "draw_estimates": "estimation_figure",
     "draw_tracking": "tracking_figure",
     "drive_table": "drive_table",
     "dynamics_sections": "dynamics_figures",
@@ -55,6 +57,7 @@ __all__ = [
     "delay_sentence",
     "description_table",
     "draw_drive",
+    "draw_estimates",
     "draw_tracking",
     "drive_table",
     "dynamics_sections",

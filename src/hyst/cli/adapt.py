@@ -1,0 +1,155 @@
+"""hyst adapt: follow a model's constants along a record."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import hyst
+from hyst.cli.arguments import InputColumn, ModelFile
+from hyst.cli.console import at_work, note, show_files, show_table
+from hyst.cli.identify import OutputColumn, Rate, Repair, TimeColumn, TimeUnit
+from hyst.report.tables import Table, number
+
+Data = Annotated[Path, typer.Argument(metavar="DATA", show_default=False, help="Measured record.")]
+Folder = Annotated[
+    Path, typer.Option("-o", "--out", metavar="DIR", show_default=False, help="Where to write.")
+]
+Memory = Annotated[
+    float | None,
+    typer.Option(
+        metavar="SECONDS",
+        show_default="nothing is forgotten",
+        help="Time over which the past is forgotten, for constants that drift.",
+    ),
+]
+Spread = Annotated[
+    float,
+    typer.Option(metavar="SHARE", help="How far off the model may be: 0.3 is 30 percent."),
+]
+Maps = Annotated[
+    bool, typer.Option("--estimate-maps", help="Estimate the maps before and after the plays too.")
+]
+Resume = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE", show_default=False, help="Go on from the estimator.json of an earlier run."
+    ),
+]
+Start = Annotated[
+    int,
+    typer.Option(
+        metavar="N", min=0, help="First sample to learn from; earlier ones set the memory."
+    ),
+]
+
+_ROWS = 2000
+
+
+def adapt(
+    model_file: ModelFile,
+    data: Data,
+    input_column: InputColumn,
+    output_column: OutputColumn,
+    folder: Folder,
+    rate: Rate = None,
+    time: TimeColumn = None,
+    time_unit: TimeUnit = None,
+    repair: Repair = False,
+    start: Start = 0,
+    memory: Memory = None,
+    spread: Spread = 0.3,
+    estimate_maps: Maps = False,
+    resume: Resume = None,
+) -> None:
+    """Estimate a model's constants sample by sample along a record; write them over time."""
+    hyst.files.require_folder(folder)
+    model, about = hyst.models.load_described(model_file)
+    record = hyst.read_record(
+        data,
+        input=input_column,
+        output=output_column,
+        time=time,
+        rate=rate,
+        time_unit=time_unit,
+        repair=repair,
+    )
+    record = _without_delay(record, about.delay)
+    history, record = record.u[:start], record.slice(start, record.samples)
+    if resume is None:
+        estimator = hyst.online.JointEstimator(
+            model,
+            dt=record.dt,
+            memory=math.inf if memory is None else memory,
+            radius_spread=spread,
+            weight_spread=spread,
+            estimate_maps=estimate_maps,
+        )
+    else:
+        estimator = _resumed(resume)
+    if history.size:
+        estimator.follow(history)
+    before = estimator.parameters
+    with at_work("estimating") as say:
+        trajectory = estimator.run(record, max(1, record.samples // _ROWS))
+        say("figure")
+        picture = hyst.report.draw_estimates({"": trajectory}, {}, f"Estimates along {data.name}")
+    names = ("model.json", "estimator.json", "parameters.csv", "parameters.png")
+    with hyst.files.replacing_files(folder) as temporary:
+        about = replace(about, dt=record.dt)
+        estimator.model.save(temporary / names[0], about)
+        estimator.save(temporary / names[1])
+        _write_parameters(temporary / names[2], trajectory)
+        (temporary / names[3]).write_bytes(picture)
+    _tell(estimator, before.tolist())
+    show_files([folder / name for name in names])
+
+
+def _resumed(path: Path) -> hyst.online.JointEstimator:
+    estimator = hyst.online.load_estimator(path)
+    if not isinstance(estimator, hyst.online.JointEstimator):
+        raise hyst.InputError(f"{path} holds a radius estimator; give one that hyst adapt wrote")
+    return estimator
+
+
+def _without_delay(record: hyst.Record, delay: int) -> hyst.Record:
+    if delay == 0:
+        return record
+    if delay >= record.samples:
+        raise hyst.InputError(
+            f"the model's delay is {delay} samples but the record has {record.samples}; "
+            "give a longer record"
+        )
+    return replace(record, u=record.u[: record.samples - delay], y=record.y[delay:])
+
+
+def _write_parameters(path: Path, trajectory: hyst.online.Trajectory) -> None:
+    columns = [trajectory.time]
+    headers = ["time [s]"]
+    for index, name in enumerate(trajectory.names):
+        columns += [trajectory.values[:, index], trajectory.standard_errors[:, index]]
+        headers += [name, f"{name} standard error"]
+    hyst.io.write_columns(path, headers, columns)
+
+
+def _tell(estimator: hyst.online.JointEstimator, before: list[float]) -> None:
+    rows = tuple(
+        (name, number(start), number(value), number(error))
+        for name, start, value, error in zip(
+            estimator.names,
+            before,
+            estimator.parameters.tolist(),
+            estimator.standard_errors.tolist(),
+            strict=True,
+        )
+    )
+    show_table(Table("Estimates", ("constant", "before", "after", "standard error"), rows))
+    counts = estimator.counts
+    print(f"\nnoise of the output: {number(estimator.noise)}; {counts['used']} samples used")
+    if counts["skipped"] or counts["refused"]:
+        note(f"{counts['skipped']} samples were not finite, {counts['refused']} led to an overflow")
+    print(f"excitation: {estimator.excitation}")

@@ -1,0 +1,79 @@
+"""Figure of estimates over time: weights, radii and the rest, with bands."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from hyst.online import Trajectory
+from hyst.report.canvas import FAINT, blank, drawn
+
+_COLOURS = ("#c2410c", "#1d4ed8", "#047857", "#7c3aed", "#b45309", "#0e7490", "#be185d", "#4b5563")
+
+
+@drawn
+def draw_estimates(
+    trajectories: Mapping[str, Trajectory], truth: Mapping[str, float], heading: str
+) -> Figure:
+    """Draw parameters over time: one row for each estimator, radii, weights and the rest beside.
+
+    Parameters
+    ----------
+    trajectories
+        By label.
+    truth
+        True values by name, drawn as lines; may be empty.
+    heading
+        Line above the figure; empty for none.
+
+    Returns
+    -------
+    bytes
+        PNG. Bands are two standard errors on either side.
+    """
+    groups = {
+        label: {key: names for key, names in _groups(each).items() if names}
+        for label, each in trajectories.items()
+    }
+    columns = max(len(each) for each in groups.values())
+    figure, axes = blank(columns, len(groups), 4.6 * columns, 0.5 + 3.2 * len(groups))
+    for row, (label, trajectory) in enumerate(trajectories.items()):
+        panels = axes[row * columns : (row + 1) * columns]
+        for panel in panels[len(groups[label]) :]:
+            panel.set_visible(False)
+        for panel, (what, names) in zip(panels, groups[label].items(), strict=False):
+            _draw(panel, trajectory, names, truth)
+            panel.set_title(f"{label}: {what}" if label else what)
+    if heading:
+        figure.suptitle(heading)
+    return figure
+
+
+def _groups(trajectory: Trajectory) -> dict[str, list[str]]:
+    names = trajectory.names
+    radii = [name for name in names if name.startswith("r[")]
+    weights = [name for name in names if name == "p0" or name.startswith("p[")]
+    rest = [name for name in names if name not in radii and name not in weights]
+    return {"radii": radii, "weights": weights, "offset and maps": rest}
+
+
+def _draw(axes: Axes, trajectory: Trajectory, names: list[str], truth: Mapping[str, float]) -> None:
+    for index, name in enumerate(names):
+        colour = _COLOURS[index % len(_COLOURS)]
+        place = trajectory.names.index(name)
+        value, error = trajectory.values[:, place], trajectory.standard_errors[:, place]
+        if name in truth:
+            axes.axhline(truth[name], color=FAINT, linewidth=1.0, zorder=1)
+        if np.isfinite(error).all():
+            low, high = value - 2.0 * error, value + 2.0 * error
+            axes.fill_between(trajectory.time, low, high, color=colour, alpha=0.15, linewidth=0.0)
+        axes.plot(trajectory.time, value, color=colour, label=name)
+    spread = np.concatenate([trajectory.of(name) for name in names])
+    margin = 0.15 * float(np.ptp(spread)) or 0.1 * abs(float(spread[0])) or 1.0
+    # Bands are wide at first; the axis shows the estimates.
+    axes.set_ylim(float(spread.min()) - margin, float(spread.max()) + margin)
+    axes.set_xlabel("time [s]")
+    axes.legend(loc="best", ncols=2)

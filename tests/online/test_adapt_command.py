@@ -1,0 +1,83 @@
+"""hyst adapt, and the study of the paper on a measured piezo."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hyst
+from hyst.cli import main
+from hyst.studies import s2_adaptive_radii
+from online.plants import P, R
+
+TRUTH = hyst.Affine(1.0, 2.0) @ hyst.PrandtlIshlinskii(P, R, 0.3)
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> tuple[Path, Path]:
+    u = 30.0 * np.sin(2 * np.pi * np.arange(4000) / 1000.0)
+    y = TRUTH(u) + 0.05 * np.random.default_rng(0).standard_normal(u.size)
+    hyst.io.write_columns(tmp_path / "data.csv", ["drive", "way"], (u, y))
+    start = hyst.Affine(1.0, 1.0) @ hyst.PrandtlIshlinskii(1.1 * P, 0.9 * R, 0.3)
+    start.save(tmp_path / "model.json")
+    return tmp_path / "model.json", tmp_path / "data.csv"
+
+
+def adapt(files: tuple[Path, Path], folder: Path, *more: str) -> int:
+    model, data = files
+    columns = ["--input", "drive", "--output", "way", "--rate", "1000"]
+    return main(["adapt", str(model), str(data), *columns, "-o", str(folder), *more])
+
+
+def test_writes_parameters_over_time_with_bands(
+    files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "out"
+    assert adapt(files, folder) == 0
+    shown = capsys.readouterr().out
+    assert "r[5]" in shown
+    assert "every radius is excited" in shown
+    header, *rows = (folder / "parameters.csv").read_text().splitlines()
+    assert header.startswith("time [s],p0,p0 standard error")
+    assert len(rows) == 2000
+    assert (folder / "parameters.png").read_bytes().startswith(b"\x89PNG")
+    u = np.linspace(-30.0, 30.0, 50)
+    # 4 periods at a noise of 0.05.
+    assert hyst.load(folder / "model.json").inverse() is not None
+    found = hyst.load(folder / "model.json")
+    path = np.concatenate([u, u[::-1], u])
+    assert found(path)[100:] == pytest.approx(TRUTH(path)[100:], abs=0.1)
+
+
+def test_stopped_and_resumed_it_gives_the_same(files: tuple[Path, Path], tmp_path: Path) -> None:
+    model, data = files
+    lines = data.read_text().splitlines()
+    (tmp_path / "a.csv").write_text("\n".join([lines[0], *lines[1:1501]]))
+    (tmp_path / "b.csv").write_text("\n".join([lines[0], *lines[1501:]]))
+    assert adapt(files, tmp_path / "whole") == 0
+    assert adapt((model, tmp_path / "a.csv"), tmp_path / "first") == 0
+    resume = ["--resume", str(tmp_path / "first" / "estimator.json")]
+    assert adapt((model, tmp_path / "b.csv"), tmp_path / "second", *resume) == 0
+    whole, second = (
+        json.loads((tmp_path / each / "estimator.json").read_text()) for each in ("whole", "second")
+    )
+    used = slice(0, 140)  # everything but the scratch area at the end
+    assert whole["state"][used] == second["state"][used]
+
+
+def test_bad_input_is_one_sentence(
+    files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert adapt(files, tmp_path / "out", "--resume", str(files[0])) == 2
+    assert "is no estimator" in capsys.readouterr().err
+
+
+def test_measured_piezo(measured_data: Path) -> None:
+    table = s2_adaptive_radii._piezo(measured_data / "piezo-dbo" / "Model_Vi_Do.dat")
+    rms = {row[0]: float(row[1]) for row in table.rows}
+    # The paper's claim: four plays of estimated radii do better than more plays of fixed ones.
+    assert rms["all by the joint estimator"] < rms["fixed radii, n = 7"]
+    assert rms["slopes by segmentation, n = 4"] < rms["fixed radii, n = 4"]
