@@ -72,3 +72,14 @@ def test_drive_record_identify_from_files(tmp_path: Path) -> None:
     assert model.dt == pytest.approx(1e-3)
     assert (Path(out) / "estimated_loop.png").exists()
     assert np.std(model(u) - y) < 0.011 * y.std()
+
+
+def test_every_kind_is_drawn_without_a_warning(tmp_path: Path) -> None:
+    kinds = ["odd-multisine", "schroeder", "prbs", "swept-sine", "triangle", "staircase"]
+    for kind in kinds:
+        out = tmp_path / f"{kind}.csv"
+        assert (
+            main(["excite", "--kind", kind, "--rate", "100", "--max-rate", "1e4", "-o", str(out)])
+            == 0
+        )
+        assert out.with_suffix(".png").exists()

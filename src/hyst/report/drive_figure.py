@@ -39,6 +39,9 @@ def draw_drive(drive: Drive, name: str, unit: str) -> Figure:
     shows = spectrum > 1e-6 * spectrum.max(initial=0.0)
     over_frequency.plot(frequency[shows], spectrum[shows], ".", markersize=2.0, color=SECOND)
     over_frequency.set_yscale("log")
+    if shows.any():
+        # The lines of a binary sequence are all alike: without room the axis would have no height.
+        over_frequency.set_ylim(0.5 * spectrum[shows].min(), 2.0 * spectrum[shows].max())
     over_frequency.set_xlim(0.0, 0.5 / drive.dt)
     over_frequency.set_title("Amplitude of its lines")
     over_frequency.set_xlabel("frequency [Hz], up to half the sample rate")

@@ -120,7 +120,7 @@ def refined(record: Record) -> IdentifiedHammerstein:
     return found
 
 
-TITLE = "S0: hysteresis followed by linear dynamics, from input and output alone"
+TITLE = "hysteresis followed by linear dynamics, from input and output alone"
 
 
 @functools.cache
