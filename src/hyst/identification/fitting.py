@@ -220,6 +220,23 @@ class Fitter:
         solution = search_radii(problem, fit.solution, plays, kinks, max_iterations)
         return replace(fit, solution=solution)
 
+    def polish(self, fit: Fit, max_iterations: int = 100) -> Fit:
+        """Go on from a fit of other samples of the same records.
+
+        Parameters
+        ----------
+        fit
+            A fit, for instance of thinned records.
+        max_iterations
+            At most.
+
+        Returns
+        -------
+        Fit
+        """
+        problem = problem_of(self.data, fit.parametrization)
+        return replace(fit, solution=minimize(problem, fit.solution.theta, max_iterations))
+
     def refit(self, fit: Fit, plays: NDArray[np.bool_], max_iterations: int = 100) -> Fit:
         """Fit a family again with some of its plays only.
 

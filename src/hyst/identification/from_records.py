@@ -3,37 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Literal
+from typing import Any, Literal
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 
-from hyst.errors import InputError, NotIdentifiableError, SolverError
-from hyst.identification.assembly import assemble
-from hyst.identification.bounded_least_squares import CONVERGED
-from hyst.identification.data import Data, prepare, require_same_units
-from hyst.identification.delay import estimate_delay
-from hyst.identification.families import (
-    FAMILIES,
-    KNOWN,
-    LINEAR,
-    PI,
-    RAMBERG_OSGOOD,
-    WITHOUT_PLAYS,
-)
-from hyst.identification.fitting import AUTO, MOST_STARTS, Fit, Fitter
+from hyst.identification.data import require_same_units
 from hyst.identification.hammerstein.from_options import HAMMERSTEIN, identify_with_dynamics
-from hyst.identification.identified import Candidate, Identified
+from hyst.identification.identified import Identified
+from hyst.identification.options import Options, as_radii, as_rule
 from hyst.identification.rate_dependent import RDPI, identify_rate_dependent
-from hyst.identification.selection import SIZES, choose
+from hyst.identification.rate_independent import identify_rate_independent
 from hyst.identification.separable import PowerLawOptions
-from hyst.identification.weight_rules import RULES
 from hyst.signals import Record
-
-Array = NDArray[np.float64]
-
-MOST_PLAYS = 200
 
 
 def identify(
@@ -143,59 +125,39 @@ def identify(
     True
     """
     say = progress or _silent
-    require_same_units((*_listed(records), *_listed(validation)))
-    if family == HAMMERSTEIN:
-        with threadpool_limits(1, user_api="blas"):
+    given, judged = _listed(records), _listed(validation)
+    require_same_units((*given, *judged))
+    with threadpool_limits(1, user_api="blas"):
+        # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
+        if family == HAMMERSTEIN:
             return identify_with_dynamics(
-                records,
+                given,
                 hysteresis=hysteresis,
                 orders=(fir_order, state_order),
                 plays=plays,
-                radii=None if radii is None else _as_radii(radii),
+                radii=None if radii is None else as_radii(radii),
                 knots=knots,
-                weights=_as_rule(weights),
+                weights=as_rule(weights),
                 delay=delay,
                 start=start,
-                validation=validation,
+                validation=judged,
                 limits=(max_iterations, allow_unconverged),
                 say=say,
             )
-    if family == RDPI:
-        return identify_rate_dependent(
-            records,
-            plays=plays,
-            radii=radii,
-            spacing=spacing,
-            record_weights=record_weights,
-            delay=delay,
-            start=start,
-            validation=validation,
-            max_iterations=max_iterations,
-            allow_unconverged=allow_unconverged,
-            progress=progress,
-        )
-    fixed = None if radii is None else _as_radii(radii)
-    families, sizes = _as_families(family, fixed), _as_sizes(plays, fixed)
-    with threadpool_limits(1, user_api="blas"):
-        # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
-        data = prepare(records, start, 0)
-        say("delay")
-        data = data.delayed(_as_delay(delay, data))
-        fixed, left_out = _within_reach(fixed, data)
-        sizes = sizes if fixed is None else (fixed.size,)
-        power_law = PowerLawOptions(memory, regression, signal_to_noise)
-        fitter = Fitter(data, _as_knots(knots), fixed, _as_rule(weights), power_law)
-        _require_samples(data, families, sizes, knots)
-        chosen_family, chosen_plays, candidates = _select(fitter, families, sizes, say)
-        say(f"final fit: {chosen_family}")
-        fit = _final_fit(fitter, chosen_family, chosen_plays, max_iterations)
-        if fit.solution.status != CONVERGED and not allow_unconverged:
-            raise SolverError(
-                f"the fit of {chosen_family} with {chosen_plays} plays did not converge in "
-                f"{fit.solution.iterations} iterations; raise max_iterations, give fewer plays, or "
-                "accept it with allow_unconverged"
+        common: dict[str, Any] = {"plays": plays, "radii": radii, "delay": delay, "start": start}
+        common |= {"max_iterations": max_iterations, "allow_unconverged": allow_unconverged}
+        if family == RDPI:
+            return identify_rate_dependent(
+                given,
+                spacing=spacing,
+                record_weights=record_weights,
+                validation=judged,
+                progress=progress,
+                **common,
             )
-        return assemble(fitter, fit, chosen_plays, candidates, _listed(validation), left_out)
+        power_law = PowerLawOptions(memory, regression, signal_to_noise)
+        options = Options(knots, weights, power_law, judged, say, **common)
+        return identify_rate_independent(given, family, options)
 
 
 def _listed(records: Record | Sequence[Record]) -> tuple[Record, ...]:
@@ -204,118 +166,3 @@ def _listed(records: Record | Sequence[Record]) -> tuple[Record, ...]:
 
 def _silent(_: str) -> None:
     """Report progress to nobody."""
-
-
-def _select(
-    fitter: Fitter, families: Sequence[str], sizes: Sequence[int], say: Callable[[str], None]
-) -> tuple[str, int, tuple[Candidate, ...]]:
-    """Compare what there is to choose from; nothing if there is no choice."""
-    if len(families) == 1 and (len(sizes) == 1 or families[0] in WITHOUT_PLAYS):
-        return families[0], 0 if families[0] in WITHOUT_PLAYS else sizes[0], ()
-    choice = choose(fitter, families, sizes, say)
-    return choice.family, choice.plays, choice.candidates
-
-
-def _final_fit(fitter: Fitter, family: str, plays: int, max_iterations: int) -> Fit:
-    """Fit from all starts, then again without the plays that came out idle, until none is."""
-    fit = fitter.fit(family, plays, MOST_STARTS, max_iterations)
-    fit = fitter.improve(fit, max_iterations)
-    while fitter.radii is None:
-        working = _working_plays(fit, fitter.data)
-        if working.all():
-            break
-        fit = fitter.refit(fit, working, max_iterations)
-    return fit
-
-
-def _working_plays(fit: Fit, data: Data) -> NDArray[np.bool_]:
-    """Plays with a weight, and with a radius of their own."""
-    weights = fit.parametrization.weights(fit.solution.theta)
-    r = fit.parametrization.radii(fit.solution.theta)
-    apart = np.diff(r, prepend=-np.inf) > 1e-4 * data.half_range
-    return np.asarray((np.abs(weights[1:]) > 1e-6 * np.abs(weights).max()) & apart)
-
-
-def _as_families(family: str, radii: Array | None) -> tuple[str, ...]:
-    if family == "auto":
-        return FAMILIES if radii is None else FAMILIES[1:]
-    families = tuple(dict.fromkeys(each.strip() for each in family.split(",")))
-    for each in families:
-        if each not in KNOWN:
-            known = ", ".join(("auto", *FAMILIES, RAMBERG_OSGOOD))
-            raise InputError(f"unknown family {each!r}; choose one of {known}")
-        if each in WITHOUT_PLAYS and radii is not None:
-            raise InputError(f"family {each!r} has no plays; leave out radii")
-    return families
-
-
-def _as_sizes(plays: int | str, radii: Array | None) -> tuple[int, ...]:
-    if radii is not None:
-        if plays not in ("auto", radii.size):
-            raise InputError(f"plays is {plays} but {radii.size} radii are given; leave out plays")
-        return (radii.size,)
-    if plays == "auto":
-        return SIZES
-    if isinstance(plays, bool) or not isinstance(plays, int | np.integer):
-        raise InputError(f"plays is {plays!r}; give a number or 'auto'")
-    if not 1 <= plays <= MOST_PLAYS:
-        raise InputError(f"plays is {plays}; give 1 to {MOST_PLAYS}, or 'auto'")
-    return (int(plays),)
-
-
-def _as_radii(radii: ArrayLike) -> Array:
-    values = np.unique(np.asarray(radii, dtype=np.float64))
-    if values.size == 0 or not np.isfinite(values).all() or values[0] <= 0.0:
-        raise InputError("radii must be one or more positive, finite numbers")
-    return values
-
-
-def _as_knots(knots: int) -> int:
-    if isinstance(knots, bool) or not isinstance(knots, int | np.integer) or not 1 <= knots <= 50:
-        raise InputError(f"knots is {knots!r}; give 1 to 50")
-    return int(knots)
-
-
-def _as_rule(weights: str) -> str:
-    if weights not in (AUTO, *RULES):
-        raise InputError(f"weights is {weights!r}; choose one of {', '.join((AUTO, *RULES))}")
-    return weights
-
-
-def _as_delay(delay: int | str, data: Data) -> int:
-    if delay == "auto":
-        return estimate_delay(data)
-    shortest = min(len(r) - s for r, s in zip(data.records, data.starts, strict=True))
-    if isinstance(delay, bool) or not isinstance(delay, int | np.integer):
-        raise InputError(f"delay is {delay!r}; give a number of samples or 'auto'")
-    if not 0 <= delay < shortest:
-        raise InputError(f"delay is {delay}; give 0 to {shortest - 1} samples, or 'auto'")
-    return int(delay)
-
-
-def _within_reach(radii: Array | None, data: Data) -> tuple[Array | None, tuple[str, ...]]:
-    """Leave out radii the input never passes, saying so."""
-    if radii is None:
-        return None, ()
-    reached = radii < data.half_range
-    if not reached.any():
-        raise NotIdentifiableError(
-            f"no radius is below {data.half_range:.6g}, half the input range; a play that never "
-            "moves cannot be identified"
-        )
-    return radii[reached], tuple(
-        f"the play of radius {r:.6g} never moves: half the input range is {data.half_range:.6g}; "
-        "it was left out"
-        for r in radii[~reached]
-    )
-
-
-def _require_samples(data: Data, families: Sequence[str], sizes: Sequence[int], knots: int) -> None:
-    samples = data.measured().size
-    least = {LINEAR: 2, RAMBERG_OSGOOD: 4, PI: 2 * sizes[0] + 2}
-    needed = min(least.get(family, 2 * sizes[0] + 2 + knots) for family in families)
-    if samples <= needed:
-        raise NotIdentifiableError(
-            f"{samples} samples can be used but the model has {needed} parameters; give a longer "
-            "record or fewer plays"
-        )

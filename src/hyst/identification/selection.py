@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-
-import numpy as np
 
 from hyst.errors import NotIdentifiableError
 from hyst.identification.cross_validation import cross_validate, fewest_left
@@ -21,36 +18,16 @@ ROUNDING = 1e-6
 """Scores below this share of the output range are equal: no sensor tells them apart."""
 
 
-@dataclass(frozen=True)
-class Choice:
-    """Family and size, and what they were chosen from.
-
-    Parameters
-    ----------
-    family
-        The family.
-    plays
-        Number of plays.
-    candidates
-        All that were compared, from the simplest to the richest.
-    """
-
-    family: str
-    plays: int
-    candidates: tuple[Candidate, ...]
-
-
-def choose(
+def compare(
     fitter: Fitter,
     families: Sequence[str],
     sizes: Sequence[int],
     progress: Callable[[str], None],
-) -> Choice:
-    """Compare families and sizes and take the simplest within one standard error of the best.
+) -> tuple[Candidate, ...]:
+    """Score families and sizes by blocked cross-validation.
 
-    Simple means few free parameters; between equals the order of ``KNOWN`` decides. Sizes of a
-    family are tried upwards until two in a row have not lowered the score, or until there are as
-    many parameters as samples to fit them to.
+    Sizes of a family are tried upwards until two in a row have not lowered the score, or until
+    there are as many parameters as samples to fit them to.
 
     Parameters
     ----------
@@ -65,33 +42,50 @@ def choose(
 
     Returns
     -------
-    Choice
+    tuple of Candidate
+        From the simplest family to the richest, none of them chosen yet.
 
     Raises
     ------
     NotIdentifiableError
         If there are too few samples to judge any.
+    """
+    candidates: list[Candidate] = []
+    for family in families:
+        candidates += _grow(fitter, family, (0,) if family in WITHOUT_PLAYS else sizes, progress)
+    if not candidates:
+        raise NotIdentifiableError(
+            f"{fitter.data.measured().size} samples can be used, too few to choose the number of "
+            "plays by cross-validation; give a longer record or the number of plays"
+        )
+    return tuple(candidates)
+
+
+def simplest_good(candidates: Sequence[Candidate], output_range: float) -> Candidate:
+    """Give the simplest candidate within one standard error of the best.
+
+    Simple means few free parameters; between equals the order of ``KNOWN`` decides.
+
+    Parameters
+    ----------
+    candidates
+        At least one.
+    output_range
+        Of the records, output units.
+
+    Returns
+    -------
+    Candidate
 
     Notes
     -----
     Breiman et al., Classification and Regression Trees (1984), sec. 3.4.3: the one standard error
     rule.
     """
-    candidates: list[Candidate] = []
-    for family in families:
-        candidates += _grow(fitter, family, (0,) if family in WITHOUT_PLAYS else sizes, progress)
-    measured = fitter.data.measured()
-    if not candidates:
-        raise NotIdentifiableError(
-            f"{measured.size} samples can be used, too few to choose the number of plays by "
-            "cross-validation; give a longer record or the number of plays"
-        )
     best = min(candidates, key=lambda each: each.score)
-    limit = max(best.score + best.standard_error, ROUNDING * float(np.ptp(measured)))
+    limit = max(best.score + best.standard_error, ROUNDING * output_range)
     good = [each for each in candidates if each.score <= limit]
-    simplest = min(good, key=lambda each: (each.parameters, KNOWN.index(each.family)))
-    marked = tuple(replace(each, chosen=each is simplest) for each in candidates)
-    return Choice(simplest.family, simplest.plays, marked)
+    return min(good, key=lambda each: (each.parameters, KNOWN.index(each.family)))
 
 
 def _grow(
