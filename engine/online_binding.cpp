@@ -93,7 +93,6 @@ public:
         hyst_joint_follow(&config_, &places_, values, u);
         hyst_joint_set_memory(&config_, &places_, values, u);
         values[HYST_JOINT_INPUT] = u;
-        values[HYST_JOINT_STARTED] = 1.0;
     }
     double command(State state, double y_ref) const {
         return hyst_joint_command(&config_, checked(state), y_ref);

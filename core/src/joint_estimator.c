@@ -146,11 +146,16 @@ static int measure(const hyst_joint *joint, const hyst_joint_layout *at, hyst_re
 
 static void watch_range(const hyst_joint *joint, hyst_real *state, hyst_real v, int started)
 {
-    const hyst_real low = state[HYST_JOINT_LOW];
-    const hyst_real high = state[HYST_JOINT_HIGH];
-    const hyst_real leak = started ? (high - low) / joint->patience : ZERO;
-    state[HYST_JOINT_LOW] = !started || v < low + leak ? v : low + leak;
-    state[HYST_JOINT_HIGH] = !started || v > high - leak ? v : high - leak;
+    const int is_full = state[HYST_JOINT_BLOCK] >= joint->patience;
+    if (is_full || !started) {
+        state[HYST_JOINT_LOW_BEFORE] = started ? state[HYST_JOINT_LOW] : v;
+        state[HYST_JOINT_HIGH_BEFORE] = started ? state[HYST_JOINT_HIGH] : v;
+        state[HYST_JOINT_LOW] = state[HYST_JOINT_HIGH] = v;
+        state[HYST_JOINT_BLOCK] = ZERO;
+    }
+    state[HYST_JOINT_LOW] = v < state[HYST_JOINT_LOW] ? v : state[HYST_JOINT_LOW];
+    state[HYST_JOINT_HIGH] = v > state[HYST_JOINT_HIGH] ? v : state[HYST_JOINT_HIGH];
+    state[HYST_JOINT_BLOCK] += ONE;
 }
 
 hyst_joint_end hyst_joint_step(const hyst_joint *joint, hyst_real *state, hyst_real u, hyst_real y)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import hyst
 from hyst import _engine
-from hyst.online import RadiusEstimator
+from hyst.online import RadiusEstimator, load_estimator
 from online.plants import DT, FIVE_PLAYS, P, R, record, sine
 
 
@@ -146,3 +148,19 @@ def test_another_sample_time_is_refused() -> None:
     u = sine(0.1)
     with pytest.raises(hyst.InputError, match=r"dt = 0.002 s"):
         RadiusEstimator(P, R, 10.0, DT).run(record(u, u, dt=2e-3))
+
+
+def test_saved_and_restored_it_continues_with_the_same_bits(tmp_path: Path) -> None:
+    u = sine(1.0)
+    y = FIVE_PLAYS(u)
+    options = {"method": "least-squares", "filter_time": 0.005, "dead_time": 0.01, "memory": 3.0}
+    whole, part = (RadiusEstimator(P, 1.5 * R, 50.0, DT, **options) for _ in range(2))  # type: ignore[arg-type]
+    whole.run(record(u, y))
+    part.run(record(u[:444], y[:444]))
+    part.save(tmp_path / "estimator.json")
+    restored = load_estimator(tmp_path / "estimator.json")
+    assert isinstance(restored, RadiusEstimator)
+    for u_k, y_k in zip(u[444:], y[444:], strict=True):
+        restored.update(u_k, y_k)
+    assert restored.radii.tobytes() == whole.radii.tobytes()
+    assert restored.standard_errors.tobytes() == whole.standard_errors.tobytes()

@@ -20,8 +20,8 @@
  * Operations of one step for n plays and m = 2 n + 2 parameters (no maps), + - * / and comparisons:
  * about 6.5 m^2 + 20 m + 100 n, and 2 m^2 for each of at most HYST_JOINT_PROJECTIONS projections. At
  * n = 5 that is 1700, at most 2850; at n = 10 it is 4600, at most 8500. 3 m + n + 2 of them divide.
- * The state holds hyst_joint_places().length numbers, the scratch area included: 251 at n = 5 and
- * 676 at n = 10, which is 2008 and 5408 bytes in double. */
+ * The state holds hyst_joint_places().length numbers, the scratch area included: 254 at n = 5 and
+ * 679 at n = 10, which is 2032 and 5432 bytes in double. */
 #ifndef HYST_JOINT_ESTIMATOR_H
 #define HYST_JOINT_ESTIMATOR_H
 
@@ -77,8 +77,11 @@ enum {
     HYST_JOINT_UPDATES,   /* samples used */
     HYST_JOINT_SKIPPED,   /* samples that were not finite */
     HYST_JOINT_REFUSED,   /* samples whose update would not have been finite */
-    HYST_JOINT_LOW,       /* recent range of v, forgotten over `patience` */
+    HYST_JOINT_LOW,       /* range of v over the present block of `patience` samples */
     HYST_JOINT_HIGH,
+    HYST_JOINT_LOW_BEFORE, /* and over the block before */
+    HYST_JOINT_HIGH_BEFORE,
+    HYST_JOINT_BLOCK, /* samples of the present block */
     HYST_JOINT_THETA
 };
 

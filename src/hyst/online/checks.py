@@ -144,6 +144,11 @@ def samples_of(record: Record, dt: float) -> tuple[Array, Array]:
 def patience_in_samples(patience: float | None, memory: float, dt: float) -> float:
     """Give the patience of an estimator in samples: what was asked for, its memory, or 10,000.
 
+    Parameters
+    ----------
+    patience, memory, dt
+        Seconds; ``patience`` may be left to the others.
+
     Raises
     ------
     InputError
@@ -160,7 +165,7 @@ def patience_in_samples(patience: float | None, memory: float, dt: float) -> flo
 
 
 def given_or(value: float | None, otherwise: float) -> float:
-    """Give a value, or something else where there is none."""
+    """Give ``value``, or ``otherwise`` where there is none."""
     return otherwise if value is None else value
 
 

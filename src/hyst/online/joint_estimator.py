@@ -35,7 +35,7 @@ Array = NDArray[np.float64]
 _GROUPS = ("p0", "p", "r", "offset", "front", "back")
 _LINEAR_TERMS = ("front[1]", "back[1]")
 # Places of the scalars in the state, as joint_estimator.h has them.
-_ERROR, _VARIANCE, _NOISE, _UPDATES, _SKIPPED, _REFUSED, _LOW, _HIGH = 0, 1, 2, 5, 6, 7, 8, 9
+_ERROR, _VARIANCE, _NOISE, _UPDATES, _SKIPPED, _REFUSED, _RANGES = 0, 1, 2, 5, 6, 7, 8
 _NOISE_SAMPLES = 150.0
 
 
@@ -206,7 +206,9 @@ class JointEstimator:
             theta[n + 1 : 2 * n + 1],
             age,
             self.settings["patience"] / self.dt,
-            float(self.state[_HIGH] - self.state[_LOW]),
+            float(
+                self.state[_RANGES : _RANGES + 4].max() - self.state[_RANGES : _RANGES + 4].min()
+            ),
         )
 
     def update(self, u: float, y: float) -> bool:
@@ -306,7 +308,7 @@ class JointEstimator:
                 self._parts, take_apart(model).theta(), self.settings
             )
         self._begin(self._prior(self._theta_at_start))
-        for first, last in ((3, 10), (at["side"], at["psi"])):
+        for first, last in ((3, 13), (at["side"], at["psi"])):
             self.state[first:last] = kept[first:last]
         self._core.remember(self.state)
 

@@ -29,7 +29,7 @@ class Map:
     thresholds: Array
 
     def with_weights(self, weights: Array) -> DeadZone:
-        """Give the operator with other weights."""
+        """Give the operator with other ``weights``."""
         return DeadZone(weights, self.thresholds)
 
 
@@ -74,7 +74,7 @@ class Parts:
         )
 
     def assemble(self, theta: Array, z: Array) -> Operator:
-        """Put a model of the same kind together from other parameters and another memory."""
+        """Put a model of the same kind together from parameters ``theta`` and memory ``z``."""
         n = self.pi.p.size
         model: Operator = PrandtlIshlinskii(theta[1 : n + 1], theta[n + 1 : 2 * n + 1], theta[0], z)
         maps = theta[2 * n + 2 :]

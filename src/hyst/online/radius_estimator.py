@@ -121,8 +121,7 @@ class RadiusEstimator:
             raise InputError(f"gain has the entry {gains.min():.6g}; give gains of at least 0")
         largest = float(start.r[-1]) if n else 0.0
         bound = 1e3 * largest or 1e9 if most_radius is None else most_radius
-        bound = positive(bound, "most_radius", "a radius")
-        if bound < largest:
+        if positive(bound, "most_radius", "a radius") < largest:
             raise InputError(
                 f"most_radius is {bound:.6g}, but the start has r[{n}] = {largest:.6g}; raise the "
                 "bound or start below it"
@@ -142,7 +141,7 @@ class RadiusEstimator:
             "dead_time": not_negative(dead_time, "dead_time"),
             "dead_band": not_negative(dead_band, "dead_band"),
             "tolerance": share,
-            "most_radius": bound,
+            "most_radius": float(bound),
             "z0": start.z0.tolist(),
         }
         self._p, self._p0 = start.p, start.p0
