@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, settings
 # The same examples every time, so that a red test is red again; `--hypothesis-profile=search` looks
 # for new ones. Deadlines would only measure how busy the machine is.
 _QUICK = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
-settings.register_profile("repeatable", **_QUICK, derandomize=True, max_examples=25)
+settings.register_profile("repeatable", **_QUICK, derandomize=True, max_examples=15)
 settings.register_profile("search", **_QUICK, max_examples=2000)
 settings.load_profile("repeatable")
 

@@ -33,6 +33,7 @@ ORDER = {
     "stop": ("r",),
     "dead-zone": ("weights", "thresholds"),
     "prandtl-ishlinskii": ("p0", "p", "r"),
+    "rate-dependent-prandtl-ishlinskii": ("p0", "p", "r", "beta", "powers", "slopes"),
 }
 
 
@@ -41,7 +42,7 @@ def places(model: dict[str, Any]) -> list[tuple[int, str, int | None]]:
     found: list[tuple[int, str, int | None]] = []
     for number, stage in enumerate(flat(model)):
         for name in ORDER[stage["kind"]]:
-            value = stage[name]
+            value = stage.get(name, [])
             indices = range(len(value)) if isinstance(value, list) else (None,)
             found += [(number, name, index) for index in indices]
     return found

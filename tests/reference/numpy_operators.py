@@ -96,7 +96,8 @@ def simulate(model: dict[str, Any], u: Sequence[float] | Array) -> Trace:
             passed.y,
             np.concatenate([trace.memory, passed.memory]),
             tuple(a + b for a, b in zip(trace.regimes, passed.regimes, strict=True)),
-            passed.rounding + slope * trace.rounding,
+            # The input is exact, and its rounding stays 0, whatever the slope.
+            passed.rounding + (slope * trace.rounding if trace.rounding else 0.0),
         )
     return trace
 

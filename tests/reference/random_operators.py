@@ -48,7 +48,7 @@ def numbers(low: float, high: float) -> st.SearchStrategy[float]:
     return lattice | st.floats(low, high)
 
 
-def signals(low: float = -8.0, high: float = 8.0, most: int = 30) -> st.SearchStrategy[Array]:
+def signals(low: float = -8.0, high: float = 8.0, most: int = 16) -> st.SearchStrategy[Array]:
     return st.lists(numbers(low, high), min_size=1, max_size=most).map(np.array)
 
 
@@ -210,7 +210,11 @@ def operators_that(
     cases = [
         pytest.param(st.just(each), id=name) for name, each in EXAMPLES.items() if predicate(each)
     ]
-    cases += [pytest.param(RANDOM[kind].filter(predicate), id=f"random {kind}") for kind in kinds]
+    for kind in kinds:
+        # A kind that hardly ever satisfies the predicate would only be filtered, not tested.
+        verdicts = [predicate(each) for each in EXAMPLES.values() if each.kind == kind] or [True]
+        if 2 * sum(verdicts) >= len(verdicts):
+            cases.append(pytest.param(RANDOM[kind].filter(predicate), id=f"random {kind}"))
     return pytest.mark.parametrize("operators", cases)
 
 
