@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,9 +22,9 @@ STEPS_UPHILL = 3
 MOST_ROWS = 20_000
 
 WORTH_MOVING = 0.02
-"""Share of the residual a delay must save to be preferred to the general estimate."""
+"""Residuals (rms) that differ by less than this share are taken for equal."""
 
-REFIT_ITERATIONS = 6
+REFIT_ITERATIONS = 10
 
 
 def estimate_delay(data: Data) -> int:
@@ -47,15 +49,10 @@ def estimate_delay(data: Data) -> int:
     longest = min(_longest_delay(record.u) for record in data.records)
     if longest == 0:
         return 0
-    common = data.delayed(longest)
-    # Rows are left out evenly; the regressors of those that stay know the whole input.
-    rows = slice(None, None, 1 + common.measured().size // MOST_ROWS)
-    q = np.linalg.qr(_regressors(common)[rows])[0]
+    general = _GeneralModel.of(data.delayed(longest))
     best, least, uphill = 0, np.inf, 0
     for delay in range(longest + 1):
-        y = _shifted_outputs(common, delay)[rows]
-        y = y - y.mean()
-        left = float(y @ y - np.square(q.T @ y).sum()) / float(y @ y)
+        left = general.mean_square(delay)
         if left < least * (1.0 - 1e-9):
             best, least, uphill = delay, left, 0
         else:
@@ -82,10 +79,12 @@ def refine_delay(data: Data, fit: Fit) -> int:
     Returns
     -------
     int
-        The delay so far, or another one with which the family leaves at least ``WORTH_MOVING``
-        less residual.
+        Where the family describes the records as well as the general model, the delay it likes
+        best; otherwise the delay so far, unless the family leaves ``WORTH_MOVING`` less residual
+        with another one.
     """
     so_far = _mean_square(data, fit, data.delay)
+    general = _GeneralModel.of(data).mean_square(data.delay)
     best, least = data.delay, so_far
     for step in (-1, 1):
         delay = data.delay + step
@@ -94,20 +93,52 @@ def refine_delay(data: Data, fit: Fit) -> int:
             if error >= least:
                 break
             best, least, delay = delay, error, delay + step
-    return best if least < (1.0 - WORTH_MOVING) ** 2 * so_far else data.delay
+    as_good_as_general = least < (1.0 + WORTH_MOVING) ** 2 * general
+    better_by_far = least < (1.0 - WORTH_MOVING) ** 2 * so_far
+    return best if as_good_as_general or better_by_far else data.delay
 
 
 def _mean_square(data: Data, fit: Fit, delay: int) -> float:
-    thin = thinned(data.delayed(delay))
-    problem = problem_of(thin, fit.parametrization)
-    solution = minimize(problem, fit.solution.theta, REFIT_ITERATIONS)
-    return solution.cost / thin.measured().size
+    """Fit the family to thinned records, but judge it by all samples.
+
+    Thinned records hold other samples of the noise at every delay, which would decide.
+    """
+    shifted = data.delayed(delay)
+    problem = problem_of(thinned(shifted), fit.parametrization)
+    theta = minimize(problem, fit.solution.theta, REFIT_ITERATIONS).theta
+    residual = problem_of(shifted, fit.parametrization).residual(theta)
+    return float(residual @ residual) / residual.size
 
 
 def _longest_delay(u: Array) -> int:
     turns = reversals(u, 0.05 * float(np.ptp(u)))
     stroke = float(np.median(np.diff(turns))) if turns.size > 1 else float(u.size)
     return int(min(stroke / 4.0, u.size / 20.0))
+
+
+@dataclass(frozen=True, eq=False)
+class _GeneralModel:
+    """The regressors of the general model, orthonormal, on some of the samples.
+
+    Samples are left out evenly; the regressors of those that stay know the whole input.
+    """
+
+    data: Data
+    rows: slice
+    q: Array
+
+    @classmethod
+    def of(cls, data: Data) -> _GeneralModel:
+        rows = slice(None, None, 1 + data.measured().size // MOST_ROWS)
+        return cls(data, rows, np.linalg.qr(_regressors(data)[rows])[0])
+
+    def mean_square(self, delay: int) -> float:
+        """Give the mean square this model leaves of the output ``delay`` samples later."""
+        y = _shifted_outputs(self.data, delay)[self.rows]
+        y = y - y.mean()
+        explained: Array = self.q.T @ y
+        left: float = float(y @ y) - float(explained @ explained)
+        return left / float(y.size)
 
 
 def _shifted_outputs(data: Data, delay: int) -> Array:

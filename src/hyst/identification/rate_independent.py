@@ -91,7 +91,8 @@ def identify_rate_independent(
     fit = found.fit
     if thinned(fitter.data) is not fitter.data:
         options.say("final fit: all samples")
-        fit = _converged(fitter.polish(fit, options.max_iterations), found.plays, options)
+        polished = fitter.polish(fit, options.max_iterations)
+        fit = _converged(_without_idle_plays(fitter, polished, options), found.plays, options)
     return assemble(fitter, fit, found.plays, found.candidates, options.validation, left_out)
 
 
@@ -116,15 +117,20 @@ def _search(
 
 
 def _final_fit(fitter: Fitter, family: str, plays: int, options: Options) -> Fit:
-    """Fit from all starts, then again without the plays that came out idle, until none is."""
+    """Fit from all starts, across the kinks, and without plays that are idle."""
     options.say(f"final fit: {family} with {plays} plays" if plays else f"final fit: {family}")
     most = options.max_iterations
     fit = fitter.improve(fitter.fit(family, plays, MOST_STARTS, most), most)
+    return _without_idle_plays(fitter, fit, options)
+
+
+def _without_idle_plays(fitter: Fitter, fit: Fit, options: Options) -> Fit:
+    """Fit again without the plays that came out idle, until none is."""
     while fitter.radii is None:
         working = _working_plays(fit, fitter.data)
         if working.all():
             break
-        fit = fitter.refit(fit, working, most)
+        fit = fitter.refit(fit, working, options.max_iterations)
     return fit
 
 

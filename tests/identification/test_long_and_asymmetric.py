@@ -1,0 +1,62 @@
+"""Records of a million samples, and loops so asymmetric that they look delayed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from simulated_records import TRUE_PI, drive, plays_by_definition, record
+
+import hyst
+from hyst.identification.data import prepare
+from hyst.identification.thinning import thinned
+
+
+def test_thinning_keeps_the_memory_of_a_smooth_input() -> None:
+    """Memory after thinning against the definition on every sample."""
+    u = drive(60_000)
+    data = prepare(record(TRUE_PI, u), "auto", 0)
+    thin = thinned(data)
+    kept = thin.records[0]
+    assert 10_000 < len(kept) < 25_000
+    places = np.searchsorted(np.arange(u.size) * 1.0, np.flatnonzero(np.isin(u, kept.u)))
+    full = plays_by_definition(u, TRUE_PI.r)[places]
+    np.testing.assert_array_equal(plays_by_definition(u[places], TRUE_PI.r), full)
+
+
+def test_thinning_leaves_short_records_alone_and_brings_the_output_forward() -> None:
+    data = prepare(record(TRUE_PI, delay=2), "auto", 2)
+    assert thinned(data) is data
+    long = record(TRUE_PI, drive(60_000), delay=7)
+    thin = thinned(prepare(long, "auto", 7))
+    assert thin.delay == 0
+    np.testing.assert_allclose(TRUE_PI(thin.records[0].u), thin.records[0].y, atol=1e-12)
+
+
+def test_a_long_record_ends_at_the_minimum_of_all_samples() -> None:
+    u = drive(60_000)
+    found = hyst.identify(record(TRUE_PI, u, noise=0.01), family="pi", plays=3)
+    assert found.delay == 0
+    # Without noise in the model the residual is the noise; 60 000 samples know it to 0.3 %.
+    assert found.metrics["training"].rms == pytest.approx(0.01, rel=0.01)
+    distances = (found.parameter_values[:7] - [1, 0.5, 0.4, 0.3, 0.1, 0.3, 0.6]) / (
+        found.standard_errors[:7]
+    )
+    assert np.abs(distances).max() < 4.5
+
+
+@pytest.mark.parametrize(("scale", "most"), [(25.0, 1), (60.0, 0)])
+def test_strong_asymmetry_is_not_taken_for_delay(scale: float, most: int) -> None:
+    """The general estimate alone says 7 and 3; a map with 12 knots still bends a little wrong."""
+    u = 50.0 * (1.0 + drive(6000))
+    pi = hyst.PrandtlIshlinskii(p=[0.2, 0.15], r=[8.0, 25.0], p0=0.6)
+    y = np.exp(pi(u) / scale) * scale
+    y = y + 1e-3 * np.ptp(y) * np.random.default_rng(0).standard_normal(u.size)
+    found = hyst.identify(hyst.Record(u, y, 1e-3), family="mpi", plays=4, knots=12)
+    assert found.delay <= most
+
+
+def test_validation_with_another_sample_time_is_refused_where_there_is_a_delay() -> None:
+    training = record(TRUE_PI, delay=3)
+    other = hyst.Record(training.u, training.y, dt=2e-3)
+    with pytest.raises(hyst.InputError, match="delay of 3 samples"):
+        hyst.identify(training, family="pi", plays=3, validation=other)
