@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hyst import InputError, Operator
+from hyst import Affine, InputError, Operator, PrandtlIshlinskii
 from reference.examples import EXAMPLES
+from reference.numpy_operators import EPS
 from reference.random_operators import every_operator, signals
 
 
@@ -137,3 +138,46 @@ def test_a_state_of_another_length_or_type_is_refused(operator: Operator) -> Non
                 operator.run([1.0], np.zeros(n, dtype=wrong))
         with pytest.raises(InputError, match=r"state\[0\] is nan"):
             operator.run([1.0], np.full(n, np.nan))
+
+
+def long_record(turns: int, samples: int = 12_000) -> np.ndarray:
+    """So many turns of irregular height."""
+    heights = np.random.default_rng(turns).uniform(-6.0, 6.0, turns)
+    return np.interp(np.linspace(0.0, turns - 1.0, samples), np.arange(turns), heights)
+
+
+@pytest.mark.parametrize("turns", [30, 6_000])
+@pytest.mark.parametrize("plays", [1, 10, 37, 800])
+def test_long_records_are_stepped_through_as_well(plays: int, turns: int) -> None:
+    """Long enough for whatever is quicker than a loop over samples."""
+    generator = np.random.default_rng(plays)
+    p = generator.uniform(-0.5, 1.0, plays) / plays
+    r = np.sort(generator.uniform(0.0, 7.0, plays))
+    operator = Affine(2.0, -1.0) @ PrandtlIshlinskii(p, r, p0=0.3)
+    u = long_record(turns)
+    step = operator.stepper()
+    stepped = np.array([step(value) for value in u.tolist()])
+
+    y, state = operator.run(u)
+    # The memory is always the same to the bit; the output may be summed in another order, at most
+    # n + 2 roundings of sums up to sum(|p|) 13 2 < 26.
+    assert state.tobytes() == step.state.tobytes()
+    assert np.abs(y - stepped).max() <= (plays + 2) * EPS * 26.0
+    assert operator.run(u, engine="loop")[0].tobytes() == stepped.tobytes()
+
+    first, middle = operator.run(u[:7001])
+    second, end = operator.run(u[7001:], middle)
+    assert end.tobytes() == state.tobytes()
+    assert np.abs(np.concatenate([first, second]) - y).max() <= 2.0 * (plays + 2) * EPS * 26.0
+
+
+@pytest.mark.parametrize("turns", [30, 6_000])
+@pytest.mark.parametrize("plays", [1, 10, 37])
+def test_long_records_of_few_plays_give_the_same_bits(plays: int, turns: int) -> None:
+    r = np.linspace(0.1, 5.0, plays)
+    operator = PrandtlIshlinskii(np.full(plays, 0.1), r, p0=0.3)
+    u = long_record(turns)
+    y, _ = operator.run(u, engine="lanes")
+    assert y.tobytes() == operator.run(u, engine="loop")[0].tobytes()
+    batch, _ = operator.run(np.stack([u, -u, u[::-1]]), threads=2)
+    assert np.abs(batch[0] - y).max() <= (plays + 2) * EPS * 26.0
