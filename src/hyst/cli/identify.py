@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -115,22 +115,13 @@ def identify(
     """Identify a model from measured records, and write model, numbers, figures and a report."""
     hyst.files.require_folder(folder)
 
-    def read(path: Path) -> hyst.Record:
-        record = hyst.read_record(
-            path,
-            input=input_column,
-            output=output_column,
-            time=time,
-            rate=rate,
-            time_unit=time_unit,
-            repair=repair,
-        )
-        return _labelled(record, input_label, output_label)
-
+    how_to_read = {"input": input_column, "output": output_column, "time": time, "rate": rate}
+    how_to_read |= {"time_unit": time_unit, "repair": repair}
+    labels = (input_label, output_label)
     with at_work("identifying") as say:
         say("reading")
-        records = [read(path) for path in data]
-        validation = [read(path) for path in validate or []]
+        records = [_read(path, how_to_read, labels) for path in data]
+        validation = [_read(path, how_to_read, labels) for path in validate or []]
         found = hyst.identify(
             records,
             family=family,
@@ -140,11 +131,7 @@ def identify(
             memory=memory,
             regression=regression,
             spacing=spacing,
-            record_weights=(
-                numbers(record_weights, "record-weights")
-                if "," in record_weights
-                else record_weights
-            ),
+            record_weights=_numbers_or_word(record_weights),
             delay=whole_or_auto(delay, "delay"),
             start=whole_or_auto(start, "start"),
             hysteresis=hysteresis,
@@ -155,13 +142,24 @@ def identify(
             progress=say,
         )
         say("report")
-        sources = [str(path) for path in (*data, *(validate or []))]
-        sections = hyst.report.dynamics_sections(found)
         files = hyst.report.write_report(
-            found, records, validation, folder, sources=sources, sections=sections
+            found,
+            records,
+            validation,
+            folder,
+            sources=[str(path) for path in (*data, *(validate or []))],
+            sections=hyst.report.dynamics_sections(found),
         )
     _tell(found, records)
     show_files(files)
+
+
+def _read(path: Path, how: dict[str, Any], labels: tuple[str | None, str | None]) -> hyst.Record:
+    return _labelled(hyst.read_record(path, **how), *labels)
+
+
+def _numbers_or_word(text: str) -> str | list[float]:
+    return numbers(text, "record-weights") if "," in text else text
 
 
 def _tell(found: hyst.Identified, records: list[hyst.Record]) -> None:

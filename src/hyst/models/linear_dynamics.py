@@ -364,7 +364,8 @@ class LinearDynamics(Operator):
         """
         angle = 2.0 * np.pi * self.dt * np.atleast_1d(np.asarray(frequency, dtype=np.float64))
         points = np.exp(1j * angle)
-        return values_at(points, self.A, self.B, self.C, self.D) * points ** (-self.delay)
+        undelayed = values_at(points, self.A, self.B, self.C, self.D)
+        return np.asarray(undelayed * points ** (-self.delay))
 
     def scaled(self, factor: float) -> LinearDynamics:
         """Give the system with its output multiplied by a number.
