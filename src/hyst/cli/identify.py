@@ -118,37 +118,26 @@ def identify(
     how_to_read = {"input": input_column, "output": output_column, "time": time, "rate": rate}
     how_to_read |= {"time_unit": time_unit, "repair": repair}
     labels = (input_label, output_label)
+    counts = {"plays": plays, "delay": delay, "start": start}
+    counts |= {"fir_order": fir_order, "state_order": state_order}
+    options: dict[str, Any] = {
+        name: whole_or_auto(text, name.replace("_", "-")) for name, text in counts.items()
+    }
+    options |= {"knots": knots, "weights": weights, "memory": memory, "regression": regression}
+    options |= {"spacing": spacing, "record_weights": _numbers_or_word(record_weights)}
+    options |= {"hysteresis": hysteresis, "allow_unconverged": allow_unconverged}
     with at_work("identifying") as say:
         say("reading")
         records = [_read(path, how_to_read, labels) for path in data]
         validation = [_read(path, how_to_read, labels) for path in validate or []]
         found = hyst.identify(
-            records,
-            family=family,
-            plays=whole_or_auto(plays, "plays"),
-            knots=knots,
-            weights=weights,
-            memory=memory,
-            regression=regression,
-            spacing=spacing,
-            record_weights=_numbers_or_word(record_weights),
-            delay=whole_or_auto(delay, "delay"),
-            start=whole_or_auto(start, "start"),
-            hysteresis=hysteresis,
-            fir_order=whole_or_auto(fir_order, "fir-order"),
-            state_order=whole_or_auto(state_order, "state-order"),
-            validation=validation,
-            allow_unconverged=allow_unconverged,
-            progress=say,
+            records, family=family, validation=validation, progress=say, **options
         )
         say("report")
+        sources = [str(path) for path in (*data, *(validate or []))]
+        sections = hyst.report.dynamics_sections(found)
         files = hyst.report.write_report(
-            found,
-            records,
-            validation,
-            folder,
-            sources=[str(path) for path in (*data, *(validate or []))],
-            sections=hyst.report.dynamics_sections(found),
+            found, records, validation, folder, sources=sources, sections=sections
         )
     _tell(found, records)
     show_files(files)

@@ -36,7 +36,17 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """A final fit to thinned records, and what it was chosen from."""
+    """A final fit to thinned records, and what it was chosen from.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    plays
+        Plays asked for or chosen; the fit may have fewer.
+    candidates
+        What was compared; empty if there was nothing to choose.
+    """
 
     fit: Fit
     plays: int

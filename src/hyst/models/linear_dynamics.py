@@ -364,8 +364,7 @@ class LinearDynamics(Operator):
         """
         angle = 2.0 * np.pi * self.dt * np.atleast_1d(np.asarray(frequency, dtype=np.float64))
         points = np.exp(1j * angle)
-        undelayed = values_at(points, self.A, self.B, self.C, self.D)
-        return np.asarray(undelayed * points ** (-self.delay))
+        return np.asarray(values_at(points, self.A, self.B, self.C, self.D) / points**self.delay)
 
     def scaled(self, factor: float) -> LinearDynamics:
         """Give the system with its output multiplied by a number.
