@@ -216,7 +216,7 @@ def _usable_rows(table: Table, chosen: list[int], repair: bool) -> NDArray[np.in
     finite = [np.isfinite(table.columns[k]) for k in chosen]
     for k, usable in zip(chosen, finite, strict=True):
         if not (repair and usable.any()):
-            refuse_flaws(table, k, "correct it, or leave such rows out with repair=True")
+            refuse_flaws(table, k, "correct it, or leave such rows out with the option repair")
     rows = np.flatnonzero(np.logical_and.reduce(finite))
     if rows.size < _FEWEST_SAMPLES:
         raise InputError(
@@ -260,7 +260,7 @@ def _on_even_steps(
         raise InputError(
             f"{source}: time is uneven, the worst gap is {worst} and the median gap "
             f"{gap.median * seconds:.6g} s (tolerance {TOLERANCE:.0%}); "
-            "resample with repair=True, or give a rate instead"
+            "resample with the option repair, or give a rate instead"
         )
     step = samples.step(gap.median)
     note = f"resampled linearly onto steps of {step:.6g} s; the worst gap was {worst}"
