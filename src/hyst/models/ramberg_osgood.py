@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, final
@@ -98,9 +99,11 @@ class RambergOsgood(Operator):
                     "positive (MasingOperator(PowerLaw(...)) takes c1 = 0 and -1 < c3 < 0)"
                 )
         if self.c2 < 0.0:
+            # By logarithms and bounded, for a small c3 puts it beyond the largest number.
+            log_way = (math.log(self.c1) - math.log(-self.c2)) / self.c3
             raise InputError(
                 f"c2 is {self.c2:.6g}; the slope c1 + c2 p^c3 would turn negative at "
-                f"p = {(self.c1 / -self.c2) ** min(1.0 / self.c3, 300.0):.6g}, so give 0 or more"
+                f"p = {math.exp(min(log_way, 700.0)):.6g}, so give 0 or more"
             )
         checked = as_memory(self.memory, self.depth, self.dead_band)
         object.__setattr__(self, "depth", int(self.depth))
