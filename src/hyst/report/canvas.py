@@ -16,6 +16,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatter, LogFormatterMathtext
 
 Parameters = ParamSpec("Parameters")
 
@@ -71,11 +72,29 @@ def drawn(draw: Callable[Parameters, Figure]) -> Callable[Parameters, bytes]:
             # A sign the font does not have, in a name from the user's file, is drawn as a box.
             warnings.filterwarnings("ignore", message="Glyph .* missing")
             figure = draw(*args, **kwargs)
+            _number_logarithmic_axes(figure)
             FigureCanvasAgg(figure)
             figure.savefig(content, format="png", metadata={"Software": None})
         return content.getvalue()
 
     return draw_png
+
+
+class _PlainNumbers(LogFormatter):
+    """Labels of a logarithmic axis where matplotlib puts them, but not written as formulas."""
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        return f"{x:g}" if super().__call__(x, pos) else ""
+
+
+def _number_logarithmic_axes(figure: Figure) -> None:
+    """Write numbers at logarithmic axes: matplotlib's powers of ten are formulas, not parsed."""
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            if isinstance(axis.get_major_formatter(), LogFormatterMathtext):
+                axis.set_major_formatter(_PlainNumbers())
+            if isinstance(axis.get_minor_formatter(), LogFormatterMathtext):
+                axis.set_minor_formatter(_PlainNumbers())
 
 
 def blank(columns: int, rows: int, width: float, height: float) -> tuple[Figure, list[Axes]]:
