@@ -57,3 +57,9 @@ def test_an_input_that_never_turns() -> None:
 def test_a_number_of_plays_that_is_none(plays: object) -> None:
     with pytest.raises(hyst.InputError, match="plays is"):
         identify_weights_from_slopes(record(0.0), plays=plays)  # type: ignore[arg-type]
+
+
+def test_an_output_that_rests_has_no_slopes() -> None:
+    u = 5.0 * np.sin(np.arange(2000) / 50.0)
+    with pytest.raises(hyst.NotIdentifiableError, match="the output rests"):
+        identify_weights_from_slopes(hyst.Record(u, np.ones(2000), 1.0))

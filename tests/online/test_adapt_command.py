@@ -73,6 +73,10 @@ def test_bad_input_is_one_sentence(
 ) -> None:
     assert adapt(files, tmp_path / "out", "--resume", str(files[0])) == 2
     assert "is no estimator" in capsys.readouterr().err
+    # An estimator brings its own options, so others would be dropped unsaid.
+    assert adapt(files, tmp_path / "out", "--resume", str(files[0]), "--memory", "2") == 2
+    assert "leave out --memory" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
 
 
 def test_measured_piezo(measured_data: Path) -> None:

@@ -154,6 +154,21 @@ def test_saved_and_restored_it_continues_with_the_same_bits(tmp_path: Path) -> N
     assert restored.model == whole.model
 
 
+def test_an_overflow_does_not_keep_it_from_being_saved(tmp_path: Path) -> None:
+    estimator = JointEstimator(FIVE_PLAYS, least_slope=1e-3)
+    u = sine(1.0)
+    for u_k in (*u[:300], 1e300, -1e308):
+        estimator.update(u_k, 2.0 * u_k)
+    assert estimator.counts["refused"] > 0
+    estimator.save(tmp_path / "estimator.json")
+    restored = load_estimator(tmp_path / "estimator.json")
+    assert isinstance(restored, JointEstimator)
+    for u_k in u[300:]:
+        for each in (estimator, restored):
+            each.update(u_k, 2.0 * u_k)
+    assert restored.state.tolist() == estimator.state.tolist()
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -161,6 +176,11 @@ def test_saved_and_restored_it_continues_with_the_same_bits(tmp_path: Path) -> N
         ('{"format": "x"}', "is no estimator"),
         ('{"format": "hyst estimator", "version": 9}', "version 9"),
         ('{"format": "hyst estimator", "version": 1, "kind": "joint"}', "damaged"),
+        (
+            '{"format": "hyst estimator", "version": 1, "kind": "joint", "settings": "x", '
+            '"state": []}',
+            "damaged",
+        ),
     ],
 )
 def test_files_that_are_no_estimators(text: str, message: str, tmp_path: Path) -> None:

@@ -28,8 +28,10 @@ Memory = Annotated[
     ),
 ]
 Spread = Annotated[
-    float,
-    typer.Option(metavar="SHARE", help="How far off the model may be: 0.3 is 30 percent."),
+    float | None,
+    typer.Option(
+        metavar="SHARE", show_default="0.3", help="How far off the model may be: 0.3 is 30 percent."
+    ),
 ]
 Maps = Annotated[
     bool, typer.Option("--estimate-maps", help="Estimate the maps before and after the plays too.")
@@ -37,7 +39,9 @@ Maps = Annotated[
 Resume = Annotated[
     Path | None,
     typer.Option(
-        metavar="FILE", show_default=False, help="Go on from the estimator.json of an earlier run."
+        metavar="FILE",
+        show_default=False,
+        help="Go on from the estimator.json of an earlier run, with its model and options.",
     ),
 ]
 Start = Annotated[
@@ -48,6 +52,8 @@ Start = Annotated[
 ]
 
 _ROWS = 2000
+_SPREAD = 0.3
+_HEADING = "Estimates along {}, bands of two standard errors"
 
 
 def adapt(
@@ -62,12 +68,17 @@ def adapt(
     repair: Repair = False,
     start: Start = 0,
     memory: Memory = None,
-    spread: Spread = 0.3,
+    spread: Spread = None,
     estimate_maps: Maps = False,
     resume: Resume = None,
 ) -> None:
     """Estimate a model's constants sample by sample along a record; write them over time."""
     hyst.files.require_folder(folder)
+    if resume is not None and (memory is not None or spread is not None or estimate_maps):
+        raise hyst.InputError(
+            f"{resume} has its own memory, spread and maps; leave out --memory, --spread and "
+            "--estimate-maps with --resume"
+        )
     model, about = hyst.models.load_described(model_file)
     record = hyst.read_record(
         data,
@@ -85,8 +96,8 @@ def adapt(
             model,
             dt=record.dt,
             memory=math.inf if memory is None else memory,
-            radius_spread=spread,
-            weight_spread=spread,
+            radius_spread=_SPREAD if spread is None else spread,
+            weight_spread=_SPREAD if spread is None else spread,
             estimate_maps=estimate_maps,
         )
     else:
@@ -97,7 +108,7 @@ def adapt(
     with at_work("estimating") as say:
         trajectory = estimator.run(record, max(1, record.samples // _ROWS))
         say("figure")
-        picture = hyst.report.draw_estimates({"": trajectory}, {}, f"Estimates along {data.name}")
+        picture = hyst.report.draw_estimates({"": trajectory}, {}, _HEADING.format(data.name))
     names = ("model.json", "estimator.json", "parameters.csv", "parameters.png")
     with hyst.files.replacing_files(folder) as temporary:
         about = replace(about, dt=record.dt)

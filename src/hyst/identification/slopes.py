@@ -84,7 +84,8 @@ def identify_weights_from_slopes(
     InputError
         If ``plays``, ``max_plays`` or ``start`` is out of range.
     NotIdentifiableError
-        If the record has no stroke between two reversals, or too few samples on them.
+        If the record has no stroke between two reversals, too few samples on them, or an output
+        that rests.
 
     Notes
     -----
@@ -157,6 +158,10 @@ def _overlaid_strokes(u: Array, y: Array) -> tuple[Array, Array, int]:
     x, w = np.concatenate(distances), np.concatenate(outputs)
     if x.size < 20:
         raise NotIdentifiableError(f"{x.size} samples on full strokes are too few; give 20 or more")
+    if not np.ptp(w) > 0.0:
+        raise NotIdentifiableError(
+            "the output rests while the input moves, so its slopes are zero; check its column"
+        )
     order = np.argsort(x, kind="stable")
     return x[order], w[order], len(distances)
 

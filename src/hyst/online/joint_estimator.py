@@ -320,7 +320,11 @@ class JointEstimator:
         path
             The file to create or replace.
         """
-        save_estimator(path, "joint", self.settings, self.state)
+        state = self.state.copy()
+        scratch = state[self._at["psi"] :]
+        # A refused sample leaves NaN there; the next one overwrites it before reading.
+        scratch[~np.isfinite(scratch)] = 0.0
+        save_estimator(path, "joint", self.settings, state)
 
     @classmethod
     def restore(cls, settings: dict[str, Any], state: list[float]) -> JointEstimator:

@@ -46,5 +46,7 @@ def load_estimator(path: str | os.PathLike[str]) -> JointEstimator | RadiusEstim
     }
     try:
         return kinds[content["kind"]].restore(content["settings"], content["state"])
-    except (KeyError, TypeError) as error:
+    except InputError:
+        raise
+    except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"{path} is damaged ({error}); save the estimator again") from None

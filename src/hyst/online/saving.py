@@ -37,8 +37,13 @@ def save_estimator(
     Raises
     ------
     InputError
-        If the folder does not exist.
+        If the folder does not exist, or the state has an entry that is not finite.
     """
+    if not np.isfinite(state).all():
+        raise InputError(
+            f"{path} cannot hold the state, in which the last samples led to an overflow; "
+            "save it after more samples of ordinary size"
+        )
     content = {
         "format": FORMAT,
         "version": VERSION,

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from hyst.online import Trajectory
 from hyst.report.canvas import FAINT, blank, drawn
 
-_COLOURS = ("#c2410c", "#1d4ed8", "#047857", "#7c3aed", "#b45309", "#0e7490", "#be185d", "#4b5563")
+_COLOURS = ("#c2410c", "#1d4ed8", "#047857", "#7c3aed", "#db2777", "#0e7490", "#854d0e", "#4b5563")
 
 
 @drawn
