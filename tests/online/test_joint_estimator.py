@@ -113,6 +113,16 @@ def test_no_estimate_is_ever_beyond_inversion() -> None:
     assert estimator.counts["skipped"] > 100
 
 
+def test_it_restarts_from_its_own_estimate_on_the_bounds() -> None:
+    rng = np.random.default_rng(3)
+    estimator = JointEstimator(FIVE_PLAYS, memory=0.5, dt=DT)
+    for u_k in np.cumsum(rng.normal(0.0, 3.0, 3000)).tolist():
+        estimator.update(u_k, -3.0 * u_k)
+        JointEstimator(FIVE_PLAYS, dt=DT).restart(estimator.model)  # raises if it is refused
+    slopes = np.cumsum(estimator.parameters[:6])
+    assert slopes.min() == pytest.approx(estimator.settings["least_slope"], rel=1e-6)
+
+
 def test_without_excitation_plays_freeze_and_say_why() -> None:
     u = np.concatenate([sine(3.0), 1.2 * np.sin(2 * np.pi * np.arange(8000) * DT)])
     y = FIVE_PLAYS(u)
