@@ -8,6 +8,7 @@ import numpy as np
 
 from hyst.errors import NotInvertibleError
 from hyst.identification import Identified
+from hyst.identification.hammerstein import IdentifiedHammerstein
 from hyst.operators import Operator
 from hyst.report.tables import number, with_unit
 from hyst.signals import Record
@@ -143,10 +144,31 @@ def in_short(identified: Identified, records: tuple[Record, ...]) -> tuple[str, 
             "No validation record was given, so how well it predicts another drive is not measured."
         )
     sentences += [
-        delay_sentence(identified.delay, identified.description.dt),
+        lag_sentence(identified),
         invertible_sentence(identified.model),
     ]
     return tuple(sentences)
+
+
+def lag_sentence(identified: Identified) -> str:
+    """Say by how much the output lags, and whether the lag is part of the model.
+
+    Parameters
+    ----------
+    identified
+        The result.
+
+    Returns
+    -------
+    str
+    """
+    if not isinstance(identified, IdentifiedHammerstein):
+        return delay_sentence(identified.delay, identified.description.dt)
+    delay = identified.dynamics.delay
+    if delay == 0:
+        return "The dynamics have no delay beside their own lag."
+    time = number(delay * identified.dynamics.dt)
+    return f"The dynamics contain a delay of {delay} sample{'s' * (delay > 1)} ({time} s)."
 
 
 def delay_sentence(delay: int, dt: float | None) -> str:

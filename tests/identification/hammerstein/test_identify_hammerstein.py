@@ -11,6 +11,7 @@ import hyst
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.hammerstein import IdentifiedHammerstein
 from hyst.models import LinearDynamics
+from hyst.report.words import in_short
 from hyst.signals import Record, multisine
 
 DT = 1e-3
@@ -96,6 +97,9 @@ def test_a_delay_is_found_and_kept_in_the_dynamics() -> None:
     assert found.dynamics.delay == 5
     assert found.inverse_of_dynamics is not None
     assert found.inverse_of_dynamics.preview >= 6
+    assert found.to_dict()["dynamics"]["delay"] == 5
+    told = in_short(found, (Record(U, y, DT),))
+    assert "The dynamics contain a delay of 5 samples (0.005 s)." in told
 
 
 def test_nonminimum_phase_dynamics() -> None:
@@ -136,6 +140,11 @@ def test_bad_records_are_refused() -> None:
         identified(Record(U, np.ones(U.size), DT))
     with pytest.raises(InputError, match="dt = "):
         hyst.identify([record_of(PI, 0.0), Record(U, U, 2 * DT)], family="hammerstein")
+    with pytest.raises(InputError, match=r"validation record 1 has dt = 0\.002 s"):
+        identified(record_of(PI, 0.0), validation=Record(U, U, 2 * DT))
+    for order in ("many", 2.5, True, 0):
+        with pytest.raises(InputError, match=f"state_order is {order!r}"):
+            identified(record_of(PI, 0.0), hysteresis="linear", state_order=order)
     with pytest.raises(InputError, match="hysteresis is 'preisach'"):
         identified(record_of(PI, 0.0), hysteresis="preisach")
     with pytest.raises(InputError, match="fir_order"):

@@ -26,8 +26,8 @@ from hyst.identification.hammerstein.joint import (
     shortened,
 )
 from hyst.identification.hammerstein.markov import MarkovParameters, choose_markov
-from hyst.identification.hammerstein.realization import Realization, realize
-from hyst.identification.hammerstein.record_checks import check_records
+from hyst.identification.hammerstein.realization import Realization, as_state_order, realize
+from hyst.identification.hammerstein.record_checks import check_records, check_sample_time
 from hyst.identification.hammerstein.results import described, metrics_of, parameter_table
 from hyst.identification.hammerstein.uncertainty import (
     Uncertainty,
@@ -109,6 +109,7 @@ def identify_hammerstein(
     """
     data = prepare(records, "auto" if options.start == "auto" else int(options.start), 0)
     notes = check_records(data.records)
+    check_sample_time(validation, data.records[0].dt)
     say("Markov parameters")
     markov = choose_markov(data.records, options.fir_order)
     delay = _delay(markov, options.delay)
@@ -164,7 +165,7 @@ def _orders(
     markov: MarkovParameters, delay: int, dt: float, state_order: int | str
 ) -> Sequence[int]:
     if state_order != "auto":
-        return (int(state_order),)
+        return (as_state_order(state_order),)
     largest = _realized(markov, delay, dt, "auto").dynamics.order
     return range(1, largest + 1)
 

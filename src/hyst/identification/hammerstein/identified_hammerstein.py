@@ -96,6 +96,7 @@ class IdentifiedHammerstein(Identified):
             "markov_standard_errors": self.markov.standard_errors.tolist(),
             "hankel_singular_values": self.singular_values.tolist(),
             "state_order": self.dynamics.order,
+            "delay": self.dynamics.delay,
             "poles": [[float(p.real), float(p.imag)] for p in self.poles],
             "pole_standard_errors": [
                 [float(p.real), float(p.imag)] for p in self.pole_standard_errors

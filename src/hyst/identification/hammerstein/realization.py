@@ -110,11 +110,17 @@ def _order(order: int | str, values: Array, noise: float, half: int) -> int:
     if order == "auto":
         floor = max(noise, 1e-9 * values[0])
         return int(np.clip((values > floor).sum(), 1, min(half, LARGEST_AUTOMATIC_ORDER)))
-    if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 1:
-        raise InputError(f"state_order is {order!r}; give a number of states or 'auto'")
-    if order > half:
+    number = as_state_order(order)
+    if number > half:
         raise InputError(
             f"state_order is {order}, but {2 * half} Markov parameters realize at most {half} "
             "states; raise fir_order"
         )
+    return number
+
+
+def as_state_order(order: int | str) -> int:
+    """Give a number of states that was asked for, or refuse what is none."""
+    if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 1:
+        raise InputError(f"state_order is {order!r}; give a number of states or 'auto'")
     return int(order)

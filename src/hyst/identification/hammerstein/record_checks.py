@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.errors import NotIdentifiableError
+from hyst.errors import InputError, NotIdentifiableError
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
@@ -50,6 +50,29 @@ def check_records(records: Sequence[Record]) -> tuple[str, ...]:
                     "or the sensor's gain"
                 )
     return tuple(notes)
+
+
+def check_sample_time(validation: Sequence[Record], dt: float) -> None:
+    """Refuse to judge dynamics by records of another sample time.
+
+    Parameters
+    ----------
+    validation
+        To be judged by.
+    dt
+        Sample time of the dynamics, s.
+
+    Raises
+    ------
+    InputError
+        If a sample time differs.
+    """
+    for number, record in enumerate(validation, 1):
+        if not np.isclose(record.dt, dt, rtol=1e-6, atol=0.0):
+            raise InputError(
+                f"validation record {number} has dt = {record.dt:.6g} s, the training records "
+                f"{dt:.6g} s; sampled dynamics hold for one sample time, so give records of it"
+            )
 
 
 def samples_in_flat_runs(at_end: NDArray[np.bool_]) -> int:
