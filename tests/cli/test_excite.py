@@ -45,6 +45,7 @@ def test_limits_hold_in_the_file(tmp_path: Path) -> None:
         (["--kind", "triangle", "--rate", "100"], "give max_rate"),
         (["--kind", "multisine", "--rate", "0"], "--rate is 0.0"),
         (["--kind", "multisine", "--rate", "100", "--band", "1"], "--band is '1'"),
+        (["--kind", "multisine", "--rate", "100", "--fir-order", "-3"], "--fir-order is -3"),
     ],
 )
 def test_refuses_in_one_sentence(
@@ -52,6 +53,7 @@ def test_refuses_in_one_sentence(
 ) -> None:
     assert main(["excite", *arguments, "-o", str(tmp_path / "drive.csv")]) == 2
     assert says in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
 
 
 def test_drive_record_identify_from_files(tmp_path: Path) -> None:

@@ -81,6 +81,8 @@ def excite(
     """Design an input within limits; write it with a figure, and say what it can determine."""
     if not (math.isfinite(rate) and rate > 0.0):
         raise hyst.InputError(f"--rate is {rate}; give samples per second, above 0")
+    if fir_order < 0:
+        raise hyst.InputError(f"--fir-order is {fir_order}; give 0 or more samples")
     ends = None if band is None else numbers(band, "band")
     if ends is not None and len(ends) != 2:
         raise hyst.InputError(f"--band is {band!r}; give the lowest and the highest frequency")

@@ -38,7 +38,10 @@ Repair = Annotated[
 ]
 Family = Annotated[
     str,
-    typer.Option(help="linear, pi, gpi, mpi; auto compares them. Or rdpi, ramberg-osgood; or a,b."),
+    typer.Option(
+        help="linear, pi, gpi, mpi; auto compares them. Or rdpi, ramberg-osgood, hammerstein; "
+        "or a,b."
+    ),
 ]
 Memory = Annotated[
     str, typer.Option(help="Of ramberg-osgood: masing (loops close) or last-reversal (drifts).")
