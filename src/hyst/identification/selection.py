@@ -51,8 +51,15 @@ def compare(
         If there are too few samples to judge any.
     """
     candidates: list[Candidate] = []
+    refusals: list[NotIdentifiableError] = []
     for family in families:
-        candidates += _grow(fitter, family, (0,) if family in WITHOUT_PLAYS else sizes, progress)
+        sizes_tried = (0,) if family in WITHOUT_PLAYS else sizes
+        try:
+            candidates += _grow(fitter, family, sizes_tried, progress)
+        except NotIdentifiableError as refusal:  # one family less to compare
+            refusals.append(refusal)
+    if not candidates and refusals:
+        raise refusals[0]
     if not candidates:
         raise NotIdentifiableError(
             f"{fitter.data.measured().size} samples can be used, too few to choose the number of "

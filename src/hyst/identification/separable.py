@@ -30,6 +30,9 @@ GRID = 48
 
 SMALLEST_SHARE = 1e-9
 """Of c2, in units of half the input range, in c1: below, there is no hysteresis but rounding."""
+SMALLEST_GAIN = 15.0
+"""Squared residual a power law must save against a line, in residual variances."""
+
 FEWEST_SLOPES = 10
 
 
@@ -104,8 +107,8 @@ def fit_power_law(data: Data, options: PowerLawOptions, sign: float = 1.0) -> Po
     Raises
     ------
     NotIdentifiableError
-        If the slope does not grow with the way since a reversal, or too few differences of y stand
-        out of the noise.
+        If the slope does not grow with the way since a reversal, or not beyond the noise, or too
+        few differences of y stand out of the noise.
 
     Notes
     -----
@@ -119,17 +122,35 @@ def fit_power_law(data: Data, options: PowerLawOptions, sign: float = 1.0) -> Po
     else:
         table = _output_table(data, regressor, sign)
     c3, evaluations = _least(lambda power: _solve(*table(power))[1])
-    (c1, c2), _ = _solve(*table(c3))
+    (c1, c2), left = _solve(*table(c3))
     # In these units a full branch of the largest loop is p = 2, so both parts compare as they are.
     if not (c1 > 0.0 and c2 > SMALLEST_SHARE * c1):
         raise NotIdentifiableError(
             "the slope of the loop does not grow with the way since a reversal, so that no power "
             "law with c1, c2 > 0 fits; use family 'pi' or 'linear'"
         )
+    if options.regression == "output":
+        _require_a_loop(*table(c3), left)
     c2 *= regressor.unit**-c3
     modelled = sign * (c1 * regressor.input() + c2 * regressor(c3) * regressor.unit**c3)
     offset = float(np.mean(data.measured() - modelled))
     return PowerLawFit(float(c1), float(c2), c3, offset, band, evaluations)
+
+
+def _require_a_loop(matrix: Array, target: Array, left: float) -> None:
+    """Refuse a power law that describes the records no better than a line, but for noise.
+
+    Two constants more, and the best of many exponents, always save some multiples of the residual
+    variance; of white noise less than ``SMALLEST_GAIN`` in all but one of some thousand records.
+    """
+    line = matrix[:, 0]
+    by_line = float(target @ target) - float(line @ target) ** 2 / float(line @ line)
+    variance = left / max(target.size - 4, 1)
+    if by_line - left < SMALLEST_GAIN * variance:
+        raise NotIdentifiableError(
+            "a power law describes the records no better than a straight line, but for noise; use "
+            "family 'linear'"
+        )
 
 
 class _Regressor:
@@ -192,7 +213,7 @@ def _slope_table(data: Data, regressor: _Regressor, sign: float, signal_to_noise
     if used.sum() < FEWEST_SLOPES:
         raise NotIdentifiableError(
             f"only {int(used.sum())} differences of the output are {signal_to_noise:g} times their "
-            "noise; lower signal_to_noise, sample less often, or fit the output itself"
+            "noise; lower the option signal-to-noise, sample less often, or fit the output itself"
         )
     target = dy[used] / du[used]
 

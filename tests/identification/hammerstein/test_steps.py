@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -143,3 +145,28 @@ def test_averaging_periods_keeps_the_response_and_halves_noise() -> None:
     assert (averaged.y[500:] - settled).std() == pytest.approx(0.05, rel=0.15)  # four periods
     with pytest.raises(InputError, match="does not repeat"):
         average_periods(Record(drive.u, y, 0.01), 333)
+
+
+PERIODIC = Record(np.tile(np.arange(8.0), 4), np.tile(np.arange(8.0), 4), 0.1)
+
+
+@pytest.mark.parametrize(
+    ("step", "says"),
+    [
+        (lambda: fit_markov([], 3), "no record"),
+        (lambda: fit_markov(PERIODIC, -1), "order is -1"),
+        (lambda: fit_markov(PERIODIC, 2.5), "order is 2.5"),
+        (lambda: realize(np.full(20, np.nan), 1.0), "markov"),
+        (lambda: realize([1.0, 0.0, 0.0, 0.0], 1.0), "all 0"),
+        (lambda: best_linear_approximation([], 8), "no record"),
+        (lambda: best_linear_approximation(PERIODIC, "8"), "period is '8'"),
+        (lambda: best_linear_approximation(PERIODIC, 8, -1), "settle is -1"),
+        (
+            lambda: best_linear_approximation([PERIODIC, Record(PERIODIC.u, PERIODIC.y, 0.2)], 8),
+            "different dt",
+        ),
+    ],
+)
+def test_what_a_step_cannot_use_is_refused(step: Callable[[], object], says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        step()
