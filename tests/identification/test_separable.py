@@ -198,16 +198,16 @@ def test_refused_options(options: dict, part: str) -> None:
 
 
 def test_a_line_with_noise_is_no_power_law() -> None:
-    """Thirty noisy lines: a power law would save noise only, and its constants would mean nothing."""
+    """On thirty noisy lines a power law would save noise only, and mean nothing."""
     u = 250.0 * np.sin(np.linspace(0.0, 20.0, 2000))
     for seed in range(30):
-        noisy = hyst.Record(u, 3.0 * u + np.random.default_rng(seed).normal(size=u.size), 1e-3)
-        with pytest.raises(hyst.NotIdentifiableError, match="straight line"):
-            hyst.identify(noisy, family="ramberg-osgood", delay=0)
+        noisy = Record(u, 3.0 * u + np.random.default_rng(seed).normal(size=u.size), 1e-3)
+        with pytest.raises(NotIdentifiableError, match="straight line"):
+            identify(noisy, family="ramberg-osgood", delay=0)
 
 
 def test_a_family_that_does_not_fit_at_all_is_left_out_of_a_comparison() -> None:
     u = 250.0 * np.sin(np.linspace(0.0, 20.0, 2000))
-    noisy = hyst.Record(u, 3.0 * u + np.random.default_rng(0).normal(size=u.size), 1e-3)
-    found = hyst.identify(noisy, family="linear,ramberg-osgood", delay=0)
+    noisy = Record(u, 3.0 * u + np.random.default_rng(0).normal(size=u.size), 1e-3)
+    found = identify(noisy, family="linear,ramberg-osgood", delay=0)
     assert [each.family for each in found.candidates] == ["linear"]
