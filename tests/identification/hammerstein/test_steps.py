@@ -155,11 +155,11 @@ PERIODIC = Record(np.tile(np.arange(8.0), 4), np.tile(np.arange(8.0), 4), 0.1)
     [
         (lambda: fit_markov([], 3), "no record"),
         (lambda: fit_markov(PERIODIC, -1), "order is -1"),
-        (lambda: fit_markov(PERIODIC, 2.5), "order is 2.5"),
+        (lambda: fit_markov(PERIODIC, 2.5), "order is 2.5"),  # type: ignore[arg-type]
         (lambda: realize(np.full(20, np.nan), 1.0), "markov"),
         (lambda: realize([1.0, 0.0, 0.0, 0.0], 1.0), "all 0"),
         (lambda: best_linear_approximation([], 8), "no record"),
-        (lambda: best_linear_approximation(PERIODIC, "8"), "period is '8'"),
+        (lambda: best_linear_approximation(PERIODIC, "8"), "period is '8'"),  # type: ignore[arg-type]
         (lambda: best_linear_approximation(PERIODIC, 8, -1), "settle is -1"),
         (
             lambda: best_linear_approximation([PERIODIC, Record(PERIODIC.u, PERIODIC.y, 0.2)], 8),

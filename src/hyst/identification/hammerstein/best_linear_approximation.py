@@ -72,7 +72,8 @@ def best_linear_approximation(
     Raises
     ------
     InputError
-        If a record has fewer than two periods after the settling, or is not periodic.
+        If a record has fewer than two periods after the settling, or is not periodic, there is no
+        record, or their sample times differ.
     NotIdentifiableError
         If no line is excited in all records.
 
@@ -88,6 +89,10 @@ def best_linear_approximation(
     True
     """
     given = [records] if isinstance(records, Record) else list(records)
+    if not given:
+        raise InputError("no record is given; give at least one")
+    if any(not np.isclose(each.dt, given[0].dt, rtol=1e-6, atol=0.0) for each in given):
+        raise InputError("the records have different dt; give records of one sample time")
     spectra = [_spectra(record, period, settle) for record in given]
     inputs = np.array([u.mean(axis=0) for u, _ in spectra])
     size = np.abs(inputs)
@@ -165,8 +170,10 @@ def _spectra(
 
 
 def _periods(record: Record, period: int, settle: int, least: int) -> tuple[Array, Array]:
-    if isinstance(period, bool) or period < 2:
-        raise InputError(f"period is {period}; give the samples of a period, at least 2")
+    if isinstance(period, bool) or not isinstance(period, int | np.integer) or period < 2:
+        raise InputError(f"period is {period!r}; give the samples of a period, at least 2")
+    if isinstance(settle, bool) or not isinstance(settle, int | np.integer) or settle < 0:
+        raise InputError(f"settle is {settle!r}; give a whole number of periods, at least 0")
     count = len(record) // period - settle
     if count < least:
         raise InputError(

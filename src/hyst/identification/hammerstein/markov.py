@@ -82,7 +82,8 @@ def fit_markov(records: Record | Sequence[Record], order: int, start: int = 0) -
     Raises
     ------
     InputError
-        If a record is not longer than the order.
+        If a record is not longer than the order, the order is no number >= 0, or there is no
+        record.
     NotIdentifiableError
         If the inputs do not excite all lags; rank and condition are told.
 
@@ -99,6 +100,10 @@ def fit_markov(records: Record | Sequence[Record], order: int, start: int = 0) -
     [2.0, 1.0, 0.0]
     """
     given = [records] if isinstance(records, Record) else list(records)
+    if not given:
+        raise InputError("no record is given; give at least one")
+    if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 0:
+        raise InputError(f"order is {order!r}; give the last lag, a whole number, at least 0")
     shortest = min(len(record) for record in given) - start
     if shortest < 2 * (order + 2):
         raise InputError(

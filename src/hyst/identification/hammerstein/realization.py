@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from hyst.errors import InputError
 from hyst.models import LinearDynamics
+from hyst.signals.vector import finite_vector
 
 Array = NDArray[np.float64]
 
@@ -38,7 +39,7 @@ class Realization:
 
 
 def realize(
-    markov: Array,
+    markov: ArrayLike,
     dt: float,
     order: int | str = "auto",
     standard_error: float = 0.0,
@@ -69,7 +70,8 @@ def realize(
     Raises
     ------
     InputError
-        If there are too few parameters for the order.
+        If there are too few parameters for the order, one is not finite, or all after the first
+        are 0.
 
     Notes
     -----
@@ -84,12 +86,15 @@ def realize(
     >>> found.order, bool(abs(found.dc_gain() - G.dc_gain()) < 1e-9)
     (2, True)
     """
-    half = (markov.size - 1) // 2
+    response = finite_vector(markov, "markov")
+    half = (response.size - 1) // 2
     if half < 1:
-        raise InputError(f"{markov.size} Markov parameters are too few; raise fir_order")
+        raise InputError(f"{response.size} Markov parameters are too few; raise fir_order")
+    if not response[1:].any():
+        raise InputError("the Markov parameters after the first are all 0; there is no state")
     rows = np.arange(half)
-    hankel = markov[1 + rows[:, None] + rows]
-    later = markov[np.minimum(2 + rows[:, None] + rows, markov.size - 1)]
+    hankel = response[1 + rows[:, None] + rows]
+    later = response[np.minimum(2 + rows[:, None] + rows, response.size - 1)]
     left, values, right = np.linalg.svd(hankel)
     # The largest singular value of a half x half Hankel matrix of white errors.
     noise = standard_error * np.sqrt(2.0 * half * np.log(2.0 * half + 1.0))
@@ -101,7 +106,7 @@ def realize(
     if stabilized:
         shifted = np.concatenate([observability[1:], np.zeros((1, n))])
         A = np.linalg.pinv(observability) @ shifted
-    D = float(markov[0]) if feedthrough else 0.0
+    D = float(response[0]) if feedthrough else 0.0
     dynamics = LinearDynamics(A, controllability[:, 0], observability[0], D, dt)
     return Realization(dynamics, values, float(noise), stabilized)
 
