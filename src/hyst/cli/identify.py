@@ -72,6 +72,9 @@ FirOrder = Annotated[
 StateOrder = Annotated[
     str, typer.Option(metavar="N|auto", help="Of hammerstein: order of the linear dynamics.")
 ]
+SignalToNoise = Annotated[
+    float, typer.Option(help="Of ramberg-osgood with slopes: what a step must be over its noise.")
+]
 Validate = Annotated[
     list[Path] | None,
     typer.Option(metavar="DATA", show_default=False, help="A record to judge by; repeatable."),
@@ -103,6 +106,7 @@ def identify(
     weights: Weights = "auto",
     memory: Memory = "masing",
     regression: Regression = "output",
+    signal_to_noise: SignalToNoise = 3.0,
     spacing: Spacing = "even",
     record_weights: RecordWeights = "equal",
     delay: Delay = "auto",
@@ -127,6 +131,7 @@ def identify(
         name: whole_or_auto(text, name.replace("_", "-")) for name, text in counts.items()
     }
     options |= {"knots": knots, "weights": weights, "memory": memory, "regression": regression}
+    options["signal_to_noise"] = signal_to_noise
     options |= {"spacing": spacing, "record_weights": _numbers_or_word(record_weights)}
     options |= {"hysteresis": hysteresis, "allow_unconverged": allow_unconverged}
     with at_work("identifying") as say:
