@@ -202,7 +202,7 @@ def test_a_line_with_noise_is_no_power_law() -> None:
     u = 250.0 * np.sin(np.linspace(0.0, 20.0, 2000))
     for seed in range(30):
         noisy = Record(u, 3.0 * u + np.random.default_rng(seed).normal(size=u.size), 1e-3)
-        with pytest.raises(NotIdentifiableError, match="family '?.*linear"):
+        with pytest.raises(NotIdentifiableError, match=r"linear'"):
             identify(noisy, family="ramberg-osgood", delay=0)
 
 

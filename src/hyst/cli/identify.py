@@ -126,10 +126,7 @@ def identify(
     how_to_read |= {"time_unit": time_unit, "repair": repair}
     labels = (input_label, output_label)
     counts = {"plays": plays, "delay": delay, "start": start}
-    counts |= {"fir_order": fir_order, "state_order": state_order}
-    options: dict[str, Any] = {
-        name: whole_or_auto(text, name.replace("_", "-")) for name, text in counts.items()
-    }
+    options = _whole_or_auto(counts | {"fir_order": fir_order, "state_order": state_order})
     options |= {"knots": knots, "weights": weights, "memory": memory, "regression": regression}
     options["signal_to_noise"] = signal_to_noise
     options |= {"spacing": spacing, "record_weights": _numbers_or_word(record_weights)}
@@ -153,6 +150,10 @@ def identify(
 
 def _read(path: Path, how: dict[str, Any], labels: tuple[str | None, str | None]) -> hyst.Record:
     return _labelled(hyst.read_record(path, **how), *labels)
+
+
+def _whole_or_auto(counts: dict[str, str]) -> dict[str, Any]:
+    return {name: whole_or_auto(text, name.replace("_", "-")) for name, text in counts.items()}
 
 
 def _numbers_or_word(text: str) -> str | list[float]:
