@@ -74,11 +74,8 @@ def adapt(
 ) -> None:
     """Estimate a model's constants sample by sample along a record; write them over time."""
     hyst.files.require_folder(folder)
-    if resume is not None and (memory is not None or spread is not None or estimate_maps):
-        raise hyst.InputError(
-            f"{resume} has its own memory, spread and maps; leave out --memory, --spread and "
-            "--estimate-maps with --resume"
-        )
+    if resume is not None:
+        _refuse_options_of_a_start(resume, memory is not None, spread is not None, estimate_maps)
     model, about = hyst.models.load_described(model_file)
     record = hyst.read_record(
         data,
@@ -118,6 +115,14 @@ def adapt(
         (temporary / names[3]).write_bytes(picture)
     _tell(estimator, before.tolist())
     show_files([folder / name for name in names])
+
+
+def _refuse_options_of_a_start(resume: Path, *given: bool) -> None:
+    if any(given):
+        raise hyst.InputError(
+            f"{resume} has its own memory, spread and maps; leave out --memory, --spread and "
+            "--estimate-maps with --resume"
+        )
 
 
 def _resumed(path: Path) -> hyst.online.JointEstimator:
