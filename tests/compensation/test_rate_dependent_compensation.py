@@ -99,15 +99,28 @@ def test_trajectory_is_far_better_than_explicit(f: float) -> None:
 
 
 def test_preview_depends_on_nothing_beyond_it() -> None:
-    y_ref = reference_signal(60.0)[:150]
-    other = y_ref.copy()
-    other[101:] += np.linspace(0.0, 5.0, 49)
-    ahead = 12
-    u, v = (invert_trajectory(MODEL, y, "preview", preview=ahead).u for y in (y_ref, other))
-    # The scales of the smoothing are measured on the whole record: equal up to what they change.
-    first_seen = 101 - ahead
-    assert np.abs(u - v)[:first_seen].max() < 0.5
-    assert np.abs(u - v)[first_seen:].max() > 1.0
+    y_ref = reference_signal(60.0)
+    at = 250
+    # Three times as much from there on, the end cut off, and a rest there: also the sizes by which
+    # the smoothing is chosen differ as soon as more than the preview is used.
+    louder, still = y_ref.copy(), y_ref.copy()
+    louder[at:] *= 3.0
+    still[at:] = y_ref[at - 1]
+    for ahead in (12, 20):
+        u = invert_trajectory(MODEL, y_ref, "preview", preview=ahead).u
+        for other in (louder, still, y_ref[:at]):
+            v = invert_trajectory(MODEL, other, "preview", preview=ahead).u
+            assert np.array_equal(u[: at - ahead], v[: at - ahead])
+        v = invert_trajectory(MODEL, louder, "preview", preview=ahead).u
+        assert np.abs(u - v)[at - ahead :].max() > 1.0
+
+
+def test_preview_of_a_reference_that_rests_at_first() -> None:
+    y_ref = np.concatenate([np.zeros(60), reference_signal(60.0)])
+    done = invert_trajectory(MODEL, y_ref, "preview")
+    assert not done.u[:39].any()  # nothing but rest is known
+    # Measured: 1.42, at the start, as without the rest before it.
+    assert done.max_abs < 2.0
 
 
 def test_limits_are_kept() -> None:

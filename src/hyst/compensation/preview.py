@@ -1,8 +1,8 @@
-"""Inversion of a rate-dependent model in real time, with a few samples of the reference to come.
+"""Inversion of a rate-dependent model with no more than a few samples of the reference to come.
 
 At every sample the drive over the next few samples is planned by a short trajectory inversion from
 the present memory; only its first sample is used. What the actuator does next never depends on the
-reference beyond the preview.
+reference beyond the preview. The record is given as a whole all the same: this is no stepper.
 """
 
 from __future__ import annotations
@@ -51,26 +51,19 @@ def drive_with_preview(
     """
     inverse, memory = task.explicit_inverse()
     explicit, _ = inverse.run(task.target, memory)
-    scales = scales_of(task, explicit)
     note = (
         f"each sample knows the next {samples} samples ({samples * task.plays.dt:.4g} s) of "
         "the reference",
     )
-    if scales is None:
-        return SolvedDrive(explicit, SOLVED, 1, note)
-    planner = _Planner(task, explicit, scales, change)
+    planner = _Planner(task, explicit, change)
     return SolvedDrive(planner.run(samples, progress), SOLVED, planner.steps, note)
 
 
 class _Planner:
     """Plans from the present memory on; steps counts the Gauss-Newton steps."""
 
-    def __init__(
-        self, task: RateDependentTask, explicit: Array, scales: Scales, change: float
-    ) -> None:
+    def __init__(self, task: RateDependentTask, explicit: Array, change: float) -> None:
         self.task, self.explicit, self.change = task, explicit, change
-        self.stages = [scales.stage(*each) for each in _STAGES]
-        self.penalty = scales.penalty
         self.chain = task.chain()
         self.steps = 0
 
@@ -82,7 +75,12 @@ class _Planner:
         plan = np.empty(0)
         for k in range(target.size):
             ahead = slice(k, min(k + samples + 1, target.size))
-            plan = self._best(step.state.copy(), ahead, plan)
+            # The scales, too, are those of the samples known by now.
+            scales = scales_of(self.task, self.explicit[: ahead.stop])
+            if scales is None:
+                plan = self.explicit[ahead]
+            else:
+                plan = self._best(step.state.copy(), ahead, plan, scales)
             started = step.state[n + 1] > 0.0
             last = float(step.state[n]) if started else None
             first = within_limits(plan[:1], last, self.task.low, self.task.high, self.change)
@@ -93,15 +91,16 @@ class _Planner:
                 progress(k / target.size)
         return drive
 
-    def _best(self, state: Array, ahead: slice, plan: Array) -> Array:
+    def _best(self, state: Array, ahead: slice, plan: Array, scales: Scales) -> Array:
         """Best of the plan carried on, as it is and smoothed first, and the explicit drive."""
-        limits = (self.task.low, self.task.high, self.change, self.penalty)
+        stages = [scales.stage(*each) for each in _STAGES]
+        limits = (self.task.low, self.task.high, self.change, scales.penalty)
         problem = Descent(self.chain, state, self.task.target[ahead], *limits)
         explicit = self.explicit[ahead]
-        starts = [(explicit, self.stages)]
+        starts = [(explicit, stages)]
         if plan.size:
             grown = self._grown(plan, ahead)
-            starts += [(grown, self.stages), (grown, self.stages[-1:])]
+            starts += [(grown, stages), (grown, stages[-1:])]
         found = [self._descend(problem, *start) for start in starts]
         return min(found, key=lambda each: each[1])[0]
 
