@@ -127,11 +127,13 @@ def in_short(identified: Identified, records: tuple[Record, ...]) -> tuple[str, 
     if training is not None:
         line = straight_line_rms(records[0], identified.used[0].start)
         line_percent = 100.0 * line / training.output_range
+        instant = " without the delay" if identified.delay else ""
         sentences.append(
             f"On the record it was identified from it misses the recorded output by "
             f"{with_unit(number(training.rms, 3), unit)} rms, {training.rms_percent:.2f} % of the "
             f"output's range (at most {with_unit(number(training.max_abs, 3), unit)}, "
-            f"{training.max_percent:.2f} %); a straight line misses it by {line_percent:.2f} % rms."
+            f"{training.max_percent:.2f} %); a straight line{instant} misses it by "
+            f"{line_percent:.2f} % rms."
         )
     for name, each in identified.metrics.items():
         if name.startswith("validation") and "offset" not in name:
