@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -177,6 +178,56 @@ def test_an_overflow_does_not_keep_it_from_being_saved(tmp_path: Path) -> None:
         for each in (estimator, restored):
             each.update(u_k, 2.0 * u_k)
     assert restored.state.tolist() == estimator.state.tolist()
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"p0": 0.0}, "p0 = 0, outside"),
+        ({"p0": -0.1}, "p0 = -0.1, outside"),
+        # 0.2 + 0.3 - 0.6 is below 0, though the weights up to p[5] sum to 1.2 again.
+        ({"p0": 0.2, "p[2]": -0.6}, r"up to p\[2\] = -0.1, outside"),
+        ({"p[5]": 1e9}, r"up to p\[5\] = 1e\+09, outside"),
+        ({"r[1]": -0.4}, r"r\[1\] = -0.4 below 0"),
+        ({"r[3]": 0.5}, r"r\[3\] = 0.5 below r\[2\] = 1"),
+        ({"r[5]": 1e9}, r"r\[5\] = 1e\+09 above most_radius"),
+        ({"front[2]": -2.0}, "cannot be inverted"),
+    ],
+)
+def test_a_saved_estimate_that_cannot_be_inverted_is_refused(
+    changes: dict[str, float], message: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "estimator.json"
+    start = hyst.PrandtlIshlinskii(P, R, 0.2) @ hyst.DeadZone([1.0, 0.2], [0.0, 5.0])
+    estimator = JointEstimator(start)
+    estimator.save(path)
+    content = json.loads(path.read_text())
+    first = content["state"].index(0.2)
+    assert content["state"][first : first + 6] == [0.2, *P]
+    load_estimator(path)
+    for name, value in changes.items():
+        content["state"][first + estimator.names.index(name)] = value
+    path.write_text(json.dumps(content))
+    with pytest.raises(hyst.InputError, match=message) as refused:
+        load_estimator(path)
+    assert "\n" not in str(refused.value)
+
+
+def test_no_estimate_on_its_bounds_is_taken_for_tampered(tmp_path: Path) -> None:
+    # Outputs that fit no model of plays push weights and radii to their bounds again and again.
+    rng = np.random.default_rng(7)
+    estimator = JointEstimator(FIVE_PLAYS, memory=50.0, most_radius=5.0, most_slope=3.0)
+    on_bounds = 0
+    for _ in range(100):
+        u = 10.0 * rng.standard_normal(20)
+        estimator.run(hyst.Record(u, rng.standard_normal() * 20.0 * u, 1.0))
+        estimator.save(tmp_path / "estimator.json")
+        restored = load_estimator(tmp_path / "estimator.json")
+        slopes = np.cumsum(estimator.parameters[:6])
+        on_bounds += bool(np.isclose([slopes.min(), slopes.max()], [2.1e-6, 3.0]).any())
+        assert restored.state.tobytes() == estimator.state.tobytes()
+    # Else the test would show nothing.
+    assert on_bounds > 5
 
 
 @pytest.mark.parametrize(

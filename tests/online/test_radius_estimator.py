@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -164,3 +165,20 @@ def test_saved_and_restored_it_continues_with_the_same_bits(tmp_path: Path) -> N
         restored.update(u_k, y_k)
     assert restored.radii.tobytes() == whole.radii.tobytes()
     assert restored.standard_errors.tobytes() == whole.standard_errors.tobytes()
+
+
+def test_saved_radii_out_of_order_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "estimator.json"
+    RadiusEstimator(P, R, gain=10.0, dt=DT).save(path)
+    content = json.loads(path.read_text())
+    first = content["state"].index(R[0])
+    for place, value, message in (
+        (0, -0.4, r"r\[1\] = -0.4 below 0"),
+        (4, 0.1, r"r\[5\] = 0.1 below r\[4\] = 2"),
+        (4, 1e9, "above most_radius = 3600"),
+    ):
+        state = list(content["state"])
+        state[first + place] = value
+        path.write_text(json.dumps({**content, "state": state}))
+        with pytest.raises(hyst.InputError, match=message):
+            load_estimator(path)

@@ -23,7 +23,7 @@ from hyst.online.excitation import Excitation, watch
 from hyst.online.parts import take_apart
 from hyst.online.prior import covariance_of, factors, start_covariance
 from hyst.online.saving import restored_state, save_estimator
-from hyst.online.start import checked_start
+from hyst.online.start import check_saved, checked_start
 from hyst.online.trajectory import Trajectory
 from hyst.operators import Operator
 from hyst.operators.registry import operator_from_dict
@@ -338,13 +338,14 @@ class JointEstimator:
         Raises
         ------
         InputError
-            If the state does not fit the settings.
+            If the state does not fit the settings, or holds an inadmissible estimate.
         """
         given = dict(settings)
         memory = given.pop("memory")
         model = operator_from_dict(given.pop("model"))
         estimator = cls(model, memory=math.inf if memory is None else memory, **given)
         restored_state(estimator.state, state)
+        check_saved(estimator._parts, estimator.parameters, estimator.settings)
         return estimator
 
     def _prior(self, theta: Array) -> Array:

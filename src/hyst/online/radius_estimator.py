@@ -16,6 +16,7 @@ from hyst.online.checks import finite_or_none, not_negative, one_each, positive,
 from hyst.online.excitation import Excitation, watch
 from hyst.online.prior import covariance_of
 from hyst.online.saving import restored_state, save_estimator
+from hyst.online.start import check_saved_radii
 from hyst.online.trajectory import Trajectory
 from hyst.signals import Record
 
@@ -276,12 +277,13 @@ class RadiusEstimator:
         Raises
         ------
         InputError
-            If the state does not fit the settings.
+            If the state does not fit the settings, or holds inadmissible radii.
         """
         given = dict(settings)
         memory = given.pop("memory")
         estimator = cls(memory=math.inf if memory is None else memory, **given)
         restored_state(estimator.state, state)
+        check_saved_radii(estimator.radii, estimator._settings["most_radius"])
         return estimator
 
     def _new_core(self, gains: Array) -> _engine.RadiusEstimation:

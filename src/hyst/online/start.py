@@ -1,4 +1,4 @@
-"""Where a joint estimation may start."""
+"""Where an estimation may start, and from where it may go on."""
 
 from __future__ import annotations
 
@@ -68,3 +68,74 @@ def checked_start(parts: Parts, theta: Array, settings: dict[str, Any]) -> Array
     except NotInvertibleError as error:
         raise NotInvertibleError(f"the estimation cannot start: {error}") from None
     return start
+
+
+def check_saved(parts: Parts, theta: Array, settings: dict[str, Any]) -> None:
+    """Refuse saved parameters that no joint estimator can have reached.
+
+    Parameters
+    ----------
+    parts
+        The model.
+    theta
+        The parameters, shape (m,).
+    settings
+        Of the estimator: the bounds.
+
+    Raises
+    ------
+    InputError
+        If radii are out of order or bounds, p0 or a sum of weights is not within the bounds of the
+        slope, or a map cannot be inverted.
+    """
+    n = parts.pi.p.size
+    check_saved_radii(theta[n + 1 : 2 * n + 1], settings["most_radius"])
+    least, most = settings["least_slope"], settings["most_slope"]
+    slopes, reach = np.cumsum(theta[: n + 1]), np.cumsum(np.abs(theta[: n + 1]))
+    # Sums of an estimate on its bounds are exact to rounding only; p0 is exact.
+    rounding = 4.0 * np.arange(n + 1) * np.finfo(np.float64).eps * reach
+    bad = np.flatnonzero((slopes < least - rounding) | (slopes > most + rounding))
+    if bad.size:
+        k = int(bad[0])
+        name = "p0" if k == 0 else f"the sum of weights up to p[{k}]"
+        raise InputError(
+            f"the saved estimate has {name} = {slopes[k]:.6g}, outside {least:.6g} to {most:.6g}, "
+            "which no estimator reaches; save the estimator again"
+        )
+    try:
+        parts.assemble(theta, parts.pi.z0).inverse()
+    except (InputError, NotInvertibleError) as error:
+        raise InputError(f"the saved estimate cannot be inverted: {error}") from None
+
+
+def check_saved_radii(r: Array, most_radius: float) -> None:
+    """Refuse saved radii that no estimator can have reached.
+
+    Parameters
+    ----------
+    r
+        Shape (n,), input units.
+    most_radius
+        Their bound, input units.
+
+    Raises
+    ------
+    InputError
+        If they do not ascend from 0 or more to ``most_radius`` or less.
+
+    Examples
+    --------
+    >>> check_saved_radii(np.array([0.0, 1.0, 1.0]), 2.0)
+    """
+    steps = np.diff(np.concatenate([[0.0], r, [most_radius]]))
+    if (steps < 0.0).any():
+        k = int(np.argmax(steps < 0.0))
+        below = "0" if k == 0 else f"r[{k}] = {r[k - 1]:.6g}"
+        text = (
+            f"r[{k + 1}] = {r[k]:.6g} below {below}"
+            if k < r.size
+            else f"{below} above most_radius = {most_radius:.6g}"
+        )
+        raise InputError(
+            f"the saved estimate has {text}, which no estimator reaches; save the estimator again"
+        )
