@@ -152,3 +152,51 @@ def test_bad_records_are_refused() -> None:
     tone = np.sin(0.1 * np.arange(4000))
     with pytest.raises(NotIdentifiableError, match="persistently exciting"):
         identified(Record(tone, G(tone), DT), fir_order=30)
+
+
+def test_a_band_too_narrow_for_the_order_search_is_never_silent() -> None:
+    # Lines up to 150 of 500 Hz: seven tenths of the spectrum are silent, and the response of an
+    # 80 Hz resonance lasts far longer than the lags such an input tells apart.
+    u = multisine(DT, 4000, amplitude=10.0, periods=2, band=(1.0, 150.0)).u
+    record = Record(u, (G @ PI)(u), DT)
+    with pytest.raises(NotIdentifiableError, match=r"rank 17 of 17, condition .*wider band"):
+        identified(record, hysteresis="pi")
+    chosen = identified(record, hysteresis="pi", fir_order=16, allow_unconverged=True)
+    assert any("hardly excites" in each for each in chosen.undetermined)
+
+
+def test_a_shorter_response_is_kept_only_if_it_has_died_out() -> None:
+    # 23 lines and a constant excite 46 + 1 lags: 32 can be told apart, 64 cannot.
+    period = 6000
+    lines = np.linspace(1, 2999, 23).astype(int)
+    phases = np.random.default_rng(3).uniform(0.0, 2.0 * np.pi, lines.size)
+    k = np.arange(2 * period)[:, None]
+    u = np.cos(2.0 * np.pi * k * lines / period + phases).sum(axis=1)
+    fast = LinearDynamics.from_transfer_function([0.0, 0.6], [1.0, -0.4], DT)
+    found = identified(Record(u, fast(u), DT), hysteresis="linear")
+    assert any("rank 46 of 65" in each for each in found.undetermined)
+    assert found.poles == pytest.approx([0.4], abs=1e-6)
+    with pytest.raises(NotIdentifiableError, match=r"rank 46 of 65.*has not died out"):
+        identified(Record(u, G(u), DT), hysteresis="linear")
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+@pytest.mark.parametrize("front", [hyst.Affine(2.0, 0.0), PI], ids=["2u", "pi"])
+@pytest.mark.parametrize("lag", [0, 3])
+def test_poles_of_static_data_are_called_nothing(
+    front: hyst.Operator, noise: float, lag: int
+) -> None:
+    y = front(np.concatenate([np.zeros(lag), U]))[: U.size]
+    y += noise * y.std() * np.random.default_rng(1).normal(size=y.size)
+    found = identified(Record(U, y, DT), hysteresis="pi", plays=3)
+    assert any("dynamics explain nothing" in each for each in found.undetermined)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.3])
+def test_dynamics_that_explain_something_are_not_called_nothing(noise: float) -> None:
+    # A pole of 0.1: without it, a hundredth of the output's power is left, under much noise.
+    quick = LinearDynamics.from_transfer_function([0.9], [1.0, -0.1], DT)
+    y = (quick @ PI)(U)
+    y += noise * y.std() * np.random.default_rng(1).normal(size=y.size)
+    found = identified(Record(U, y, DT), hysteresis="pi", plays=3)
+    assert not any("explain nothing" in each for each in found.undetermined)

@@ -35,6 +35,7 @@ from hyst.identification.hammerstein.uncertainty import (
     spread_of,
     uncertainty,
 )
+from hyst.identification.hammerstein.without_dynamics import dynamics_doubts
 from hyst.models import LinearDynamics, StableInverse
 from hyst.signals import Record
 
@@ -111,7 +112,8 @@ def identify_hammerstein(
     notes = check_records(data.records)
     check_sample_time(validation, data.records[0].dt)
     say("Markov parameters")
-    markov = choose_markov(data.records, options.fir_order)
+    markov, doubts = choose_markov(data.records, options.fir_order)
+    notes += doubts
     delay = _delay(markov, options.delay)
     data = _settled(data, markov.order, options.start)
     refined_on = shortened(data, MOST_SAMPLES // len(data.records))
@@ -124,6 +126,8 @@ def identify_hammerstein(
             "iterations; give fewer plays, knots or states, or accept it with allow_unconverged"
         )
     sure = uncertainty(joint, refined_on, solution.theta)
+    lag = int(np.abs(markov.values).argmax())
+    notes += dynamics_doubts(joint, refined_on, solution.theta, lag, options.front)
     return _result(joint, solution, sure, data, markov, realized, notes + reason, validation)
 
 

@@ -19,8 +19,11 @@ ORDERS = (16, 32, 64, 128, 256, 512)
 """Tried one after the other where the order is to be chosen."""
 
 _LARGEST_CONDITION = 1e12  # of the normal equations; beyond, a QR factor is used
+_ILL_CONDITIONED = 1e6  # of the regressors; beyond, errors of the output drown the response
+_DEAD_TAIL = 1e-3  # share of the energy
 _ENOUGH = 1e-3  # share of the residual variance that the next order must explain
 _LIVE_TAIL = 0.05
+_BY_CHANCE = 2.0  # mean square of parameters that are 0, in standard errors: 1, hardly ever 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +141,9 @@ def fit_markov(records: Record | Sequence[Record], order: int, start: int = 0) -
     )
 
 
-def choose_markov(records: Sequence[Record], order: int | str, start: int = 0) -> MarkovParameters:
+def choose_markov(
+    records: Sequence[Record], order: int | str, start: int = 0
+) -> tuple[MarkovParameters, tuple[str, ...]]:
     """Estimate the Markov parameters; choose the order if it is ``"auto"``.
 
     Orders are doubled until the next one explains no more than a thousandth of what is left.
@@ -155,26 +160,74 @@ def choose_markov(records: Sequence[Record], order: int | str, start: int = 0) -
     Returns
     -------
     MarkovParameters
+    tuple of str
+        A sentence if the inputs excite barely as many lags as were taken.
 
     Raises
     ------
     InputError, NotIdentifiableError
-        As ``fit_markov``, and if the response does not die out within the largest order.
+        As ``fit_markov``; if the response does not die out within the largest order; and if the
+        order is to be chosen and the inputs do not excite as many lags as the response has.
     """
     if order != "auto":
-        return _died_out(fit_markov(records, _as_order(order), start), chosen=False)
+        found = _died_out(fit_markov(records, _as_order(order), start), chosen=False)
+        if found.condition <= _ILL_CONDITIONED:
+            return found, ()
+        why = _weakly_excited(records, found.order, start, found.condition)
+        return found, (f"{why}; trust G only where the input has power",)
     longest = min(len(record) for record in records) - start
     orders = [each for each in ORDERS if 8 * (each + 2) <= longest] or [ORDERS[0]]
-    best = fit_markov(records, orders[0], start)
+    best, why = _excited(records, orders[0], start)
+    if best is None:
+        raise NotIdentifiableError(f"{why}, or give fir_order yourself")
     for larger in orders[1:]:
-        try:
-            found = fit_markov(records, larger, start)
-        except NotIdentifiableError:
-            break  # the input excites the shorter response only
-        if found.residual_rms**2 > best.residual_rms**2 * (1.0 - _ENOUGH) and best.tail < 1e-3:
+        next_one, why = _excited(records, larger, start)
+        if next_one is None:
+            return _usable(best, why)
+        if next_one.residual_rms**2 > best.residual_rms**2 * (1.0 - _ENOUGH) and (
+            best.tail < _DEAD_TAIL
+        ):
             break
-        best = found
-    return _died_out(best, chosen=True)
+        best = next_one
+    return _died_out(best, chosen=True), ()
+
+
+def _excited(
+    records: Sequence[Record], order: int, start: int
+) -> tuple[MarkovParameters | None, str]:
+    """Give the estimate, or None and why the inputs do not determine it."""
+    try:
+        found = fit_markov(records, order, start)
+    except NotIdentifiableError:
+        return None, _weakly_excited(records, order, start, _ILL_CONDITIONED)
+    if found.condition > _ILL_CONDITIONED:
+        return None, _weakly_excited(records, order, start, found.condition)
+    return found, ""
+
+
+def _weakly_excited(records: Sequence[Record], order: int, start: int, least: float) -> str:
+    """Tell rank and condition, which is at least so large, and what to change."""
+    each = [persistence(record.u[start:], order) for record in records]
+    best = min(each, key=lambda one: one.condition)
+    condition = max(best.condition, least)
+    return (
+        f"the input hardly excites an impulse response of order {order}: rank {best.rank} of "
+        f"{order + 1}, condition {condition:.2g} where {_ILL_CONDITIONED:.0e} is the most; "
+        "drive a wider band, up to half the sample rate, or sample more slowly"
+    )
+
+
+def _usable(found: MarkovParameters, why: str) -> tuple[MarkovParameters, tuple[str, ...]]:
+    """Keep a shorter response if it has died out; refuse it otherwise."""
+    last = slice(-max(found.values.size // 4, 1), None)
+    errors = np.maximum(found.standard_errors[last], np.finfo(np.float64).tiny)
+    by_chance = float(np.mean(np.square(found.values[last] / errors))) < _BY_CHANCE
+    if found.tail >= _DEAD_TAIL and not (by_chance and found.tail <= _LIVE_TAIL):
+        raise NotIdentifiableError(
+            f"{why}, or give fir_order yourself; {found.order} lags, which it does excite, are too "
+            "few: the response has not died out"
+        )
+    return found, (f"{why}; {found.order} lags were taken, and what comes later is not known",)
 
 
 def _died_out(found: MarkovParameters, chosen: bool) -> MarkovParameters:
