@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from hyst.identification import Identified
 from hyst.identification.hammerstein.identified_hammerstein import IdentifiedHammerstein
@@ -11,7 +12,11 @@ from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn, 
 from hyst.report.identification_report import Section
 from hyst.report.tables import Table, number
 
+Array = NDArray[np.float64]
+
 _MOST_POINTS = 20_000
+_BINS = 40
+_LEAST_IN_BIN = 8
 
 
 def dynamics_sections(found: Identified) -> tuple[Section, ...]:
@@ -103,7 +108,8 @@ def _loop(found: IdentifiedHammerstein) -> Section:
         table=Table("Loop", ("samples shown", "band"), (_loop_row(found),)),
         picture="estimated_loop.png",
         png=draw_estimated_loop(found),
-        caption="Estimated signal behind the hysteresis over the input, and the fitted hysteresis.",
+        caption="Estimated signal behind the hysteresis over the input, a branch a panel: samples, "
+        "their mean with two standard deviations to either side, and the fitted hysteresis.",
     )
 
 
@@ -166,17 +172,66 @@ def draw_dynamics(found: IdentifiedHammerstein) -> Figure:
 
 @drawn
 def draw_estimated_loop(found: IdentifiedHammerstein) -> Figure:
-    """Draw the nonparametric loop with the fitted hysteresis over it, as PNG."""
-    figure, (axes,) = blank(1, 1, 6.5, 4.6)
+    """Draw the nonparametric loop, a branch a panel, with the fitted hysteresis over it, as PNG."""
+    figure, panels = blank(2, 1, 10.0, 4.4)
     loop, about = found.loop, found.description
     valid = slice(loop.valid.start, min(loop.valid.stop, loop.valid.start + _MOST_POINTS))
     fitted = found.hysteresis(loop.u[: valid.stop])[valid]
-    axes.plot(loop.u[valid], loop.v[valid], ".", markersize=1.5, color=MEASURED, label="estimated")
-    axes.plot(loop.u[valid], fitted, ".", markersize=1.0, color=MODELLED, label="fitted")
-    axes.set_xlabel(with_unit(about.input_name, about.input_unit))
-    axes.set_ylabel(with_unit("signal behind the hysteresis", about.output_unit))
-    axes.legend(markerscale=6.0)
+    u, v = loop.u[valid], loop.v[valid]
+    rising = np.gradient(u) >= 0.0
+    for axes, branch, name in zip(panels, (rising, ~rising), ("rising", "falling"), strict=True):
+        axes.plot(u[branch], v[branch], ".", markersize=1.5, color=FAINT, label="estimated")
+        axes.plot(u[branch], fitted[branch], ".", markersize=1.5, color=MODELLED, label="fitted")
+        centres, mean, deviation = branch_band(u[branch], v[branch])
+        axes.plot(centres, mean, color=SECOND, label="mean of the estimated")
+        for side, label in ((-2.0, None), (2.0, "two standard deviations")):
+            axes.plot(centres, mean + side * deviation, "--", color=SECOND, label=label)
+        axes.set_xlabel(with_unit(about.input_name, about.input_unit))
+        axes.set_title(f"Input {name}")
+        # Single samples far off, in a noisy record, must not flatten the loop.
+        axes.set_ylim(*_shown_range(v, fitted))
+    panels[0].set_ylabel(with_unit("signal behind the hysteresis", about.output_unit))
+    panels[0].legend(markerscale=4.0, loc="upper left")
     return figure
+
+
+def branch_band(u: Array, v: Array) -> tuple[Array, Array, Array]:
+    """Give mean and standard deviation of a signal in bins of the input.
+
+    Parameters
+    ----------
+    u, v
+        Shape (N,): input and signal of one branch, in any order.
+
+    Returns
+    -------
+    centres, mean, deviation : numpy.ndarray
+        Shape (bins,); bins of less than eight samples are left out.
+
+    Examples
+    --------
+    >>> centres, mean, deviation = branch_band(np.repeat([0.0, 1.0], 8), np.repeat([2.0, 3.0], 8))
+    >>> mean.tolist(), deviation.tolist()
+    ([2.0, 3.0], [0.0, 0.0])
+    """
+    if u.size == 0 or np.ptp(u) == 0.0:
+        return np.empty(0), np.empty(0), np.empty(0)
+    edges = np.linspace(u.min(), u.max(), _BINS + 1)
+    places = np.clip(np.searchsorted(edges, u, side="right") - 1, 0, _BINS - 1)
+    count = np.bincount(places, minlength=_BINS)
+    filled = count >= _LEAST_IN_BIN
+    share = np.maximum(count, 1)
+    mean = np.bincount(places, v, _BINS) / share
+    variance = np.bincount(places, np.square(v - mean[places]), _BINS) / share
+    centres = 0.5 * (edges[1:] + edges[:-1])
+    return centres[filled], mean[filled], np.sqrt(variance[filled])
+
+
+def _shown_range(v: Array, fitted: Array) -> tuple[float, float]:
+    low, high = np.quantile(v, [0.001, 0.999])
+    low, high = min(low, fitted.min()), max(high, fitted.max())
+    margin = 0.05 * max(high - low, np.finfo(np.float64).tiny)
+    return float(low - margin), float(high + margin)
 
 
 def _scale(found: IdentifiedHammerstein) -> float:
