@@ -8,6 +8,9 @@ import pytest
 import hyst
 from hyst import InputError, NotInvertibleError, RateDependentPrandtlIshlinskii, SolverError
 from hyst.compensation import Compensation, invert_trajectory
+from hyst.compensation.limits_kept import judge_rate_limit
+from hyst.compensation.rate_dependent_task import prepare_task
+from hyst.compensation.solved_drive import SolvedDrive
 from hyst.models import RateCurve
 from reference.rate_dependent_plays import ACTUATOR, DT, EXAMPLE, output, rate, reference_signal
 
@@ -141,6 +144,66 @@ def test_limits_are_kept() -> None:
         # Worse than without limits, better than a clipped explicit drive.
         clipped = MODEL(np.clip(MODEL.explicit_inverse()(y_ref), -25.0, 27.0)) - y_ref
         assert done.rms < np.sqrt(np.mean(clipped**2))
+
+
+@pytest.mark.parametrize("method", ["explicit", "sample-exact"])
+def test_a_drive_outside_its_range_is_refused_or_told(method: str) -> None:
+    # The reference is in reach of a drive at rest, the drive for its rate is not.
+    y_ref = reference_signal(60.0)
+    free = invert_trajectory(MODEL, y_ref, method).u
+    k = int(np.argmax(np.abs(free) > 30.0))
+    limits = {"input_range": (-30.0, 30.0)}
+    with pytest.raises(InputError, match=rf"y_ref\[{k}\] .*outside its range -30 to 30.*clip"):
+        invert_trajectory(MODEL, y_ref, method, **limits)
+    done = invert_trajectory(MODEL, y_ref, method, outside="clip", **limits)
+    assert np.abs(done.u).max() == 30.0
+    assert f"{done.clipped} of {y_ref.size} samples were clipped" in done.notes[-1]
+    assert "does not hold there" in done.notes[-1]
+    wide = {"input_range": (-100.0, 100.0)}
+    assert np.array_equal(invert_trajectory(MODEL, y_ref, method, **wide).u, free)
+    # A command that just touches the ends is within them.
+    touching = {"input_range": (float(free.min()), float(free.max()))}
+    assert np.abs(invert_trajectory(MODEL, y_ref, method, **touching).u - free).max() < 1e-9
+
+
+def test_a_refusal_names_the_range_of_the_input_before_a_map() -> None:
+    model = MODEL @ hyst.Affine(-0.5, 3.0)
+    with pytest.raises(InputError, match="outside its range -54 to 66"):
+        invert_trajectory(model, reference_signal(60.0), "explicit", input_range=(-54.0, 66.0))
+
+
+@pytest.mark.parametrize("method", ["preview", "trajectory"])
+@pytest.mark.parametrize("rate_limit", [1.0, 100.0, 1000.0])
+def test_a_rate_limit_out_of_reach_is_told(method: str, rate_limit: float) -> None:
+    y_ref = reference_signal(60.0)
+    done = invert_trajectory(MODEL, y_ref, method, rate_limit=rate_limit, allow_unconverged=True)
+    assert "rate limit is out of reach for this reference" in done.notes[-1]
+    # A drive at rest where it starts leaves the reference itself.
+    assert done.rms <= np.sqrt(np.mean(y_ref**2)) * (1.0 + 1e-9)
+    assert np.abs(np.diff(done.u)).max() <= rate_limit * DT * (1.0 + 1e-9)
+    within = invert_trajectory(MODEL, y_ref, method, rate_limit=1e5)
+    assert not any("out of reach" in each for each in within.notes)
+
+
+@pytest.mark.parametrize("past", [None, [0.0, -30.0, -30.0, -30.0]])
+def test_a_drive_worse_than_rest_is_replaced_where_the_whole_is_known(
+    past: list[float] | None,
+) -> None:
+    at = 0.0 if past is None else -30.0
+    state = None if past is None else MODEL.run(past)[1]
+    y_rest = MODEL.run(np.full(500, at), state)[0]
+    y_ref = y_rest + reference_signal(60.0)
+    task = prepare_task(MODEL, y_ref, None, False, past)
+    # In antiphase, so that it leaves more than rest does.
+    bad = SolvedDrive(at - reference_signal(60.0), "converged", 7, ("first",))
+    judged = judge_rate_limit(task, bad, 1e3 * DT, True)
+    assert np.array_equal(judged.drive, np.full(500, at))
+    assert judged.notes[0] == "first"
+    assert "the drive at rest is given" in judged.notes[1]
+    told = judge_rate_limit(task, bad, 1e3 * DT, False)
+    assert told.drive is bad.drive
+    assert "out of reach" in told.notes[1]
+    assert judge_rate_limit(task, bad, np.inf, True) is bad
 
 
 def test_maps_before_and_after_the_plays() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from hyst.compensation.limits_kept import refuse_or_tell
 from hyst.compensation.rate_dependent_task import RateDependentTask
 from hyst.compensation.solved_drive import SolvedDrive
 
@@ -22,6 +23,8 @@ def drive_explicitly(task: RateDependentTask) -> SolvedDrive:
 
     Raises
     ------
+    InputError
+        If the drive leaves its range and must not be clipped.
     NotInvertibleError
         If a cumulative weight is not positive.
 
@@ -31,8 +34,12 @@ def drive_explicitly(task: RateDependentTask) -> SolvedDrive:
     """
     inverse, memory = task.explicit_inverse()
     drive, _ = inverse.run(task.target, memory)
+    held = np.clip(drive, task.low, task.high)
+    # The inverse is exact to rounding only where it just touches the end of the range.
+    slack = 1e-12 * float(np.abs(drive).max())
+    clipped = refuse_or_tell(task, np.abs(drive - held) > slack)
     note = (
         "thresholds are taken from the rate of the reference, the actuator's follow the rate of "
         "its drive: not exact",
     )
-    return SolvedDrive(np.clip(drive, task.low, task.high), "solved", 1, note)
+    return SolvedDrive(held, "solved", 1, note + clipped)

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from hyst.compensation.compensation import Compensation
 from hyst.compensation.exact import invert_exactly
 from hyst.compensation.explicit import drive_explicitly
+from hyst.compensation.limits_kept import judge_rate_limit
 from hyst.compensation.noncausal import invert_noncausally
 from hyst.compensation.preview import drive_with_preview
 from hyst.compensation.rate_dependent_task import RateDependentTask, prepare_task
@@ -46,7 +47,7 @@ def invert_trajectory(
     reference for that of the drive and leaves an error.
     ``sample-exact``: every sample solved exactly, causal; the drive may chatter.
     ``preview``: causal but for the next ``preview`` samples of the reference, planned anew at every
-    sample.
+    sample, here for a whole record at once.
     ``trajectory``: the whole reference known; the simulated error is minimised.
 
     The predicted error is always that of the model driven by the command, thresholds from the
@@ -74,7 +75,9 @@ def invert_trajectory(
         Inputs the actuator has passed just before the first sample, shape (M,), input units; they
         set its memory. Left out, the model starts from its own initial state.
     rate_limit
-        Largest rate of the input, input units per second, for ``preview`` and ``trajectory``.
+        Largest rate of the input, input units per second, for ``preview`` and ``trajectory``. A
+        note says if it is out of reach; ``trajectory`` then gives nothing worse than a drive at
+        rest, which ``preview`` cannot know beforehand.
     preview
         Samples of the reference known beyond the present one, >= 1, for ``preview``.
     max_iterations
@@ -94,7 +97,8 @@ def invert_trajectory(
     InputError
         If a signal is empty or not finite (the first bad index is named), the method, ``outside``
         or another option is not one there is, the range is not two finite ascending numbers, the
-        method is not for this model, or, with ``"refuse"``, the reference is out of reach.
+        method is not for this model, or, with ``"refuse"``, the reference is out of reach or takes
+        the input of ``explicit`` or ``sample-exact`` out of its range.
     NotInvertibleError
         If the model has no exact inverse and the method needs one, or p0 is not positive.
     SolverError
@@ -130,12 +134,14 @@ def invert_trajectory(
     elif method == "sample-exact":
         found = drive_sample_by_sample(task)
     elif method == "preview":
-        found = drive_with_preview(
-            task, _as_count(preview, "preview"), _change(task, rate_limit), say
-        )
+        change = _change(task, rate_limit)
+        found = drive_with_preview(task, _as_count(preview, "preview"), change, say)
+        found = judge_rate_limit(task, found, change, False)
     else:
         limit = _as_count(max_iterations, "max_iterations")
-        found = drive_along_trajectory(task, _change(task, rate_limit), limit, say)
+        change = _change(task, rate_limit)
+        found = drive_along_trajectory(task, change, limit, say)
+        found = judge_rate_limit(task, found, change, True)
     done = _compensation(task, found, method)
     if found.status == ITERATION_LIMIT and not allow_unconverged:
         raise SolverError(

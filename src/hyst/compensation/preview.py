@@ -82,7 +82,8 @@ class _Planner:
             else:
                 plan = self._best(step.state.copy(), ahead, plan, scales)
             started = step.state[n + 1] > 0.0
-            last = float(step.state[n]) if started else None
+            # Without a past a drive whose rate is limited starts from where the reference does.
+            last = float(step.state[n] if started else self._first())
             first = within_limits(plan[:1], last, self.task.low, self.task.high, self.change)
             drive[k] = first[0]
             step(float(first[0]))
@@ -90,6 +91,9 @@ class _Planner:
             if k % 256 == 0:
                 progress(k / target.size)
         return drive
+
+    def _first(self) -> float:
+        return min(max(float(self.explicit[0]), self.task.low), self.task.high)
 
     def _best(self, state: Array, ahead: slice, plan: Array, scales: Scales) -> Array:
         """Best of the plan carried on, as it is and smoothed first, and the explicit drive."""

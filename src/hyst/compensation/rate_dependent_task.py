@@ -42,6 +42,8 @@ class RateDependentTask:
         Wanted output of the plays, shape (N,).
     low, high
         Range of the drive of the plays; infinite if there is none.
+    clip
+        Whether the drive may be clipped to its range.
     """
 
     model: Operator
@@ -52,6 +54,7 @@ class RateDependentTask:
     target: Array
     low: float
     high: float
+    clip: bool
 
     def state(self) -> Array:
         """Give the state of the plays before the first sample, a fresh array."""
@@ -141,7 +144,7 @@ def prepare_task(
         low, high = np.sort(ends if before is None else before(ends)).tolist()
         if not clip:
             _require_reach(plays, target, low, high)
-    return RateDependentTask(model, plays, before, start, reference, target, low, high)
+    return RateDependentTask(model, plays, before, start, reference, target, low, high, clip)
 
 
 def _require_reach(

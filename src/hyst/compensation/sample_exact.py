@@ -5,9 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from hyst import _engine
+from hyst.compensation.limits_kept import refuse_or_tell
 from hyst.compensation.rate_dependent_task import RateDependentTask
 from hyst.compensation.solved_drive import SOLVED, SolvedDrive
 from hyst.errors import NotInvertibleError
+
+# A sample at the end of the range is clipped if it misses more than this of the largest output.
+_ROUNDING = 1e-9
 
 
 def drive_sample_by_sample(task: RateDependentTask) -> SolvedDrive:
@@ -26,6 +30,8 @@ def drive_sample_by_sample(task: RateDependentTask) -> SolvedDrive:
 
     Raises
     ------
+    InputError
+        If the drive would leave its range and must not be clipped.
     NotInvertibleError
         If a sample's equation has no solution.
     """
@@ -37,6 +43,9 @@ def drive_sample_by_sample(task: RateDependentTask) -> SolvedDrive:
         raise NotInvertibleError(
             f"no drive gives the wanted output at sample {solved}; use method='trajectory'"
         )
+    y, _ = task.plays.run(drive, task.state())
+    missed = np.abs(y - task.target) > _ROUNDING * float(np.abs(task.target).max())
+    clipped = refuse_or_tell(task, missed & ((drive <= task.low) | (drive >= task.high)))
     slope = task.plays.sample_equation_slope()
     notes: tuple[str, ...] = ()
     if slope <= 0.0:
@@ -45,4 +54,4 @@ def drive_sample_by_sample(task: RateDependentTask) -> SolvedDrive:
             "samples had several solutions, the one nearest to the previous drive was taken; the "
             "drive chatters",
         )
-    return SolvedDrive(drive, SOLVED, 1, notes)
+    return SolvedDrive(drive, SOLVED, 1, notes + clipped)
