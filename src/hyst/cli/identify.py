@@ -168,7 +168,7 @@ def _tell(found: hyst.Identified, records: list[hyst.Record]) -> None:
     show_table(hyst.report.metrics_table(found))
     show_table(hyst.report.parameters_table(found))
     for sentence in found.undetermined:
-        print(f"undetermined: {sentence}")
+        print(f"note: {sentence}")
 
 
 def _labelled(

@@ -100,7 +100,7 @@ def prepare(records: Record | Sequence[Record], start: Literal["auto"] | int, de
     Raises
     ------
     InputError
-        If there is no record, their sample times differ, or ``start`` is beyond a record.
+        If there is no record, their sample times differ, or ``start`` is no sample of every record.
     NotIdentifiableError
         If input or output of a record is constant, or the input does not turn twice.
     """
@@ -180,6 +180,9 @@ def _first_settled(u: Array, span: float) -> int:
 
 def _as_start(start: int, records: tuple[Record, ...]) -> int:
     shortest = min(len(record) for record in records)
-    if isinstance(start, bool) or not 0 <= start < shortest:
-        raise InputError(f"start is {start}; give a sample between 0 and {shortest - 1}")
+    whole = isinstance(start, int | np.integer) and not isinstance(start, bool)
+    if not whole or not 0 <= start < shortest:
+        raise InputError(
+            f"start is {start!r}; give a whole number between 0 and {shortest - 1}, or 'auto'"
+        )
     return int(start)

@@ -9,7 +9,11 @@ from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 
 from hyst.identification.data import require_same_units
-from hyst.identification.hammerstein.from_options import HAMMERSTEIN, identify_with_dynamics
+from hyst.identification.hammerstein.from_options import (
+    HAMMERSTEIN,
+    identify_with_dynamics,
+    require_known_hysteresis,
+)
 from hyst.identification.identified import Identified
 from hyst.identification.options import Options, as_radii, as_rule
 from hyst.identification.rate_dependent import RDPI, identify_rate_dependent
@@ -127,6 +131,7 @@ def identify(
     say = progress or _silent
     given, judged = _listed(records), _listed(validation)
     require_same_units((*given, *judged))
+    require_known_hysteresis(hysteresis)
     with threadpool_limits(1, user_api="blas"):
         # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
         if family == HAMMERSTEIN:

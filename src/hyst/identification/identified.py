@@ -79,7 +79,8 @@ class Identified:
         The free parameters with their standard errors, which take the autocorrelation of the
         residual into account; NaN where a value lies on a bound or is not determined.
     undetermined
-        One sentence for each parameter the records cannot determine, and what was done.
+        One sentence for each thing the records cannot determine, and what was done; and for what
+        makes them doubtful, as a saturated sensor.
     metrics
         Errors by record: ``training``, ``training (free offset)``, ``validation 1``, ...
     candidates
@@ -174,5 +175,5 @@ class Identified:
             lines.append(f"{name:36s} {value:13.6g} {shown:>15s}")
         if np.isnan(self.standard_errors).any():
             lines.append("(-: on a bound, or not determined by the records)")
-        lines += [f"undetermined: {sentence}" for sentence in self.undetermined]
+        lines += [f"note: {sentence}" for sentence in self.undetermined]
         return "\n".join(lines)

@@ -213,7 +213,7 @@ def _the_model(page: Page, findings: _Findings, figures: dict[str, bytes]) -> No
         "that last longer than one sample. A value on a bound has none."
     )
     if identified.undetermined:
-        page.text("The record does not determine everything:")
+        page.text("What the records leave open, or what makes them doubtful:")
         page.items(identified.undetermined)
 
 

@@ -133,6 +133,7 @@ def test_flat_tops_are_reported() -> None:
     saturated = Record(record.u, np.minimum(record.y, top), DT)
     found = identified(saturated, hysteresis="pi", plays=2, state_order=2, allow_unconverged=True)
     assert any("rests at its top" in each for each in found.undetermined)
+    assert "\nnote: record 1 rests at its top" in found.summary()
 
 
 def test_bad_records_are_refused() -> None:
@@ -200,3 +201,13 @@ def test_dynamics_that_explain_something_are_not_called_nothing(noise: float) ->
     y += noise * y.std() * np.random.default_rng(1).normal(size=y.size)
     found = identified(Record(U, y, DT), hysteresis="pi", plays=3)
     assert not any("explain nothing" in each for each in found.undetermined)
+
+
+def test_options_that_name_nothing_are_refused_whatever_the_family() -> None:
+    record = record_of(PI, 0.01)
+    with pytest.raises(InputError, match="hysteresis is 'foo'; choose one of"):
+        hyst.identify(record, family="pi", hysteresis="foo")
+    for start in (1.5, True, "late", None):
+        for family in ("pi", "hammerstein"):
+            with pytest.raises(InputError, match=f"start is {start!r}; give a whole number"):
+                hyst.identify(record, family=family, start=start)  # type: ignore[arg-type]

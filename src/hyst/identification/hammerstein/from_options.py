@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.errors import InputError
-from hyst.identification.hammerstein.front import FrontOptions
+from hyst.identification.hammerstein.front import FRONTS, FrontOptions
 from hyst.identification.hammerstein.identification import HammersteinOptions, identify_hammerstein
 from hyst.identification.hammerstein.identified_hammerstein import IdentifiedHammerstein
 from hyst.signals import Record
@@ -29,7 +29,7 @@ def identify_with_dynamics(
     knots: int | ArrayLike,
     weights: str,
     delay: int | str,
-    start: int | str,
+    start: int | Literal["auto"],
     validation: Record | Sequence[Record],
     limits: tuple[int, bool],
     say: Callable[[str], None],
@@ -71,6 +71,23 @@ def identify_with_dynamics(
     )
     judged = (validation,) if isinstance(validation, Record) else tuple(validation)
     return identify_hammerstein(records, options, judged, say)
+
+
+def require_known_hysteresis(hysteresis: str) -> None:
+    """Refuse a hysteresis that no family has.
+
+    Parameters
+    ----------
+    hysteresis
+        As of ``identify``.
+
+    Raises
+    ------
+    InputError
+        If it is not known.
+    """
+    if hysteresis not in FRONTS:
+        raise InputError(f"hysteresis is {hysteresis!r}; choose one of {', '.join(FRONTS)}")
 
 
 def _as_knots(knots: Any) -> int | NDArray[np.float64]:

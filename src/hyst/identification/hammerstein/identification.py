@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,7 +71,7 @@ class HammersteinOptions:
     state_order: int | str
     delay: int | str
     front: FrontOptions
-    start: int | str
+    start: int | Literal["auto"]
     max_iterations: int = 60
     allow_unconverged: bool = False
 
@@ -108,7 +109,7 @@ def identify_hammerstein(
     SolverError
         If the refinement did not converge and that is not allowed.
     """
-    data = prepare(records, "auto" if options.start == "auto" else int(options.start), 0)
+    data = prepare(records, options.start, 0)
     notes = check_records(data.records)
     check_sample_time(validation, data.records[0].dt)
     say("Markov parameters")
