@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -24,3 +26,14 @@ def test_errors_are_told_over_the_bound_for_both_inputs(name: str) -> None:
     # As many samples of each kind in each period: the bound falls with the root of time, from 20 s
     # on, where the first stroke, which differs, is 1 of 20 strokes or less.
     assert bounds[0, 1] / bounds[0, 3] == pytest.approx(np.sqrt(5.0), rel=0.05)
+
+
+def test_figures_for_the_page_are_drawn_and_small() -> None:
+    drawn = s2.figures()
+    for name in ("s2_trajectories.png", "s2_over_bound.png"):
+        assert drawn[name].startswith(b"\x89PNG")
+        assert len(drawn[name]) < 120_000
+        # The page shows what the command draws.
+        page = Path(__file__).resolve().parents[2] / "docs"
+        assert (page / "figures" / name.replace("_", "-")).exists()
+        assert name.replace("_", "-") in (page / "online.md").read_text(encoding="utf-8")

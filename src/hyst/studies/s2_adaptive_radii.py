@@ -8,6 +8,7 @@ story is told on a measured piezo where that record is at hand.
 from __future__ import annotations
 
 import functools
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from hyst.io import read_record
 from hyst.models import PrandtlIshlinskii
 from hyst.online import JointEstimator, RadiusEstimator, Trajectory
 from hyst.operators import Affine
+from hyst.report.bound_figure import draw_over_bound
 from hyst.report.estimation_figure import draw_estimates
 from hyst.report.tables import Table, number
 from hyst.signals import Record
@@ -86,7 +88,7 @@ def tables() -> tuple[Table, ...]:
 
 
 def figures() -> dict[str, bytes]:
-    """Draw radii and weights over time.
+    """Draw radii and weights over time, and the radii's errors over the bound.
 
     Returns
     -------
@@ -113,7 +115,24 @@ def figures() -> dict[str, bytes]:
             }
             heading = f"Five plays, {name}, {decibels} dB"
             drawn[f"s2_{name}_{decibels}_db.png"] = draw_estimates(both, truth, heading)
+            if (name, decibels) == ("sine", 20):
+                radii = {label: _radii_of(each) for label, each in both.items()}
+                drawn["s2_trajectories.png"] = draw_estimates(radii, truth, heading)
+    drawn["s2_over_bound.png"] = draw_over_bound(TIMES, {n: _ratios(n) for n in INPUTS})
     return drawn
+
+
+def _radii_of(trajectory: Trajectory) -> Trajectory:
+    """Keep the radii alone, once a second: a figure small enough for a page."""
+    places = np.flatnonzero([name.startswith("r[") for name in trajectory.names])
+    once = np.ix_(np.arange(9, trajectory.time.size, 10), places)
+    return replace(
+        trajectory,
+        time=trajectory.time[9::10],
+        names=tuple(trajectory.names[k] for k in places),
+        values=trajectory.values[once],
+        standard_errors=trajectory.standard_errors[once],
+    )
 
 
 def _paper_law(options: dict[str, float] | None) -> RadiusEstimator:
@@ -163,8 +182,10 @@ def _bounds(u: Array, sigma: float) -> tuple[Array, Array]:
     return np.array(alone), np.array(together)
 
 
-def _over_bound(name: str) -> Table:
-    rows = []
+@functools.cache
+def _ratios(name: str) -> dict[str, tuple[float, ...]]:
+    """Root mean square errors of the radii over the bound at TIMES."""
+    found = {}
     for decibels in (10.0, 20.0):
         u, y, sigma = _noisy(name, decibels)
         alone, together = _bounds(u, sigma)
@@ -176,8 +197,18 @@ def _over_bound(name: str) -> Table:
             errors["joint"].append((_at(_joint().run(record, 1000), 6) - R) / together[:, 6:11])
         for label, each in errors.items():
             ratio = np.sqrt(np.mean(np.square(each), axis=(0, 2)))
-            rows.append((f"{label}, {decibels:g} dB", *(number(float(v), 3) for v in ratio)))
-        bound = together[:, 6:11].max(axis=1)
+            found[f"{label}, {decibels:g} dB"] = tuple(ratio.tolist())
+    return found
+
+
+def _over_bound(name: str) -> Table:
+    ratios = _ratios(name)
+    rows = []
+    for decibels in (10.0, 20.0):
+        for label in (f"{who}, {decibels:g} dB" for who in ("paper", "joint")):
+            rows.append((label, *(number(v, 3) for v in ratios[label])))
+        u, _, sigma = _noisy(name, decibels)
+        bound = _bounds(u, sigma)[1][:, 6:11].max(axis=1)
         rows.append((f"largest bound, {decibels:g} dB", *(number(float(v), 3) for v in bound)))
     header = ("", *(f"{t:g} s" for t in TIMES))
     what = "of the radii alone for the paper's law, of all parameters for the joint estimator"
