@@ -85,3 +85,11 @@ def test_measured_piezo(measured_data: Path) -> None:
     # The paper's claim: four plays of estimated radii do better than more plays of fixed ones.
     assert rms["all by the joint estimator"] < rms["fixed radii, n = 7"]
     assert rms["slopes by segmentation, n = 4"] < rms["fixed radii, n = 4"]
+
+
+def test_readme_names_the_command_and_its_page() -> None:
+    root = Path(__file__).resolve().parents[2]
+    readme = (root / "README.md").read_text(encoding="utf-8")
+    assert "`hyst adapt`" in readme
+    assert "(docs/online.md)" in readme
+    assert (root / "docs" / "online.md").exists()
