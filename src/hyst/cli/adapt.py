@@ -13,6 +13,7 @@ import hyst
 from hyst.cli.arguments import InputColumn, ModelFile
 from hyst.cli.console import at_work, note, show_files, show_table
 from hyst.cli.identify import OutputColumn, Rate, Repair, TimeColumn, TimeUnit
+from hyst.online.parts import units_of_plays
 from hyst.report.tables import Table, number
 
 Data = Annotated[Path, typer.Argument(metavar="DATA", show_default=False, help="Measured record.")]
@@ -105,7 +106,9 @@ def adapt(
     with at_work("estimating") as say:
         trajectory = estimator.run(record, max(1, record.samples // _ROWS))
         say("figure")
-        picture = hyst.report.draw_estimates({"": trajectory}, {}, _HEADING.format(data.name))
+        units = units_of_plays(estimator.model, about.input_unit, about.output_unit)
+        heading = _HEADING.format(data.name)
+        picture = hyst.report.draw_estimates({"": trajectory}, {}, heading, units)
     names = ("model.json", "estimator.json", "parameters.csv", "parameters.png")
     with hyst.files.replacing_files(folder) as temporary:
         about = replace(about, dt=record.dt)

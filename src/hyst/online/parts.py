@@ -130,6 +130,36 @@ def take_apart(model: Operator) -> Parts:
     return Parts(affine_in, front, pi, back, after)
 
 
+def units_of_plays(model: Operator, input_unit: str, output_unit: str) -> tuple[str, str]:
+    """Give the units of the plays' input and output, empty where a gain changes them.
+
+    Parameters
+    ----------
+    model
+        As for ``take_apart``; its maps keep units, as their weights are pure numbers.
+    input_unit, output_unit
+        Of the model; empty where unknown.
+
+    Returns
+    -------
+    tuple of str
+
+    Raises
+    ------
+    InputError
+        If the model is built otherwise.
+
+    Examples
+    --------
+    >>> plays = PrandtlIshlinskii([0.5], [1.0])
+    >>> units_of_plays(plays, "V", "um"), units_of_plays(plays @ Affine(2.0), "V", "um")
+    (('V', 'um'), ('', 'um'))
+    """
+    parts = take_apart(model)
+    is_input_kept = parts.before is None or parts.before.gain == 1.0
+    return input_unit if is_input_kept else "", output_unit if parts.after.gain == 1.0 else ""
+
+
 def _flat(model: Operator) -> list[Operator]:
     if not isinstance(model, Chained):
         return [model]

@@ -9,14 +9,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hyst.online import Trajectory
-from hyst.report.canvas import FAINT, blank, drawn
+from hyst.report.canvas import FAINT, blank, drawn, with_unit
 
 _COLOURS = ("#c2410c", "#1d4ed8", "#047857", "#7c3aed", "#db2777", "#0e7490", "#854d0e", "#4b5563")
 
 
 @drawn
 def draw_estimates(
-    trajectories: Mapping[str, Trajectory], truth: Mapping[str, float], heading: str
+    trajectories: Mapping[str, Trajectory],
+    truth: Mapping[str, float],
+    heading: str,
+    units: tuple[str, str] = ("", ""),
 ) -> Figure:
     """Draw parameters over time: one row for each estimator, radii, weights and the rest beside.
 
@@ -28,6 +31,8 @@ def draw_estimates(
         True values by name, drawn as lines; may be empty.
     heading
         Line above the figure; empty for none.
+    units
+        Of the plays' input and output, for the value axes; empty where unknown.
 
     Returns
     -------
@@ -47,6 +52,7 @@ def draw_estimates(
         for panel, (what, names) in zip(panels, groups[label].items(), strict=False):
             _draw(panel, trajectory, names, truth)
             panel.set_title(f"{label}: {what}" if label else what)
+            panel.set_ylabel(_with_unit(what, names, *units))
     if heading:
         figure.suptitle(heading)
     return figure
@@ -58,6 +64,16 @@ def _groups(trajectory: Trajectory) -> dict[str, list[str]]:
     weights = [name for name in names if name == "p0" or name.startswith("p[")]
     rest = [name for name in names if name not in radii and name not in weights]
     return {"radii": radii, "weights": weights, "offset and maps": rest}
+
+
+def _with_unit(what: str, names: list[str], input_unit: str, output_unit: str) -> str:
+    """Label the value axis; maps have pure numbers, so an offset among them has no axis' unit."""
+    if what == "radii":
+        return with_unit("radius", input_unit)
+    if what == "weights":
+        known = bool(input_unit and output_unit) and input_unit != output_unit
+        return with_unit("weight", f"{output_unit}/{input_unit}" if known else "")
+    return with_unit("offset", output_unit) if names == ["offset"] else "value"
 
 
 def _draw(axes: Axes, trajectory: Trajectory, names: list[str], truth: Mapping[str, float]) -> None:
