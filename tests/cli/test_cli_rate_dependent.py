@@ -95,4 +95,56 @@ def test_the_exact_method_names_the_others(run: Run, folder: Path) -> None:
     write_csv(folder / "ref.csv", "y", reference_signal(60.0))
     ended = run("compensate", "model.json", "ref.csv", "--column", 0, "-o", "command.csv")
     assert ended.code == 2
-    assert "invert_trajectory" in ended.err
+    message = " ".join(ended.err.split())
+    assert "--method trajectory" in message
+    for method in ("preview", "sample-exact", "explicit"):
+        assert method in message
+    assert "invert_trajectory" not in message
+
+
+def test_help_lists_every_method(run: Run) -> None:
+    ended = run("compensate", "--help")
+    for method in ("exact", "noncausal", "explicit", "sample-exact", "preview", "trajectory"):
+        assert method in ended.out
+
+
+@pytest.mark.parametrize(
+    ("header", "step", "message"),
+    [
+        ("t", 1e-4, None),
+        ("Time [ms]", 0.1, None),
+        ("t", 1e-3, "by its column 't' has dt = 0.001 s, the model 0.0001 s"),
+        ("time [ms]", 1e-4, "has dt = 1e-07 s, the model 0.0001 s"),
+        ("time [beats]", 1e-4, "give --rate"),
+    ],
+)
+def test_a_time_column_of_the_reference_is_checked(
+    run: Run, folder: Path, header: str, step: float, message: str | None
+) -> None:
+    MODEL.save(folder / "model.json")
+    y_ref = reference_signal(60.0)
+    write_csv(folder / "ref.csv", f"{header},y", step * np.arange(y_ref.size), y_ref)
+    for verb in (
+        ("compensate", "model.json", "ref.csv", "--column", "y", "--method", "explicit"),
+        ("simulate", "model.json", "ref.csv", "--input", "y"),
+    ):
+        ended = run(*verb, "-o", "command.csv")
+        if message is None:
+            assert ended.code == 0, ended.err
+            assert "is taken to have" not in ended.err + ended.out
+        else:
+            assert ended.code == 2
+            assert message in " ".join(ended.err.split())
+
+
+def test_uneven_time_of_the_reference_needs_a_rate(run: Run, folder: Path) -> None:
+    MODEL.save(folder / "model.json")
+    y_ref = reference_signal(60.0)
+    t = DT * np.arange(y_ref.size)
+    t[200:] += 3.0 * DT
+    write_csv(folder / "ref.csv", "t,y", t, y_ref)
+    words = ("compensate", "model.json", "ref.csv", "--column", "y", "--method", "explicit")
+    ended = run(*words, "-o", "command.csv")
+    assert ended.code == 2
+    assert "give --rate" in " ".join(ended.err.split())
+    assert run(*words, "--rate", 10000, "-o", "command.csv").code == 0

@@ -33,6 +33,8 @@ SampleRate = Annotated[
     ),
 ]
 
+_STAMPS_ROUNDED = 1e-3
+
 
 def whole_or_auto(text: str, name: str) -> int | Literal["auto"]:
     """Read a whole number or the word auto."""
@@ -59,6 +61,30 @@ def positive(value: float, name: str) -> float:
     if not 0.0 < value < float("inf"):
         raise hyst.InputError(f"--{name} is {value}; give a positive number")
     return value
+
+
+def sample_time_known(
+    model: hyst.operators.Operator, file: Path, rate: float | None, what: str
+) -> bool:
+    """Refuse a file of another sample time than the model's; say if the file or --rate tells."""
+    if rate is not None:
+        model.require_sample_time(1.0 / positive(rate, "rate"), what)
+        return True
+    if model.dt is None:
+        return True
+    found = hyst.io.read_time_step(file)
+    if found is None:
+        return False
+    header, step = found
+    if step is None:
+        raise hyst.InputError(
+            f"the time column {header!r} of {file.name} has no even steps in a known unit, so its "
+            "sample time cannot be compared with the model's; give --rate"
+        )
+    # Printed stamps are rounded.
+    if abs(step - model.dt) > _STAMPS_ROUNDED * model.dt:
+        model.require_sample_time(step, f"{what} by its column {header!r}")
+    return True
 
 
 def require_same_unit(unit: str, model_unit: str, what: str) -> None:

@@ -8,11 +8,18 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 import hyst
-from hyst.cli.arguments import ModelFile, SampleRate, numbers, positive, require_same_unit
+from hyst.cli.arguments import (
+    ModelFile,
+    SampleRate,
+    numbers,
+    require_same_unit,
+    sample_time_known,
+)
 from hyst.cli.console import note, progress_bar, show_files, show_table
+from hyst.operators.composition import leaves_of
 
 if TYPE_CHECKING:
-    from hyst.operators import ModelDescription
+    from hyst.operators import ModelDescription, Operator
 
 
 Reference = Annotated[
@@ -28,7 +35,8 @@ Out = Annotated[
 Method = Annotated[
     str,
     typer.Option(
-        help="exact; for rate-dependent models explicit, sample-exact, preview or trajectory."
+        help="exact; for rate-dependent models explicit, sample-exact, preview or trajectory; "
+        "for linear dynamics noncausal."
     ),
 ]
 Preview = Annotated[
@@ -85,8 +93,8 @@ def compensate(
     y_ref, _, unit = hyst.io.read_column(reference, column)
     require_same_unit(unit, about.output_unit, "the reference")
     input_range = _input_range(limits, no_limits, about)
-    if rate is not None:
-        model.require_sample_time(1.0 / positive(rate, "rate"), "the reference")
+    known = sample_time_known(model, reference, rate, "the reference")
+    _require_method_for(model, method)
     with progress_bar("inverting") as progress:
         done = hyst.compensation.invert_trajectory(
             model,
@@ -100,7 +108,7 @@ def compensate(
             allow_unconverged=allow_unconverged,
             progress=progress,
         )
-    if model.dt is not None and rate is None:
+    if not known:
         note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
     headers = [
         hyst.io.join_unit(name, unit)
@@ -113,6 +121,23 @@ def compensate(
     hyst.io.write_columns(out, headers, (done.y_ref, done.u, done.y_predicted))
     _tell(done, about, input_range)
     show_files([out])
+
+
+def _require_method_for(model: Operator, method: str) -> None:
+    """Name the methods of the command line where the library would name its functions."""
+    if method != "exact" or model.dt is None:
+        return
+    try:
+        model.inverse()
+    except hyst.NotInvertibleError as refusal:
+        kinds = {type(each) for each in leaves_of(model)}
+        if hyst.RateDependentPrandtlIshlinskii in kinds:
+            raise hyst.NotInvertibleError(
+                "a model whose thresholds follow the rate of its input has no exact inverse; "
+                "choose --method trajectory (the whole reference known), preview (the next "
+                "samples), sample-exact or explicit"
+            ) from refusal
+        raise
 
 
 def _input_range(

@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import hyst
-from hyst.cli.arguments import InputColumn, ModelFile, SampleRate, positive, require_same_unit
+from hyst.cli.arguments import (
+    InputColumn,
+    ModelFile,
+    SampleRate,
+    require_same_unit,
+    sample_time_known,
+)
 from hyst.cli.console import note, show_files
 
 if TYPE_CHECKING:
@@ -36,8 +42,7 @@ def simulate(
 ) -> None:
     """Compute the output of a model for an input, sample by sample."""
     model, about = hyst.models.load_described(model_file)
-    if rate is not None:
-        model.require_sample_time(1.0 / positive(rate, "rate"))
+    sample_time_known(model, data, rate, "the record")
     u, _, unit = hyst.io.read_column(data, input_column)
     require_same_unit(unit, about.input_unit, "the input")
     y = _delayed(model(u), about.delay if with_delay else 0)

@@ -6,6 +6,7 @@ from hyst.io.formats import read_table
 from hyst.io.header import split_unit
 from hyst.io.reading import read_column, read_record
 from hyst.io.table import Table
+from hyst.io.time_step import read_time_step
 from hyst.io.writing import join_unit, write_columns
 
 __all__ = [
@@ -14,6 +15,7 @@ __all__ = [
     "read_column",
     "read_record",
     "read_table",
+    "read_time_step",
     "split_unit",
     "write_columns",
 ]
