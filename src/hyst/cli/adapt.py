@@ -106,9 +106,7 @@ def adapt(
     with at_work("estimating") as say:
         trajectory = estimator.run(record, max(1, record.samples // _ROWS))
         say("figure")
-        units = units_of_plays(estimator.model, about.input_unit, about.output_unit)
-        heading = _HEADING.format(data.name)
-        picture = hyst.report.draw_estimates({"": trajectory}, {}, heading, units)
+        picture = _picture(estimator.model, about, trajectory, _HEADING.format(data.name))
     names = ("model.json", "estimator.json", "parameters.csv", "parameters.png")
     with hyst.files.replacing_files(folder) as temporary:
         about = replace(about, dt=record.dt)
@@ -126,6 +124,16 @@ def _refuse_options_of_a_start(resume: Path, *given: bool) -> None:
             f"{resume} has its own memory, spread and maps; leave out --memory, --spread and "
             "--estimate-maps with --resume"
         )
+
+
+def _picture(
+    model: hyst.operators.Operator,
+    about: hyst.operators.ModelDescription,
+    trajectory: hyst.online.Trajectory,
+    heading: str,
+) -> bytes:
+    units = units_of_plays(model, about.input_unit, about.output_unit)
+    return hyst.report.draw_estimates({"": trajectory}, {}, heading, units)
 
 
 def _resumed(path: Path) -> hyst.online.JointEstimator:
