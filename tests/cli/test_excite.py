@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import hyst
 from hyst.cli import main
@@ -85,3 +88,24 @@ def test_every_kind_is_drawn_without_a_warning(tmp_path: Path) -> None:
             == 0
         )
         assert out.with_suffix(".png").exists()
+
+
+def test_identify_averages_periods(tmp_path: Path) -> None:
+    u = np.tile(np.random.default_rng(4).normal(size=1000), 5).astype(np.float64)
+    y: NDArray[np.float64] = 2.0 * np.convolve(u, 0.5 ** np.arange(1, 40))[: u.size]
+    y += 0.4 * np.random.default_rng(5).normal(size=u.size)
+    data, out = str(tmp_path / "data.csv"), tmp_path / "out"
+    hyst.io.write_columns(data, ["u", "y"], (u, y))
+    arguments = ["--input", "u", "--output", "y", "--rate", "1000", "--period", "1000"]
+    arguments += ["--family", "hammerstein", "--hysteresis", "linear", "-o", str(out)]
+    assert main(["identify", data, *arguments]) == 0
+    told = json.loads((out / "metrics.json").read_text(encoding="utf-8"))
+    # Four periods averaged halve the noise; 1000 samples tell its size to 2.2 %, four times that.
+    assert _found(told, "noise_rms") == pytest.approx(0.2, rel=0.09)
+
+
+def _found(tree: dict[str, Any], name: str) -> Any:
+    if name in tree:
+        return tree[name]
+    branches = [_found(each, name) for each in tree.values() if isinstance(each, dict)]
+    return next((each for each in branches if each is not None), None)

@@ -11,6 +11,7 @@ import typer
 import hyst
 from hyst.cli.arguments import InputColumn, numbers, whole_or_auto
 from hyst.cli.console import at_work, show_files, show_table
+from hyst.identification.hammerstein import average_periods
 
 Data = Annotated[
     list[Path], typer.Argument(metavar="DATA", show_default=False, help="Measured records.")
@@ -72,6 +73,14 @@ FirOrder = Annotated[
 StateOrder = Annotated[
     str, typer.Option(metavar="N|auto", help="Of hammerstein: order of the linear dynamics.")
 ]
+Period = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        show_default=False,
+        help="Of hammerstein: samples of a period of the drive; all but the first are averaged.",
+    ),
+]
 SignalToNoise = Annotated[
     float, typer.Option(help="Of ramberg-osgood with slopes: what a step must be over its noise.")
 ]
@@ -114,6 +123,7 @@ def identify(
     hysteresis: Hysteresis = "mpi",
     fir_order: FirOrder = "auto",
     state_order: StateOrder = "auto",
+    period: Period = None,
     validate: Validate = None,
     input_label: InputLabel = None,
     output_label: OutputLabel = None,
@@ -131,9 +141,13 @@ def identify(
     options["signal_to_noise"] = signal_to_noise
     options |= {"spacing": spacing, "record_weights": _numbers_or_word(record_weights)}
     options |= {"hysteresis": hysteresis, "allow_unconverged": allow_unconverged}
+    options["period"] = period
     with at_work("identifying") as say:
         say("reading")
         records = [_read(path, how_to_read, labels) for path in data]
+        if period is not None:
+            # The report shows what was identified from; averaging once more changes nothing.
+            records = [average_periods(record, period) for record in records]
         validation = [_read(path, how_to_read, labels) for path in validate or []]
         found = hyst.identify(
             records, family=family, validation=validation, progress=say, **options

@@ -12,7 +12,7 @@ from hyst.identification.data import require_same_units
 from hyst.identification.hammerstein.from_options import (
     HAMMERSTEIN,
     identify_with_dynamics,
-    require_known_hysteresis,
+    require_usable,
 )
 from hyst.identification.identified import Identified
 from hyst.identification.options import Options, as_radii, as_rule
@@ -40,6 +40,7 @@ def identify(
     hysteresis: str = "mpi",
     fir_order: int | Literal["auto"] = "auto",
     state_order: int | Literal["auto"] = "auto",
+    period: int | None = None,
     validation: Record | Sequence[Record] = (),
     max_iterations: int = 200,
     allow_unconverged: bool = False,
@@ -96,6 +97,9 @@ def identify(
         ``gpi``, ``mpi`` or ``ramberg-osgood``) and linear dynamics behind it: the last lag of the
         first step and the number of states, or ``"auto"``. The result is an
         ``IdentifiedHammerstein``; ``"auto"`` plays are 4.
+    period
+        Only with ``family="hammerstein"`` and a periodic drive: samples of a period. All periods
+        but the first are averaged, and the average identified from.
     validation
         Records to judge the model by; they do not take part in the fit.
     max_iterations
@@ -131,7 +135,7 @@ def identify(
     say = progress or _silent
     given, judged = _listed(records), _listed(validation)
     require_same_units((*given, *judged))
-    require_known_hysteresis(hysteresis)
+    require_usable(family, hysteresis, period)
     with threadpool_limits(1, user_api="blas"):
         # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
         if family == HAMMERSTEIN:
@@ -145,6 +149,7 @@ def identify(
                 weights=as_rule(weights),
                 delay=delay,
                 start=start,
+                period=period,
                 validation=judged,
                 limits=(max_iterations, allow_unconverged),
                 say=say,

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import textwrap
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -211,3 +213,34 @@ def test_options_that_name_nothing_are_refused_whatever_the_family() -> None:
         for family in ("pi", "hammerstein"):
             with pytest.raises(InputError, match=f"start is {start!r}; give a whole number"):
                 hyst.identify(record, family=family, start=start)  # type: ignore[arg-type]
+
+
+def test_periods_are_averaged() -> None:
+    u = multisine(DT, 3000, amplitude=10.0, periods=5).u
+    clean = (G @ PI)(u)
+    noise = 0.05 * clean.std()
+    record = Record(u, clean + noise * np.random.default_rng(2).normal(size=u.size), DT)
+    found = identified(record, hysteresis="pi", plays=3, period=3000)
+    # Four periods are left: half the noise; 3000 samples tell its size to 1.3 %, four times that.
+    assert found.noise_rms == pytest.approx(noise / 2.0, rel=0.052)
+    assert np.abs(pole_errors(found)).max() < 4.0
+    assert (found.model(u) - clean)[3000:].std() < 0.2 * found.noise_rms
+
+
+def test_a_period_that_cannot_be_used_is_refused() -> None:
+    record = record_of(PI, 0.01)
+    with pytest.raises(InputError, match="does not repeat after 1000 samples"):
+        identified(record, period=1000)
+    with pytest.raises(InputError, match="leave out start"):
+        identified(record, period=1000, start=5)
+    with pytest.raises(InputError, match="family 'pi' averages none"):
+        hyst.identify(record, family="pi", period=1000)
+
+
+def test_the_example_of_the_documentation_runs() -> None:
+    text = (Path(__file__).parents[3] / "docs" / "hammerstein.md").read_text(encoding="utf-8")
+    block = text[text.index("    import numpy as np, hyst") :].split("\n\n**")[0]
+    names: dict[str, object] = {}
+    exec(textwrap.dedent(block), names)
+    assert isinstance(names["found"], IdentifiedHammerstein)
+    assert names["found"].poles == pytest.approx([0.5], abs=0.01)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.errors import InputError
+from hyst.identification.hammerstein.best_linear_approximation import average_periods
 from hyst.identification.hammerstein.front import FRONTS, FrontOptions
 from hyst.identification.hammerstein.identification import HammersteinOptions, identify_hammerstein
 from hyst.identification.hammerstein.identified_hammerstein import IdentifiedHammerstein
@@ -30,6 +31,7 @@ def identify_with_dynamics(
     weights: str,
     delay: int | str,
     start: int | Literal["auto"],
+    period: int | None,
     validation: Record | Sequence[Record],
     limits: tuple[int, bool],
     say: Callable[[str], None],
@@ -42,6 +44,8 @@ def identify_with_dynamics(
         As of ``identify``; ``knots`` may be the places of the knots of ``gpi``, too.
     orders
         ``fir_order`` and ``state_order``.
+    period
+        Samples of a period of the drive, to average the periods; or None.
     limits
         ``max_iterations`` and ``allow_unconverged``.
     say
@@ -52,6 +56,8 @@ def identify_with_dynamics(
     InputError, NotIdentifiableError, SolverError
         As ``identify_hammerstein``.
     """
+    if period is not None:
+        records, start = averaged(records, period, start)
     count = AUTOMATIC_PLAYS if plays == "auto" else _whole(plays, "plays", 1, _MOST_PLAYS)
     front = FrontOptions(
         family=hysteresis,
@@ -73,19 +79,56 @@ def identify_with_dynamics(
     return identify_hammerstein(records, options, judged, say)
 
 
-def require_known_hysteresis(hysteresis: str) -> None:
-    """Refuse a hysteresis that no family has.
+def averaged(
+    records: Record | Sequence[Record], period: int, start: int | Literal["auto"]
+) -> tuple[tuple[Record, ...], int]:
+    """Average the periods of records, and give the first sample to use then.
 
     Parameters
     ----------
-    hysteresis
+    records
+        Of periodic drives of one period.
+    period
+        Its samples.
+    start
+        As of ``identify``; only ``"auto"`` makes sense.
+
+    Returns
+    -------
+    tuple of Record
+        Two equal periods each.
+    int
+        Where the second begins: the first is its past, of hysteresis and dynamics.
+
+    Raises
+    ------
+    InputError
+        If a record is not periodic or has fewer than two periods, or a start is given.
+    """
+    if start != "auto":
+        raise InputError(f"start is {start!r} and period {period!r}; leave out start, it is known")
+    given = (records,) if isinstance(records, Record) else tuple(records)
+    return tuple(average_periods(record, period) for record in given), int(period)
+
+
+def require_usable(family: str, hysteresis: str, period: int | None) -> None:
+    """Refuse options of this family that name nothing, or that another family does not take.
+
+    Parameters
+    ----------
+    family, hysteresis, period
         As of ``identify``.
 
     Raises
     ------
     InputError
-        If it is not known.
+        If the hysteresis is not known, or there is a period for another family.
     """
+    if period is not None and family != HAMMERSTEIN:
+        raise InputError(
+            f"period is {period}, but family {family!r} averages none; use hammerstein, or give "
+            "average_periods(record, period) as the record"
+        )
     if hysteresis not in FRONTS:
         raise InputError(f"hysteresis is {hysteresis!r}; choose one of {', '.join(FRONTS)}")
 

@@ -125,7 +125,18 @@ def _order(order: int | str, values: Array, noise: float, half: int) -> int:
 
 
 def as_state_order(order: int | str) -> int:
-    """Give a number of states that was asked for, or refuse what is none."""
+    """Give a number of states that was asked for.
+
+    Parameters
+    ----------
+    order
+        As of ``realize``, but not ``"auto"``.
+
+    Raises
+    ------
+    InputError
+        If it is no whole number from 1 on.
+    """
     if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 1:
         raise InputError(f"state_order is {order!r}; give a number of states or 'auto'")
     return int(order)
