@@ -24,13 +24,15 @@ class Trace:
     """A simulated record.
 
     ``regimes`` holds for every sample which branch each play and each dead-zone took;
-    ``rounding`` bounds what rounding may have moved an output computed in another order.
+    ``rounding`` bounds what rounding may have moved an output computed in another order, and
+    ``memory_rounding`` a memory.
     """
 
     y: Array
     memory: Array
     regimes: tuple[tuple[int, ...], ...]
     rounding: float
+    memory_rounding: float = 0.0
 
 
 def play(u: Array, r: float, z: float) -> tuple[Array, list[int]]:
@@ -96,8 +98,8 @@ def simulate(model: dict[str, Any], u: Sequence[float] | Array) -> Trace:
             passed.y,
             np.concatenate([trace.memory, passed.memory]),
             tuple(a + b for a, b in zip(trace.regimes, passed.regimes, strict=True)),
-            # The input is exact, and its rounding stays 0, whatever the slope.
-            passed.rounding + (slope * trace.rounding if trace.rounding else 0.0),
+            passed.rounding + slope * trace.rounding,
+            max(trace.memory_rounding, trace.rounding),  # clamping moves nothing further apart
         )
     return trace
 
@@ -105,6 +107,11 @@ def simulate(model: dict[str, Any], u: Sequence[float] | Array) -> Trace:
 def has_twin(model: dict[str, Any]) -> bool:
     """Tell whether all parts of a model have a reference implementation here."""
     return all(stage["kind"] in _SIMULATE for stage in flat(model))
+
+
+def jumps_behind_rounding(model: dict[str, Any]) -> bool:
+    """A dead-zone by direction jumps, so a rounded input may put it on the other side."""
+    return any(stage.get("variant") == "by-direction" for stage in flat(model)[1:])
 
 
 def flat(model: dict[str, Any]) -> list[dict[str, Any]]:
