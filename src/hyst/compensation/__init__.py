@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from hyst.compensation.compensation import Compensation
-from hyst.compensation.invert_trajectory import invert_trajectory
+from hyst.compensation.trajectory_inversion import invert_trajectory
 
 __all__ = ["Compensation", "invert_trajectory"]

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from hyst.signals.design import design
 from hyst.signals.drive import Drive, Limits
+from hyst.signals.drive_design import design
+from hyst.signals.excitation_order import Persistence, persistence
 from hyst.signals.loop_metrics import hysteresis_percent, loop_area
 from hyst.signals.metrics import Metrics, error_metrics
-from hyst.signals.multisine import multisine
+from hyst.signals.multisines import multisine
 from hyst.signals.noise import estimate_noise, suggest_dead_band
-from hyst.signals.persistence import Persistence, persistence
 from hyst.signals.record import Record
-from hyst.signals.reversals import reversals
 from hyst.signals.sequences import decaying_triangle, forc, prbs, staircase, triangle
-from hyst.signals.swept_sine import swept_sine
+from hyst.signals.swept_sines import swept_sine
+from hyst.signals.turning_points import reversals
 from hyst.signals.units import units_differ
 
 __all__ = [

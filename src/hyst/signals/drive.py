@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
-from hyst.signals.persistence import Persistence, persistence
+from hyst.signals.excitation_order import Persistence, persistence
 from hyst.signals.vector import finite_vector
 
 Array = NDArray[np.float64]

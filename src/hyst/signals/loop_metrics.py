@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hyst.errors import InputError
 from hyst.signals.noise import suggest_dead_band
-from hyst.signals.reversals import reversals
+from hyst.signals.turning_points import reversals
 from hyst.signals.vector import finite_vector, same_length
 
 Branch = tuple[NDArray[np.float64], NDArray[np.float64]]

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from hyst.identification.hammerstein.best_linear_approximation import (
+from hyst.identification.hammerstein.distortion_levels import (
     BestLinearApproximation,
     average_periods,
     best_linear_approximation,

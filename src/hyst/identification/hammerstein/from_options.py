@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.errors import InputError
-from hyst.identification.hammerstein.best_linear_approximation import average_periods
+from hyst.identification.hammerstein.distortion_levels import average_periods
 from hyst.identification.hammerstein.front import FRONTS, FrontOptions
 from hyst.identification.hammerstein.identification import HammersteinOptions, identify_hammerstein
 from hyst.identification.hammerstein.identified_hammerstein import IdentifiedHammerstein

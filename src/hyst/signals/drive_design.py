@@ -7,9 +7,9 @@ from collections.abc import Mapping
 
 from hyst.errors import InputError
 from hyst.signals.drive import Drive
-from hyst.signals.multisine import multisine
+from hyst.signals.multisines import multisine
 from hyst.signals.sequences import forc, prbs, staircase, triangle
-from hyst.signals.swept_sine import swept_sine
+from hyst.signals.swept_sines import swept_sine
 
 _MULTISINES: dict[str, dict[str, str]] = {
     "multisine": {},
