@@ -25,3 +25,41 @@ def test_every_kind_has_a_random_source() -> None:
 def test_every_trait_is_declared_true_and_false(trait: str) -> None:
     declared = {getattr(each.traits(), trait) for each in EXAMPLES.values()}
     assert declared == {True, False}
+
+
+# Theory: memoryless, rate independent, return-point memory, congruent loops, monotone, invertible.
+# A trait that is not declared is not tested, so what must be declared is written down here.
+DECLARED = {
+    "play": "-RMCO-",
+    "stop": "-RMCO-",
+    "affine": "LRMCOI",
+    "affine falling": "LRMC-I",
+    "affine flat": "LRMCO-",
+    "dead-zone odd": "LRMCOI",
+    "dead-zone falling": "LRMC-I",
+    "dead-zone tent": "LRMC--",
+    "dead-zone by direction": "------",
+    "pi": "-RMCOI",
+    "pi wavy": "-RMCOI",
+    "pi without linear part": "-RMCO-",
+    "pi without plays": "LRMCOI",
+    "pi falling": "-RMC--",
+    "gpi": "-RMCOI",
+    "gpi behind a tent": "-R-C--",
+    "gpi without memory": "LRMCOI",
+    "mpi": "-RM-OI",
+    "mpi onto a tent": "-RM---",
+    "composition of two banks": "-RMCOI",
+    "gpi after pi": "-RM-OI",
+    "inverse of gpi": "-RM-OI",
+    "inverse of mpi": "-RMCOI",
+}
+
+
+@pytest.mark.parametrize("name", DECLARED)
+def test_what_holds_is_declared(name: str) -> None:
+    values = dataclasses.astuple(EXAMPLES[name].traits())
+    declared = "".join(
+        letter if value else "-" for letter, value in zip("LRMCOI", values, strict=True)
+    )
+    assert declared == DECLARED[name]
