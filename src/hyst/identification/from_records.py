@@ -132,8 +132,7 @@ def identify(
     >>> bool(np.abs(found.model(u) - true(u))[500:].max() < 1e-6)
     True
     """
-    say = progress or _silent
-    given, judged = _listed(records), _listed(validation)
+    say, given, judged = progress or _silent, _listed(records), _listed(validation)
     require_same_units((*given, *judged))
     require_usable(family, hysteresis, period)
     with threadpool_limits(1, user_api="blas"):
