@@ -1,0 +1,1 @@
+"""Robust control around a hysteresis: disturbance observer synthesis and closed-loop simulation."""
