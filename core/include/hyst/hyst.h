@@ -18,6 +18,7 @@
 #include "hyst/radius_estimator.h"
 #include "hyst/rate_dependent_prandtl_ishlinskii.h"
 #include "hyst/real.h"
+#include "hyst/tracking_controller.h"
 #include "hyst/ud_factor.h"
 
 #endif
