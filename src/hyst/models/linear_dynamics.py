@@ -10,7 +10,6 @@ from typing import Any, Self, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst import _engine
 from hyst.errors import InputError, NotInvertibleError
 from hyst.models.linear_properties import answers_after, poles_of, values_at, zeros_of
 from hyst.models.matrices import checked_matrices
@@ -19,6 +18,7 @@ from hyst.operators.base import Operator
 from hyst.operators.checks import as_constants, as_number, refuse_overflow
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries, register
+from hyst.operators.stage_sink import StageSink
 from hyst.operators.traits import Traits
 
 Array = NDArray[np.float64]
@@ -306,7 +306,7 @@ class LinearDynamics(Operator):
         """
         return cls(**entries(data, ("dt", "A", "B", "C", "D"), ("delay", "x0")))
 
-    def append_to(self, chain: _engine.Chain) -> None:
+    def append_to(self, chain: StageSink) -> None:
         """Append this stage to a chain of the engine."""
         columns = self.A.T.ravel().tolist()
         chain.add_state_space(self.delay, columns, self.B.tolist(), self.C.tolist(), self.D)

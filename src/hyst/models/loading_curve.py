@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from hyst import _engine
 from hyst.errors import InputError, NotInvertibleError
 from hyst.operators.parameters import Parameters
+from hyst.operators.stage_sink import StageSink
 
 Array = NDArray[np.float64]
 
@@ -99,7 +100,7 @@ class LoadingCurve(ABC):
         """
 
     @abstractmethod
-    def append_to(self, chain: _engine.Chain, memory: ReversalMemory, inverse: bool) -> None:
+    def append_to(self, chain: StageSink, memory: ReversalMemory, inverse: bool) -> None:
         """Append the operator of this curve, or of its inverse, to a chain of the engine.
 
         ``chain`` is what to append to, ``memory`` how reversals are remembered, ``inverse`` whether
@@ -235,7 +236,7 @@ class InverseCurve(LoadingCurve):
             raise InputError("an inverse curve has the entries 'kind' and 'curve'")
         return cls(curve_from_dict(data["curve"]))
 
-    def append_to(self, chain: _engine.Chain, memory: ReversalMemory, inverse: bool) -> None:
+    def append_to(self, chain: StageSink, memory: ReversalMemory, inverse: bool) -> None:
         """Append the operator of this curve, or of the curve it inverts, to ``chain``.
 
         ``memory`` says how reversals are remembered; ``inverse`` asks for the inverse's inverse.

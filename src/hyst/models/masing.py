@@ -9,7 +9,6 @@ from typing import Any, Literal, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst import _engine
 from hyst.errors import InputError
 from hyst.models.loading_curve import (
     InverseCurve,
@@ -21,6 +20,7 @@ from hyst.operators.base import Operator
 from hyst.operators.checks import as_number
 from hyst.operators.parameters import Parameters
 from hyst.operators.registry import entries, register
+from hyst.operators.stage_sink import StageSink
 from hyst.operators.traits import Traits
 
 Array = NDArray[np.float64]
@@ -240,7 +240,7 @@ class MasingOperator(Operator):
         given = entries(data, ("curve", "memory"), ("depth", "dead_band"))
         return cls(curve=curve_from_dict(given.pop("curve")), **given)
 
-    def append_to(self, chain: _engine.Chain) -> None:
+    def append_to(self, chain: StageSink) -> None:
         """Append this stage to a chain of the engine."""
         self.curve.append_to(chain, self._memory(), inverse=False)
 

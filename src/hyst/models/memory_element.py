@@ -10,13 +10,13 @@ from typing import Any, Literal, Self, final
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst import _engine
 from hyst.errors import InputError
 from hyst.models.memory_function import MemoryFunction
 from hyst.operators.base import Operator
 from hyst.operators.checks import as_number
 from hyst.operators.parameters import Parameters
 from hyst.operators.registry import entries, register
+from hyst.operators.stage_sink import StageSink
 from hyst.operators.traits import Traits
 
 Array = NDArray[np.float64]
@@ -110,7 +110,7 @@ class _Element(Operator):
     def _is_inverse(self) -> bool:
         """Tell whether the output is u."""
 
-    def append_to(self, chain: _engine.Chain) -> None:
+    def append_to(self, chain: StageSink) -> None:
         """Append this stage to a chain of the engine."""
         chain.add_memory_element(
             self.function.form,

@@ -9,7 +9,6 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst import _engine
 from hyst.errors import InputError
 from hyst.models.loading_curve import LoadingCurve, ReversalMemory, refuse_flat, register_curve
 from hyst.operators.checks import (
@@ -20,6 +19,7 @@ from hyst.operators.checks import (
 )
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries
+from hyst.operators.stage_sink import StageSink
 
 Array = NDArray[np.float64]
 
@@ -189,7 +189,7 @@ class PiecewiseLinear(LoadingCurve):
         """
         return cls(**entries(data, required=("p", "r", "p0")))
 
-    def append_to(self, chain: _engine.Chain, memory: ReversalMemory, inverse: bool) -> None:
+    def append_to(self, chain: StageSink, memory: ReversalMemory, inverse: bool) -> None:
         """Append the operator of this curve to ``chain``, with ``memory``, or its ``inverse``."""
         chain.add_masing(
             "plays",

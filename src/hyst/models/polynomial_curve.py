@@ -9,12 +9,12 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst import _engine
 from hyst.errors import InputError
 from hyst.models.loading_curve import InverseCurve, LoadingCurve, ReversalMemory, register_curve
 from hyst.operators.checks import as_constants
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries
+from hyst.operators.stage_sink import StageSink
 
 Array = NDArray[np.float64]
 
@@ -116,7 +116,7 @@ class PolynomialCurve(LoadingCurve):
         """
         return cls(**entries(data, required=("coefficients",)))
 
-    def append_to(self, chain: _engine.Chain, memory: ReversalMemory, inverse: bool) -> None:
+    def append_to(self, chain: StageSink, memory: ReversalMemory, inverse: bool) -> None:
         """Append the operator of this curve to ``chain``, with ``memory``, or its ``inverse``."""
         # A little below the least slope: a bracket must not fail by rounding.
         least = 0.99 * float(self._slope(self._extremes_of_slope()).min())

@@ -9,12 +9,12 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst import _engine
 from hyst.errors import InputError
 from hyst.models.loading_curve import InverseCurve, LoadingCurve, ReversalMemory, register_curve
 from hyst.operators.checks import as_number
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries
+from hyst.operators.stage_sink import StageSink
 
 Array = NDArray[np.float64]
 
@@ -127,7 +127,7 @@ class PowerLaw(LoadingCurve):
         """
         return cls(**entries(data, required=("c1", "c2", "c3")))
 
-    def append_to(self, chain: _engine.Chain, memory: ReversalMemory, inverse: bool) -> None:
+    def append_to(self, chain: StageSink, memory: ReversalMemory, inverse: bool) -> None:
         """Append the operator of this curve to ``chain``, with ``memory``, or its ``inverse``."""
         chain.add_masing(
             "power-law",

@@ -9,7 +9,6 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst import _engine
 from hyst.errors import InputError, NotInvertibleError
 from hyst.operators.base import Operator
 from hyst.operators.checks import (
@@ -21,6 +20,7 @@ from hyst.operators.checks import (
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries, register
+from hyst.operators.stage_sink import StageSink
 from hyst.operators.traits import Traits
 
 Array = NDArray[np.float64]
@@ -192,7 +192,7 @@ class PrandtlIshlinskii(Operator):
         """
         return cls(**entries(data, required=("p", "r", "p0"), optional=("z0",)))
 
-    def append_to(self, chain: _engine.Chain) -> None:
+    def append_to(self, chain: StageSink) -> None:
         """Append this stage to a chain of the engine."""
         chain.add_pi(self.p0, self.p.tolist(), self.r.tolist())
 

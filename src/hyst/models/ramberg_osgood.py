@@ -10,7 +10,6 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst import _engine
 from hyst.errors import InputError
 from hyst.models.masing import (
     DEPTH,
@@ -26,6 +25,7 @@ from hyst.operators.base import Operator
 from hyst.operators.checks import as_number
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries, register
+from hyst.operators.stage_sink import StageSink
 from hyst.operators.traits import Traits
 
 Array = NDArray[np.float64]
@@ -276,7 +276,7 @@ class RambergOsgood(Operator):
         """
         return cls(**entries(data, ("c1", "c2", "c3", "memory"), ("depth", "dead_band")))
 
-    def append_to(self, chain: _engine.Chain) -> None:
+    def append_to(self, chain: StageSink) -> None:
         """Append this stage to a chain of the engine."""
         self._as_masing().append_to(chain)
 

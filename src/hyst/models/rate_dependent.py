@@ -9,7 +9,6 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst import _engine
 from hyst.errors import InputError, NotInvertibleError
 from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii
 from hyst.models.rate_curve import RateCurve
@@ -24,6 +23,7 @@ from hyst.operators.checks import (
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries, register
+from hyst.operators.stage_sink import StageSink
 from hyst.operators.traits import Traits
 
 Array = NDArray[np.float64]
@@ -303,7 +303,7 @@ class RateDependentPrandtlIshlinskii(Operator):
         curve = RateCurve(given.pop("beta"), **{key: given.pop(key, ()) for key in further})
         return cls(beta=curve, **given)
 
-    def append_to(self, chain: _engine.Chain) -> None:
+    def append_to(self, chain: StageSink) -> None:
         """Append this stage to a chain of the engine."""
         curve = self.rate_curve
         chain.add_rate_dependent_pi(

@@ -10,7 +10,6 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst import _engine
 from hyst.errors import InputError, NotInvertibleError
 from hyst.models.linear_dynamics import LinearDynamics
 from hyst.models.realizations import cascade, sections_of
@@ -18,6 +17,7 @@ from hyst.operators.base import Operator
 from hyst.operators.checks import as_constants, as_number, refuse_overflow
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries, register
+from hyst.operators.stage_sink import StageSink
 from hyst.operators.traits import Traits
 
 Array = NDArray[np.float64]
@@ -185,6 +185,6 @@ class SecondOrderSections(Operator):
         """
         return cls(**entries(data, ("dt", "coefficients")))
 
-    def append_to(self, chain: _engine.Chain) -> None:
+    def append_to(self, chain: StageSink) -> None:
         """Append this stage to a chain of the engine."""
         chain.add_sections(self.coefficients.ravel().tolist())

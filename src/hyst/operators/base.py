@@ -18,6 +18,7 @@ from hyst.operators.engine_name import EngineName, as_engine, as_threads
 from hyst.operators.model_file import ModelDescription, write_model
 from hyst.operators.parameters import Parameters
 from hyst.operators.registry import compose
+from hyst.operators.stage_sink import StageSink
 from hyst.operators.stepper import Stepper
 from hyst.operators.traits import Traits
 
@@ -123,8 +124,8 @@ class Operator(ABC):
         """
 
     @abstractmethod
-    def append_to(self, chain: _engine.Chain) -> None:
-        """Append the stages of this operator to a chain of the engine.
+    def append_to(self, chain: StageSink) -> None:
+        """Append the stages of this operator to a chain of the engine, or to what records them.
 
         Parameters
         ----------

@@ -10,11 +10,11 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst import _engine
 from hyst.errors import InputError
 from hyst.operators.base import Operator
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries, operator_from_dict, register
+from hyst.operators.stage_sink import StageSink
 from hyst.operators.traits import Traits
 
 Array = NDArray[np.float64]
@@ -110,7 +110,7 @@ class Chained(Operator):
             constant *= stage.lipschitz_constant()
         return constant
 
-    def append_to(self, chain: _engine.Chain) -> None:
+    def append_to(self, chain: StageSink) -> None:
         """Append all stages in the order the signal passes them."""
         for stage in self.stages:
             stage.append_to(chain)

@@ -9,13 +9,13 @@ from typing import Any, Literal, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst import _engine
 from hyst.errors import InputError, NotInvertibleError
 from hyst.operators.base import Operator
 from hyst.operators.checks import as_constants, refuse_overflow
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries, register
+from hyst.operators.stage_sink import StageSink
 from hyst.operators.traits import Traits
 
 Array = NDArray[np.float64]
@@ -215,7 +215,7 @@ class DeadZone(Operator):
         """
         return cls(**entries(data, required=("weights", "thresholds", "variant")))
 
-    def append_to(self, chain: _engine.Chain) -> None:
+    def append_to(self, chain: StageSink) -> None:
         """Append this stage to a chain of the engine."""
         chain.add_dead_zone(
             self.weights.tolist(), self.thresholds.tolist(), self.variant == "by-direction"
