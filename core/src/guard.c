@@ -1,12 +1,5 @@
-/* The guarded step: the only place of the core that looks for infinities and NaNs. */
+/* The guarded step: infinities and NaNs go no further than where they come up. */
 #include "hyst/guard.h"
-
-int hyst_is_finite(hyst_real value)
-{
-    /* inf - inf and NaN - NaN are NaN, and a NaN is not equal to zero. */
-    const hyst_real difference = value - value;
-    return difference >= HYST_REAL(0.0) && difference <= HYST_REAL(0.0);
-}
 
 hyst_real hyst_guarded_step(const hyst_chain *chain, hyst_real *state, hyst_guard *guard,
                             hyst_real u)

@@ -1,5 +1,5 @@
 /* The set of models that can be inverted, and the way back into it. */
-#include "hyst/guard.h"
+#include "hyst/finite.h"
 #include "hyst/isotonic.h"
 #include "hyst/joint_parts.h"
 #include "hyst/play.h"

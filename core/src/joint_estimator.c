@@ -1,7 +1,7 @@
 /* Joint estimation of radii, weights, offset and maps: one sample. */
 #include "hyst/joint_estimator.h"
 
-#include "hyst/guard.h"
+#include "hyst/finite.h"
 #include "hyst/joint_parts.h"
 #include "hyst/play.h"
 #include "hyst/ud_factor.h"

@@ -1,7 +1,7 @@
 /* Sampled linear dynamics, one sample at a time. */
 #include "hyst/linear_dynamics.h"
 
-#include "hyst/guard.h"
+#include "hyst/finite.h"
 
 /* Put u at the end of the delay line. Handed on from end to start, because a compiler would turn a
  * shift from start to end into a call of memmove, which a target need not have. */

@@ -5,6 +5,8 @@
  * output is known to be finite. */
 #include "hyst/masing.h"
 
+#include "hyst/finite.h"
+
 typedef struct {
     hyst_real input;
     hyst_real output;
@@ -24,12 +26,6 @@ static void keep(hyst_real *state, size_t index, point reversal)
     hyst_real *place = state + HYST_MASING_STACK + 2 * index;
     place[0] = reversal.input;
     place[1] = reversal.output;
-}
-
-static int is_finite(hyst_real value)
-{
-    const hyst_real difference = value - value;
-    return difference >= HYST_REAL(0.0) && difference <= HYST_REAL(0.0);
 }
 
 size_t hyst_masing_state_length(const hyst_masing *model)
@@ -136,7 +132,7 @@ static hyst_real nested(const hyst_masing *model, hyst_real *state, hyst_real in
         count = left_open(state, count, rising, input);
     }
     output = branch(model, count > 0, count > 0 ? point_at(state, count - 1) : origin, input);
-    if (!is_finite(output)) {
+    if (!hyst_is_finite(output)) {
         forget(state, hyst_masing_reversals(model, state), kept);
         return output;
     }
@@ -183,7 +179,7 @@ static hyst_real of_last_reversal(const hyst_masing *model, hyst_real *state, hy
     hyst_real output;
     if (!goes_back) {
         output = branch(model, has_start, start, input);
-        if (is_finite(output)) {
+        if (hyst_is_finite(output)) {
             output = not_against(rising, output, extreme.output);
             state[HYST_MASING_INPUT] = input;
             state[HYST_MASING_OUTPUT] = output;
@@ -194,7 +190,7 @@ static hyst_real of_last_reversal(const hyst_masing *model, hyst_real *state, hy
         return branch(model, has_start, start, input);
     }
     output = branch(model, 1, new_start, input);
-    if (!is_finite(output) || (output >= extreme.output && output <= extreme.output)) {
+    if (!hyst_is_finite(output) || (output >= extreme.output && output <= extreme.output)) {
         return output;
     }
     keep(state, 0, new_start);

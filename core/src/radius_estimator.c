@@ -1,7 +1,7 @@
 /* Radii of plays from the measured slope and one linear regression: one sample. */
 #include "hyst/radius_estimator.h"
 
-#include "hyst/guard.h"
+#include "hyst/finite.h"
 #include "hyst/isotonic.h"
 #include "hyst/ud_factor.h"
 

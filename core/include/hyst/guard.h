@@ -7,6 +7,7 @@
 #define HYST_GUARD_H
 
 #include "hyst/chain.h"
+#include "hyst/finite.h"
 #include "hyst/real.h"
 
 #ifdef __cplusplus
@@ -17,9 +18,6 @@ typedef struct {
     hyst_real y_last; /* what a bad sample is answered with; set it to a safe output at start */
     int fault;        /* 0, or 1 since the first bad sample */
 } hyst_guard;
-
-/* 1 for a finite number, 0 for an infinity or a NaN. */
-int hyst_is_finite(hyst_real value);
 
 hyst_real hyst_guarded_step(const hyst_chain *chain, hyst_real *state, hyst_guard *guard,
                             hyst_real u);

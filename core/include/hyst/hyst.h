@@ -4,6 +4,7 @@
 
 #include "hyst/chain.h"
 #include "hyst/dead_zone.h"
+#include "hyst/finite.h"
 #include "hyst/guard.h"
 #include "hyst/isotonic.h"
 #include "hyst/joint_estimator.h"
