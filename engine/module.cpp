@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "chain.hpp"
+#include "closed_loop_binding.hpp"
 #include "evaluation.hpp"
 #include "gradient.hpp"
 #include "gram.hpp"
@@ -228,6 +229,7 @@ NB_MODULE(_engine, module) {
     module.def("instruction_set", [] { return hyst::kernels().name; });
     module.def("use_instruction_set", &use_instruction_set, nb::arg("name"));
     module.def("stepper", &stepper, nb::arg("chain"), nb::arg("state"), nb::arg("y_safe"));
+    hyst::bind_closed_loop(module);
     hyst::bind_online_estimation(module);
     hyst::bind_rate_dependent_inversion(module);
     if (!hyst::register_stepper(module.ptr())) throw nb::python_error();

@@ -88,6 +88,50 @@ class Stepper:
     def clear_fault(self) -> None: ...
     def __call__(self, u: float, /) -> float: ...
 
+class TrackingController:
+    def __init__(
+        self,
+        a: Sequence[float],
+        b: Sequence[float],
+        c: Sequence[float],
+        d_ref: float,
+        d: float,
+        inverse: Chain,
+    ) -> None: ...
+    @property
+    def state_length(self) -> int: ...
+    def run(self, state: Array, y_ref: Array, y: Array, u: Array) -> int: ...
+
+class TrackingStepper:
+    def __init__(self, controller: TrackingController, state: Array) -> None: ...
+    @property
+    def state(self) -> Array: ...
+    @property
+    def fault(self) -> bool: ...
+    def clear_fault(self) -> None: ...
+    def __call__(self, y_ref: float, y: float) -> float: ...
+
+def run_continuous_loop(
+    step: Array,
+    delayed: bool,
+    inverse: Chain,
+    hysteresis: Chain,
+    inverse_state: Array,
+    hysteresis_state: Array,
+    inputs: Array,
+    outputs: Array,
+    limit: float,
+) -> tuple[str, int]: ...
+def run_sampled_loop(
+    step: Array,
+    controller: TrackingController,
+    hysteresis: Chain,
+    controller_state: Array,
+    hysteresis_state: Array,
+    inputs: Array,
+    outputs: Array,
+    limit: float,
+) -> tuple[str, int]: ...
 def play_gram(
     r: Sequence[float], z: Array, u: Array, y: Array, edges: Sequence[int], result: Array
 ) -> None: ...

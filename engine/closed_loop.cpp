@@ -1,0 +1,168 @@
+#include "closed_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hyst {
+namespace {
+
+bool within(double limit, double a, double b, double c, double d) {
+    // A NaN fails every comparison.
+    return std::fabs(a) <= limit && std::fabs(b) <= limit && std::fabs(c) <= limit &&
+           std::fabs(d) <= limit;
+}
+
+// step times z, column after column: the sums of all rows run side by side.
+class Product {
+public:
+    Product(std::size_t rows, std::size_t columns, const double *row_after_row)
+        : rows_(rows), columns_(columns), values_(rows * columns) {
+        for (std::size_t i = 0; i < rows; ++i) {
+            for (std::size_t j = 0; j < columns; ++j) {
+                values_[j * rows + i] = row_after_row[i * columns + j];
+            }
+        }
+    }
+    double at(std::size_t i, std::size_t j) const { return values_[j * rows_ + i]; }
+    void clear_and_add(double *sums, const double *z, std::size_t count) const {
+        std::fill_n(sums, rows_, 0.0);
+        for (std::size_t j = 0; j < count; ++j) add_column(sums, j, z[j]);
+    }
+    void add_column(double *sums, std::size_t j, double z) const {
+        const double *column = values_.data() + j * rows_;
+        for (std::size_t i = 0; i < rows_; ++i) sums[i] += column[i] * z;
+    }
+
+private:
+    std::size_t rows_, columns_;
+    std::vector<double> values_;
+};
+
+// v -> w through inverse and hysteresis, with states of its own for trials.
+class Actuator {
+public:
+    Actuator(const Chain &inverse, const Chain &hysteresis, std::vector<double> &inverse_state,
+             std::vector<double> &hysteresis_state)
+        : inverse_(inverse.view()), hysteresis_(hysteresis.view()), inverse_state_(inverse_state),
+          hysteresis_state_(hysteresis_state), inverse_trial_(inverse_state),
+          hysteresis_trial_(hysteresis_state) {}
+
+    double drive(double v) { return hyst_chain_step(&inverse_, inverse_state_.data(), v); }
+    double answer(double u) { return hyst_chain_step(&hysteresis_, hysteresis_state_.data(), u); }
+    // What the answer to v would be; the states stay as they are.
+    double trial(double v, double before) {
+        std::copy(inverse_state_.begin(), inverse_state_.end(), inverse_trial_.begin());
+        std::copy(hysteresis_state_.begin(), hysteresis_state_.end(), hysteresis_trial_.begin());
+        const double u = hyst_chain_step(&inverse_, inverse_trial_.data(), v);
+        return hyst_chain_step(&hysteresis_, hysteresis_trial_.data(), u + before);
+    }
+
+private:
+    hyst_chain inverse_, hysteresis_;
+    std::vector<double> &inverse_state_, &hysteresis_state_;
+    std::vector<double> inverse_trial_, hysteresis_trial_;
+};
+
+// Root of a function that rises from minus to plus infinity, by the Illinois method: the hysteresis
+// is piecewise smooth and Lipschitz, so secants close in quickly and the bracket never lets go.
+template <typename Function>
+bool rising_root(const Function &f, double start, double limit, double &root) {
+    double low = start, high = start, f_low = f(start), f_high = f_low;
+    if (!std::isfinite(f_low)) return false;
+    for (double width = 1e-3 * (1.0 + std::fabs(start)); f_low > 0.0; width *= 2.0) {
+        high = low, f_high = f_low;
+        low = start - width, f_low = f(low);
+        if (!(width < 2.0 * limit)) return false;
+    }
+    for (double width = 1e-3 * (1.0 + std::fabs(start)); f_high < 0.0; width *= 2.0) {
+        low = high, f_low = f_high;
+        high = start + width, f_high = f(high);
+        if (!(width < 2.0 * limit)) return false;
+    }
+    int side = 0;
+    for (int turn = 0; turn < 200 && f_low < 0.0 && f_high > 0.0; ++turn) {
+        const double tolerance = 4e-16 * (std::fabs(low) + std::fabs(high));
+        if (high - low <= tolerance) break;
+        // Secants stall on a function that is nearly a step; every fourth turn halves the bracket.
+        double v = turn % 4 == 3 ? 0.5 * (low + high)
+                                 : (low * f_high - high * f_low) / (f_high - f_low);
+        if (!(v > low && v < high)) v = 0.5 * (low + high);
+        const double value = f(v);
+        if (value < 0.0) {
+            low = v, f_low = value;
+            if (side < 0) f_high *= 0.5;
+            side = -1;
+        } else {
+            high = v, f_high = value;
+            if (value > 0.0 && side > 0) f_low *= 0.5;
+            side = 1;
+        }
+    }
+    root = f_high <= 0.0 || f_high < -f_low ? high : low;
+    return true;
+}
+
+}  // namespace
+
+LoopResult run_continuous_loop(std::size_t n, const double *step, bool delayed,
+                               const Chain &inverse, const Chain &hysteresis,
+                               std::vector<double> &inverse_state,
+                               std::vector<double> &hysteresis_state, const LoopSignals &signals,
+                               double limit) {
+    const Product product(n + 3, n + 3, step);
+    Actuator actuator(inverse, hysteresis, inverse_state, hysteresis_state);
+    std::vector<double> z(n + 2, 0.0), sums(n + 3, 0.0);
+    const double feedthrough = product.at(n, n + 2);  // of w to v
+    double w = 0.0, v_before = 0.0;
+    for (std::size_t k = 0; k < signals.samples; ++k) {
+        z[n] = signals.r[k], z[n + 1] = signals.noise[k];
+        product.clear_and_add(sums.data(), z.data(), n + 2);
+        const double before = signals.before[k], behind = signals.behind[k];
+        double v = sums[n];
+        if (feedthrough != 0.0 && delayed) {
+            v += feedthrough * w;
+        } else if (feedthrough != 0.0) {
+            const auto unbalance = [&](double trial) {
+                return trial - sums[n] - feedthrough * (actuator.trial(trial, before) + behind);
+            };
+            if (!rising_root(unbalance, v_before, limit, v)) return {LoopEnd::no_solution, k};
+        }
+        const double u = actuator.drive(v), eta = actuator.answer(u + before);
+        w = eta + behind;
+        product.add_column(sums.data(), n + 2, w);
+        if (!within(limit, v, u, eta, sums[n + 1])) return {LoopEnd::diverged, k};
+        signals.v[k] = v, signals.u[k] = u, signals.eta[k] = eta;
+        signals.y[k] = sums[n + 1], signals.d_hat[k] = sums[n + 2];
+        std::copy_n(sums.begin(), n, z.begin());
+        v_before = v;
+    }
+    return {LoopEnd::done, signals.samples};
+}
+
+LoopResult run_sampled_loop(std::size_t n, const double *step,
+                            const hyst_tracking_controller &controller, const Chain &hysteresis,
+                            std::vector<double> &controller_state,
+                            std::vector<double> &hysteresis_state, const LoopSignals &signals,
+                            double limit) {
+    const Product product(n + 1, n + 1, step);
+    const hyst_chain plant_hysteresis = hysteresis.view();
+    std::vector<double> z(n + 1, 0.0), sums(n + 1, 0.0);
+    double *inverse_state = controller_state.data() + controller.order;
+    for (std::size_t k = 0; k < signals.samples; ++k) {
+        double y = product.at(n, n) * z[n];
+        for (std::size_t j = 0; j < n; ++j) y += product.at(n, j) * z[j];
+        const double v = hyst_tracking_controller_linear(&controller, controller_state.data(),
+                                                         signals.r[k], y + signals.noise[k]);
+        const double u = hyst_chain_step(&controller.inverse, inverse_state, v);
+        const double eta = hyst_chain_step(&plant_hysteresis, hysteresis_state.data(),
+                                           u + signals.before[k]);
+        if (!within(limit, v, u, eta, y)) return {LoopEnd::diverged, k};
+        signals.v[k] = v, signals.u[k] = u, signals.eta[k] = eta, signals.y[k] = y;
+        z[n] = eta + signals.behind[k];
+        product.clear_and_add(sums.data(), z.data(), n + 1);
+        std::copy_n(sums.begin(), n, z.begin());
+    }
+    return {LoopEnd::done, signals.samples};
+}
+
+}  // namespace hyst

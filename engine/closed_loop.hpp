@@ -1,0 +1,45 @@
+// The loop of S1 Fig. 2 in one pass: linear blocks that are one state space, inverse, hysteresis.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "chain.hpp"
+
+namespace hyst {
+
+// What enters a loop and what comes out, N samples each.
+struct LoopSignals {
+    const double *r, *noise;          // reference, measurement noise
+    const double *before, *behind;    // disturbances before the hysteresis and behind it
+    double *v, *u, *eta, *y, *d_hat;  // eta: output of the hysteresis, behind not added
+    std::size_t samples;
+};
+
+enum class LoopEnd { done, diverged, no_solution };
+
+struct LoopResult {
+    LoopEnd end;
+    std::size_t samples;  // how many are good
+};
+
+// Controller, observer and plant sampled as one system whose inputs are held:
+//   [x+; v; y; d_hat] = step [x; r; noise; w],   u = inverse(v),   w = hysteresis(u + before) + behind
+// step: (n + 3) rows of n + 3, row after row. Where v depends on w of the same sample, that equation
+// is solved, or, with `delayed`, takes w of the sample before.
+// A loop whose |v|, |u|, |eta| or |y| passes `limit`, or is not a number, has diverged.
+LoopResult run_continuous_loop(std::size_t n, const double *step, bool delayed,
+                               const Chain &inverse, const Chain &hysteresis,
+                               std::vector<double> &inverse_state,
+                               std::vector<double> &hysteresis_state, const LoopSignals &signals,
+                               double limit);
+
+// A sampled controller around a plant [x+; y] = step [x; w], (n + 1) rows of n + 1. At sample k the
+// controller is given y before its new drive acts: feedthrough of the plant shows w_{k-1}.
+LoopResult run_sampled_loop(std::size_t n, const double *step,
+                            const hyst_tracking_controller &controller, const Chain &hysteresis,
+                            std::vector<double> &controller_state,
+                            std::vector<double> &hysteresis_state, const LoopSignals &signals,
+                            double limit);
+
+}  // namespace hyst

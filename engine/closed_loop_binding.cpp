@@ -1,0 +1,167 @@
+// Arguments are checked in Python; what is checked here is only that nothing is written outside an
+// array.
+#include "closed_loop_binding.hpp"
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "closed_loop.hpp"
+
+namespace nb = nanobind;
+
+namespace hyst {
+namespace {
+
+using Vector = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Signal = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Matrix = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Rows = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+void require(bool holds, const char *message) {
+    if (!holds) throw std::invalid_argument(message);
+}
+
+// The core's controller with the memory its constants live in. The chain is kept alive by Python.
+class Controller {
+public:
+    Controller(std::vector<double> a, std::vector<double> b, std::vector<double> c, double d_ref,
+               double d, const Chain &inverse)
+        : a_(std::move(a)), b_(std::move(b)), c_(std::move(c)) {
+        const std::size_t n = c_.size();
+        require(n <= HYST_LARGEST_ORDER && a_.size() == n * n && b_.size() == 2 * n,
+                "the matrices of the controller do not fit each other");
+        view_ = {n, a_.data(), b_.data(), c_.data(), {d_ref, d}, inverse.view()};
+    }
+    Controller(const Controller &) = delete;
+    Controller &operator=(const Controller &) = delete;
+
+    const hyst_tracking_controller &view() const { return view_; }
+    std::size_t state_length() const { return hyst_tracking_controller_state_length(&view_); }
+
+    // Index of the first sample that could not be answered, or -1.
+    std::ptrdiff_t run(Vector state, Signal y_ref, Signal y, Vector u) const {
+        const std::size_t samples = u.shape(0);
+        require(state.shape(0) == state_length(), "state has the wrong length");
+        require(y_ref.shape(0) == samples && y.shape(0) == samples, "lengths differ");
+        const nb::gil_scoped_release released;
+        hyst_guard guard = {0.0, 0};
+        for (std::size_t k = 0; k < samples; ++k) {
+            u(k) = hyst_guarded_tracking_step(&view_, state.data(), &guard, y_ref(k), y(k));
+            if (guard.fault != 0) return static_cast<std::ptrdiff_t>(k);
+        }
+        return -1;
+    }
+
+private:
+    std::vector<double> a_, b_, c_;
+    hyst_tracking_controller view_;
+};
+
+class ControllerStepper {
+public:
+    ControllerStepper(const Controller &controller, nb::object owner)
+        : controller_(controller), owner_(std::move(owner)),
+          state_(nb::cast<Vector>(owner_, /* convert = */ false)) {
+        require(state_.shape(0) == controller.state_length(), "state has the wrong length");
+    }
+    double step(double y_ref, double y) {
+        return hyst_guarded_tracking_step(&controller_.view(), state_.data(), &guard_, y_ref, y);
+    }
+    nb::object state() const { return owner_; }
+    bool fault() const { return guard_.fault != 0; }
+    void clear_fault() { guard_.fault = 0; }
+
+private:
+    const Controller &controller_;
+    nb::object owner_;  // the array itself, so that Python gets back what it gave
+    Vector state_;
+    hyst_guard guard_ = {0.0, 0};
+};
+
+// in: r, noise, disturbance before and behind the hysteresis. out: v, u, eta, y, d_hat.
+LoopSignals signals_of(const Matrix &in, const Rows &out) {
+    const std::size_t samples = in.shape(1);
+    require(in.shape(0) == 4 && out.shape(0) == 5 && out.shape(1) == samples,
+            "the signals have the wrong shape");
+    const double *i = in.data();
+    double *o = out.data();
+    return {i,           i + samples,     i + 2 * samples, i + 3 * samples, o,
+            o + samples, o + 2 * samples, o + 3 * samples, o + 4 * samples, samples};
+}
+
+std::vector<double> copied(const Signal &state, std::size_t length) {
+    require(state.shape(0) == length, "state has the wrong length");
+    return {state.data(), state.data() + length};
+}
+
+nb::tuple told(const LoopResult &result) {
+    static const char *const ends[] = {"done", "diverged", "no-solution"};
+    return nb::make_tuple(ends[static_cast<int>(result.end)], result.samples);
+}
+
+nb::tuple continuous(Matrix step, bool delayed, const Chain &inverse, const Chain &hysteresis,
+                     Signal inverse_state, Signal hysteresis_state, Matrix in, Rows out,
+                     double limit) {
+    const LoopSignals signals = signals_of(in, out);
+    require(step.shape(0) == step.shape(1) && step.shape(0) >= 3, "step has the wrong shape");
+    std::vector<double> first = copied(inverse_state, inverse.state_length());
+    std::vector<double> second = copied(hysteresis_state, hysteresis.state_length());
+    LoopResult result;
+    {
+        const nb::gil_scoped_release released;
+        result = run_continuous_loop(step.shape(0) - 3, step.data(), delayed, inverse, hysteresis,
+                                     first, second, signals, limit);
+    }
+    return told(result);
+}
+
+nb::tuple sampled(Matrix step, const Controller &controller, const Chain &hysteresis,
+                  Signal controller_state, Signal hysteresis_state, Matrix in, Rows out,
+                  double limit) {
+    const LoopSignals signals = signals_of(in, out);
+    require(step.shape(0) == step.shape(1) && step.shape(0) >= 1, "step has the wrong shape");
+    std::vector<double> first = copied(controller_state, controller.state_length());
+    std::vector<double> second = copied(hysteresis_state, hysteresis.state_length());
+    LoopResult result;
+    {
+        const nb::gil_scoped_release released;
+        result = run_sampled_loop(step.shape(0) - 1, step.data(), controller.view(), hysteresis,
+                                  first, second, signals, limit);
+    }
+    return told(result);
+}
+
+}  // namespace
+
+void bind_closed_loop(nb::module_ &module) {
+    nb::class_<Controller>(module, "TrackingController")
+        .def(nb::init<std::vector<double>, std::vector<double>, std::vector<double>, double, double,
+                      const Chain &>(),
+             nb::arg("a"), nb::arg("b"), nb::arg("c"), nb::arg("d_ref"), nb::arg("d"),
+             nb::arg("inverse"), nb::keep_alive<1, 7>())
+        .def_prop_ro("state_length", &Controller::state_length)
+        .def("run", &Controller::run, nb::arg("state").noconvert(), nb::arg("y_ref").noconvert(),
+             nb::arg("y").noconvert(), nb::arg("u").noconvert());
+    nb::class_<ControllerStepper>(module, "TrackingStepper")
+        .def(nb::init<const Controller &, nb::object>(), nb::arg("controller"), nb::arg("state"),
+             nb::keep_alive<1, 2>())
+        .def_prop_ro("state", &ControllerStepper::state)
+        .def_prop_ro("fault", &ControllerStepper::fault)
+        .def("clear_fault", &ControllerStepper::clear_fault)
+        .def("__call__", &ControllerStepper::step, nb::arg("y_ref"), nb::arg("y"));
+    module.def("run_continuous_loop", &continuous, nb::arg("step").noconvert(), nb::arg("delayed"),
+               nb::arg("inverse"), nb::arg("hysteresis"), nb::arg("inverse_state").noconvert(),
+               nb::arg("hysteresis_state").noconvert(), nb::arg("inputs").noconvert(),
+               nb::arg("outputs").noconvert(), nb::arg("limit"));
+    module.def("run_sampled_loop", &sampled, nb::arg("step").noconvert(), nb::arg("controller"),
+               nb::arg("hysteresis"), nb::arg("controller_state").noconvert(),
+               nb::arg("hysteresis_state").noconvert(), nb::arg("inputs").noconvert(),
+               nb::arg("outputs").noconvert(), nb::arg("limit"));
+}
+
+}  // namespace hyst
