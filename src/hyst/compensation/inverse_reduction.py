@@ -56,8 +56,8 @@ def reduce_inverse(model: Operator, plays: int, y_max: float) -> Operator:
     --------
     >>> model = PrandtlIshlinskii([0.2, 0.3, 0.5], [1.0, 2.0, 3.0], p0=0.5)
     >>> reduced = reduce_inverse(model, 1, y_max=4.0)
-    >>> reduced.r, reduced.p0, reduced.p
-    (array([1.2]), 1.4285714285714286, array([-0.42857143]))
+    >>> reduced.r.round(9), round(reduced.p0, 3), reduced.p.round(3)
+    (array([1.2]), 1.429, array([-0.762]))
     """
     if isinstance(plays, bool) or not isinstance(plays, int | np.integer) or plays < 0:
         raise InputError(f"plays is {plays!r}; give how many plays to keep, an integer >= 0")
