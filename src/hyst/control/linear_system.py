@@ -1,0 +1,184 @@
+"""Linear systems as matrices, and the one door of this package to python-control."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from hyst.errors import InputError, MissingExtraError
+from hyst.models.realizations import companion
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class LinearSystem:
+    """A linear system in state space.
+
+    ``dx/dt = A x + B u, y = C x + D u``, or ``x_{k+1} = A x_k + B u_k`` if dt is positive.
+
+    Parameters
+    ----------
+    A, B, C, D
+        Matrices (n, n), (n, m), (q, n), (q, m); finite.
+    dt
+        Sample time, s; 0 means continuous time.
+    """
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+    dt: float = 0.0
+
+    def __post_init__(self) -> None:
+        D = np.atleast_2d(np.array(self.D, dtype=np.float64))
+        outputs, inputs = D.shape
+        A = np.array(self.A, dtype=np.float64)
+        order = 0 if A.size == 0 else A.shape[0] if A.ndim == 2 else 1
+        given = {"A": (order, order), "B": (order, inputs), "C": (outputs, order)}
+        for name, shape in given.items():
+            matrix = np.array(getattr(self, name), dtype=np.float64)
+            if matrix.size != shape[0] * shape[1]:
+                raise InputError(f"{name} has shape {matrix.shape}, not {shape}; check the matrices")
+            object.__setattr__(self, name, matrix.reshape(shape))
+        object.__setattr__(self, "D", D)
+        for name in ("A", "B", "C", "D"):
+            matrix = getattr(self, name)
+            if not np.isfinite(matrix).all():
+                raise InputError(f"{name} holds a number that is not finite; check the system")
+            matrix.setflags(write=False)
+
+    @property
+    def order(self) -> int:
+        """Number of states."""
+        return self.A.shape[0]
+
+    @property
+    def inputs(self) -> int:
+        """Number of inputs."""
+        return self.D.shape[1]
+
+    @property
+    def outputs(self) -> int:
+        """Number of outputs."""
+        return self.D.shape[0]
+
+    def poles(self) -> ComplexArray:
+        """Eigenvalues of A."""
+        return np.asarray(scipy.linalg.eigvals(self.A), dtype=np.complex128).reshape(self.order)
+
+    def response(self, s: ComplexArray) -> ComplexArray:
+        """Values of the transfer function at the complex numbers s, (len(s), q, m)."""
+        points = np.atleast_1d(np.asarray(s, dtype=np.complex128))
+        if self.order == 0:
+            return np.broadcast_to(self.D.astype(complex), (points.size, *self.D.shape)).copy()
+        states = np.linalg.solve(
+            points[:, None, None] * np.eye(self.order) - self.A, self.B.astype(complex)
+        )
+        return np.asarray(self.C @ states + self.D)
+
+    def as_control(self) -> Any:
+        """Give the ``control.StateSpace`` of the same matrices.
+
+        Raises
+        ------
+        MissingExtraError
+            If python-control is not installed.
+        """
+        control = _python_control()
+        return control.ss(self.A, self.B, self.C, self.D, self.dt, remove_useless_states=False)
+
+
+def transfer_function_of(num: Array, den: Array) -> Any:
+    """Give the ``control.TransferFunction`` of the polynomials num and den, highest power first."""
+    return _python_control().tf(num, den)
+
+
+def as_linear_system(system: Any, name: str = "the system") -> LinearSystem:
+    """Read a linear system.
+
+    Parameters
+    ----------
+    system
+        A transfer function or state space of python-control, a LinearSystem, a pair (num, den) of
+        polynomials, a quadruple (A, B, C, D), or a number.
+    name
+        What messages call it.
+
+    Raises
+    ------
+    InputError
+        If it is none of these, or has more zeros than poles.
+    """
+    if isinstance(system, LinearSystem):
+        return system
+    if hasattr(system, "A") and hasattr(system, "D"):
+        return _read(system.A, system.B, system.C, system.D, getattr(system, "dt", 0.0), name)
+    if hasattr(system, "num") and hasattr(system, "den"):
+        return _from_polynomials(system, name)
+    if isinstance(system, int | float) and not isinstance(system, bool):
+        return LinearSystem(np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((1, 0)), np.array([system]))
+    if isinstance(system, Sequence) and len(system) == 2:
+        return LinearSystem(*_realize(system[0], system[1], name))
+    if isinstance(system, Sequence) and len(system) == 4:
+        return LinearSystem(*(np.asarray(each, dtype=np.float64) for each in system))
+    raise InputError(
+        f"{name} is {type(system).__name__}; give a transfer function or state space of "
+        "python-control, a pair (num, den) or matrices (A, B, C, D)"
+    )
+
+
+def _read(A: Any, B: Any, C: Any, D: Any, dt: Any, name: str) -> LinearSystem:
+    if dt is True:
+        raise InputError(f"{name} is sampled with no sample time given; set its dt in seconds")
+    # python-control leaves dt at None for a gain, which is then as good in continuous time.
+    return LinearSystem(A, B, C, np.atleast_2d(D), 0.0 if dt is None else float(dt))
+
+
+def _from_polynomials(system: Any, name: str) -> LinearSystem:
+    """Realize each entry on its own: not minimal with several inputs or outputs, but exact."""
+    rows = []
+    for above, below in zip(system.num, system.den, strict=True):
+        entries = [
+            LinearSystem(*_realize(n, d, name)) for n, d in zip(above, below, strict=True)
+        ]
+        rows.append(entries)
+    flat = [each for row in rows for each in row]
+    A = scipy.linalg.block_diag(*(each.A for each in flat if each.order))
+    B, C = np.zeros((0, len(rows[0]))), np.zeros((len(rows), 0))
+    for i, row in enumerate(rows):
+        for j, each in enumerate(row):
+            into, out = np.zeros((each.order, len(row))), np.zeros((len(rows), each.order))
+            into[:, j], out[i] = each.B[:, 0], each.C[0]
+            B, C = np.vstack([B, into]), np.hstack([C, out])
+    D = np.array([[each.D[0, 0] for each in row] for row in rows])
+    return _read(A if B.size else np.zeros((0, 0)), B, C, D, getattr(system, "dt", 0.0), name)
+
+
+def _realize(num: Any, den: Any, name: str) -> tuple[Array, Array, Array, Array]:
+    above = np.trim_zeros(np.atleast_1d(np.asarray(num, dtype=np.float64)), "f")
+    below = np.trim_zeros(np.atleast_1d(np.asarray(den, dtype=np.float64)), "f")
+    if above.size > below.size > 0:
+        raise InputError(
+            f"{name} is improper: its numerator has degree {above.size - 1}, its denominator "
+            f"{below.size - 1}; add poles beyond the frequencies of interest"
+        )
+    A, B, C, D = companion(above if above.size else [0.0], below)
+    return A, B.reshape(-1, 1), C.reshape(1, -1), np.array([[D]])
+
+
+def _python_control() -> Any:
+    try:
+        import control  # optional, and slow
+    except ImportError:
+        raise MissingExtraError(
+            "python-control is not installed; install hyst[control] or the package control"
+        ) from None
+    return control

@@ -1,0 +1,66 @@
+"""Zeros, poles and gain of a system with one input and one output."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from hyst.control.infinity_norm import balanced
+from hyst.control.linear_system import LinearSystem
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+# A Markov parameter below this share of the product of the norms that make it is rounding.
+_NEGLIGIBLE = 1e-11
+
+
+@dataclass(frozen=True)
+class ZerosAndPoles:
+    """The factored form ``gain prod(s - zeros) / prod(s - poles)``, which keeps its accuracy."""
+
+    zeros: ComplexArray
+    poles: ComplexArray
+    gain: float
+
+    def response(self, s: ComplexArray) -> ComplexArray:
+        """Values at the complex numbers s."""
+        value = np.full(s.shape, self.gain, dtype=np.complex128)
+        for i in range(max(self.zeros.size, self.poles.size)):
+            if i < self.zeros.size:
+                value *= s - self.zeros[i]
+            if i < self.poles.size:
+                value /= s - self.poles[i]
+        return value
+
+
+def zeros_and_poles(system: LinearSystem) -> ZerosAndPoles:
+    """Factor a continuous system with one input and one output."""
+    poles = system.poles()
+    scale = float(np.abs(poles).max(initial=0.0)) or 1.0
+    plain = balanced(system)
+    A, b, c = plain.A / scale, plain.B[:, 0] / scale, plain.C[0]
+    d = float(plain.D[0, 0])
+    if abs(d) > _NEGLIGIBLE * np.linalg.norm(b) * np.linalg.norm(c):
+        zeros = scipy.linalg.eigvals(A - np.outer(b, c) / d).reshape(system.order)
+        return ZerosAndPoles(scale * zeros, poles, d)
+    rows, row, size = [c], c, np.linalg.norm(c)
+    for _ in range(system.order):
+        markov = float(row @ b)
+        if abs(markov) > _NEGLIGIBLE * size * np.linalg.norm(b):
+            break
+        row = row @ A
+        size = size * max(np.linalg.norm(A, 2), 1e-300)
+        rows.append(row)
+    else:
+        return ZerosAndPoles(np.zeros(0, complex), poles, 0.0)
+    # With the output and its first derivatives held at 0, what still moves are the zeros.
+    still = scipy.linalg.null_space(np.array(rows) / np.linalg.norm(rows, axis=1)[:, None])
+    zeros = np.zeros(0, complex)
+    if still.size:
+        zeros = scipy.linalg.eigvals(still.T @ (A - np.outer(b, row @ A) / markov) @ still)
+    # The balanced input was divided by scale, once; each further derivative brings another.
+    return ZerosAndPoles(scale * zeros, poles, markov * scale ** len(rows))
