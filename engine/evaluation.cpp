@@ -14,7 +14,7 @@ namespace hyst {
 namespace {
 
 constexpr std::size_t kSmallestPart = 16384;  // samples that are worth a thread
-constexpr std::size_t kBlock = 4096;          // samples copied at a time where u and y are the same
+constexpr std::size_t kBlock = 4096;          // samples copied, or looked at, while they are in the cache
 constexpr double kNot = std::numeric_limits<double>::quiet_NaN();
 
 // The memory curve gives up the last bits of y, so it must be worth it.
@@ -55,30 +55,30 @@ void take_cheapest(Choice &choice, std::size_t samples) {
     }
 }
 
-bool run_memory_curve(const hyst_pi &pi, const double *state, const double *u, double *y,
-                      std::size_t samples) {
-    MemoryCurve curve(pi, state);
-    if (u != y) return curve.run(u, y, samples) == samples;
-    std::vector<double> copy(std::min(samples, kBlock));
+// Calls work(first, count) for block after block, as long as it returns true.
+template <class Work>
+bool in_blocks(std::size_t samples, const Work &work) {
     for (std::size_t k = 0; k < samples; k += kBlock) {
-        const std::size_t count = std::min(kBlock, samples - k);
-        std::copy(u + k, u + k + count, copy.begin());
-        if (curve.run(copy.data(), y + k, count) < count) return false;
+        if (!work(k, std::min(kBlock, samples - k))) return false;
     }
     return true;
 }
 
-bool run_part(const hyst_stage &stage, Engine engine, double *state, const double *u, double *y,
-              std::size_t samples) {
-    if (engine == Engine::lanes) return Lanes(stage).run(state, u, y, samples);
-    if (engine == Engine::memory_curve) {
-        std::vector<double> end(state, state + stage.as.pi.count);
-        Lanes(stage).jump(end.data(), u, samples);
-        const bool finite = run_memory_curve(stage.as.pi, state, u, y, samples);
-        std::copy(end.begin(), end.end(), state);
-        return finite;
-    }
-    const bool finite = all_finite(u, samples);
+// This and all that follow return whether all of u and y were finite.
+bool along_curve(const hyst_pi &pi, const double *state, const double *u, double *y,
+                 std::size_t samples) {
+    MemoryCurve curve(pi, state);
+    if (u != y) return curve.run(u, y, samples) == samples;
+    std::vector<double> copy(std::min(samples, kBlock));
+    return in_blocks(samples, [&](std::size_t first, std::size_t count) {
+        std::copy(u + first, u + first + count, copy.begin());
+        return curve.run(copy.data(), y + first, count) == count;
+    });
+}
+
+bool in_loop(const hyst_stage &stage, double *state, const double *u, double *y,
+             std::size_t samples) {
+    const bool finite = all_finite(u, samples);  // before y, which may be u, is written
     if (stage.kind == HYST_AFFINE) {
         kernels().affine(stage.as.affine.gain, stage.as.affine.offset, u, y, samples);
     } else if (stage.kind == HYST_DEAD_ZONE) {
@@ -90,6 +90,21 @@ bool run_part(const hyst_stage &stage, Engine engine, double *state, const doubl
     } else {
         hyst_stage_run(&stage, state, u, y, samples);
     }
+    return finite && all_finite(y, samples);
+}
+
+bool run_part(const hyst_stage &stage, Engine engine, double *state, const double *u, double *y,
+              std::size_t samples) {
+    if (engine == Engine::lanes) return Lanes(stage).run(state, u, y, samples);
+    if (engine == Engine::loop) {
+        return in_blocks(samples, [&](std::size_t first, std::size_t count) {
+            return in_loop(stage, state, u + first, y + first, count);
+        });
+    }
+    std::vector<double> end(state, state + stage.as.pi.count);
+    Lanes(stage).jump(end.data(), u, samples);
+    const bool finite = along_curve(stage.as.pi, state, u, y, samples);
+    std::copy(end.begin(), end.end(), state);
     return finite;
 }
 
@@ -116,8 +131,6 @@ bool run_parts(const hyst_stage &stage, Engine engine, double *state, const doub
     return std::find(finite.begin(), finite.end(), 0) == finite.end();
 }
 
-// Returns whether u was finite. What overflows between two stages is not u's fault: only the loop
-// knows what to do then.
 bool run_chain(const Chain &chain, double *state, const double *u, double *y, std::size_t samples,
                const Options &options, std::vector<Choice> *choices) {
     if (chain.stages().empty()) {
@@ -126,15 +139,26 @@ bool run_chain(const Chain &chain, double *state, const double *u, double *y, st
     }
     const double *in = u;
     for (const hyst_stage &stage : chain.stages()) {
-        const bool safe = in == u || all_finite(in, samples);
-        const Choice choice = choose(stage, state, in, samples, safe ? options.engine : Engine::loop);
+        const Choice choice = choose(stage, state, in, samples, options.engine);
         if (choices != nullptr) choices->push_back(choice);
-        const bool finite = run_parts(stage, choice.engine, state, in, y, samples, options.threads);
-        if (in == u && !finite) return false;
+        if (!run_parts(stage, choice.engine, state, in, y, samples, options.threads)) return false;
         state += hyst_stage_state_length(&stage);
         in = y;
     }
     return true;
+}
+
+// Sample by sample as in real time. Returns the index of the first that overflows on its way, or
+// how many there are.
+std::size_t run_guarded(const Chain &chain, double *state, const double *u, double *y,
+                        std::size_t samples) {
+    const hyst_chain view = chain.view();
+    hyst_guard guard{0.0, 0};
+    for (std::size_t k = 0; k < samples; ++k) {
+        y[k] = hyst_guarded_step(&view, state, &guard, u[k]);
+        if (guard.fault) return k;
+    }
+    return samples;
 }
 
 // Short records of a batch: as many as there are lanes go side by side.
@@ -204,7 +228,20 @@ std::size_t evaluate(const Chain &chain, double *states, const double *u, double
     }
     if (std::find(finite.begin(), finite.end(), 0) == finite.end()) return total;
     std::copy(before.begin(), before.end(), states);
-    return kernels().first_non_finite(u, total);
+    std::size_t bad = kernels().first_non_finite(u, total);
+    if (bad < total) return bad;
+    // Something overflows. The core's step says where, and whether it does so there too: sums of the
+    // memory curve can where those of the plays do not.
+    for (std::size_t row = 0; row < rows; ++row) {
+        const std::size_t first = row * samples;
+        const std::size_t taken =
+            run_guarded(chain, states + row * length, u + first, y + first, samples);
+        if (taken < samples) {
+            std::copy(before.begin(), before.end(), states);
+            return first + taken;
+        }
+    }
+    return total;
 }
 
 }  // namespace hyst

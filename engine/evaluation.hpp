@@ -32,14 +32,16 @@ Choice choose(const hyst_stage &stage, const double *state, const double *u, std
               Engine wanted);
 
 // `rows` records of `samples` each, one after the other in memory; states likewise. Returns the flat
-// index of the first sample of u that is not finite, or rows * samples; in the first case states are
-// as before and y is meaningless. u and y do not overlap. choices, if not null, receives one entry for each stage, for the first record.
+// index of the first sample of u that is not finite, or else of the first whose way through the stages
+// overflows, or rows * samples; in the first two cases states are as before and y is meaningless.
+// u and y do not overlap. choices, if not null, receives one entry for each stage, for the first
+// record, up to a stage that overflows.
 std::size_t evaluate(const Chain &chain, double *states, const double *u, double *y,
                      std::size_t rows, std::size_t samples, const Options &options,
                      std::vector<Choice> *choices);
 
-// One stage, one record; u and y may be the same. Returns whether u was finite; if not, state and y
-// are meaningless.
+// One stage, one record; u and y may be the same. Returns whether u and y were finite; if not, state
+// and y are meaningless.
 bool evaluate_stage(const hyst_stage &stage, double *state, const double *u, double *y,
                     std::size_t samples, const Options &options);
 

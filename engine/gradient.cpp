@@ -1,6 +1,7 @@
 #include "gradient.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "evaluation.hpp"
@@ -164,9 +165,11 @@ double loss_gradient(const Chain &chain, double *state, const double *u, const d
     const std::size_t width = chain.parameter_count();
     std::vector<double> y(samples), rows(samples * width), start(state, state + chain.state_length());
     jacobian(chain, start.data(), u, samples, rows.data());
-    evaluate(chain, state, u, y.data(), 1, samples, options, nullptr);
-    double loss = 0.0;
     std::fill(gradient, gradient + width, 0.0);
+    if (evaluate(chain, state, u, y.data(), 1, samples, options, nullptr) < samples) {
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+    double loss = 0.0;
     for (std::size_t k = 0; k < samples; ++k) {
         const double error = y[k] - target[k];
         loss += 0.5 * error * error;

@@ -89,7 +89,7 @@ bool Lanes::run(double *state, const double *u, double *y, std::size_t samples) 
                         (length == 0 || run_packed(packed.data(), u, y, length, length));
     std::copy(end.begin(), end.end(), state);
     hyst_stage_run(&stage_, state, u + in_lanes, y + in_lanes, rest);
-    return finite;
+    return finite && all_finite(y + in_lanes, rest);
 }
 
 bool Lanes::run_rows(double *states, const double *u, double *y, std::size_t samples) const {
@@ -105,6 +105,7 @@ bool Lanes::run_rows(double *states, const double *u, double *y, std::size_t sam
         const std::size_t first = row * samples + in_lanes, rest = samples - in_lanes;
         finite = finite && all_finite(u + first, rest);
         hyst_stage_run(&stage_, states + row * values, u + first, y + first, rest);
+        finite = finite && all_finite(y + first, rest);
     }
     return finite;
 }

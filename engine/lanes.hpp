@@ -21,8 +21,8 @@ public:
     // The state after `count` more samples, without their outputs.
     void jump(double *state, const double *u, std::size_t count) const;
 
-    // One record. u and y may be the same. Returns false if u was not finite; state and y are then
-    // meaningless.
+    // One record. u and y may be the same. Returns false if u or y was not finite; state and y are
+    // then meaningless.
     bool run(double *state, const double *u, double *y, std::size_t samples) const;
 
     // As many records as there are lanes, one after the other in memory, and their states.

@@ -24,7 +24,8 @@ public:
     MemoryCurve(const MemoryCurve &) = delete;
     MemoryCurve &operator=(const MemoryCurve &) = delete;
 
-    // The next samples; y may not be u. Returns how many were finite and have been taken.
+    // The next samples; y may not be u. Returns how many were finite and have been taken, 0 if y was
+    // not finite.
     std::size_t run(const double *u, double *y, std::size_t count) {
         return kernels().memory_curve(data_, u, y, count);
     }

@@ -5,6 +5,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -54,7 +55,7 @@ void require_record(const hyst::Chain &chain, const Matrix &state, const Batch &
     require(y_end <= u.data() || u_end <= y.data(), "y must not overlap u");
 }
 
-// Flat index of the first sample that is not finite, and nothing done; or -1.
+// Flat index of the first sample that is not finite or overflows, and nothing done; or -1.
 std::ptrdiff_t run(const hyst::Chain &chain, Matrix state, Batch u, Matrix y,
                    const std::string &engine, std::size_t threads) {
     require_record(chain, state, u, y);
@@ -66,21 +67,21 @@ std::ptrdiff_t run(const hyst::Chain &chain, Matrix state, Batch u, Matrix y,
     return bad < rows * samples ? static_cast<std::ptrdiff_t>(bad) : -1;
 }
 
-// Runs like `run`, and tells for each stage: engine, reason, reversals per sample, and the expected
-// nanoseconds per sample of loop, lanes and memory curve.
-nb::list explain(const hyst::Chain &chain, Matrix state, Batch u, Matrix y,
+// Runs like `run`, gives what it gives, and tells for each stage: engine, reason, reversals per
+// sample, and the expected nanoseconds per sample of loop, lanes and memory curve.
+nb::tuple explain(const hyst::Chain &chain, Matrix state, Batch u, Matrix y,
                  const std::string &engine) {
     require_record(chain, state, u, y);
     std::vector<hyst::Choice> choices;
-    hyst::evaluate(chain, state.data(), u.data(), y.data(), u.shape(0), u.shape(1),
-                   {engine_named(engine), 1}, &choices);
+    const std::size_t bad = hyst::evaluate(chain, state.data(), u.data(), y.data(), u.shape(0),
+                                           u.shape(1), {engine_named(engine), 1}, &choices);
     nb::list told;
     for (const hyst::Choice &choice : choices) {
         told.append(nb::make_tuple(hyst::name_of(choice.engine), choice.reason,
                                    choice.rough.reversals, choice.loop, choice.lanes,
                                    choice.memory_curve));
     }
-    return told;
+    return nb::make_tuple(bad < u.size() ? static_cast<std::ptrdiff_t>(bad) : -1, told);
 }
 
 double loss_gradient(const hyst::Chain &chain, Vector state, Signal u, Signal target,
@@ -94,19 +95,25 @@ double loss_gradient(const hyst::Chain &chain, Vector state, Signal u, Signal ta
                                gradient.data());
 }
 
-void run_parameter_sets(Signal p0, Batch p, Batch r, Signal u, Matrix y, std::size_t threads) {
+// The first set whose output overflows, or -1.
+std::ptrdiff_t run_parameter_sets(Signal p0, Batch p, Batch r, Signal u, Matrix y,
+                                  std::size_t threads) {
     const std::size_t sets = p0.shape(0), plays = p.shape(1), samples = u.shape(0);
     require(p.shape(0) == sets && r.shape(0) == sets && r.shape(1) == plays,
             "p0, p and r do not fit each other");
     require(y.shape(0) == sets && y.shape(1) == samples, "y has the wrong shape");
     const nb::gil_scoped_release released;
+    std::vector<char> finite(sets);
     hyst::parallel(sets, threads, [&](std::size_t set) {
         hyst_stage stage{};
         stage.kind = HYST_PI;
         stage.as.pi = {plays, p0(set), p.data() + set * plays, r.data() + set * plays};
         std::vector<double> z(plays, 0.0);
-        hyst::evaluate_stage(stage, z.data(), u.data(), y.data() + set * samples, samples, {});
+        finite[set] = hyst::evaluate_stage(stage, z.data(), u.data(), y.data() + set * samples,
+                                           samples, {});
     });
+    const auto bad = std::find(finite.begin(), finite.end(), 0);
+    return bad == finite.end() ? -1 : bad - finite.begin();
 }
 
 std::ptrdiff_t first_non_finite(Signal values) {

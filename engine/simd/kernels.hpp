@@ -79,7 +79,7 @@ struct Kernels {
     std::size_t width;  // lanes
 
     // `width` records side by side; lane c at u + c * stride. z: one pack for each play.
-    // samples: a multiple of width. u and y may be the same. Returns whether u was finite.
+    // samples: a multiple of width. u and y may be the same. Returns whether both were finite.
     bool (*pi_lanes)(const hyst_pi &pi, const double *u, double *y, std::size_t samples,
                      std::size_t stride, double *z);
     bool (*rate_dependent_pi_lanes)(const hyst_rate_dependent_pi &model, const double *previous,
@@ -94,7 +94,8 @@ struct Kernels {
     void (*rate_dependent_pi_jump)(const hyst_rate_dependent_pi &model, double previous,
                                    const double *u, std::size_t count, double *z);
 
-    // Returns how many samples were finite and have been taken. y may not be u.
+    // Returns how many samples were finite and have been taken; 0 if y was not finite. y may not be
+    // u.
     std::size_t (*memory_curve)(MemoryCurveData &curve, const double *u, double *y,
                                 std::size_t count);
 

@@ -98,13 +98,14 @@ struct SinglePlay {
 };
 
 // Lane c reads u[c * stride ..) and writes y[c * stride ..), `samples` each, a multiple of kWidth.
-// Returns whether all of them were finite.
+// Returns whether all of both were finite.
 template <class Stage>
 inline bool lanes(Stage &stage, const double *u, double *y, std::size_t samples,
                   std::size_t stride) {
     // As many streams as lanes, each way: more than processors follow by themselves.
     constexpr std::size_t ahead = 64;
-    Pack zeros{};  // 0 times a number is 0, 0 times an infinity or a NaN is NaN and stays in the sum
+    // 0 times a number is 0, 0 times an infinity or a NaN is NaN and stays in the sum.
+    Pack zeros{}, zeros_out{};
     for (std::size_t k = 0; k < samples; k += kWidth) {
         Pack in[kWidth], out[kWidth];
 #pragma GCC unroll 8
@@ -118,9 +119,12 @@ inline bool lanes(Stage &stage, const double *u, double *y, std::size_t samples,
         stage(in, out);
         transpose(out);
 #pragma GCC unroll 8
-        for (std::size_t c = 0; c < kWidth; ++c) store(y + c * stride + k, out[c]);
+        for (std::size_t c = 0; c < kWidth; ++c) {
+            store(y + c * stride + k, out[c]);
+            zeros_out += 0.0 * out[c];
+        }
     }
-    return !any(zeros != 0.0);
+    return !any(zeros + zeros_out != 0.0);
 }
 
 }  // namespace hyst::HYST_INSTRUCTION_SET

@@ -131,14 +131,18 @@ inline std::size_t move(MemoryCurveData &curve, const double *u, double *y, std:
                       : sweep<-1>(curve, u, y, count, observer);
 }
 
+// Between the ends of a movement y is monotone, so if both are finite it is.
 inline std::size_t memory_curve(MemoryCurveData &curve, const double *u, double *y,
                                 std::size_t count) {
     NoObserver observer;
+    double zero = 0.0;  // 0 times a number; 0 times an infinity or a NaN is NaN and stays
     std::size_t k = 0;
     while (k < count && u[k] - u[k] == 0.0) {
+        const std::size_t first = k;
         k += move(curve, u + k, y + k, count - k, observer);
+        zero += 0.0 * y[first] + 0.0 * y[k - 1];
     }
-    return k;
+    return zero == 0.0 ? k : 0;
 }
 
 }  // namespace hyst::HYST_INSTRUCTION_SET

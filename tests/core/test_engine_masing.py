@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyst import MasingOperator, Operator, RambergOsgood, _engine
+from hyst import InputError, MasingOperator, Operator, RambergOsgood, _engine
 from hyst.models import PiecewiseLinear, PolynomialCurve
 
 LAW = (0.5, 0.3, 1.3)
@@ -44,16 +44,21 @@ def test_stretches_are_samples(operator: Operator, seed: int) -> None:
     assert step.state.tobytes() == state.tobytes()
 
 
-def test_what_overflows_ends_where_the_core_says() -> None:
+def test_what_overflows_is_refused_where_the_core_says() -> None:
     model = RambergOsgood(1.0, 1.0, 4.0)
     u = np.geomspace(1.0, 1e100, 300)
-    with np.errstate(all="ignore"):
-        y, state = model.run(u)
     step = model.stepper()
-    held = [step(value) for value in u.tolist()]
-    finite = np.isfinite(y)
-    assert 0 < finite.sum() < 300
-    assert y[finite].tolist() == np.array(held)[finite].tolist()
+    held = []
+    for value in u.tolist():
+        held.append(step(value))
+        if step.fault:
+            break
+    first = len(held) - 1
+    assert 0 < first < 299
+    with pytest.raises(InputError, match=rf"u\[{first}\] = .* overflows"):
+        model.run(u)
+    y, state = model.run(u[:first])
+    assert y.tolist() == held[:first]
     assert step.state.tobytes() == state.tobytes()
 
 

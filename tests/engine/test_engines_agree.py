@@ -53,10 +53,15 @@ def test_records_that_hypothesis_thinks_of(
     chain = _engine.Chain()
     chain.add_pi(0.5, p, r)
     case = Case(chain, z, u, 0.0)
-    y, state = run(case, "loop")
+    out, memory = np.empty((1, u.size)), z.reshape(1, -1).copy()
+    bad = chain.run(memory, u.reshape(1, -1), out, "loop", 1)
+    if bad >= 0:  # sums of numbers as large as doubles become overflow
+        for engine in ("lanes", "memory-curve"):
+            assert chain.run(memory, u.reshape(1, -1), out, engine, 1) == bad
+        return
     for engine in ("lanes", "memory-curve"):
-        assert same_bits(run(case, engine)[1], state)
-    assert same_bits(run(case, "lanes")[0], y)
+        assert same_bits(run(case, engine)[1], memory[0])
+    assert same_bits(run(case, "lanes")[0], out[0])
 
 
 @pytest.mark.parametrize("samples", [1, 7, 63, 64, 65, 512, 4096, 4097, 40_000])
@@ -115,7 +120,7 @@ def test_batches_are_their_records(instruction_set: str, rows: int, samples: int
 
 def test_unsorted_and_negative_thresholds_fall_back_to_the_loop(instruction_set: str) -> None:
     u = np.random.default_rng(1).normal(size=5000)
-    for r in ([0.5, 0.1], [-0.1, 0.2], [0.1, float("nan")]):
+    for r in ([0.5, 0.1], [-0.1, 0.2]):
         chain = _engine.Chain()
         chain.add_pi(0.3, [1.0, 2.0], r)
         case = Case(chain, np.zeros(2), u, 0.0)
@@ -126,15 +131,14 @@ def test_unsorted_and_negative_thresholds_fall_back_to_the_loop(instruction_set:
             assert same_bits(state_found, state)
 
 
-def test_what_overflows_between_stages_passes_like_in_the_loop(instruction_set: str) -> None:
+def test_what_overflows_is_found_where_the_loop_finds_it(instruction_set: str) -> None:
     chain = _engine.Chain()
     chain.add_affine(1e300, 0.0)
     chain.add_affine(1e300, 0.0)
     chain.add_pi(1.0, [1.0], [0.5])
-    u = np.zeros(2000)
-    u[1000:1003] = 1.0, -1.0, 2.0
-    case = Case(chain, np.zeros(1), u, 0.0)
-    y, _ = run(case, "loop")
-    assert not np.isfinite(y[1000])
-    np.testing.assert_array_equal(run(case, "lanes")[0], y)
-    np.testing.assert_array_equal(run(case, "memory-curve")[0], y)
+    u = np.zeros((1, 2000))
+    u[0, 1000:1003] = 1.0, -1.0, 2.0
+    for engine in ("loop", "lanes", "memory-curve", "auto"):
+        state = np.full((1, 1), 0.25)
+        assert chain.run(state, u, np.empty_like(u), engine, 1) == 1000
+        assert state.tolist() == [[0.25]]

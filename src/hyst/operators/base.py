@@ -192,8 +192,8 @@ class Operator(ABC):
         Raises
         ------
         InputError
-            If ``u`` or ``state`` cannot be used, there is no such engine, or ``threads`` is not a
-            positive integer.
+            If ``u`` or ``state`` cannot be used, a sample overflows on its way through the operator
+            (the first is named), there is no such engine, or ``threads`` is not a positive integer.
         """
         signal = as_signal(u, finite=False)
         batch = None if signal.ndim == 1 else signal.shape[0]
@@ -296,8 +296,8 @@ class Operator(ABC):
         Raises
         ------
         InputError
-            If ``u`` and ``y`` are not two records of one length, or ``state``, ``engine`` or
-            ``threads`` cannot be used.
+            If ``u`` and ``y`` are not two records of one length, a sample overflows on its way
+            through the operator, or ``state``, ``engine`` or ``threads`` cannot be used.
         """
         signal, wanted = as_signal(u), as_signal(y, "y")
         if signal.ndim != 1 or wanted.shape != signal.shape:
@@ -310,6 +310,8 @@ class Operator(ABC):
         loss = self._chain.loss_gradient(
             memory, signal, wanted, gradient, as_engine(engine), as_threads(threads)
         )
+        if not np.isfinite(loss):
+            self.run(signal, start)  # names the sample, unless only the squares overflow
         return loss, gradient
 
     @final

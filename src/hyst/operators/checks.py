@@ -34,7 +34,7 @@ def _refuse_non_finite(array: Array, name: str) -> None:
 
 
 def refuse_sample(array: Array, bad: int, name: str) -> NoReturn:
-    """Refuse a number that is not finite.
+    """Refuse a number that is not finite, or that an operator does not leave finite.
 
     Parameters
     ----------
@@ -52,6 +52,11 @@ def refuse_sample(array: Array, bad: int, name: str) -> NoReturn:
     """
     index = tuple(int(i) for i in np.unravel_index(bad, array.shape))
     where = index[0] if len(index) == 1 else index
+    if np.isfinite(array[index]):
+        raise InputError(
+            f"{name}[{where}] = {array[index]:.6g} overflows on its way through the operator; "
+            "choose units in which signals and constants are of moderate size"
+        )
     raise InputError(f"{name}[{where}] is {array[index]}; every number must be finite")
 
 

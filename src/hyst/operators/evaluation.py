@@ -13,7 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 from hyst import _engine
 from hyst.errors import InputError
 from hyst.operators.base import Operator
-from hyst.operators.checks import as_ascending_thresholds, as_constants, as_signal, as_state
+from hyst.operators.checks import (
+    as_ascending_thresholds,
+    as_constants,
+    as_signal,
+    as_state,
+    refuse_sample,
+)
 from hyst.operators.engine_name import EngineName, as_engine, as_threads
 
 Array = NDArray[np.float64]
@@ -72,7 +78,8 @@ def explain(
     Raises
     ------
     InputError
-        If ``u`` is not one record, ``state`` cannot be used or there is no such engine.
+        If ``u`` is not one record, a sample overflows on its way through the operator, ``state``
+        cannot be used or there is no such engine.
 
     Examples
     --------
@@ -89,7 +96,9 @@ def explain(
     start = operator.initial_state() if state is None else state
     memory = as_state(start, chain.state_length, None)
     rows = signal.reshape(1, -1)
-    told = chain.explain(memory, rows, np.empty_like(rows), as_engine(engine))
+    bad, told = chain.explain(memory, rows, np.empty_like(rows), as_engine(engine))
+    if bad >= 0:
+        refuse_sample(signal, bad, "u")
     return tuple(
         StageEvaluation(i, taken, reason, reversals, _possible(*costs))
         for i, (taken, reason, reversals, *costs) in enumerate(told)
@@ -125,7 +134,7 @@ def run_parameter_sets(
     ------
     InputError
         If shapes do not fit each other, a number is not finite, a row of ``r`` does not ascend from
-        zero, or ``threads`` is not a positive integer.
+        zero, the output of a set overflows, or ``threads`` is not a positive integer.
 
     Examples
     --------
@@ -145,7 +154,12 @@ def run_parameter_sets(
     for s, row in enumerate(thresholds):
         as_ascending_thresholds(row, f"r[{s}]")
     y = np.empty((linear.size, signal.size))
-    _engine.run_parameter_sets(linear, weights, thresholds, signal, y, as_threads(threads))
+    bad = _engine.run_parameter_sets(linear, weights, thresholds, signal, y, as_threads(threads))
+    if bad >= 0:
+        raise InputError(
+            f"the output of parameter set {bad} overflows; choose units in which signals and "
+            "constants are of moderate size"
+        )
     return y
 
 
