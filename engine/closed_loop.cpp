@@ -6,10 +6,13 @@
 namespace hyst {
 namespace {
 
-bool within(double limit, double a, double b, double c, double d) {
+constexpr double kBeyondMeasure = 1e200;
+constexpr int kMostDoublings = 200;
+
+bool within(double limit, double y, double v, double u, double eta) {
     // A NaN fails every comparison.
-    return std::fabs(a) <= limit && std::fabs(b) <= limit && std::fabs(c) <= limit &&
-           std::fabs(d) <= limit;
+    return std::fabs(y) <= limit && std::fabs(v) <= kBeyondMeasure &&
+           std::fabs(u) <= kBeyondMeasure && std::fabs(eta) <= kBeyondMeasure;
 }
 
 // step times z, column after column: the sums of all rows run side by side.
@@ -66,18 +69,19 @@ private:
 // Root of a function that rises from minus to plus infinity, by the Illinois method: the hysteresis
 // is piecewise smooth and Lipschitz, so secants close in quickly and the bracket never lets go.
 template <typename Function>
-bool rising_root(const Function &f, double start, double limit, double &root) {
+bool rising_root(const Function &f, double start, double &root) {
     double low = start, high = start, f_low = f(start), f_high = f_low;
     if (!std::isfinite(f_low)) return false;
-    for (double width = 1e-3 * (1.0 + std::fabs(start)); f_low > 0.0; width *= 2.0) {
+    double width = 1e-3 * (1.0 + std::fabs(start));
+    for (int turn = 0; f_low > 0.0; ++turn, width *= 2.0) {
+        if (turn == kMostDoublings) return false;
         high = low, f_high = f_low;
         low = start - width, f_low = f(low);
-        if (!(width < 2.0 * limit)) return false;
     }
-    for (double width = 1e-3 * (1.0 + std::fabs(start)); f_high < 0.0; width *= 2.0) {
+    for (int turn = 0; f_high < 0.0; ++turn, width *= 2.0) {
+        if (turn == kMostDoublings) return false;
         low = high, f_low = f_high;
         high = start + width, f_high = f(high);
-        if (!(width < 2.0 * limit)) return false;
     }
     int side = 0;
     for (int turn = 0; turn < 200 && f_low < 0.0 && f_high > 0.0; ++turn) {
@@ -125,12 +129,12 @@ LoopResult run_continuous_loop(std::size_t n, const double *step, bool delayed,
             const auto unbalance = [&](double trial) {
                 return trial - sums[n] - feedthrough * (actuator.trial(trial, before) + behind);
             };
-            if (!rising_root(unbalance, v_before, limit, v)) return {LoopEnd::no_solution, k};
+            if (!rising_root(unbalance, v_before, v)) return {LoopEnd::no_solution, k};
         }
         const double u = actuator.drive(v), eta = actuator.answer(u + before);
         w = eta + behind;
         product.add_column(sums.data(), n + 2, w);
-        if (!within(limit, v, u, eta, sums[n + 1])) return {LoopEnd::diverged, k};
+        if (!within(limit, sums[n + 1], v, u, eta)) return {LoopEnd::diverged, k};
         signals.v[k] = v, signals.u[k] = u, signals.eta[k] = eta;
         signals.y[k] = sums[n + 1], signals.d_hat[k] = sums[n + 2];
         std::copy_n(sums.begin(), n, z.begin());
@@ -156,7 +160,7 @@ LoopResult run_sampled_loop(std::size_t n, const double *step,
         const double u = hyst_chain_step(&controller.inverse, inverse_state, v);
         const double eta = hyst_chain_step(&plant_hysteresis, hysteresis_state.data(),
                                            u + signals.before[k]);
-        if (!within(limit, v, u, eta, y)) return {LoopEnd::diverged, k};
+        if (!within(limit, y, v, u, eta)) return {LoopEnd::diverged, k};
         signals.v[k] = v, signals.u[k] = u, signals.eta[k] = eta, signals.y[k] = y;
         z[n] = eta + signals.behind[k];
         product.clear_and_add(sums.data(), z.data(), n + 1);

@@ -27,7 +27,7 @@ struct LoopResult {
 //   [x+; v; y; d_hat] = step [x; r; noise; w],   u = inverse(v),   w = hysteresis(u + before) + behind
 // step: (n + 3) rows of n + 3, row after row. Where v depends on w of the same sample, that equation
 // is solved, or, with `delayed`, takes w of the sample before.
-// A loop whose |v|, |u|, |eta| or |y| passes `limit`, or is not a number, has diverged.
+// A loop whose |y| passes `limit`, or one of whose signals is beyond all measure, has diverged.
 LoopResult run_continuous_loop(std::size_t n, const double *step, bool delayed,
                                const Chain &inverse, const Chain &hysteresis,
                                std::vector<double> &inverse_state,

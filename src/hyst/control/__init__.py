@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from hyst.control.closed_loop import ClosedLoop
+from hyst.control.closed_loop_simulation import simulate_closed_loop
+from hyst.control.discretization import discretize, discretized_dynamics
 from hyst.control.disturbance_observer import (
     Certificate,
     DisturbanceObserver,
@@ -11,13 +14,21 @@ from hyst.control.disturbance_observer import (
 )
 from hyst.control.infinity_norm import hinf_norm
 from hyst.control.linear_system import LinearSystem
+from hyst.control.loop_system import closed_loop_poles
+from hyst.control.tracking_controller import TrackingController
 
 __all__ = [
     "Certificate",
+    "ClosedLoop",
     "DisturbanceObserver",
     "InternalModel",
     "LinearSystem",
+    "TrackingController",
+    "closed_loop_poles",
     "design_disturbance_observer",
+    "discretize",
+    "discretized_dynamics",
     "evaluate_gain",
     "hinf_norm",
+    "simulate_closed_loop",
 ]

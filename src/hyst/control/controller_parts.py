@@ -46,8 +46,8 @@ def disturbance_observer_of(system: Any) -> LinearSystem:
     Parameters
     ----------
     system
-        As ``as_linear_system`` takes it, or an object with such a system as ``observer``; None is an
-        observer that always estimates zero.
+        As ``as_linear_system`` takes it, or an object with such a system as ``observer``; None is
+        an observer that always estimates zero.
 
     Returns
     -------
@@ -92,8 +92,7 @@ def refuse_unstable(system: LinearSystem, name: str) -> None:
     worst = int(np.argmin(margins))
     if margins[worst] <= 0.0:
         raise InputError(
-            f"{name} is not stable: it has the pole {complex(poles[worst]):.6g}; "
-            "give a stable one"
+            f"{name} is not stable: it has the pole {complex(poles[worst]):.6g}; give a stable one"
         )
 
 
@@ -126,8 +125,11 @@ def joined(controller: LinearSystem, observer: LinearSystem) -> LinearSystem:
             "the observer's feedthrough from v to its estimate is -1, so v is not determined; "
             "give a strictly proper observer"
         )
-    A = scipy.linalg.block_diag(controller.A, observer.A) if controller.order + observer.order \
+    A = (
+        scipy.linalg.block_diag(controller.A, observer.A)
+        if controller.order + observer.order
         else np.zeros((0, 0))
+    )
     difference = np.array([[1.0, -1.0]])
     only_y = np.array([[0.0, 1.0]])
     B = np.vstack([controller.B @ difference, observer.B[:, 1:] @ only_y])

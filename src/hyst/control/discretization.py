@@ -162,7 +162,7 @@ def _trapezoidal(system: LinearSystem, dt: float) -> tuple[Array, Array, Array, 
             f"the trapezoidal rule cannot sample a pole at 2/dt = {2.0 / dt:.6g} rad/s; "
             "give method='zoh' or another dt"
         )
-    A = np.linalg.solve(one - half, one + half)
-    B = np.linalg.solve(one - half, dt * system.B)
-    C = np.linalg.solve((one - half).T, system.C.T).T
+    A: Array = np.linalg.solve(one - half, one + half).astype(np.float64)
+    B: Array = np.linalg.solve(one - half, dt * system.B).astype(np.float64)
+    C: Array = np.linalg.solve((one - half).T, system.C.T).T.astype(np.float64)
     return A, B, C, system.D + 0.5 * C @ (dt * system.B)

@@ -131,8 +131,9 @@ class TrackingController:
     ) -> TrackingController:
         """Sample a design in continuous time.
 
-        Controller and observer are sampled each by itself, and then joined: ``v = C(z)(y_ref - y) -
-        d_hat``, where the observer's feedthrough from v, which ``"tustin"`` gives it, is solved for.
+        Controller and observer are sampled each by itself, and then joined:
+        ``v = C(z)(y_ref - y) - d_hat``, where the observer's feedthrough from v, which
+        ``"tustin"`` gives it, is solved for.
 
         Parameters
         ----------
@@ -213,7 +214,7 @@ class TrackingController:
             )
         memory = self._checked_state(state)
         u = np.empty_like(reference)
-        bad = self._block.run(memory, reference, output, u)
+        bad = self.compiled.run(memory, reference, output, u)
         if bad >= 0:
             raise InputError(
                 f"the drive overflows at sample {bad}; the controller by itself is unstable, or "
@@ -221,9 +222,7 @@ class TrackingController:
             )
         return u, memory
 
-    def estimate(
-        self, y_ref: ArrayLike, y: ArrayLike, state: ArrayLike | None = None
-    ) -> Array:
+    def estimate(self, y_ref: ArrayLike, y: ArrayLike, state: ArrayLike | None = None) -> Array:
         """Give what the observer estimates, d_hat, for the records and the state of ``run``.
 
         Parameters
@@ -268,7 +267,7 @@ class TrackingController:
         InputError
             If ``state`` cannot be used.
         """
-        return _engine.TrackingStepper(self._block, self._checked_state(state))
+        return _engine.TrackingStepper(self.compiled, self._checked_state(state))
 
     def to_dict(self) -> dict[str, Any]:
         """Give a dictionary of plain numbers, lists and text that ``from_dict`` understands."""
@@ -362,16 +361,20 @@ class TrackingController:
         return f"TrackingController(order={self.order}, dt={self.dt!r}, inverse={self.inverse!r})"
 
     @functools.cached_property
-    def _block(self) -> _engine.TrackingController:
+    def compiled(self) -> _engine.TrackingController:
+        """The block in the engine."""
         chain = _engine.Chain()
         if self.inverse is not None:
             self.inverse.append_to(chain)
         columns, b = self.A.T.ravel().tolist(), self.B.T.ravel().tolist()
-        return _engine.TrackingController(columns, b, self.C.tolist(), *self.D.tolist(), chain)
+        return _engine.TrackingController(
+            columns, b, self.C.tolist(), float(self.D[0]), float(self.D[1]), chain
+        )
 
     def _checked_state(self, state: ArrayLike | None) -> Array:
         start = self.initial_state() if state is None else state
-        return as_state(start, self._block.state_length, None)[0]
+        memory: Array = as_state(start, self.compiled.state_length, None)[0]
+        return memory
 
 
 def _matrix(values: ArrayLike, shape: tuple[int, int], name: str) -> Array:

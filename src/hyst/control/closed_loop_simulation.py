@@ -1,0 +1,254 @@
+"""Simulation of the loop around a hysteresis, S1 Fig. 2."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hyst import _engine
+from hyst.control.closed_loop import ClosedLoop
+from hyst.control.controller_parts import disturbance_observer_of, feedback_controller, joined
+from hyst.control.discretization import sample_time
+from hyst.control.loop_system import continuous_loop, held_step, plant_of
+from hyst.control.tracking_controller import TrackingController
+from hyst.errors import InputError, SolverError
+from hyst.operators import Operator
+from hyst.operators.checks import as_number, as_signal
+
+Array = NDArray[np.float64]
+
+Place: TypeAlias = Literal["hysteresis", "plant"]
+AlgebraicLoop: TypeAlias = Literal["solve", "delay"]
+
+# An output this many times larger than the reference has left for good.
+_FAR = 1e6
+
+
+def simulate_closed_loop(
+    reference: ArrayLike,
+    dt: float,
+    *,
+    plant: Any,
+    controller: Any,
+    hysteresis: Operator | None = None,
+    inverse: Operator | None = None,
+    observer: Any = None,
+    noise: ArrayLike = 0.0,
+    disturbance: ArrayLike = 0.0,
+    disturbance_at: Place = "hysteresis",
+    seed: int = 0,
+    settle: float = 0.0,
+    algebraic_loop: AlgebraicLoop = "solve",
+    limit: float | None = None,
+) -> ClosedLoop:
+    """Simulate reference, controller, observer, inverse, hysteresis and plant, from rest.
+
+    ``v = C (r - y - noise) - d_hat``, ``d_hat = observer(v, y + noise)``, ``u = inverse(v)``,
+    ``eta = hysteresis(u + d)``, ``y = P eta``, or ``eta = hysteresis(u)``, ``y = P (eta + d)``.
+
+    With continuous blocks, the controller's included, the linear part of the loop is one system,
+    stepped exactly with reference, noise and output of the hysteresis held between samples: only
+    this holding, half a sample of delay, is not exact, and errors fall like dt. With a
+    TrackingController the controller is what a target runs, and the plant is stepped in this way.
+
+    Parameters
+    ----------
+    reference
+        Wanted output r, shape (N,), finite.
+    dt
+        Sample time, s, > 0.
+    plant
+        True P(s), which need not be the nominal one: a system of python-control, a LinearSystem, a
+        pair (num, den), matrices (A, B, C, D) or a number; with a TrackingController also
+        LinearDynamics of the same dt.
+    controller
+        C(s) in one of these forms, or a TrackingController, which has its own observer and inverse.
+    hysteresis
+        True hysteresis, from u to eta; the identity if left out.
+    inverse
+        Operator from v to u: exact, scaled, reduced, any; the identity if left out.
+    observer
+        Disturbance observer with inputs (v, y) and output d_hat, continuous, or a design that has
+        it as ``observer``; none if left out.
+    noise
+        Standard deviation of independent normal noise of the measurement, or its samples, (N,).
+    disturbance
+        A constant, or samples, shape (N,).
+    disturbance_at
+        ``"hysteresis"``: added to u (S1 eq. 18); ``"plant"``: added to eta (S1 eq. 40).
+    seed
+        Of the noise; the same seed gives the same noise.
+    settle
+        Seconds at the start that the metrics leave out, less than N dt.
+    algebraic_loop
+        Where plant and controller both have feedthrough, v depends on eta of the same instant.
+        ``"solve"`` solves for it at each sample; ``"delay"`` takes eta of the sample before. A
+        TrackingController always acts on y as it is before its new drive.
+    limit
+        The loop has diverged once abs(y) is above it; a million times the largest reference and
+        noise if left out.
+
+    Returns
+    -------
+    ClosedLoop
+        Signals and metrics. A loop that diverges is no error; ``diverged_at`` tells.
+
+    Raises
+    ------
+    InputError
+        If a signal is not finite or has another length, a block cannot be read, is improper or
+        unstable, sample times differ, the hysteresis or the inverse is no operator, a
+        TrackingController is given together with an observer or an inverse, or an option is none of
+        those above.
+    SolverError
+        If the algebraic loop has no solution at a sample.
+
+    Source
+    ------
+    S1 secs. 3 and 5.
+
+    Examples
+    --------
+    >>> from hyst import PrandtlIshlinskii
+    >>> stage = PrandtlIshlinskii([0.5], [1.0], p0=1.0)
+    >>> loop = simulate_closed_loop(
+    ...     np.ones(5000), 1e-3, plant=([50.0], [1.0, 50.0]), controller=([10.0], [1.0, 0.0]),
+    ...     hysteresis=stage, inverse=stage.inverse(), settle=2.0,
+    ... )
+    >>> loop.rms_error < 1e-6
+    True
+    """
+    time, r = sample_time(dt), _record(reference, "reference")
+    settled = as_number(settle, "settle")
+    if not 0.0 <= settled < (r.size - 1) * time + 1e-9 * time:
+        raise InputError(f"settle is {settled} s of {r.size * time:.6g} s; leave some to measure")
+    for name, value, allowed in (
+        ("disturbance_at", disturbance_at, get_args(Place)),
+        ("algebraic_loop", algebraic_loop, get_args(AlgebraicLoop)),
+    ):
+        if value not in allowed:
+            raise InputError(f"{name} is {value!r}; give one of {', '.join(allowed)}")
+    spread = _noise(noise, r.size, seed)
+    d = _signal(disturbance, r.size, "disturbance")
+    # Rows: r, noise, disturbance before and behind the hysteresis.
+    inputs = np.zeros((4, r.size))
+    inputs[0], inputs[1] = r, spread
+    inputs[2 if disturbance_at == "hysteresis" else 3] = d
+    bound = _limit(limit, r, spread)
+    outputs = np.zeros((5, r.size))
+    if isinstance(controller, TrackingController):
+        if inverse is not None or observer is not None:
+            raise InputError(
+                "a TrackingController has its own inverse and observer; leave them out"
+            )
+        end, good = _sampled(controller, plant, hysteresis, time, inputs, outputs, bound)
+    else:
+        part = joined(feedback_controller(controller), disturbance_observer_of(observer))
+        step = held_step(continuous_loop(plant_of(plant), part), time)
+        chains = (_chain(inverse, "inverse", time), _chain(hysteresis, "hysteresis", time))
+        states = (_start(inverse), _start(hysteresis))
+        end, good = _engine.run_continuous_loop(
+            step, algebraic_loop == "delay", *chains, *states, inputs, outputs, bound
+        )
+    if end == "no-solution":
+        raise SolverError(
+            f"the algebraic loop through plant and controller has no solution at {good * time:.6g} "
+            "s; give algebraic_loop='delay', or add a pole to the plant"
+        )
+    v, u, eta, y, d_hat = outputs[:, :good]
+    if isinstance(controller, TrackingController) and controller.E is not None and good:
+        d_hat = controller.estimate(r[:good], y + spread[:good])
+    return ClosedLoop(
+        dt=time,
+        r=r[:good],
+        y=y,
+        noise=spread[:good],
+        v=v,
+        u=u,
+        eta=eta,
+        d_hat=d_hat,
+        disturbance=d[:good],
+        settle=settled,
+        diverged_at=good * time if end == "diverged" else None,
+    )
+
+
+def _sampled(
+    controller: TrackingController,
+    plant: Any,
+    hysteresis: Operator | None,
+    dt: float,
+    inputs: Array,
+    outputs: Array,
+    limit: float,
+) -> tuple[str, int]:
+    if abs(controller.dt - dt) > 1e-6 * dt:
+        raise InputError(
+            f"the controller has dt = {controller.dt:.6g} s, the loop {dt:.6g} s; "
+            "give the same for both"
+        )
+    return _engine.run_sampled_loop(
+        held_step(plant_of(plant), dt),
+        controller.compiled,
+        _chain(hysteresis, "hysteresis", dt),
+        controller.initial_state(),
+        _start(hysteresis),
+        inputs,
+        outputs,
+        limit,
+    )
+
+
+def _record(values: ArrayLike, name: str) -> Array:
+    record = as_signal(values, name)
+    if record.ndim != 1:
+        raise InputError(f"{name} has shape {record.shape}; give one record, (N,)")
+    return record
+
+
+def _signal(values: ArrayLike, samples: int, name: str) -> Array:
+    if np.ndim(values) == 0:
+        return np.full(samples, as_number(values, name))
+    record = _record(values, name)
+    if record.size != samples:
+        raise InputError(f"{name} has {record.size} samples, the reference {samples}; give as many")
+    return record
+
+
+def _noise(noise: ArrayLike, samples: int, seed: int) -> Array:
+    if np.ndim(noise) != 0:
+        return _signal(noise, samples, "noise")
+    deviation = as_number(noise, "noise")
+    if deviation < 0.0:
+        raise InputError(f"noise is {deviation}; give a standard deviation of 0 or more")
+    if not isinstance(seed, int | np.integer) or seed < 0:
+        raise InputError(f"seed is {seed!r}; give a whole number of 0 or more")
+    if deviation == 0.0:
+        return np.zeros(samples)
+    return deviation * np.random.default_rng(seed).standard_normal(samples)
+
+
+def _limit(limit: float | None, r: Array, noise: Array) -> float:
+    if limit is None:
+        largest = float(np.abs(r).max() + np.abs(noise).max())
+        return _FAR * largest if largest > 0.0 else np.inf
+    given = as_number(limit, "limit")
+    if given <= 0.0:
+        raise InputError(f"limit is {given}; give a bound of the output above 0")
+    return given
+
+
+def _chain(operator: Operator | None, name: str, dt: float) -> _engine.Chain:
+    chain = _engine.Chain()
+    if operator is not None:
+        if not isinstance(operator, Operator):
+            raise InputError(f"{name} is {type(operator).__name__}; give an operator or None")
+        operator.require_sample_time(dt, "the loop")
+        operator.append_to(chain)
+    return chain
+
+
+def _start(operator: Operator | None) -> Array:
+    return np.zeros(0) if operator is None else operator.initial_state()
