@@ -1,1 +1,7 @@
 """Models as code for other tools: C for firmware, FMU for simulation, MEX for MATLAB and Octave."""
+
+from __future__ import annotations
+
+from hyst.export.firmware import CProject, c_project
+
+__all__ = ["CProject", "c_project"]

@@ -1,0 +1,246 @@
+"""Export as a C project: sources, self-test, build, description."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, final
+
+import hyst
+from hyst.export.amplitude import drive_for
+from hyst.export.block import Block, block_of
+from hyst.export.c_sources import BAD, SEEDS, WORD_BYTES, header, places, selftest, source, vectors
+from hyst.export.core_sources import core_files
+from hyst.export.drive import Drive
+from hyst.export.folder import FORMAT, MANIFEST, write_export
+from hyst.export.names import as_c_name, plain_text
+from hyst.export.numbers import Precision, as_precision
+from hyst.export.templating import filled
+from hyst.operators import ModelDescription, Operator
+
+
+@final
+@dataclass(frozen=True)
+class CProject:
+    """A C project that has been written.
+
+    Parameters
+    ----------
+    path
+        The folder, or the zip.
+    files
+        What it holds, "/" between folders, sorted.
+    name
+        Prefix of everything it defines.
+    precision
+        "double" or "single".
+    state_length
+        Numbers of memory.
+    state_bytes
+        Of the state structure.
+    saved_bytes
+        Of a saved state.
+    """
+
+    path: Path
+    files: tuple[str, ...]
+    name: str
+    precision: str
+    state_length: int
+    state_bytes: int
+    saved_bytes: int
+
+
+def c_project(
+    model: Operator,
+    folder: str | os.PathLike[str],
+    precision: str = "double",
+    name: str = "stage",
+    force: bool = False,
+    *,
+    description: ModelDescription | None = None,
+) -> CProject:
+    """Write a model as C99 for firmware, with the core's sources it needs and a self-test.
+
+    Parameters
+    ----------
+    model
+        Any operator.
+    folder
+        What to create: a folder, or a zip if it ends in ``.zip``.
+    precision
+        "double", for the same bits as in Python, or "single".
+    name
+        Prefix of files, functions and types, a C identifier.
+    force
+        Whether an earlier export of that path is replaced, as a whole.
+    description
+        Names, units and ranges of input and output, for comments and the self-test's range.
+
+    Returns
+    -------
+    CProject
+
+    Raises
+    ------
+    InputError
+        If the model, the name or the precision cannot be used, or the path exists.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from hyst import PrandtlIshlinskii
+    >>> model = PrandtlIshlinskii(p=[0.5, 0.2], r=[0.1, 0.3], p0=1.0)
+    >>> with tempfile.TemporaryDirectory() as parent:
+    ...     project = c_project(model.inverse(), f"{parent}/inverse", name="inverse")
+    >>> project.files[-3:], project.state_length
+    (('inverse.h', 'manifest.json', 'selftest.c'), 2)
+    """
+    as_c_name(name)
+    exact = as_precision(precision)
+    about = description or ModelDescription()
+    block = block_of(model, exact)
+    files = project_files(block, _drive(model, block, about), name, exact, about)
+    length = max(len(block.start), 1)
+    path = write_export(folder, files, name, force=force)
+    return CProject(
+        path=path,
+        files=tuple(sorted(files)),
+        name=name,
+        precision=exact,
+        state_length=len(block.start),
+        state_bytes=WORD_BYTES[exact] * (length + 1) + 8,
+        saved_bytes=WORD_BYTES[exact] * (length + 1) + 12,
+    )
+
+
+def project_files(
+    block: Block, drive: Drive, name: str, precision: Precision, about: ModelDescription
+) -> dict[str, bytes]:
+    """Give the files of a project.
+
+    Parameters
+    ----------
+    block
+        What is exported.
+    drive
+        Input of the self-test.
+    name
+        The prefix, checked.
+    precision
+        Of the target.
+    about
+        What the numbers mean.
+
+    Returns
+    -------
+    dict
+        Content by path.
+    """
+    common = places(block, name, precision, about)
+    expected = _expected(block, drive)
+    main = source(block, common, precision)
+    core = {f"core/{path}": text for path, text in core_files(main + header(common)).items()}
+    sources = [f"{name}.c", *(path for path in core if path.endswith(".c"))]
+    cmake = {
+        "sources": "\n".join(f"  {each}" for each in sources),
+        "definitions": f"target_compile_definitions({name} PUBLIC HYST_SINGLE)\n"
+        if precision == "single"
+        else "",
+    }
+    texts = {
+        f"{name}.h": header(common),
+        f"{name}.c": main,
+        "selftest.c": selftest(block, common),
+        "selftest_vectors.h": vectors(expected, drive, common, precision),
+        "CMakeLists.txt": filled("CMakeLists.txt", common | cmake),
+        "README.md": _readme(block, common, about, len(sources) > 1),
+    }
+    files = {path: text.encode("ascii") for path, text in texts.items()} | core
+    return files | {MANIFEST: _manifest(block, name, precision, files)}
+
+
+def _drive(model: Operator, block: Block, about: ModelDescription) -> Drive:
+    low, high = about.input_low, about.input_high
+    if low is not None and high is not None and low < high:
+        return Drive.between(low, high)
+    return drive_for(model, block.stages)
+
+
+def _expected(block: Block, drive: Drive) -> list[float]:
+    step = block.stepper()
+    signals = [
+        drive.samples(seed, bad).tolist()
+        for _, seed, bad in zip(block.inputs, SEEDS, BAD, strict=False)
+    ]
+    return [step(*sample) for sample in zip(*signals, strict=True)]
+
+
+def _readme(block: Block, common: dict[str, str], about: ModelDescription, has_core: bool) -> str:
+    length = max(len(block.start), 1)
+    word = int(common["word_bytes"])
+    rows = {
+        "model": plain_text(block.kind),
+        "precision": common["precision"],
+        "state": f"{word * (length + 1) + 8} bytes, {len(block.start)} numbers of memory",
+        "saved state": f"{common['saved_bytes']} bytes",
+        "sample time": "any" if block.dt is None else f"{block.dt!r} s, and no other",
+    }
+    if len(block.inputs) == 1:
+        rows |= {
+            f"input {block.inputs[0]}": _signal(about.input_name, about.input_unit),
+            f"output {block.output}": _signal(about.output_name, about.output_unit),
+        }
+    more = {
+        "rows": "\n".join(f"| {key} | {value} |" for key, value in rows.items()),
+        "elements": ", ".join(block.inputs),
+        "notes": "",
+    }
+    text = filled("README.md", common | more)
+    return text if has_core else text.replace(" core/src/*.c", "")
+
+
+def _signal(name: str, unit: str) -> str:
+    return f"{plain_text(name)} in {plain_text(unit)}" if unit else plain_text(name)
+
+
+def _manifest(block: Block, name: str, precision: str, files: dict[str, bytes]) -> bytes:
+    content: dict[str, Any] = {
+        "format": FORMAT,
+        "version": 1,
+        "hyst": hyst.__version__,
+        "target": "c",
+        "name": name,
+        "precision": precision,
+        "model": {"kind": block.kind, "sha256": block.sha256()},
+        "files": {path: hashlib.sha256(files[path]).hexdigest() for path in sorted(files)},
+    }
+    return (json.dumps(content, indent=2) + "\n").encode()
+
+
+def reversed_description(about: ModelDescription) -> ModelDescription:
+    """Give the description of an inverse: input and output change places.
+
+    Parameters
+    ----------
+    about
+        That of the model.
+
+    Returns
+    -------
+    ModelDescription
+    """
+    return replace(
+        about,
+        input_name=about.output_name,
+        input_unit=about.output_unit,
+        input_low=about.output_low,
+        input_high=about.output_high,
+        output_name=about.input_name,
+        output_unit=about.input_unit,
+        output_low=about.input_low,
+        output_high=about.input_high,
+    )

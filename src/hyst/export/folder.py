@@ -1,0 +1,134 @@
+"""Write an export: a folder or a zip that appears whole or not at all."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import tempfile
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+
+from hyst.errors import InputError
+from hyst.files import replacing
+
+MANIFEST = "manifest.json"
+FORMAT = "hyst export"
+
+Files = Mapping[str, bytes]
+
+
+def write_export(path: str | os.PathLike[str], files: Files, top: str, *, force: bool) -> Path:
+    """Write files into a new folder, or into a zip if the path ends in ``.zip``.
+
+    Parameters
+    ----------
+    path
+        What to create; the folder it is in must exist.
+    files
+        Content by path inside the export, "/" between folders.
+    top
+        The folder inside a zip.
+    force
+        Whether an earlier export at ``path`` is replaced, as a whole.
+
+    Returns
+    -------
+    pathlib.Path
+        The path.
+
+    Raises
+    ------
+    InputError
+        If it exists and ``force`` is not given, or it is not an earlier export, or the folder it is
+        in does not exist.
+    """
+    target = Path(path)
+    if not target.absolute().parent.is_dir():
+        raise InputError(f"{target}: the folder {target.parent} does not exist; create it first")
+    _refuse_existing(target, force)
+    if target.suffix.lower() == ".zip":
+        with replacing(target) as temporary:
+            temporary.write_bytes(zipped(files, top))
+    else:
+        _write_folder(target, files)
+    return target
+
+
+def zipped(files: Files, top: str) -> bytes:
+    """Give a zip of the files whose bytes depend on nothing else.
+
+    Parameters
+    ----------
+    files
+        Content by path.
+    top
+        The folder they are in.
+
+    Returns
+    -------
+    bytes
+        Not compressed, for compressors differ.
+    """
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:
+        for path in sorted(files):
+            entry = zipfile.ZipInfo(f"{top}/{path}", date_time=(1980, 1, 1, 0, 0, 0))
+            entry.create_system = 3  # Unix, wherever this runs
+            entry.external_attr = 0o100644 << 16
+            archive.writestr(entry, files[path])
+    return buffer.getvalue()
+
+
+def _refuse_existing(target: Path, force: bool) -> None:
+    if not os.path.lexists(target):
+        return
+    if not force:
+        raise InputError(f"{target} exists; name another, or replace it as a whole with --force")
+    if target.is_symlink() or not _is_ours(target):
+        raise InputError(
+            f"{target} is not an earlier export of hyst, so --force does not replace it; name "
+            "another, or remove it yourself"
+        )
+
+
+def _is_ours(target: Path) -> bool:
+    """Tell whether it is an earlier export or an empty folder."""
+    if target.is_dir():
+        return not any(target.iterdir()) or _is_manifest(target / MANIFEST)
+    if not zipfile.is_zipfile(target):
+        return False
+    with zipfile.ZipFile(target) as archive:
+        names = [name for name in archive.namelist() if name.endswith(f"/{MANIFEST}")]
+        return any(_is_manifest_text(archive.read(name)) for name in names)
+
+
+def _is_manifest(file: Path) -> bool:
+    return file.is_file() and _is_manifest_text(file.read_bytes())
+
+
+def _is_manifest_text(text: bytes) -> bool:
+    try:
+        content = json.loads(text)
+    except ValueError:
+        return False
+    return isinstance(content, dict) and content.get("format") == FORMAT
+
+
+def _write_folder(target: Path, files: Files) -> None:
+    parent = target.absolute().parent
+    with tempfile.TemporaryDirectory(prefix=".hyst-", dir=parent) as temporary:
+        new, old = Path(temporary) / "new", Path(temporary) / "old"
+        for path, content in files.items():
+            file = new / path
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(content)
+        if target.exists():
+            target.rename(old)
+        try:
+            new.rename(target)
+        except OSError:
+            if old.exists():
+                old.rename(target)
+            raise

@@ -1,0 +1,128 @@
+"""Names and texts of the user's, made safe for C, for CMake and for file systems."""
+
+from __future__ import annotations
+
+import re
+
+from hyst.errors import InputError
+
+LONGEST_NAME = 40
+
+_C_KEYWORDS = """
+    auto break case char const continue default do double else enum extern float for goto if inline
+    int long register restrict return short signed sizeof static struct switch typedef union
+    unsigned void volatile while
+    alignas alignof bool complex imaginary noreturn nullptr static_assert thread_local typeof
+    typeof_unqual constexpr true false asm fortran
+"""
+_CXX_KEYWORDS = """
+    and and_eq atomic_cancel atomic_commit atomic_noexcept bitand bitor catch char8_t char16_t
+    char32_t class co_await co_return co_yield compl concept const_cast consteval constinit
+    decltype     delete dynamic_cast explicit export final friend import module mutable namespace new noexcept
+    not not_eq operator or or_eq override private protected public reflexpr reinterpret_cast requires
+    static_cast synchronized template this throw try typeid typename using virtual wchar_t xor
+    xor_eq
+"""
+# A file of such a name would hide the standard header from #include <...>.
+_HEADERS = """
+    assert complex ctype errno fenv float inttypes iso646 limits locale math memory setjmp signal
+    stdalign stdarg stdatomic stdbit stdbool stdckdint stddef stdint stdio stdlib stdnoreturn string
+    strings tgmath threads time uchar unistd wchar wctype
+"""
+# Targets that CMake keeps for itself, files that Windows keeps, and files of the export.
+_TAKEN = """
+    all clean depend edit_cache help install list_install_components package package_source
+    rebuild_cache test
+    aux com1 com2 com3 com4 com5 com6 com7 com8 com9 con lpt1 lpt2 lpt3 lpt4 lpt5 lpt6 lpt7 lpt8
+    lpt9 nul prn
+    core selftest selftest_vectors
+"""
+_KEYWORDS = frozenset((_C_KEYWORDS + _CXX_KEYWORDS).split())
+_FILES = frozenset((_HEADERS + _TAKEN).split())
+
+
+def as_c_name(name: str) -> str:
+    """Check the name that prefixes everything an export defines.
+
+    Parameters
+    ----------
+    name
+        A C identifier, at most 40 characters.
+
+    Returns
+    -------
+    str
+        The name itself.
+
+    Raises
+    ------
+    InputError
+        If it is no C identifier, is a word of C or C++ or reserved there, starts with "hyst", or
+        would name a file or a target that something else needs.
+
+    Examples
+    --------
+    >>> as_c_name("stage")
+    'stage'
+    """
+    if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name, re.ASCII):
+        raise InputError(
+            f"the name is {name!r}; give a C identifier: letters, digits and underscores, no digit "
+            "first"
+        )
+    reason = _objection(name)
+    if reason:
+        raise InputError(f"the name is {name!r}, {reason}; give another, as stage")
+    return name
+
+
+def _objection(name: str) -> str:
+    if len(name) > LONGEST_NAME:
+        return f"which has more than {LONGEST_NAME} characters"
+    if name.startswith("_") or name.endswith("_") or "__" in name:
+        return "and C or C++ reserves names with an underscore first, last or twice"
+    if name in _KEYWORDS or name.lower() in _KEYWORDS:
+        return "a word of C or C++"
+    if name.lower().startswith("hyst"):
+        return "but names that start with hyst are those of the core"
+    if name.lower() in _FILES:
+        return "which a standard header, CMake, Windows or another file of the export has"
+    return ""
+
+
+# The micro sign and the Greek letter, the Ohm sign and the Greek letter look alike.
+_WORDS = {
+    "\N{MICRO SIGN}": "u",
+    "\N{GREEK SMALL LETTER MU}": "u",
+    "\N{DEGREE SIGN}": "deg",
+    "\N{OHM SIGN}": "Ohm",
+    "\N{GREEK CAPITAL LETTER OMEGA}": "Ohm",
+    "\N{SUPERSCRIPT TWO}": "^2",
+    "\N{SUPERSCRIPT THREE}": "^3",
+    "\N{MIDDLE DOT}": ".",
+    "\N{MINUS SIGN}": "-",
+}
+_LONGEST_TEXT = 60
+
+
+def plain_text(text: str) -> str:
+    """Give a text that means nothing to C, CMake, XML or Markdown, wherever it stands.
+
+    Parameters
+    ----------
+    text
+        Any, as the unit in a column's header.
+
+    Returns
+    -------
+    str
+        One line of at most 60 ASCII characters; what is not letter, digit or harmless becomes "_".
+
+    Examples
+    --------
+    >>> plain_text("µm"), plain_text("V */ #error")
+    ('um', 'V _/ _error')
+    """
+    for special, word in _WORDS.items():
+        text = text.replace(special, word)
+    return re.sub(r"[^A-Za-z0-9 .,:+/()%^=-]", "_", text[:_LONGEST_TEXT])
