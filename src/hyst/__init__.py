@@ -11,7 +11,18 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
-    from hyst import compensation, demo, errors, files, io, models, report, signals, studies
+    from hyst import (
+        compensation,
+        control,
+        demo,
+        errors,
+        files,
+        io,
+        models,
+        report,
+        signals,
+        studies,
+    )
     from hyst.errors import (
         HystError,
         InputError,
@@ -65,6 +76,7 @@ _HOME = {
 }
 _PACKAGES = (
     "compensation",
+    "control",
     "demo",
     "errors",
     "files",
@@ -103,6 +115,7 @@ __all__ = [
     "Stop",
     "__version__",
     "compensation",
+    "control",
     "demo",
     "errors",
     "files",

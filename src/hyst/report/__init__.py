@@ -9,6 +9,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from hyst.report.closed_loop_figure import draw_closed_loops
     from hyst.report.drive_figure import draw_drive
     from hyst.report.drive_table import drive_table
     from hyst.report.dynamics_figures import dynamics_sections
@@ -35,6 +36,7 @@ _HOME = {
     "constants_table": "tables",
     "delay_sentence": "words",
     "description_table": "tables",
+    "draw_closed_loops": "closed_loop_figure",
     "draw_drive": "drive_figure",
     "draw_estimates": "estimation_figure",
     "draw_tracking": "tracking_figure",
@@ -56,6 +58,7 @@ __all__ = [
     "constants_table",
     "delay_sentence",
     "description_table",
+    "draw_closed_loops",
     "draw_drive",
     "draw_estimates",
     "draw_tracking",
