@@ -14,6 +14,7 @@ from hyst.cli.adapt import adapt
 from hyst.cli.compensate import compensate
 from hyst.cli.demo import demo
 from hyst.cli.excite import excite
+from hyst.cli.export import export
 from hyst.cli.identify import identify
 from hyst.cli.info import info
 from hyst.cli.reproduce import reproduce
@@ -28,7 +29,7 @@ app = typer.Typer(
     help="From a measured hysteresis loop to a model, its exact inverse and a command.",
     epilog="Exit code: 0 done, 2 bad input, 1 failure.",
 )
-for verb in (excite, identify, adapt, simulate, compensate, info, reproduce, demo):
+for verb in (excite, identify, adapt, simulate, compensate, export, info, reproduce, demo):
     app.command(verb.__name__)(verb)
 
 

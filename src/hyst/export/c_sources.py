@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import hyst
+from hyst import __version__
 from hyst.export.block import Block
 from hyst.export.drive import PERIOD, SAMPLES, Drive
 from hyst.export.names import plain_text
@@ -40,7 +40,7 @@ def places(
     return {
         "name": name,
         "NAME": name.upper(),
-        "version": plain_text(hyst.__version__),
+        "version": plain_text(__version__),
         "title": f"{plain_text(block.kind)} as C, {precision} precision",
         "precision": precision,
         "state_length": str(len(block.start)),

@@ -96,7 +96,7 @@ def _without_comments(code: str) -> str:
 
 
 def _called(code: str) -> Iterator[str]:
-    """Functions that are called; in a header, by its inline functions, for declarations call none."""
+    """Functions that are called; in a header, by its inline functions alone."""
     is_header = re.search(r"^#ifndef HYST_\w+_H$", code, re.MULTILINE) is not None
     for part in _INLINE.findall(code) if is_header else (code,):
         yield from _CALL.findall(part)

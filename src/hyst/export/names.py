@@ -18,10 +18,10 @@ _C_KEYWORDS = """
 _CXX_KEYWORDS = """
     and and_eq atomic_cancel atomic_commit atomic_noexcept bitand bitor catch char8_t char16_t
     char32_t class co_await co_return co_yield compl concept const_cast consteval constinit
-    decltype     delete dynamic_cast explicit export final friend import module mutable namespace new noexcept
-    not not_eq operator or or_eq override private protected public reflexpr reinterpret_cast requires
-    static_cast synchronized template this throw try typeid typename using virtual wchar_t xor
-    xor_eq
+    decltype delete dynamic_cast explicit export final friend import module mutable namespace
+    new noexcept not not_eq operator or or_eq override private protected public reflexpr
+    reinterpret_cast requires static_cast synchronized template this throw try typeid typename
+    using virtual wchar_t xor xor_eq
 """
 # A file of such a name would hide the standard header from #include <...>.
 _HEADERS = """
