@@ -1,0 +1,188 @@
+"""What ``hyst observer`` is asked for: the spec, read strictly."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+import hyst
+from hyst.cli.spec_section import Section
+from hyst.compensation import reduce_inverse
+from hyst.control.discretization import Method
+from hyst.control.disturbance_observer import InternalModel
+from hyst.control.linear_system import LinearSystem
+from hyst.models import GeneralizedPrandtlIshlinskii
+from hyst.operators import Operator
+
+Array = NDArray[np.float64]
+
+_INVERSES = ("exact", "scaled", "reduced", "file", "none")
+
+
+@dataclass(frozen=True, eq=False)
+class ObserverSpec:
+    """A loop, what is asked of its observer, and how to try it.
+
+    ``plant``, ``true_plant`` (or None), ``controller``, weights ``Wu`` and ``Wp`` and
+    ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
+    ``inverse_name``), ``reference``, ``dt``, ``settle``, ``noise``, ``disturbance`` and ``seed``
+    what is simulated; ``filter_dt`` and ``filter_method`` say what is implemented.
+    """
+
+    plant: LinearSystem
+    true_plant: LinearSystem | None
+    controller: LinearSystem
+    Wu: LinearSystem
+    Wp: LinearSystem
+    internal_model: InternalModel
+    hysteresis: Operator
+    inverse: Operator | None
+    inverse_name: str
+    reference: Array
+    dt: float
+    settle: float
+    noise: float
+    disturbance: float
+    seed: int
+    filter_dt: float
+    filter_method: Method
+
+
+def read_spec(path: Path) -> ObserverSpec:
+    """Read a spec; every mistake is an InputError that names the entry."""
+    try:
+        text = path.read_bytes().decode("utf-8")
+        spec = Section(tomllib.loads(text), "the spec")
+    except FileNotFoundError:
+        raise hyst.InputError(
+            f"{path}: there is no such file; hyst observer --template > {path.name} makes one"
+        ) from None
+    except IsADirectoryError:
+        raise hyst.InputError(f"{path} is a folder; name a spec") from None
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise hyst.InputError(f"{path} is no TOML file: {error}") from None
+    try:
+        return _spec(spec, path.parent)
+    except hyst.NotInvertibleError as error:
+        raise hyst.NotInvertibleError(f"{path}: {error}") from None
+    except hyst.InputError as error:
+        raise hyst.InputError(f"{path}: {error}") from None
+
+
+def _spec(spec: Section, folder: Path) -> ObserverSpec:
+    weights = spec.section("weights")
+    simulation = spec.section("simulation")
+    implemented = spec.section("filter")
+    hysteresis = _hysteresis(spec.section("hysteresis"), folder)
+    dt = simulation.number("dt", positive=True)
+    reference = _reference(spec.section("reference"), dt, folder)
+    inverse, name = _inverse(spec.section("inverse"), hysteresis, folder)
+    settle = simulation.number("settle", 0.0)
+    if not 0.0 <= settle < reference.size * dt:
+        raise hyst.InputError(
+            f"[simulation] settle is {settle:g} s of {reference.size * dt:g} s; leave some to "
+            "measure"
+        )
+    noise = simulation.number("noise", 0.0)
+    if noise < 0.0:
+        raise hyst.InputError(f"[simulation] noise is {noise:g}; give a standard deviation >= 0")
+    method = implemented.text("method", "tustin", get_args(Method))
+    read = ObserverSpec(
+        plant=spec.section("plant").system(),
+        true_plant=spec.section("true_plant").system() if spec.has("true_plant") else None,
+        controller=spec.section("controller").system(),
+        Wu=weights.section("Wu").system(),
+        Wp=weights.section("Wp").system(),
+        internal_model=_internal_model(spec.section("internal_model")),
+        hysteresis=hysteresis,
+        inverse=inverse,
+        inverse_name=name,
+        reference=reference,
+        dt=dt,
+        settle=settle,
+        noise=noise,
+        disturbance=simulation.number("disturbance", 0.0),
+        seed=simulation.count("seed", 0),
+        filter_dt=implemented.number("dt", positive=True),
+        filter_method="zoh" if method == "zoh" else "tustin",
+    )
+    for each in (spec, weights, simulation, implemented):
+        each.done()
+    return read
+
+
+def _internal_model(given: Section) -> InternalModel:
+    sinusoids = given.numbers("sinusoids", ())
+    if given.has("A") or given.has("C"):
+        model = InternalModel(given.matrix("A"), given.matrix("C"))
+    else:
+        kind = given.text("kind", choices=("integrator", "ramp"))
+        model = InternalModel.integrator() if kind == "integrator" else InternalModel.ramp()
+    given.done()
+    for frequency in sinusoids:
+        if frequency <= 0.0:
+            raise hyst.InputError(
+                f"[internal_model] sinusoids has {frequency:g}; give frequencies in Hz, above 0"
+            )
+        model = model + InternalModel.sinusoid(2.0 * np.pi * float(frequency))
+    return model
+
+
+def _hysteresis(given: Section, folder: Path) -> Operator:
+    if given.has("file"):
+        path = given.text("file")
+        given.done()
+        return hyst.load(folder / path)
+    p, r, p0 = given.numbers("p"), given.numbers("r"), given.number("p0")
+    plays = hyst.PrandtlIshlinskii(p, r, p0)
+    if not given.has("envelope"):
+        given.done()
+        return plays
+    envelope = given.section("envelope")
+    weights, thresholds = envelope.numbers("weights"), envelope.numbers("thresholds")
+    envelope.done()
+    given.done()
+    return GeneralizedPrandtlIshlinskii(hyst.DeadZone.odd(weights, thresholds), plays)
+
+
+def _inverse(given: Section, hysteresis: Operator, folder: Path) -> tuple[Operator | None, str]:
+    kind = given.text("kind", choices=_INVERSES)
+    inverse: Operator | None = None
+    name = kind
+    if kind == "exact":
+        inverse = hysteresis.inverse()
+    elif kind == "scaled":
+        factor = given.number("factor", positive=True)
+        inverse, name = hyst.Affine(factor) @ hysteresis.inverse(), f"{factor:g} of the exact"
+    elif kind == "reduced":
+        plays, reach = given.count("plays"), given.number("reach", positive=True)
+        inverse, name = reduce_inverse(hysteresis, plays, reach), f"{plays} plays"
+    elif kind == "file":
+        path = given.text("file")
+        inverse, name = hyst.load(folder / path), path
+    given.done()
+    return inverse, name
+
+
+def _reference(given: Section, dt: float, folder: Path) -> Array:
+    if given.has("file"):
+        path, column = given.text("file"), given.whole("column")
+        given.done()
+        if isinstance(column, bool) or not isinstance(column, int | str):
+            raise hyst.InputError(f"[reference] column is {column!r}; give a name or an index")
+        return hyst.io.read_column(folder / path, column)[0]
+    sines, duration = given.pairs("sines"), given.number("duration", positive=True)
+    given.done()
+    samples = round(duration / dt)
+    if not 2 <= samples <= 10_000_000:
+        raise hyst.InputError(
+            f"[reference] duration is {duration:g} s, {samples} samples of [simulation] dt; give "
+            "2 to 10 million"
+        )
+    t = np.arange(samples) * dt
+    return np.asarray(sum(a * np.sin(2.0 * np.pi * f * t) for a, f in sines))

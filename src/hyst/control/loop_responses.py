@@ -1,0 +1,95 @@
+"""Frequency responses that tell what a disturbance observer does to a loop."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.control.disturbance_observer import DisturbanceObserver
+from hyst.control.linear_system import LinearSystem
+
+Array = NDArray[np.float64]
+
+_PER_DECADE = 100
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class LoopResponses:
+    """Absolute values over frequency.
+
+    Parameters
+    ----------
+    w
+        Frequencies, rad/s, shape (K,).
+    one_minus_Q
+        ``|1 - Q|``, what is left of a disturbance.
+    Q
+        ``|Q|``.
+    Wp_inverse
+        ``1 / |Wp|``, which it must stay below.
+    Wu_T
+        ``|Wu T|`` around the nominal plant; robustly stable below 1.
+    S, S_without
+        ``|y / d|`` of the loop with and without the observer.
+    """
+
+    w: Array
+    one_minus_Q: Array
+    Q: Array
+    Wp_inverse: Array
+    Wu_T: Array
+    S: Array
+    S_without: Array
+
+
+def loop_responses(
+    design: DisturbanceObserver, plant: LinearSystem | None = None, w: Array | None = None
+) -> LoopResponses:
+    """Compute the responses of S1 Fig. 5.
+
+    ``S = P (1 - Q) / (1 - Q + P C + Q P / Pn)``, which for P = Pn is eq. 25a.
+
+    Parameters
+    ----------
+    design
+        Observer with its plant, controller and weights.
+    plant
+        The plant P that S is of; the nominal one if left out.
+    w
+        Frequencies, rad/s, above 0; a grid around all poles if left out.
+
+    Returns
+    -------
+    LoopResponses
+    """
+    problem = design.problem
+    at = _grid(design) if w is None else np.asarray(w, dtype=np.float64)
+    s = np.asarray(1j * at, dtype=np.complex128)
+    Pn, C = problem.plant.response(s)[:, 0, 0], problem.controller.response(s)[:, 0, 0]
+    Q = problem.q_filter(design.gain).response(s)[:, 0, 0]
+    Wu, Wp = problem.Wu.response(s)[:, 0, 0], problem.Wp.response(s)[:, 0, 0]
+    P = Pn if plant is None else plant.response(s)[:, 0, 0]
+    with np.errstate(divide="ignore"):
+        return LoopResponses(
+            w=at,
+            one_minus_Q=np.abs(1.0 - Q),
+            Q=np.abs(Q),
+            Wp_inverse=1.0 / np.abs(Wp),
+            Wu_T=np.abs(Wu * (Pn * C + Q) / (1.0 + Pn * C)),
+            S=np.abs(P * (1.0 - Q) / (1.0 - Q + P * C + Q * P / Pn)),
+            S_without=np.abs(P / (1.0 + P * C)),
+        )
+
+
+def _grid(design: DisturbanceObserver) -> Array:
+    """From a decade below the slowest pole of interest to a decade above the fastest."""
+    problem = design.problem
+    systems = (problem.plant, problem.controller, problem.Wu, problem.Wp)
+    poles = np.abs(np.concatenate([each.poles() for each in systems]))
+    poles = poles[poles > 1e-9 * poles.max(initial=1.0)]
+    low, high = np.log10(poles.min() / 10.0), np.log10(poles.max() * 10.0)
+    return np.logspace(low, high, int(_PER_DECADE * (high - low)) + 2)

@@ -1,0 +1,118 @@
+"""Figures of a loop with a disturbance observer: over frequency and over time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from hyst.control.closed_loop import ClosedLoop
+from hyst.control.inverse_comparison import InverseComparison
+from hyst.control.loop_responses import LoopResponses
+from hyst.report.panels import Panel, draw_panels
+
+_HZ = "frequency [Hz]"
+
+
+def draw_observer_bode(found: LoopResponses, heading: str) -> bytes:
+    """Draw what is rejected, what it does to the loop, and what it costs in robustness.
+
+    Parameters
+    ----------
+    found
+        Responses, as ``loop_responses`` gives them.
+    heading
+        Line above the figure.
+
+    Returns
+    -------
+    bytes
+        PNG, in the manner of S1 Fig. 5.
+    """
+    f = found.w / (2.0 * np.pi)
+    rejected = {
+        "|1 - Q|": (f, found.one_minus_Q),
+        "1 / |Wp|": (f, found.Wp_inverse),
+        "|Q|": (f, found.Q),
+    }
+    sensitivity = {"with the observer": (f, found.S), "without": (f, found.S_without)}
+    return draw_panels(
+        (
+            Panel("Left of a disturbance", _HZ, "", rejected, True, lowest=_floor(rejected)),
+            Panel("Output over disturbance", _HZ, "", sensitivity, True),
+            Panel("|Wu T|: stable below 1", _HZ, "", {"|Wu T|": (f, found.Wu_T)}, True, 1.0),
+        ),
+        3,
+        heading,
+    )
+
+
+def draw_comparison(found: InverseComparison, name: str, heading: str) -> bytes:
+    """Draw output over reference, and errors over time, of one inverse and of the exact one.
+
+    Parameters
+    ----------
+    found
+        Loops by inverse.
+    name
+        Of the inverse.
+    heading
+        Line above the figure.
+
+    Returns
+    -------
+    bytes
+        PNG.
+    """
+    loops = {
+        f"{name}, without observer": found.without[name],
+        f"{name}, with it": found.observed[name],
+    }
+    if "exact" in found.without and name != "exact":
+        loops["exact, without"] = found.without["exact"]
+    return draw_panels(
+        (output_panel("Output over reference", loops), error_panel("Tracking error", loops)),
+        2,
+        heading,
+    )
+
+
+def output_panel(title: str, loops: Mapping[str, ClosedLoop]) -> Panel:
+    """Give the panel of output over reference.
+
+    Parameters
+    ----------
+    title
+        Of the panel.
+    loops
+        By label.
+
+    Returns
+    -------
+    Panel
+    """
+    lines = {label: (each.r, each.y) for label, each in loops.items()}
+    return Panel(title, "reference", "output", lines)
+
+
+def error_panel(title: str, loops: Mapping[str, ClosedLoop]) -> Panel:
+    """Give the panel of the tracking error over time.
+
+    Parameters
+    ----------
+    title
+        Of the panel.
+    loops
+        By label.
+
+    Returns
+    -------
+    Panel
+    """
+    lines = {label: (each.t, each.e) for label, each in loops.items()}
+    return Panel(title, "time [s]", "reference - output", lines, limit=0.0)
+
+
+def _floor(lines: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> float:
+    """Let a filter that falls for ever end the axis at a thousandth."""
+    return max(1e-3, min(float(y.min()) for _, y in lines.values()))
