@@ -27,9 +27,12 @@ static hyst_real by_direction(hyst_real u_previous, hyst_real u, hyst_real rho)
 
 hyst_real hyst_dead_zone_step(const hyst_dead_zone *map, hyst_real u)
 {
+    const size_t count = map->count;
+    const hyst_real *weight = map->weight;
+    const hyst_real *threshold = map->threshold;
     hyst_real y = HYST_REAL(0.0);
-    for (size_t i = 0; i < map->count; ++i) {
-        y += map->weight[i] * two_sided(u, map->threshold[i]);
+    for (size_t i = 0; i < count; ++i) {
+        y += weight[i] * two_sided(u, threshold[i]);
     }
     return y;
 }
@@ -37,9 +40,13 @@ hyst_real hyst_dead_zone_step(const hyst_dead_zone *map, hyst_real u)
 hyst_real hyst_direction_dead_zone_step(const hyst_dead_zone *map, hyst_real *u_previous,
                                         hyst_real u)
 {
+    const size_t count = map->count;
+    const hyst_real *weight = map->weight;
+    const hyst_real *threshold = map->threshold;
+    const hyst_real before = *u_previous;
     hyst_real y = HYST_REAL(0.0);
-    for (size_t i = 0; i < map->count; ++i) {
-        y += map->weight[i] * by_direction(*u_previous, u, map->threshold[i]);
+    for (size_t i = 0; i < count; ++i) {
+        y += weight[i] * by_direction(before, u, threshold[i]);
     }
     *u_previous = u;
     return y;

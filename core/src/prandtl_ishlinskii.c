@@ -5,10 +5,15 @@
 
 hyst_real hyst_pi_step(const hyst_pi *pi, hyst_real *z, hyst_real u)
 {
+    /* Read once: a compiler that saves space would fetch them again for every play. */
+    const size_t count = pi->count;
+    const hyst_real *p = pi->p;
+    const hyst_real *r = pi->r;
     hyst_real y = pi->p0 * u;
-    for (size_t i = 0; i < pi->count; ++i) {
-        z[i] = hyst_play(u, pi->r[i], z[i]);
-        y += pi->p[i] * z[i];
+    for (size_t i = 0; i < count; ++i) {
+        const hyst_real moved = hyst_play(u, r[i], z[i]);
+        z[i] = moved;
+        y += p[i] * moved;
     }
     return y;
 }

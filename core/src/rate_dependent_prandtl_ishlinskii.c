@@ -23,10 +23,14 @@ hyst_real hyst_rate_dependent_pi_step(const hyst_rate_dependent_pi *model, hyst_
     const hyst_real widening = hyst_widening(model, change < HYST_REAL(0.0) ? -change : change);
     const hyst_real low = u - widening;
     const hyst_real high = u + widening;
+    const size_t count = pi->count;
+    const hyst_real *p = pi->p;
+    const hyst_real *r = pi->r;
     hyst_real y = pi->p0 * u;
-    for (size_t i = 0; i < pi->count; ++i) {
-        state[i] = hyst_clamp(low - pi->r[i], high + pi->r[i], state[i]);
-        y += pi->p[i] * state[i];
+    for (size_t i = 0; i < count; ++i) {
+        const hyst_real moved = hyst_clamp(low - r[i], high + r[i], state[i]);
+        state[i] = moved;
+        y += p[i] * moved;
     }
     last[0] = u;
     last[1] = HYST_REAL(1.0);
