@@ -23,6 +23,7 @@ from hyst import (
     ModifiedPrandtlIshlinskii,
     Operator,
     PrandtlIshlinskii,
+    load,
 )
 from reference.examples import EXAMPLES
 from reference.random_operators import (
@@ -189,12 +190,30 @@ def test_generalized_and_modified_are_each_others_inverse() -> None:
     zone = DeadZone([0.8, 0.4], [0.0, 1.5])
     generalized = GeneralizedPrandtlIshlinskii(zone, bank)
     modified = ModifiedPrandtlIshlinskii(bank, zone)
-    assert generalized.inverse() == zone.inverse() @ bank.inverse()
-    assert modified.inverse() == bank.inverse() @ zone.inverse()
+    assert generalized.inverse() == ModifiedPrandtlIshlinskii(bank.inverse(), zone.inverse())
+    assert modified.inverse() == GeneralizedPrandtlIshlinskii(zone.inverse(), bank.inverse())
     nested = modified @ Affine(2.0, 1.0) @ generalized
     assert nested.inverse() == Composition(
-        (zone.inverse(), bank.inverse(), Affine(2.0, 1.0).inverse(), bank.inverse(), zone.inverse())
+        (modified.inverse(), Affine(2.0, 1.0).inverse(), generalized.inverse())
     )
+
+
+@given(model=invertible_gpis | invertible_mpis)
+def test_an_inverse_model_is_saved_and_loaded_as_what_it_is(
+    model: Operator, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    inverse = model.inverse()
+    other = {GeneralizedPrandtlIshlinskii, ModifiedPrandtlIshlinskii} - {type(model)}
+    assert type(inverse) in other
+    assert type(inverse.inverse()) is type(model)
+    path = tmp_path_factory.mktemp("inverse") / "inverse.json"
+    inverse.save(path)
+    found = load(path)
+    assert type(found) is type(inverse)
+    assert found == inverse
+    # What rises with its input has an inverse that does.
+    assert inverse.traits().invertible
+    assert inverse.traits().monotone == model.traits().monotone
 
 
 # What the equations make of special cases, worked out by hand.

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from hyst.models.generalized import GeneralizedPrandtlIshlinskii
 from hyst.models.given_thresholds import GivenThresholds
 from hyst.models.linear_dynamics import LinearDynamics
 from hyst.models.loading_curve import InverseCurve
+from hyst.models.mapped_prandtl_ishlinskii import (
+    GeneralizedPrandtlIshlinskii,
+    ModifiedPrandtlIshlinskii,
+)
 from hyst.models.masing import MasingOperator
 from hyst.models.memory_element import InverseMemoryElement, MemoryElement
 from hyst.models.memory_function import MemoryFunction
 from hyst.models.model_loading import load, load_described
-from hyst.models.modified import ModifiedPrandtlIshlinskii
 from hyst.models.piecewise_linear import PiecewiseLinear
 from hyst.models.polynomial_curve import PolynomialCurve
 from hyst.models.power_law import PowerLaw
