@@ -17,6 +17,7 @@ from hyst.cli.excite import excite
 from hyst.cli.export import export
 from hyst.cli.identify import identify
 from hyst.cli.info import info
+from hyst.cli.observer import observer
 from hyst.cli.reproduce import reproduce
 from hyst.cli.simulate import simulate
 
@@ -29,7 +30,8 @@ app = typer.Typer(
     help="From a measured hysteresis loop to a model, its exact inverse and a command.",
     epilog="Exit code: 0 done, 2 bad input, 1 failure.",
 )
-for verb in (excite, identify, adapt, simulate, compensate, export, info, reproduce, demo):
+VERBS = (excite, identify, adapt, simulate, compensate, observer, export, info, reproduce, demo)
+for verb in VERBS:
     app.command(verb.__name__)(verb)
 
 

@@ -25,7 +25,7 @@ class LoopResponses:
     ----------
     w
         Frequencies, rad/s, shape (K,).
-    one_minus_Q
+    left
         ``|1 - Q|``, what is left of a disturbance.
     Q
         ``|Q|``.
@@ -38,7 +38,7 @@ class LoopResponses:
     """
 
     w: Array
-    one_minus_Q: Array
+    left: Array
     Q: Array
     Wp_inverse: Array
     Wu_T: Array
@@ -76,7 +76,7 @@ def loop_responses(
     with np.errstate(divide="ignore"):
         return LoopResponses(
             w=at,
-            one_minus_Q=np.abs(1.0 - Q),
+            left=np.abs(1.0 - Q),
             Q=np.abs(Q),
             Wp_inverse=1.0 / np.abs(Wp),
             Wu_T=np.abs(Wu * (Pn * C + Q) / (1.0 + Pn * C)),

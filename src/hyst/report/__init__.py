@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from hyst.report.dynamics_figures import dynamics_sections
     from hyst.report.estimation_figure import draw_estimates
     from hyst.report.identification_report import Section, write_report
+    from hyst.report.observer_answer import ObserverAnswer
+    from hyst.report.observer_figures import draw_observer_bode
     from hyst.report.tables import (
         Table,
         candidates_table,
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     from hyst.report.words import delay_sentence, in_short, invertible_sentence
 
 _HOME = {
+    "ObserverAnswer": "observer_answer",
     "Section": "identification_report",
     "Table": "tables",
     "candidates_table": "tables",
@@ -39,6 +42,7 @@ _HOME = {
     "draw_closed_loops": "closed_loop_figure",
     "draw_drive": "drive_figure",
     "draw_estimates": "estimation_figure",
+    "draw_observer_bode": "observer_figures",
     "draw_tracking": "tracking_figure",
     "drive_table": "drive_table",
     "dynamics_sections": "dynamics_figures",
@@ -51,6 +55,7 @@ _HOME = {
 }
 
 __all__ = [
+    "ObserverAnswer",
     "Section",
     "Table",
     "candidates_table",
@@ -61,6 +66,7 @@ __all__ = [
     "draw_closed_loops",
     "draw_drive",
     "draw_estimates",
+    "draw_observer_bode",
     "draw_tracking",
     "drive_table",
     "dynamics_sections",

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 import numpy as np
 
 from hyst.control.closed_loop import ClosedLoop
-from hyst.control.inverse_comparison import InverseComparison
 from hyst.control.loop_responses import LoopResponses
 from hyst.report.panels import Panel, draw_panels
 
@@ -31,7 +30,7 @@ def draw_observer_bode(found: LoopResponses, heading: str) -> bytes:
     """
     f = found.w / (2.0 * np.pi)
     rejected = {
-        "|1 - Q|": (f, found.one_minus_Q),
+        "|1 - Q|": (f, found.left),
         "1 / |Wp|": (f, found.Wp_inverse),
         "|Q|": (f, found.Q),
     }
@@ -43,36 +42,6 @@ def draw_observer_bode(found: LoopResponses, heading: str) -> bytes:
             Panel("|Wu T|: stable below 1", _HZ, "", {"|Wu T|": (f, found.Wu_T)}, True, 1.0),
         ),
         3,
-        heading,
-    )
-
-
-def draw_comparison(found: InverseComparison, name: str, heading: str) -> bytes:
-    """Draw output over reference, and errors over time, of one inverse and of the exact one.
-
-    Parameters
-    ----------
-    found
-        Loops by inverse.
-    name
-        Of the inverse.
-    heading
-        Line above the figure.
-
-    Returns
-    -------
-    bytes
-        PNG.
-    """
-    loops = {
-        f"{name}, without observer": found.without[name],
-        f"{name}, with it": found.observed[name],
-    }
-    if "exact" in found.without and name != "exact":
-        loops["exact, without"] = found.without["exact"]
-    return draw_panels(
-        (output_panel("Output over reference", loops), error_panel("Tracking error", loops)),
-        2,
         heading,
     )
 

@@ -1,0 +1,173 @@
+"""hyst observer: design a disturbance observer, try it, and say what to implement."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import typer
+
+import hyst
+from hyst.cli.console import at_work, progress_bar, show_files, show_table
+from hyst.cli.observer_spec import ObserverSpec, read_spec
+from hyst.cli.observer_template import TEMPLATE
+from hyst.compensation import ErrorBound, error_bound
+from hyst.control import (
+    DisturbanceObserver,
+    TrackingController,
+    closed_loop_poles,
+    design_disturbance_observer,
+    simulate_closed_loop,
+)
+from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
+from hyst.control.loop_responses import loop_responses
+from hyst.operators import Operator
+
+if TYPE_CHECKING:
+    from hyst.report import ObserverAnswer
+
+SpecFile = Annotated[
+    Path | None, typer.Argument(metavar="SPEC.toml", show_default=False, help="What to design.")
+]
+Folder = Annotated[
+    Path | None,
+    typer.Option("-o", "--out", metavar="DIR", show_default=False, help="Where to write."),
+]
+Template = Annotated[
+    bool, typer.Option("--template", help="Print a spec to start from, and do nothing else.")
+]
+
+NONE = "none"
+
+
+def observer(spec_file: SpecFile = None, folder: Folder = None, template: Template = False) -> None:
+    """Design a disturbance observer; say if the loop is safe, and write what to implement."""
+    if template:
+        if spec_file is not None or folder is not None:
+            raise hyst.InputError("--template prints a spec and takes nothing else; leave out rest")
+        print(TEMPLATE, end="")
+        return
+    if spec_file is None or folder is None:
+        raise hyst.InputError(
+            "give a spec and -o DIR; hyst observer --template > spec.toml makes a spec"
+        )
+    hyst.files.require_folder(folder)
+    spec = read_spec(spec_file)
+    design = _design(spec)
+    answer = _tried(spec, design)
+    with at_work("drawing"):
+        bode = hyst.report.draw_observer_bode(
+            loop_responses(design, spec.true_plant), "Disturbance observer"
+        )
+        loops = hyst.report.draw_closed_loops(
+            _shown(answer), "Closed loop with the true hysteresis"
+        )
+        page = answer.to_html(bode, loops)
+    names = ["certificate.json", "report.html", "bode.png", "closed_loop.png", "signals.csv"]
+    with hyst.files.replacing_files(folder) as temporary:
+        text = json.dumps(answer.to_dict(), indent=2, allow_nan=False)
+        (temporary / names[0]).write_text(text + "\n", encoding="utf-8")
+        (temporary / names[1]).write_text(page, encoding="utf-8")
+        (temporary / names[2]).write_bytes(bode)
+        (temporary / names[3]).write_bytes(loops)
+        _write_signals(temporary / names[4], answer)
+        if answer.safe:
+            names.append("controller.json")
+            answer.block.save(temporary / names[5])
+    _tell(answer)
+    show_files([folder / name for name in names])
+
+
+def _design(spec: ObserverSpec) -> DisturbanceObserver:
+    with at_work("designing the observer") as say:
+        return design_disturbance_observer(
+            spec.plant,
+            spec.controller,
+            spec.Wu,
+            spec.Wp,
+            spec.internal_model,
+            perturbed_plant=spec.true_plant,
+            progress=lambda stage, step, best: say(f"{stage} {step}, best norm {best:.4f}"),
+        )
+
+
+def _tried(spec: ObserverSpec, design: DisturbanceObserver) -> ObserverAnswer:
+    inverses: dict[str, Operator | None] = {spec.inverse_name: spec.inverse, NONE: None}
+    if spec.hysteresis.is_invertible():
+        inverses[EXACT] = spec.hysteresis.inverse()
+    plant = spec.plant if spec.true_plant is None else spec.true_plant
+    with progress_bar("simulating the loop") as progress:
+        comparison = compare_inverses(
+            spec.reference,
+            spec.dt,
+            inverses,
+            observer=design,
+            progress=progress,
+            plant=plant,
+            controller=spec.controller,
+            hysteresis=spec.hysteresis,
+            noise=spec.noise,
+            disturbance=spec.disturbance,
+            seed=spec.seed,
+            settle=spec.settle,
+        )
+    block = TrackingController.from_continuous(
+        spec.controller,
+        spec.filter_dt,
+        observer=design,
+        inverse=spec.inverse,
+        method=spec.filter_method,
+    )
+    end = (spec.reference.size - 1) * spec.dt
+    at = np.arange(0.0, end + 0.5 * spec.filter_dt, spec.filter_dt)
+    sampled = simulate_closed_loop(
+        np.interp(at, np.arange(spec.reference.size) * spec.dt, spec.reference),
+        spec.filter_dt,
+        plant=plant,
+        controller=block,
+        hysteresis=spec.hysteresis,
+        noise=spec.noise,
+        disturbance=spec.disturbance,
+        seed=spec.seed,
+        settle=spec.settle,
+    )
+    poles = closed_loop_poles(plant, block)
+    bound = _bound(spec, comparison)
+    return hyst.report.ObserverAnswer(
+        design, comparison, spec.inverse_name, block, sampled, poles, bound
+    )
+
+
+def _bound(spec: ObserverSpec, comparison: InverseComparison) -> ErrorBound | None:
+    loop = comparison.observed[spec.inverse_name]
+    if loop.diverged_at is not None or spec.disturbance != 0.0:
+        return None
+    inverse = hyst.Affine(1.0) if spec.inverse is None else spec.inverse
+    try:
+        return error_bound(spec.hysteresis, inverse, float(np.abs(loop.v).max()))
+    except ValueError:
+        return None  # the bound is one for plays between maps; other models have none
+
+
+def _shown(answer: ObserverAnswer) -> dict[str, hyst.control.ClosedLoop]:
+    name, found = answer.inverse_name, answer.comparison
+    loops = {f"{name}, without": found.without[name], f"{name}, observer": found.observed[name]}
+    if EXACT in found.without and name != EXACT:
+        loops["exact, without"] = found.without[EXACT]
+    return loops
+
+
+def _write_signals(path: Path, answer: ObserverAnswer) -> None:
+    loop = answer.sampled
+    columns = [loop.t, loop.r, loop.y, loop.u, loop.eta, loop.d_hat]
+    hyst.io.write_columns(path, ["time [s]", "y_ref", "y", "u", "w", "d_hat"], columns)
+
+
+def _tell(answer: ObserverAnswer) -> None:
+    print(answer.verdict())
+    print(answer.gain_sentence())
+    print(f"To implement: {answer.implement_sentence()}")
+    for table in answer.tables():
+        show_table(table)

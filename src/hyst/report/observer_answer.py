@@ -1,0 +1,296 @@
+"""One page for an engineer: is the loop safe, what does the observer buy, what to implement."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.compensation import ErrorBound
+from hyst.control import ClosedLoop, DisturbanceObserver, TrackingController
+from hyst.control.inverse_comparison import EXACT, InverseComparison
+from hyst.report.page import Page
+from hyst.report.tables import Table, number
+
+ComplexArray = NDArray[np.complex128]
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class ObserverAnswer:
+    """What a design comes to, with everything it rests on.
+
+    Parameters
+    ----------
+    design
+        The observer and its certificate.
+    comparison
+        Loops with the inverse asked about, the exact one and none.
+    inverse_name
+        Of the inverse asked about.
+    block
+        The sampled controller to implement.
+    sampled
+        The loop with it.
+    sampled_poles
+        Poles of that loop, the least stable first, where the inverse is exact.
+    bound
+        Of the inverse's error over the range it is used in; None where there is none.
+    """
+
+    design: DisturbanceObserver
+    comparison: InverseComparison
+    inverse_name: str
+    block: TrackingController
+    sampled: ClosedLoop
+    sampled_poles: ComplexArray
+    bound: ErrorBound | None
+
+    def checks(self) -> tuple[tuple[str, bool, str], ...]:
+        """Give each condition of safety: what, whether it holds, and the number behind it."""
+        c = self.design.certificate
+        nominal = _rightmost(c.nominal_poles)
+        radius = float(np.abs(self.sampled_poles).max(initial=0.0))
+        loop = self.comparison.observed[self.inverse_name]
+        rows = [
+            ("loop around the nominal plant is stable", c.nominal_stable, f"pole {nominal} 1/s"),
+            (
+                "stable for every plant within Wu",
+                c.uncertainty_norm < 1.0,
+                f"norm of Wu T {c.uncertainty_norm:.4f} at {c.uncertainty_frequency:.4g} rad/s",
+            ),
+        ]
+        if c.perturbed_poles is not None:
+            worst = f"pole {_rightmost(c.perturbed_poles)} 1/s"
+            rows.append(("loop around the true plant is stable", c.perturbed_stable is True, worst))
+        rows += [
+            (
+                f"so is the sampled loop, dt = {self.block.dt:g} s",
+                radius < 1.0,
+                f"largest |z| {radius:.6f}",
+            ),
+            (
+                f"simulation with the inverse ({self.inverse_name}) stays finite",
+                loop.diverged_at is None and self.sampled.diverged_at is None,
+                _ended(loop) if loop.diverged_at is not None else _ended(self.sampled),
+            ),
+        ]
+        return tuple(rows)
+
+    @property
+    def safe(self) -> bool:
+        """Whether all conditions of safety hold."""
+        return all(holds for _, holds, _ in self.checks())
+
+    @property
+    def meets_demand(self) -> bool:
+        """Whether the observer rejects what Wp asks for."""
+        return self.design.certificate.performance_norm < 1.0
+
+    def verdict(self) -> str:
+        """Give the answer in one sentence."""
+        failed = [what for what, holds, _ in self.checks() if not holds]
+        if failed:
+            return f"NOT SAFE: it does not hold that {failed[0]}. {self.design.message}."
+        margin = self.design.certificate.robust_stability_margin
+        demand = (
+            "rejects what Wp asks for"
+            if self.meets_demand
+            else "does NOT reject all that Wp asks for "
+            f"({self.design.certificate.performance_norm:.3g} times as much is left)"
+        )
+        return (
+            f"SAFE: the loop is stable for every plant within Wu, which may grow {margin:.3g} "
+            f"times; the observer {demand}."
+        )
+
+    def gain_sentence(self) -> str:
+        """Say what the observer buys, in one sentence."""
+        name, c = self.inverse_name, self.comparison
+        without, observed = c.without[name].rms_error, c.observed[name].rms_error
+        if not math.isfinite(observed):
+            return "With the observer the simulated loop diverges."
+        if not math.isfinite(without):
+            return f"Without it the loop diverges; with it the rms error is {number(observed)}."
+        said = (
+            f"With the inverse ({name}) the rms tracking error is {number(without)} without the "
+            f"observer and {number(observed)} with it"
+        )
+        if name == EXACT:
+            return f"{said}."
+        recovered = c.recovered(name)
+        if math.isnan(recovered):
+            return f"{said}; the exact inverse alone has {number(c.without[EXACT].rms_error)}."
+        return (
+            f"{said}; the exact inverse alone has {number(c.without[EXACT].rms_error)}, so the "
+            f"observer recovers {100.0 * recovered:.1f} % of what the inexact inverse adds."
+        )
+
+    def implement_sentence(self) -> str:
+        """Say what to implement, in one sentence."""
+        if not self.safe:
+            return "Nothing: controller.json is not written while the loop is not safe."
+        inverse = "no inverse" if self.block.inverse is None else "the inverse of the hysteresis"
+        return (
+            f"controller.json: {self.block.order} states and {inverse}, every {self.block.dt:g} s; "
+            f"in the simulation it tracks with rms {number(self.sampled.rms_error)}, "
+            f"max {number(self.sampled.max_error)}."
+        )
+
+    def checks_table(self) -> Table:
+        """List the conditions of safety."""
+        rows = tuple((what, "yes" if holds else "NO", said) for what, holds, said in self.checks())
+        c = self.design.certificate
+        demand = (
+            "observer rejects what Wp asks for",
+            "yes" if self.meets_demand else "NO",
+            f"norm of Wp (1 - Q) {c.performance_norm:.4f} at {c.performance_frequency:.4g} rad/s",
+        )
+        return Table("Is the loop safe?", ("condition", "holds", "by"), (*rows, demand))
+
+    def tracking_table(self) -> Table:
+        """List tracking errors by inverse, without and with the observer."""
+        c = self.comparison
+        rows = [
+            (
+                name,
+                number(c.without[name].rms_error),
+                number(c.without[name].max_error),
+                number(c.observed[name].rms_error),
+                number(c.observed[name].max_error),
+            )
+            for name in c.without
+        ]
+        rows.append(
+            (
+                f"{self.inverse_name}, sampled at {self.block.dt:g} s",
+                "-",
+                "-",
+                number(self.sampled.rms_error),
+                number(self.sampled.max_error),
+            )
+        )
+        names = [row[0] for row in rows]
+        return Table(
+            "What does the observer buy? Tracking error",
+            ("inverse", "rms without", "max without", "rms with", "max with"),
+            tuple(rows),
+            names.index(self.inverse_name),
+        )
+
+    def filter_table(self) -> Table:
+        """List what the observer is: its gain and Q(s)."""
+        c = self.design.certificate
+        rows = [
+            ("gain L", ", ".join(number(each, 8) for each in self.design.gain)),
+            ("Q(s) numerator", ", ".join(number(each, 8) for each in c.Q_numerator)),
+            ("Q(s) denominator", ", ".join(number(each, 8) for each in c.Q_denominator)),
+            (
+                "bandwidth of rejection",
+                f"{c.performance_norm:.3g} of 1/Wp; slowest pole of Q "
+                f"{_rightmost(c.observer_poles)} 1/s",
+            ),
+        ]
+        if self.bound is not None:
+            rows.append(
+                (
+                    "error of the inverse",
+                    f"command off by at most {number(self.bound.bound)}, its output by at most "
+                    f"{number(self.bound.output_bound)}, for |v| up to {number(self.bound.y_max)}",
+                )
+            )
+        return Table("What is it?", ("what", "value"), tuple(rows))
+
+    def tables(self) -> tuple[Table, ...]:
+        """Give the three tables of the answer."""
+        return self.checks_table(), self.tracking_table(), self.filter_table()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give certificate, checks and errors as plain numbers and text."""
+        return {
+            "safe": self.safe,
+            "verdict": self.verdict(),
+            "checks": [
+                {"condition": what, "holds": bool(holds), "by": said}
+                for what, holds, said in self.checks()
+            ],
+            **self.design.to_dict(),
+            "sampled_pole_radius": float(np.abs(self.sampled_poles).max(initial=0.0)),
+            "inverse": self.inverse_name,
+            "inverse_error_bound": None if self.bound is None else self.bound.to_dict(),
+            "tracking": {
+                name: {
+                    "without": _errors(self.comparison.without[name]),
+                    "with_observer": _errors(self.comparison.observed[name]),
+                }
+                for name in self.comparison.without
+            },
+            "tracking_sampled": _errors(self.sampled),
+        }
+
+    def to_html(self, bode: bytes, loops: bytes) -> str:
+        """Give the page.
+
+        Parameters
+        ----------
+        bode, loops
+            Figures, PNG.
+
+        Returns
+        -------
+        str
+            HTML that needs nothing but itself.
+        """
+        page = Page("Disturbance observer")
+        page.banner(self.verdict())
+        page.text(self.gain_sentence())
+        page.text(f"To implement: {self.implement_sentence()}")
+        page.table(self.checks_table())
+        page.table(self.tracking_table())
+        page.picture(loops, "Reference and output, errors and drives of the loops.")
+        page.picture(
+            bode,
+            "What the observer leaves of a disturbance against what was asked, the output over the "
+            "disturbance with and without it, and the condition of robust stability.",
+        )
+        page.table(self.filter_table())
+        if self.safe:
+            page.heading("On the target")
+            page.text(
+                "One call a sample, with the same numbers in C. Each sample it takes reference and "
+                "measured output, and gives the drive:"
+            )
+            page.code(
+                "from hyst.control import TrackingController\n"
+                'step = TrackingController.load("controller.json").stepper()\n'
+                f"u = step(y_ref, y)   # every {self.block.dt:g} s"
+            )
+        return page.to_html()
+
+
+def _errors(loop: ClosedLoop) -> dict[str, Any]:
+    diverged = loop.diverged_at is not None
+    return {
+        "rms": None if diverged else loop.rms_error,
+        "max": None if diverged else loop.max_error,
+        "max_drive": None if diverged else loop.max_drive,
+        "diverged_at": loop.diverged_at,
+    }
+
+
+def _ended(loop: ClosedLoop) -> str:
+    if loop.diverged_at is not None:
+        return f"diverges at {loop.diverged_at:.4g} s"
+    return f"largest drive {number(loop.max_drive)}"
+
+
+def _rightmost(poles: ComplexArray) -> str:
+    if poles.size == 0:
+        return "none"
+    worst = complex(poles[int(np.argmax(poles.real))])
+    if abs(worst.imag) < 1e-9 * abs(worst):
+        return f"{worst.real:+.4g}"
+    return f"{worst.real:+.4g} +- {abs(worst.imag):.4g}j"
