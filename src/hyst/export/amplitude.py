@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hyst.export.drive import Drive
+from hyst.export.recording import record_stages
 from hyst.export.stages import Stage
 from hyst.operators import Operator
 from hyst.operators.composition import leaves_of
@@ -14,20 +15,19 @@ _BEYOND = 1.25  # times the largest threshold
 _SCALES = ("r", "threshold", "knot")
 
 
-def drive_for(model: Operator, stages: tuple[Stage, ...]) -> Drive:
+def drive_for(model: Operator) -> Drive:
     """Give a drive around zero, of the smallest power of two that passes as much as any does.
 
     Parameters
     ----------
     model
-        The operator.
-    stages
-        Its stages.
+        What the signal passes.
 
     Returns
     -------
     Drive
     """
+    stages = record_stages(model)
     best, most = 1.0, -1
     shape = np.concatenate([np.linspace(0, 1, 40), np.linspace(1, -1, 80), np.linspace(-1, 0, 40)])
     for exponent in _EXPONENTS:

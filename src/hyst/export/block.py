@@ -8,12 +8,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, final
 
+from hyst.control.tracking_controller import KIND, TrackingController
 from hyst.errors import InputError
 from hyst.export.numbers import Precision
 from hyst.export.recording import record_stages
 from hyst.export.stage_code import StageCode
 from hyst.export.stages import Stage
-from hyst.operators import Operator
+from hyst.models.stable_inverse import StableInverse
+from hyst.operators import Affine, Operator
+from hyst.operators.registry import compose
+
+Model = Operator | TrackingController | StableInverse
 
 
 @final
@@ -44,7 +49,9 @@ class Block:
     model
         Plain data that say all there is to know of the model.
     stages
-        What a signal passes, last input first, for the choice of a test signal.
+        What the statements take a sample through.
+    chain
+        What a signal passes, for the choice of a test signal.
     stepper
         Makes a function that gives the same numbers in Python, in double.
     """
@@ -60,6 +67,7 @@ class Block:
     dt: float | None
     model: dict[str, Any]
     stages: tuple[Stage, ...]
+    chain: Operator
     stepper: Callable[[], Callable[..., float]]
 
     def sha256(self) -> str:
@@ -73,13 +81,13 @@ class Block:
         return int.from_bytes(digest[:4], "big") or 1
 
 
-def block_of(model: Operator, precision: Precision) -> Block:
+def block_of(model: Model, precision: Precision) -> Block:
     """Give what is exported of a model.
 
     Parameters
     ----------
     model
-        Any operator.
+        Any operator, or a tracking controller; a stable inverse is refused with the reason.
     precision
         Of the target.
 
@@ -90,10 +98,19 @@ def block_of(model: Operator, precision: Precision) -> Block:
     Raises
     ------
     InputError
-        If it is no operator, or a constant cannot be written in that precision.
+        If it is something else, or a constant cannot be written in that precision.
     """
+    if isinstance(model, TrackingController):
+        return _controller(model, precision)
+    if isinstance(model, StableInverse):
+        raise InputError(
+            f"a stable inverse looks {model.preview} samples ahead, which a target cannot; compute "
+            "the command beforehand with hyst compensate --method noncausal"
+        )
     if not isinstance(model, Operator):
-        raise InputError(f"{type(model).__name__} cannot be exported; give an operator")
+        raise InputError(
+            f"{type(model).__name__} cannot be exported; give an operator or a tracking controller"
+        )
     code = StageCode(record_stages(model), precision)
     return Block(
         kind=model.kind,
@@ -107,5 +124,39 @@ def block_of(model: Operator, precision: Precision) -> Block:
         dt=model.dt,
         model=model.to_dict(),
         stages=code.stages,
+        chain=model,
         stepper=model.stepper,
     )
+
+
+def _controller(model: TrackingController, precision: Precision) -> Block:
+    inverse = () if model.inverse is None else record_stages(model.inverse)
+    code = StageCode((_linear_part(model), *inverse), precision)
+    # What the test signal passes: the gain from y_ref to v, then the inverse.
+    gain = Affine(abs(float(model.D[0])) or 1.0)
+    return Block(
+        kind=KIND,
+        inputs=("y_ref", "y"),
+        output="u",
+        head=code.declarations(),
+        body="hyst_real v = (y_ref - y_ref) + (y - y); /* 0, or NaN if one is not finite */\n"
+        + code.calls("v"),
+        signal="v",
+        headers=code.headers(),
+        start=tuple(model.initial_state().tolist()),
+        dt=model.dt,
+        model=model.to_dict(),
+        stages=code.stages,
+        chain=gain if model.inverse is None else compose((gain, model.inverse)),
+        stepper=model.stepper,
+    )
+
+
+def _linear_part(model: TrackingController) -> Stage:
+    tables = {
+        "a": tuple(model.A.T.ravel().tolist()),
+        "b": tuple(model.B.T.ravel().tolist()),
+        "c": tuple(model.C.tolist()),
+    }
+    numbers = {"d_y_ref": float(model.D[0]), "d_y": float(model.D[1])}
+    return Stage("tracking_controller", numbers, tables, state_length=model.order, dt=model.dt)

@@ -11,7 +11,7 @@ from typing import Any, final
 
 from hyst import __version__
 from hyst.export.amplitude import drive_for
-from hyst.export.block import Block, block_of
+from hyst.export.block import Block, Model, block_of
 from hyst.export.c_sources import BAD, SEEDS, WORD_BYTES, header, places, selftest, source, vectors
 from hyst.export.core_sources import core_files
 from hyst.export.drive import Drive
@@ -19,7 +19,7 @@ from hyst.export.folder import FORMAT, MANIFEST, write_export
 from hyst.export.names import as_c_name, plain_text
 from hyst.export.numbers import Precision, as_precision
 from hyst.export.templating import filled
-from hyst.operators import ModelDescription, Operator
+from hyst.operators import ModelDescription
 
 
 @final
@@ -55,7 +55,7 @@ class CProject:
 
 
 def c_project(
-    model: Operator,
+    model: Model,
     folder: str | os.PathLike[str],
     precision: str = "double",
     name: str = "stage",
@@ -68,7 +68,7 @@ def c_project(
     Parameters
     ----------
     model
-        Any operator.
+        Any operator, or a tracking controller, whose step takes y_ref and y.
     folder
         What to create: a folder, or a zip if it ends in ``.zip``.
     precision
@@ -103,7 +103,7 @@ def c_project(
     exact = as_precision(precision)
     about = description or ModelDescription()
     block = block_of(model, exact)
-    files = project_files(block, _drive(model, block, about), name, exact, about)
+    files = project_files(block, _drive(block, about), name, exact, about)
     length = max(len(block.start), 1)
     path = write_export(folder, files, name, force=force)
     return CProject(
@@ -163,11 +163,11 @@ def project_files(
     return files | {MANIFEST: _manifest(block, name, precision, files)}
 
 
-def _drive(model: Operator, block: Block, about: ModelDescription) -> Drive:
+def _drive(block: Block, about: ModelDescription) -> Drive:
     low, high = about.input_low, about.input_high
-    if low is not None and high is not None and low < high:
+    if len(block.inputs) == 1 and low is not None and high is not None and low < high:
         return Drive.between(low, high)
-    return drive_for(model, block.stages)
+    return drive_for(block.chain)
 
 
 def _expected(block: Block, drive: Drive) -> list[float]:

@@ -158,6 +158,9 @@ class StageCode:
             yield from _masing(stage, name, reference)
         elif self.held_by is not None:
             yield from _in_lines(f"const {self._structure(stage, index)}")
+        if stage.kind == "tracking_controller":
+            yield f"{signal} = hyst_tracking_controller_linear(&{name}, {place}, y_ref, y);"
+            return
         state = "" if stage.kind == "dead_zone" else f"{place}, "
         yield f"{signal} = hyst_{stage.kind}_step(&{name}, {state}{signal});"
 
@@ -225,6 +228,12 @@ def _state_space(stage: Stage, of: Reference) -> str:
     return f"{{{sizes}, {of('a')}, {of('b')}, {of('c')}, {of('d')}}}"
 
 
+def _tracking_controller(stage: Stage, of: Reference) -> str:
+    constants = f"{of('a')}, {of('b')}, {of('c')}, {{{of('d_y_ref')}, {of('d_y')}}}"
+    # Without an inverse: its stages are called one by one, after the linear part.
+    return f"{{{_size(stage, 'c')}, {constants}, {{0u, NULL}}}}"
+
+
 def _sections(stage: Stage, of: Reference) -> str:
     return f"{{{len(stage.tables['coefficient']) // 5}u, {of('coefficient')}}}"
 
@@ -267,6 +276,7 @@ _POSITIONAL: dict[str, tuple[str, Callable[[Stage, Reference], str]]] = {
     "rate_dependent_pi": ("hyst_rate_dependent_pi", _rate_dependent_pi),
     "state_space": ("hyst_state_space", _state_space),
     "sections": ("hyst_sections", _sections),
+    "tracking_controller": ("hyst_tracking_controller", _tracking_controller),
     "memory_element": ("hyst_memory_element", _memory_element),
 }
 
@@ -281,5 +291,6 @@ _HEADERS = {
     "state_space": "hyst/linear_dynamics.h",
     "sections": "hyst/linear_dynamics.h",
     "masing": "hyst/masing.h",
+    "tracking_controller": "hyst/tracking_controller.h",
     "memory_element": "hyst/memory_element.h",
 }

@@ -17,7 +17,7 @@ class Stage:
     kind
         As in ``core/include/hyst/chain.h``: "affine", "play", "stop", "dead_zone",
         "direction_dead_zone", "pi", "rate_dependent_pi", "state_space", "sections", "masing" or
-        "memory_element".
+        "memory_element"; or "tracking_controller" for the linear part of one.
     numbers
         Constants by the name of their place in the C structure.
     tables

@@ -125,6 +125,17 @@ typedef void (*fmi3UnlockPreemptionCallback)(void);
 #define fmi3EnterStepMode HYST_FMI3_NAME(fmi3EnterStepMode)
 #define fmi3GetOutputDerivatives HYST_FMI3_NAME(fmi3GetOutputDerivatives)
 #define fmi3DoStep HYST_FMI3_NAME(fmi3DoStep)
+#define fmi3EnterContinuousTimeMode HYST_FMI3_NAME(fmi3EnterContinuousTimeMode)
+#define fmi3CompletedIntegratorStep HYST_FMI3_NAME(fmi3CompletedIntegratorStep)
+#define fmi3SetTime HYST_FMI3_NAME(fmi3SetTime)
+#define fmi3SetContinuousStates HYST_FMI3_NAME(fmi3SetContinuousStates)
+#define fmi3GetContinuousStateDerivatives HYST_FMI3_NAME(fmi3GetContinuousStateDerivatives)
+#define fmi3GetEventIndicators HYST_FMI3_NAME(fmi3GetEventIndicators)
+#define fmi3GetContinuousStates HYST_FMI3_NAME(fmi3GetContinuousStates)
+#define fmi3GetNominalsOfContinuousStates HYST_FMI3_NAME(fmi3GetNominalsOfContinuousStates)
+#define fmi3GetNumberOfEventIndicators HYST_FMI3_NAME(fmi3GetNumberOfEventIndicators)
+#define fmi3GetNumberOfContinuousStates HYST_FMI3_NAME(fmi3GetNumberOfContinuousStates)
+#define fmi3ActivateModelPartition HYST_FMI3_NAME(fmi3ActivateModelPartition)
 #endif
 
 #ifndef FMI3_Export
@@ -346,5 +357,32 @@ FMI3_Export fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentComm
                                   fmi3Boolean *eventHandlingNeeded,
                                   fmi3Boolean *terminateSimulation, fmi3Boolean *earlyReturn,
                                   fmi3Float64 *lastSuccessfulTime);
+FMI3_Export fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance instance);
+FMI3_Export fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance,
+                                                   fmi3Boolean noSetFMUStatePriorToCurrentPoint,
+                                                   fmi3Boolean *enterEventMode,
+                                                   fmi3Boolean *terminateSimulation);
+FMI3_Export fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time);
+FMI3_Export fmi3Status fmi3SetContinuousStates(fmi3Instance instance,
+                                               const fmi3Float64 continuousStates[],
+                                               size_t nContinuousStates);
+FMI3_Export fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance,
+                                                         fmi3Float64 derivatives[],
+                                                         size_t nContinuousStates);
+FMI3_Export fmi3Status fmi3GetEventIndicators(fmi3Instance instance, fmi3Float64 eventIndicators[],
+                                              size_t nEventIndicators);
+FMI3_Export fmi3Status fmi3GetContinuousStates(fmi3Instance instance,
+                                               fmi3Float64 continuousStates[],
+                                               size_t nContinuousStates);
+FMI3_Export fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance,
+                                                         fmi3Float64 nominals[],
+                                                         size_t nContinuousStates);
+FMI3_Export fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance,
+                                                      size_t *nEventIndicators);
+FMI3_Export fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance,
+                                                       size_t *nContinuousStates);
+FMI3_Export fmi3Status fmi3ActivateModelPartition(fmi3Instance instance,
+                                                  fmi3ValueReference clockReference,
+                                                  fmi3Float64 activationTime);
 
 #endif

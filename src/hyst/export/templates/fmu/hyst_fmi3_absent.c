@@ -51,41 +51,6 @@ HYST_FMI3_NO_SET(UInt64)
 HYST_FMI3_NO_SET(Boolean)
 HYST_FMI3_NO_SET(String)
 
-fmi3Instance fmi3InstantiateModelExchange(fmi3String instanceName, fmi3String instantiationToken,
-                                          fmi3String resourcePath, fmi3Boolean visible,
-                                          fmi3Boolean loggingOn,
-                                          fmi3InstanceEnvironment instanceEnvironment,
-                                          fmi3LogMessageCallback logMessage)
-{
-    (void)instanceName;
-    (void)instantiationToken;
-    (void)resourcePath;
-    (void)visible;
-    (void)loggingOn;
-    (void)instanceEnvironment;
-    (void)logMessage;
-    return NULL; /* co-simulation alone */
-}
-
-fmi3Instance fmi3InstantiateScheduledExecution(
-    fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath,
-    fmi3Boolean visible, fmi3Boolean loggingOn, fmi3InstanceEnvironment instanceEnvironment,
-    fmi3LogMessageCallback logMessage, fmi3ClockUpdateCallback clockUpdate,
-    fmi3LockPreemptionCallback lockPreemption, fmi3UnlockPreemptionCallback unlockPreemption)
-{
-    (void)instanceName;
-    (void)instantiationToken;
-    (void)resourcePath;
-    (void)visible;
-    (void)loggingOn;
-    (void)instanceEnvironment;
-    (void)logMessage;
-    (void)clockUpdate;
-    (void)lockPreemption;
-    (void)unlockPreemption;
-    return NULL; /* co-simulation alone */
-}
-
 fmi3Status fmi3EnterEventMode(fmi3Instance instance)
 {
     return hyst_fmi3_none(instance, "there are no events; the FMU has no event mode");
