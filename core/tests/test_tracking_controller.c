@@ -29,23 +29,6 @@ static void test_by_hand(void)
     CHECK_EQUAL(state[0], R(0.75));
 }
 
-static void test_inputs_and_columns_are_not_mixed_up(void)
-{
-    /* x1' = y_ref, x2' = x1 + 4 y, v = x2: v_k = y_ref_{k-2} + 4 y_{k-1}. */
-    const hyst_real a[] = {R(0.0), R(1.0), R(0.0), R(0.0)};
-    const hyst_real b[] = {R(1.0), R(0.0), R(0.0), R(4.0)};
-    const hyst_real c[] = {R(0.0), R(1.0)};
-    const hyst_tracking_controller controller = {2, a, b, c, {R(0.0), R(0.0)}, {0, NULL}};
-    hyst_real state[2] = {0}, y_ref[50], y[50];
-    fill_with_noise(y_ref, COUNT(y_ref), R(1.0));
-    fill_with_noise(y, COUNT(y), R(0.125));
-    for (size_t k = 0; k < COUNT(y); ++k) {
-        const hyst_real expected =
-            (k < 2 ? R(0.0) : y_ref[k - 2]) + R(4.0) * (k < 1 ? R(0.0) : y[k - 1]);
-        CHECK_EQUAL(hyst_tracking_controller_step(&controller, state, y_ref[k], y[k]), expected);
-    }
-}
-
 static const hyst_real p[] = {R(0.5), R(0.25)}, r[] = {R(1.0), R(2.0)};
 
 static void test_inverse_follows_the_linear_part(void)
@@ -106,7 +89,6 @@ static void test_guard_holds_output_and_state(void)
 int main(void)
 {
     test_by_hand();
-    test_inputs_and_columns_are_not_mixed_up();
     test_inverse_follows_the_linear_part();
     test_without_states();
     test_guard_holds_output_and_state();
