@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hyst.export.firmware import CProject, c_project
+from hyst.export.fmu_archive import Fmu, fmu
 from hyst.export.inverses import explicit_inverse, reversed_description
 
-__all__ = ["CProject", "c_project", "explicit_inverse", "reversed_description"]
+__all__ = ["CProject", "Fmu", "c_project", "explicit_inverse", "fmu", "reversed_description"]

@@ -20,7 +20,7 @@ Files = Mapping[str, bytes]
 
 
 def write_export(path: str | os.PathLike[str], files: Files, top: str, *, force: bool) -> Path:
-    """Write files into a new folder, or into a zip if the path ends in ``.zip``.
+    """Write files into a new folder, or into a zip if the path ends in ``.zip`` or ``.fmu``.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def write_export(path: str | os.PathLike[str], files: Files, top: str, *, force:
     files
         Content by path inside the export, "/" between folders.
     top
-        The folder inside a zip.
+        The folder inside a zip; "" for none.
     force
         Whether an earlier export at ``path`` is replaced, as a whole.
 
@@ -48,7 +48,7 @@ def write_export(path: str | os.PathLike[str], files: Files, top: str, *, force:
     if not target.absolute().parent.is_dir():
         raise InputError(f"{target}: the folder {target.parent} does not exist; create it first")
     _refuse_existing(target, force)
-    if target.suffix.lower() == ".zip":
+    if target.suffix.lower() in (".zip", ".fmu"):
         with replacing(target) as temporary:
             temporary.write_bytes(zipped(files, top))
     else:
@@ -64,7 +64,7 @@ def zipped(files: Files, top: str) -> bytes:
     files
         Content by path.
     top
-        The folder they are in.
+        The folder they are in; "" for none.
 
     Returns
     -------
@@ -74,7 +74,7 @@ def zipped(files: Files, top: str) -> bytes:
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:
         for path in sorted(files):
-            entry = zipfile.ZipInfo(f"{top}/{path}", date_time=(1980, 1, 1, 0, 0, 0))
+            entry = zipfile.ZipInfo(f"{top}/{path}" if top else path, (1980, 1, 1, 0, 0, 0))
             entry.create_system = 3  # Unix, wherever this runs
             entry.external_attr = 0o100644 << 16
             archive.writestr(entry, files[path])

@@ -1,0 +1,219 @@
+"""Export as an FMU: a zip with description, sources and a binary, for simulation tools."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import final
+
+import hyst
+from hyst.errors import InputError
+from hyst.export.fmu_binary import binary_path, compiled
+from hyst.export.fmu_description import (
+    FmiVersion,
+    FmuDescription,
+    Signal,
+    build_description,
+    model_description,
+)
+from hyst.export.fmu_sources import FmuModel, fmu_model, fmu_sources
+from hyst.export.folder import FORMAT, MANIFEST, write_export
+from hyst.export.names import as_c_name
+from hyst.operators import ModelDescription, Operator
+
+_VERSIONS: tuple[FmiVersion, ...] = ("2.0", "3.0")
+_LICENSE = Path(__file__).resolve().parent / "templates" / "LICENSE"
+
+
+@final
+@dataclass(frozen=True)
+class Fmu:
+    """An FMU that has been written.
+
+    Parameters
+    ----------
+    path
+        The file.
+    files
+        What it holds, sorted.
+    name
+        Its model identifier.
+    version
+        Of FMI.
+    token
+        Its guid or instantiation token.
+    inputs, output
+        Names of the signals' variables.
+    parameters
+        Names of the variables that may be set.
+    dt
+        Sample time, seconds: communication steps must be whole multiples of it. None if any will
+        do.
+    """
+
+    path: Path
+    files: tuple[str, ...]
+    name: str
+    version: FmiVersion
+    token: str
+    inputs: tuple[str, ...]
+    output: str
+    parameters: tuple[str, ...]
+    dt: float | None
+
+
+def fmu(
+    model: Operator,
+    path: str | os.PathLike[str],
+    version: str = "2.0",
+    name: str = "stage",
+    force: bool = False,
+    *,
+    description: ModelDescription | None = None,
+    binary: bool = True,
+    compiler: str | None = None,
+) -> Fmu:
+    """Write a model as an FMU for co-simulation, with its sources and a binary for this platform.
+
+    Parameters
+    ----------
+    model
+        Any operator.
+    path
+        The file to create; it ends in ``.fmu``.
+    version
+        Of FMI, "2.0" or "3.0".
+    name
+        The model identifier, a C identifier.
+    force
+        Whether an earlier export of that path is replaced.
+    description
+        Names and units of input and output.
+    binary
+        Whether to compile a binary; without one, an importer compiles the sources.
+    compiler
+        Command of a C compiler; by default that of the variable CC, or else cc, gcc or clang.
+
+    Returns
+    -------
+    Fmu
+
+    Raises
+    ------
+    InputError
+        If the model, the name, the version or the compiler cannot be used, or the path exists.
+    HystError
+        If there is no compiler, or it fails.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from hyst import PrandtlIshlinskii
+    >>> model = PrandtlIshlinskii(p=[0.5], r=[0.1], p0=1.0)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     written = fmu(model.inverse(), f"{folder}/inverse.fmu", binary=False)
+    >>> written.inputs, written.output, written.parameters
+    (('u',), 'y', ('p0', 'p[1]', 'r[1]'))
+    """
+    as_c_name(name)
+    fmi = _as_version(version)
+    if Path(path).suffix.lower() != ".fmu":
+        raise InputError(f"{path} is not the name of an FMU; give one that ends in .fmu")
+    about = description or ModelDescription()
+    files, said = _contents(fmu_model(model), name, about, fmi)
+    if binary:
+        library = compiled(_below_sources(files), compiler)
+        files[binary_path(name, fmi)] = library
+    files[f"resources/{MANIFEST}"] = _manifest(model, name, fmi, files)
+    target = write_export(path, files, "", force=force)
+    return Fmu(
+        path=target,
+        files=tuple(sorted(files)),
+        name=name,
+        version=fmi,
+        token=said.token,
+        inputs=tuple(each.name for each in said.inputs),
+        output=said.output.name,
+        parameters=tuple(each.name for each in said.parameters),
+        dt=said.dt,
+    )
+
+
+def _as_version(version: str) -> FmiVersion:
+    for each in _VERSIONS:
+        if version == each:
+            return each
+    raise InputError(f"version is {version!r}; give 2.0 or 3.0, of FMI")
+
+
+def _contents(
+    model: FmuModel, name: str, about: ModelDescription, version: FmiVersion
+) -> tuple[dict[str, bytes], FmuDescription]:
+    """Give everything but binary and manifest: sources first, for the token is their hash."""
+    said = _describe(model, name, about, "")
+    draft = fmu_sources(model, name, about, version, "")
+    token = _token({**draft, "modelDescription.xml": model_description(said, version)})
+    said = _describe(model, name, about, token)
+    sources = fmu_sources(model, name, about, version, token)
+    files = {f"sources/{path}": content for path, content in sources.items()}
+    files["modelDescription.xml"] = model_description(said, version)
+    files["documentation/licenses/license.txt"] = _LICENSE.read_bytes()
+    if version == "3.0":
+        files["sources/buildDescription.xml"] = build_description(name)
+    return files, said
+
+
+def _describe(model: FmuModel, name: str, about: ModelDescription, token: str) -> FmuDescription:
+    block = model.block
+    inputs = tuple(Signal(each, each, "") for each in block.inputs)
+    output = Signal(block.output, block.output, "")
+    if len(inputs) == 1:
+        inputs = (Signal(block.inputs[0], about.input_name, about.input_unit),)
+        output = Signal(block.output, about.output_name, about.output_unit)
+    return FmuDescription(
+        identifier=name,
+        kind=block.kind,
+        token=token,
+        inputs=inputs,
+        output=output,
+        is_direct=model.is_direct,
+        parameters=model.parameters,
+        dt=block.dt,
+    )
+
+
+def _token(files: dict[str, bytes]) -> str:
+    """Give a GUID that is a hash of the content: the same model gives the same FMU."""
+    total = hashlib.sha256()
+    for path in sorted(files):
+        total.update(f"{path} {len(files[path])}\n".encode())
+        total.update(files[path])
+    digest = total.hexdigest()[:32]
+    parts = (digest[:8], digest[8:12], digest[12:16], digest[16:20], digest[20:])
+    return "{" + "-".join(parts) + "}"
+
+
+def _below_sources(files: dict[str, bytes]) -> dict[str, bytes]:
+    return {
+        path.removeprefix("sources/"): content
+        for path, content in files.items()
+        if path.startswith("sources/")
+    }
+
+
+def _manifest(model: Operator, name: str, version: str, files: dict[str, bytes]) -> bytes:
+    block = fmu_model(model).block
+    content = {
+        "format": FORMAT,
+        "version": 1,
+        "hyst": hyst.__version__,
+        "target": "fmu",
+        "fmi": version,
+        "name": name,
+        "model": {"kind": block.kind, "sha256": block.sha256()},
+        "files": {path: hashlib.sha256(files[path]).hexdigest() for path in sorted(files)},
+    }
+    return (json.dumps(content, indent=2) + "\n").encode()
