@@ -13,16 +13,17 @@ import hyst
 from hyst.cli.console import at_work, progress_bar, show_files, show_table
 from hyst.cli.observer_spec import ObserverSpec, read_spec
 from hyst.cli.observer_template import TEMPLATE
-from hyst.compensation import ErrorBound, error_bound
+from hyst.compensation import ErrorBound, error_bound, slope_range
 from hyst.control import (
     DisturbanceObserver,
     TrackingController,
     closed_loop_poles,
     design_disturbance_observer,
     simulate_closed_loop,
+    slope_margin,
 )
+from hyst.control.frequency_responses import loop_responses
 from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
-from hyst.control.loop_responses import loop_responses
 from hyst.operators import Operator
 
 if TYPE_CHECKING:
@@ -134,21 +135,31 @@ def _tried(spec: ObserverSpec, design: DisturbanceObserver) -> ObserverAnswer:
         settle=spec.settle,
     )
     poles = closed_loop_poles(plant, block)
-    bound = _bound(spec, comparison)
+    bound, slopes = _of_inverse(spec, comparison)
+    margin = None if slopes is None else slope_margin(plant, spec.controller, design, slopes)
     return hyst.report.ObserverAnswer(
-        design, comparison, spec.inverse_name, block, sampled, poles, bound
+        design, comparison, spec.inverse_name, block, sampled, poles, bound, slopes, margin
     )
 
 
-def _bound(spec: ObserverSpec, comparison: InverseComparison) -> ErrorBound | None:
+def _of_inverse(
+    spec: ObserverSpec, comparison: InverseComparison
+) -> tuple[ErrorBound | None, tuple[float, float] | None]:
+    """Bound and slopes of the inverse over the range it was used in, where there are any."""
     loop = comparison.observed[spec.inverse_name]
-    if loop.diverged_at is not None or spec.disturbance != 0.0:
-        return None
+    if loop.diverged_at is not None:
+        return None, None
     inverse = hyst.Affine(1.0) if spec.inverse is None else spec.inverse
+    reach = float(np.abs(loop.v).max())
+    # Both are for plays between maps; other models have none.
     try:
-        return error_bound(spec.hysteresis, inverse, float(np.abs(loop.v).max()))
-    except ValueError:
-        return None  # the bound is one for plays between maps; other models have none
+        slopes = slope_range(spec.hysteresis, inverse, reach)
+    except hyst.InputError:
+        return None, None
+    try:
+        return error_bound(spec.hysteresis, inverse, reach), slopes
+    except hyst.NotInvertibleError:
+        return None, slopes
 
 
 def _shown(answer: ObserverAnswer) -> dict[str, hyst.control.ClosedLoop]:

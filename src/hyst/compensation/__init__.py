@@ -5,6 +5,14 @@ from __future__ import annotations
 from hyst.compensation.compensation import Compensation
 from hyst.compensation.inverse_error import ErrorBound, error_bound
 from hyst.compensation.inverse_reduction import reduce_inverse
+from hyst.compensation.inverse_slopes import slope_range
 from hyst.compensation.trajectory_inversion import invert_trajectory
 
-__all__ = ["Compensation", "ErrorBound", "error_bound", "invert_trajectory", "reduce_inverse"]
+__all__ = [
+    "Compensation",
+    "ErrorBound",
+    "error_bound",
+    "invert_trajectory",
+    "reduce_inverse",
+    "slope_range",
+]

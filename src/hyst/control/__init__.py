@@ -12,7 +12,10 @@ from hyst.control.disturbance_observer import (
     design_disturbance_observer,
     evaluate_gain,
 )
+from hyst.control.frequency_responses import LoopResponses, loop_responses
+from hyst.control.inexact_inverse import slope_margin
 from hyst.control.infinity_norm import hinf_norm
+from hyst.control.inverse_comparison import InverseComparison, compare_inverses
 from hyst.control.linear_system import LinearSystem
 from hyst.control.loop_system import closed_loop_poles
 from hyst.control.tracking_controller import TrackingController
@@ -22,13 +25,18 @@ __all__ = [
     "ClosedLoop",
     "DisturbanceObserver",
     "InternalModel",
+    "InverseComparison",
     "LinearSystem",
+    "LoopResponses",
     "TrackingController",
     "closed_loop_poles",
+    "compare_inverses",
     "design_disturbance_observer",
     "discretize",
     "discretized_dynamics",
     "evaluate_gain",
     "hinf_norm",
+    "loop_responses",
     "simulate_closed_loop",
+    "slope_margin",
 ]

@@ -39,6 +39,11 @@ class ObserverAnswer:
         Poles of that loop, the least stable first, where the inverse is exact.
     bound
         Of the inverse's error over the range it is used in; None where there is none.
+    slopes
+        Least and largest slope of hysteresis after inverse over that range; None if not known.
+    slope_margin
+        How many times wider that range may be before the circle criterion no longer proves the
+        loop stable; None if not known.
     """
 
     design: DisturbanceObserver
@@ -48,6 +53,8 @@ class ObserverAnswer:
     sampled: ClosedLoop
     sampled_poles: ComplexArray
     bound: ErrorBound | None
+    slopes: tuple[float, float] | None
+    slope_margin: float | None
 
     def checks(self) -> tuple[tuple[str, bool, str], ...]:
         """Give each condition of safety: what, whether it holds, and the number behind it."""
@@ -102,9 +109,10 @@ class ObserverAnswer:
             else "does NOT reject all that Wp asks for "
             f"({self.design.certificate.performance_norm:.3g} times as much is left)"
         )
+        inverse = "proven" if self.proven_with_inverse else "simulated, not proven,"
         return (
             f"SAFE: the loop is stable for every plant within Wu, which may grow {margin:.3g} "
-            f"times; the observer {demand}."
+            f"times, and {inverse} with the inverse ({self.inverse_name}); the observer {demand}."
         )
 
     def gain_sentence(self) -> str:
@@ -149,7 +157,25 @@ class ObserverAnswer:
             "yes" if self.meets_demand else "NO",
             f"norm of Wp (1 - Q) {c.performance_norm:.4f} at {c.performance_frequency:.4g} rad/s",
         )
-        return Table("Is the loop safe?", ("condition", "holds", "by"), (*rows, demand))
+        more = (*self._proof(), demand)
+        return Table("Is the loop safe?", ("condition", "holds", "by"), (*rows, *more))
+
+    @property
+    def proven_with_inverse(self) -> bool:
+        """Whether the circle criterion proves the loop stable with the inexact inverse too."""
+        return self.slope_margin is not None and self.slope_margin > 1.0
+
+    def _proof(self) -> tuple[tuple[str, str, str], ...]:
+        if self.slopes is None or self.slope_margin is None:
+            return ()
+        low, high = self.slopes
+        said = "not proven; only simulated"
+        if self.slope_margin > 1e6:
+            said = "the inverse is exact"
+        elif self.slope_margin > 1.0:
+            said = f"range may be {self.slope_margin:.3g} times wider"
+        what = f"proven with this inverse: slopes {low:.3g} to {high:.3g} (circle criterion)"
+        return ((what, "yes" if self.proven_with_inverse else "open", said),)
 
     def tracking_table(self) -> Table:
         """List tracking errors by inverse, without and with the observer."""
@@ -221,6 +247,8 @@ class ObserverAnswer:
             "sampled_pole_radius": float(np.abs(self.sampled_poles).max(initial=0.0)),
             "inverse": self.inverse_name,
             "inverse_error_bound": None if self.bound is None else self.bound.to_dict(),
+            "slopes": None if self.slopes is None else list(self.slopes),
+            "slope_margin": _finite(self.slope_margin),
             "tracking": {
                 name: {
                     "without": _errors(self.comparison.without[name]),
@@ -269,6 +297,10 @@ class ObserverAnswer:
                 f"u = step(y_ref, y)   # every {self.block.dt:g} s"
             )
         return page.to_html()
+
+
+def _finite(value: float | None) -> float | str | None:
+    return "inf" if value is not None and math.isinf(value) else value
 
 
 def _errors(loop: ClosedLoop) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from hyst.control.closed_loop import ClosedLoop
-from hyst.control.loop_responses import LoopResponses
+from hyst.control.frequency_responses import LoopResponses
 from hyst.report.panels import Panel, draw_panels
 
 _HZ = "frequency [Hz]"
