@@ -49,6 +49,27 @@ def test_limits_hold_in_the_file(tmp_path: Path) -> None:
         (["--kind", "multisine", "--rate", "0"], "--rate is 0.0"),
         (["--kind", "multisine", "--rate", "100", "--band", "1"], "--band is '1'"),
         (["--kind", "multisine", "--rate", "100", "--fir-order", "-3"], "--fir-order is -3"),
+        (
+            ["--kind", "multisine", "--rate", "1000", "--duration", "1e9"],
+            "would have 1e+12 samples",
+        ),
+        (["--kind", "swept-sine", "--rate", "1e5", "--duration", "1e308"], "at most 1e+08"),
+        (["--kind", "multisine", "--rate", "1e5", "--periods", "100000"], "would have 1e+10"),
+        (["--kind", "prbs", "--rate", "100", "--clock", "1000000"], "would have 1.023e+09"),
+        (["--kind", "prbs", "--rate", "100", "--register", "0"], "register is 0"),
+        (["--kind", "triangle", "--rate", "1", "--max-rate", "1e-9"], "would have 4e+09 samples"),
+        (
+            ["--kind", "triangle", "--rate", "1", "--max-rate", "1", "--periods", "1000000000"],
+            "would have 1e+09 samples",
+        ),
+        (
+            ["--kind", "staircase", "--rate", "1000", "--max-rate", "9", "--duration", "1e7"],
+            "samples, and at most 1e+08",
+        ),
+        (["--kind", "multisine", "--rate", "100", "--duration", "-1"], "--duration is -1.0"),
+        (["--kind", "multisine", "--rate", "100", "--duration", "nan"], "--duration is nan"),
+        (["--kind", "multisine", "--rate", "100", "--band", "1,60"], "half the sample rate, 50 Hz"),
+        (["--kind", "schroeder", "--rate", "100", "--band", "9,3"], "9 to 3 Hz; give two"),
     ],
 )
 def test_refuses_in_one_sentence(

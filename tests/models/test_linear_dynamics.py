@@ -176,3 +176,17 @@ def test_lipschitz_constant_is_the_sum_of_the_impulse_response() -> None:
 def test_what_is_no_system_is_refused(make: object, says: str) -> None:
     with pytest.raises(InputError, match=says):
         make()  # type: ignore[operator]
+
+
+@pytest.mark.parametrize("samples", [0, -1, 2.5, np.nan, "3", None])
+def test_an_impulse_response_has_at_least_one_sample(samples: object) -> None:
+    lag = LinearDynamics.from_transfer_function([0.5], [1.0, -0.5], dt=1e-3)
+    with pytest.raises(InputError, match="samples"):
+        lag.impulse_response(samples)  # type: ignore[arg-type]
+    assert lag.impulse_response(3).tolist() == [0.0, 0.5, 0.25]
+
+
+def test_an_impulse_response_that_overflows_says_where() -> None:
+    # 2^k is beyond the doubles from k = 1024 on, and so is the state that sample 1024 leaves.
+    with pytest.raises(InputError, match=r"u\[1024\] = 0 the operator overflows"):
+        LinearDynamics([[2.0]], [1.0], [1.0], 0.0, 1.0).impulse_response(2000)

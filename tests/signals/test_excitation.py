@@ -149,7 +149,10 @@ def test_printed_input_at_the_printed_sample_time_excites_six_directions() -> No
 @pytest.mark.parametrize(
     ("make", "says"),
     [
-        (lambda: signals.multisine(0.01, 100, rms=1.0, band=(60, 70)), "no line"),
+        (lambda: signals.multisine(0.01, 100, rms=1.0, band=(60, 70)), "half the sample rate"),
+        (lambda: signals.multisine(0.01, 100, rms=1.0, band=(-1, 7)), "in ascending order"),
+        (lambda: signals.multisine(0.01, 100, rms=1.0, band=(1.2, 1.8)), "no line"),
+        (lambda: signals.multisine(0.01, 1000, rms=1.0, periods=10**6), "1e.09 samples"),
         (lambda: signals.multisine(0.01, 100), "either amplitude or rms"),
         (lambda: signals.multisine(0.01, 100, rms=1.0, lines="even"), "lines is 'even'"),
         (lambda: signals.prbs(0.01, 1.0, clock=2, max_rate=10.0), "edge takes 21 samples"),

@@ -81,6 +81,8 @@ def _explain(error: Exception) -> tuple[str, int]:
         return f"{said} (hyst --help shows what there is)", BAD_INPUT
     if isinstance(error, OSError):
         return str(error), FAILURE
+    if isinstance(error, MemoryError):
+        return f"the memory does not suffice ({error}); use a shorter record or drive", FAILURE
     what = f"{type(error).__name__}: {error}"
     return f"hyst itself failed, {what}; run it again with --debug and report it", FAILURE
 

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 import hyst
-from hyst.cli.arguments import numbers
+from hyst.cli.arguments import numbers, positive
 from hyst.cli.console import note, show_files, show_table
 
 KINDS = (
@@ -96,7 +96,7 @@ def excite(
         amplitude=amplitude,
         rms=rms,
         offset=offset,
-        samples=max(round(duration * rate), 1),
+        samples=_samples(duration, rate),
         periods=periods,
         band=None if ends is None else (ends[0], ends[1]),
         limits=limits,
@@ -107,6 +107,12 @@ def excite(
     )
     _write(drive, out, name)
     _tell(drive, fir_order, name)
+
+
+def _samples(duration: float, rate: float) -> int:
+    """Give the samples of one period; how many there may be is for the drive to say."""
+    count = positive(duration, "duration") * rate
+    return max(round(min(count, 1e18)), 1)
 
 
 def _write(drive: hyst.signals.Drive, out: Path, name: str) -> None:

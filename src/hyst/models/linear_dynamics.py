@@ -11,11 +11,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.errors import InputError, NotInvertibleError
-from hyst.models.linear_properties import answers_after, poles_of, values_at, zeros_of
+from hyst.models.linear_properties import (
+    answers_after,
+    poles_of,
+    settling_samples,
+    values_at,
+    zeros_of,
+)
 from hyst.models.matrices import checked_matrices
 from hyst.models.realizations import cascade, companion, sections_of, zero_order_hold
 from hyst.operators.base import Operator
-from hyst.operators.checks import as_constants, as_number, refuse_overflow
+from hyst.operators.checks import as_constants, as_number, as_whole_number, refuse_overflow
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries, register
 from hyst.operators.stage_sink import StageSink
@@ -86,7 +92,15 @@ class LinearDynamics(Operator):
             raise InputError(f"dt is {time}; give the sample time in seconds, above 0")
         for name, value in zip(
             ("A", "B", "C", "D", "_dt", "delay", "x0"),
-            (a, b, c, feedthrough, time, _as_delay(delay), as_constants(start + 0.0, "")),
+            (
+                a,
+                b,
+                c,
+                feedthrough,
+                time,
+                as_whole_number(delay, "delay"),
+                as_constants(start + 0.0, ""),
+            ),
             strict=True,
         ):
             object.__setattr__(self, name, value)
@@ -284,7 +298,7 @@ class LinearDynamics(Operator):
         """Give the sum of the absolute impulse response; infinity if G is not stable."""
         if not self.is_stable():
             return math.inf
-        response = np.abs(self.impulse_response(self._settling_samples()))
+        response = np.abs(self.impulse_response(settling_samples(self.A) + self.delay))
         return float(response.sum()) * (1.0 + 1e-9)
 
     def to_dict(self) -> dict[str, Any]:
@@ -349,8 +363,14 @@ class LinearDynamics(Operator):
         ----------
         samples
             How many, >= 1.
+
+        Raises
+        ------
+        InputError
+            If ``samples`` is no whole number above 0, or the response overflows, as that of an
+            unstable system does in the end.
         """
-        impulse = np.zeros(samples)
+        impulse = np.zeros(as_whole_number(samples, "samples", 1))
         impulse[0] = 1.0
         return self.run(impulse, np.zeros(self.order + self.delay))[0]
 
@@ -384,17 +404,3 @@ class LinearDynamics(Operator):
             f"LinearDynamics(A={self.A.tolist()}, B={self.B.tolist()}, C={self.C.tolist()}, "
             f"D={self.D!r}, dt={self.dt!r}{late})"
         )
-
-    def _settling_samples(self) -> int:
-        """Give the samples until the impulse response has died out, at most a million."""
-        slowest = float(np.abs(self.poles()[0])) if self.order else 0.0
-        # Repeated poles decay later than their modulus says: twice as long, and a margin.
-        decay = 80.0 / -math.log(slowest) if slowest > 0.0 else 0.0
-        return int(min(decay, 1e6)) + self.order + self.delay + 64
-
-
-def _as_delay(delay: Any) -> int:
-    number = as_number(delay, "delay")
-    if number < 0.0 or number != int(number):
-        raise InputError(f"delay is {delay}; give a whole number of samples")
-    return int(number)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -47,6 +49,14 @@ def zeros_of(A: Array, B: Array, C: Array, D: float) -> Complex:
     for _ in range(ahead):
         row, first = row @ A, float(row @ B)
     return poles_of(A - np.outer(B, row) / first)[: B.size - ahead]
+
+
+def settling_samples(A: Array) -> int:
+    """Give the samples until the impulse response of a stable A has died out, at most a million."""
+    slowest = float(np.abs(poles_of(A)[0])) if A.size else 0.0
+    # Repeated poles decay later than their modulus says: twice as long, and a margin.
+    decay = 80.0 / -math.log(slowest) if slowest > 0.0 else 0.0
+    return int(min(decay, 1e6)) + len(A) + 64
 
 
 def values_at(points: Complex, A: Array, B: Array, C: Array, D: float) -> Complex:

@@ -54,8 +54,8 @@ def refuse_sample(array: Array, bad: int, name: str) -> NoReturn:
     where = index[0] if len(index) == 1 else index
     if np.isfinite(array[index]):
         raise InputError(
-            f"{name}[{where}] = {array[index]:.6g} overflows on its way through the operator; "
-            "choose units in which signals and constants are of moderate size"
+            f"at {name}[{where}] = {array[index]:.6g} the operator overflows; choose units in which "
+            "signals and constants are of moderate size"
         )
     raise InputError(f"{name}[{where}] is {array[index]}; every number must be finite")
 
@@ -182,6 +182,33 @@ def as_number(value: Any, name: str) -> float:
     if not np.isfinite(number):
         raise InputError(f"{name} is {float(number)}; it must be finite")
     return float(number)
+
+
+def as_whole_number(value: Any, name: str, least: int = 0) -> int:
+    """Check a number of samples or of states.
+
+    Parameters
+    ----------
+    value
+        A whole number, at least ``least``.
+    name
+        What messages call it.
+    least
+        The smallest that is allowed.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    InputError
+        If it is something else.
+    """
+    number = as_number(value, name)
+    if number < least or number != int(number):
+        raise InputError(f"{name} is {value}; give a whole number, at least {least}")
+    return int(number)
 
 
 def as_threshold(value: Any, name: str = "r") -> float:

@@ -15,6 +15,8 @@ from hyst.signals.vector import finite_vector
 
 Array = NDArray[np.float64]
 
+MOST_SAMPLES = 100_000_000  # of one drive, 0.8 GB; a number mistyped asks for more
+
 # What rounding may add when limits are met exactly: kept away from them by this share.
 _MARGIN = 1e-12
 
@@ -213,8 +215,29 @@ def as_count(value: int, name: str, least: int = 1) -> int:
     Raises
     ------
     InputError
-        If it is something else or too small.
+        If it is something else, too small, or more than a drive may have samples.
     """
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
         raise InputError(f"{name} is {value!r}; give a whole number, at least {least}")
+    require_length(value)
     return int(value)
+
+
+def require_length(samples: float) -> None:
+    """Refuse a drive that is too long, before it is made.
+
+    Parameters
+    ----------
+    samples
+        How many it would have at least.
+
+    Raises
+    ------
+    InputError
+        If there are more than 1e8.
+    """
+    if samples > MOST_SAMPLES:
+        raise InputError(
+            f"the drive would have {samples:.4g} samples, and at most {MOST_SAMPLES:.0e} are made; "
+            "give a shorter duration, fewer periods, a higher rate of change, or sample more slowly"
+        )

@@ -88,7 +88,7 @@ def design(
             **given,
         )
     if kind == "prbs":
-        start = seed % (2**register - 1) + 1
+        start = seed % (2**register - 1) + 1 if 2 <= register <= 20 else 1
         return prbs(
             dt,
             amplitude,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
-from hyst.signals.drive import Drive, Limits, as_count, as_positive, fitted
+from hyst.signals.drive import Drive, Limits, as_count, as_positive, fitted, require_length
 
 Array = NDArray[np.float64]
 
@@ -71,7 +71,8 @@ def multisine(
     Raises
     ------
     InputError
-        If there is no line in the band, or an argument cannot be used.
+        If the band goes beyond half the sample rate or holds no line, the drive would have more
+        than 1e8 samples, or an argument cannot be used.
 
     Notes
     -----
@@ -85,6 +86,7 @@ def multisine(
     (2000, 30.0, 1000)
     """
     time, count = as_positive(dt, "dt"), as_count(samples, "samples", 4)
+    require_length(count * as_count(periods, "periods"))
     rng = np.random.default_rng(seed)
     chosen = _lines(time, count, band, lines, rng)
     angles = _angles(chosen.size, phases, rng)
@@ -93,7 +95,7 @@ def multisine(
     period = np.fft.irfft(spectrum, count)
     period *= _factor(period, amplitude, rms)
     period, notes = fitted(period, time, Limits(max_rate, max_acceleration), offset)
-    u = np.tile(period, as_count(periods, "periods")) + offset
+    u = np.tile(period, periods) + offset
     return Drive(u, time, "multisine", count, notes)
 
 
@@ -104,6 +106,11 @@ def _lines(
         raise InputError(f"lines is {lines!r}; choose one of {', '.join(_LINES)}")
     last = (samples - 1) // 2
     low, high = band if band is not None else (0.0, 0.5 / dt)
+    if not 0.0 <= low <= high <= 0.5 / dt * (1.0 + 1e-9):
+        raise InputError(
+            f"the band is {low:.6g} to {high:.6g} Hz; give two frequencies in ascending order, up "
+            f"to half the sample rate, {0.5 / dt:.6g} Hz"
+        )
     first = max(1, math.ceil(low * samples * dt - 1e-9))
     last = min(last, math.floor(high * samples * dt + 1e-9))
     chosen = np.arange(first, last + 1)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
-from hyst.signals.drive import Drive, Limits, as_count, as_positive
+from hyst.signals.drive import Drive, Limits, as_count, as_positive, require_length
 from hyst.signals.waypoints import path
 
 Array = NDArray[np.float64]
@@ -275,13 +275,14 @@ def prbs(
         raise InputError(f"seed is {seed}; give 1 to {2**register - 1}")
     bits = _maximal_sequence(register, seed)
     samples = as_count(clock, "clock")
+    require_length(bits.size * samples * as_count(periods, "periods"))
     low, high = float(offset) - half, float(offset) + half
     levels = np.repeat(np.where(bits, high, low), samples)
     if math.isfinite(max_rate) or math.isfinite(max_acceleration):
         # An edge that ought to take no time takes one sample.
         limits = Limits(min(max_rate, 4.0 * half / time), max_acceleration)
         levels = _with_ramps(levels, samples, path([low, high], time, limits)[1:])
-    u = np.tile(levels, as_count(periods, "periods"))
+    u = np.tile(levels, periods)
     return Drive(u, time, "prbs", bits.size * samples)
 
 

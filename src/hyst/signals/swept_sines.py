@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from hyst.errors import InputError
-from hyst.signals.drive import Drive, Limits, as_count, as_positive, fitted
+from hyst.signals.drive import Drive, Limits, as_count, as_positive, fitted, require_length
 
 
 def swept_sine(
@@ -60,6 +60,7 @@ def swept_sine(
     2000
     """
     time, count = as_positive(dt, "dt"), as_count(samples, "samples", 4)
+    require_length(count * as_count(periods, "periods"))
     first, last = as_positive(band[0], "band[0]"), as_positive(band[1], "band[1]")
     if max(first, last) >= 0.5 / time:
         raise InputError(
@@ -79,7 +80,7 @@ def swept_sine(
     duration = max(round(total * count * time), 1) / total
     sweep = as_positive(amplitude, "amplitude") * np.sin(2.0 * np.pi * duration * phase)
     sweep, notes = fitted(sweep, time, Limits(max_rate, max_acceleration), offset)
-    u = np.tile(sweep, as_count(periods, "periods")) + offset
+    u = np.tile(sweep, periods) + offset
     return Drive(u, time, "swept-sine", count, notes)
 
 

@@ -14,11 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
-from hyst.signals.drive import Limits
+from hyst.signals.drive import Limits, require_length
 
 Array = NDArray[np.float64]
-
-MOST_SAMPLES = 100_000_000
 
 
 def path(points: Sequence[float] | Array, dt: float, limits: Limits, hold: int = 0) -> Array:
@@ -55,11 +53,7 @@ def path(points: Sequence[float] | Array, dt: float, limits: Limits, hold: int =
     values = np.asarray(points, dtype=np.float64)
     largest = float(np.abs(values).max())
     step, bend = limits.step(dt, largest), limits.bend(dt, largest)
-    needed = float(np.abs(np.diff(values)).sum()) / step
-    if needed > MOST_SAMPLES:
-        raise InputError(
-            f"the path takes {needed:.3g} samples; raise max_rate, or dt, or give fewer points"
-        )
+    require_length(float(np.abs(np.diff(values)).sum()) / step + values.size * float(hold))
     pieces = [values[:1], np.full(hold, values[0])]
     rest = max(hold, 0 if math.isinf(limits.max_acceleration) else 1)
     for start, end in pairwise(values):
