@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace hyst {
 namespace {
@@ -15,30 +16,57 @@ bool within(double limit, double y, double v, double u, double eta) {
            std::fabs(u) <= kBeyondMeasure && std::fabs(eta) <= kBeyondMeasure;
 }
 
-// step times z, column after column: the sums of all rows run side by side.
+// sums += columns times z, for rows known to the compiler: the sums stay in registers, which takes
+// half the time of loops whose short length is only known when they run.
+template <std::size_t rows>
+void accumulate(const double *columns, std::size_t, const double *z, std::size_t count,
+                double *sums) {
+    double held[rows];
+    std::copy_n(sums, rows, held);
+    for (std::size_t j = 0; j < count; ++j, columns += rows) {
+        for (std::size_t i = 0; i < rows; ++i) held[i] += columns[i] * z[j];
+    }
+    std::copy_n(held, rows, sums);
+}
+
+void accumulate_any(const double *columns, std::size_t rows, const double *z, std::size_t count,
+                    double *sums) {
+    for (std::size_t j = 0; j < count; ++j, columns += rows) {
+        for (std::size_t i = 0; i < rows; ++i) sums[i] += columns[i] * z[j];
+    }
+}
+
+// step times z, column after column: the sums of all rows run side by side. Rows of zeros fill up
+// to a multiple of four, so sums has rows() entries.
 class Product {
 public:
     Product(std::size_t rows, std::size_t columns, const double *row_after_row)
-        : rows_(rows), columns_(columns), values_(rows * columns) {
+        : rows_((rows + 3) / 4 * 4), values_(rows_ * columns, 0.0) {
         for (std::size_t i = 0; i < rows; ++i) {
             for (std::size_t j = 0; j < columns; ++j) {
-                values_[j * rows + i] = row_after_row[i * columns + j];
+                values_[j * rows_ + i] = row_after_row[i * columns + j];
             }
         }
+        constexpr Accumulate known[] = {accumulate<4>, accumulate<8>, accumulate<12>,
+                                        accumulate<16>, accumulate<20>};
+        const std::size_t fours = rows_ / 4 - 1;
+        accumulate_ = fours < std::size(known) ? known[fours] : accumulate_any;
     }
+    std::size_t rows() const { return rows_; }
     double at(std::size_t i, std::size_t j) const { return values_[j * rows_ + i]; }
     void clear_and_add(double *sums, const double *z, std::size_t count) const {
         std::fill_n(sums, rows_, 0.0);
-        for (std::size_t j = 0; j < count; ++j) add_column(sums, j, z[j]);
+        accumulate_(values_.data(), rows_, z, count, sums);
     }
     void add_column(double *sums, std::size_t j, double z) const {
-        const double *column = values_.data() + j * rows_;
-        for (std::size_t i = 0; i < rows_; ++i) sums[i] += column[i] * z;
+        accumulate_(values_.data() + j * rows_, rows_, &z, 1, sums);
     }
 
 private:
-    std::size_t rows_, columns_;
+    using Accumulate = void (*)(const double *, std::size_t, const double *, std::size_t, double *);
+    std::size_t rows_;
     std::vector<double> values_;
+    Accumulate accumulate_;
 };
 
 // v -> w through inverse and hysteresis, with states of its own for trials.
@@ -115,7 +143,7 @@ LoopResult run_continuous_loop(std::size_t n, const double *step, bool delayed,
                                double limit) {
     const Product product(n + 3, n + 3, step);
     Actuator actuator(inverse, hysteresis, inverse_state, hysteresis_state);
-    std::vector<double> z(n + 2, 0.0), sums(n + 3, 0.0);
+    std::vector<double> z(n + 2, 0.0), sums(product.rows(), 0.0);
     const double feedthrough = product.at(n, n + 2);  // of w to v
     double w = 0.0, v_before = 0.0;
     for (std::size_t k = 0; k < signals.samples; ++k) {
@@ -150,7 +178,7 @@ LoopResult run_sampled_loop(std::size_t n, const double *step,
                             double limit) {
     const Product product(n + 1, n + 1, step);
     const hyst_chain plant_hysteresis = hysteresis.view();
-    std::vector<double> z(n + 1, 0.0), sums(n + 1, 0.0);
+    std::vector<double> z(n + 1, 0.0), sums(product.rows(), 0.0);
     double *inverse_state = controller_state.data() + controller.order;
     for (std::size_t k = 0; k < signals.samples; ++k) {
         double y = product.at(n, n) * z[n];
