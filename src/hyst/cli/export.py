@@ -27,6 +27,8 @@ class _Order:
     precision: str
     name: str
     force: bool
+    fmi: str
+    binary: bool
 
 
 @dataclass(frozen=True)
@@ -63,8 +65,66 @@ def _c(order: _Order) -> _Done:
     )
 
 
+def _fmu(order: _Order) -> _Done:
+    _refuse_single(order, "fmu")
+    path = order.out
+    if path.suffix.lower() != ".fmu":
+        if path.parent.is_dir() and not path.exists():
+            path.mkdir()
+        path = path / f"{order.name}.fmu"
+    written = hyst.export.fmu(
+        order.model,
+        path,
+        order.fmi,
+        order.name,
+        order.force,
+        description=order.about,
+        binary=order.binary,
+    )
+    binaries = [each for each in written.files if each.startswith("binaries/")]
+    rows = (
+        ("FMI", f"{written.version}, co-simulation"),
+        ("variables", f"{', '.join(written.inputs)} -> {written.output}; fault"),
+        ("parameters", _shortened(written.parameters)),
+        ("communication step", "any" if written.dt is None else f"multiples of {written.dt!r} s"),
+        ("binary", ", ".join(binaries) or "none; the importer compiles the sources"),
+    )
+    return _Done(rows, f"import {path} into a simulation tool; docs/fmu.md says what it expects")
+
+
+def _mex(order: _Order) -> _Done:
+    _refuse_single(order, "mex")
+    written = hyst.export.mex(
+        order.model, order.out, order.name, order.force, description=order.about
+    )
+    rows = (
+        ("files", ", ".join(written.files)),
+        ("state", f"{written.saved_bytes} bytes, {written.state_length} numbers of memory"),
+    )
+    zipped = order.out.suffix.lower() == ".zip"
+    unpack = f"unzip {order.out} && " if zipped else ""
+    return _Done(
+        rows,
+        f"{unpack}cd {order.name if zipped else order.out} && mkoctfile --mex {order.name}_mex.c, "
+        f"or in MATLAB mex {order.name}_mex.c; then y = {order.name}(u)",
+    )
+
+
+def _refuse_single(order: _Order, target: str) -> None:
+    if order.precision != "double":
+        raise hyst.InputError(
+            f"--precision is {order.precision!r}; {target} is in double, so leave it out"
+        )
+
+
+def _shortened(names: tuple[str, ...], most: int = 6) -> str:
+    if len(names) <= most:
+        return ", ".join(names) or "none"
+    return f"{', '.join(names[: most - 1])} ... ({len(names)})"
+
+
 # One function a target, by the name the command line gives it.
-_TARGETS: dict[str, Callable[[_Order], _Done]] = {"c": _c}
+_TARGETS: dict[str, Callable[[_Order], _Done]] = {"c": _c, "fmu": _fmu, "mex": _mex}
 
 
 def export(
@@ -76,10 +136,15 @@ def export(
             "--out",
             metavar="PATH",
             show_default=False,
-            help="What to write: a folder, or a zip if it ends in .zip.",
+            help="What to write: a folder, a zip if it ends in .zip, or an FMU if in .fmu.",
         ),
     ],
-    target: Annotated[str, typer.Option(help="c, for firmware.")] = "c",
+    target: Annotated[
+        str,
+        typer.Option(
+            help="c, for firmware; fmu, for simulation tools; mex, for MATLAB and Octave."
+        ),
+    ] = "c",
     inverse: Annotated[bool, typer.Option("--inverse", help="Export the inverse.")] = False,
     explicit: Annotated[
         bool,
@@ -94,6 +159,13 @@ def export(
     force: Annotated[
         bool, typer.Option("--force", help="Replace an earlier export, as a whole.")
     ] = False,
+    fmi: Annotated[str, typer.Option(metavar="VERSION", help="Of an FMU: 2.0 or 3.0.")] = "2.0",
+    binary: Annotated[
+        bool,
+        typer.Option(
+            "--binary/--no-binary", help="Whether to compile an FMU's binary for this platform."
+        ),
+    ] = True,
 ) -> None:
     """Write a model as code for other tools: the numbers of Python, bit for bit in double."""
     if target not in _TARGETS:
@@ -102,7 +174,7 @@ def export(
     if inverse or explicit:
         model = hyst.export.explicit_inverse(model) if explicit else model.inverse()
         about = hyst.export.reversed_description(about)
-    done = _TARGETS[target](_Order(model, about, out, precision, name, force))
+    done = _TARGETS[target](_Order(model, about, out, precision, name, force, fmi, binary))
     what = "inverse of " if inverse or explicit else ""
     title = f"{what}{model_file.name} as {target}: {out}"
     show_table(hyst.report.Table(title, ("", ""), done.rows))

@@ -5,5 +5,15 @@ from __future__ import annotations
 from hyst.export.firmware import CProject, c_project
 from hyst.export.fmu_archive import Fmu, fmu
 from hyst.export.inverses import explicit_inverse, reversed_description
+from hyst.export.mex_folder import MexFolder, mex
 
-__all__ = ["CProject", "Fmu", "c_project", "explicit_inverse", "fmu", "reversed_description"]
+__all__ = [
+    "CProject",
+    "Fmu",
+    "MexFolder",
+    "c_project",
+    "explicit_inverse",
+    "fmu",
+    "mex",
+    "reversed_description",
+]

@@ -1,0 +1,204 @@
+"""Export as a MEX function: one C file and thin wrappers, for MATLAB and GNU Octave."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import final
+
+import hyst
+from hyst.errors import InputError
+from hyst.export.block import Block, block_of
+from hyst.export.c_sources import header, places, source
+from hyst.export.core_sources import core_files
+from hyst.export.folder import FORMAT, MANIFEST, write_export
+from hyst.export.names import as_c_name, plain_text
+from hyst.export.one_file import in_one_file
+from hyst.export.templating import filled
+from hyst.operators import ModelDescription, Operator
+
+_LICENSE = Path(__file__).resolve().parent / "templates" / "LICENSE"
+
+# Words of MATLAB and Octave that C does not have, and names a file must not hide from them.
+_WORDS = """
+    ans catch classdef elseif end endfor endfunction endif endswitch endwhile eps function global i
+    inf j mex mexext nan otherwise parfor persistent pi spmd until unwind_protect
+"""
+_TAKEN = frozenset(_WORDS.split())
+
+
+@final
+@dataclass(frozen=True)
+class MexFolder:
+    """A MEX function that has been written.
+
+    Parameters
+    ----------
+    path
+        The folder, or the zip.
+    files
+        What it holds, sorted.
+    name
+        Of the function in MATLAB and Octave.
+    state_length
+        Numbers of memory.
+    saved_bytes
+        Of a state.
+    """
+
+    path: Path
+    files: tuple[str, ...]
+    name: str
+    state_length: int
+    saved_bytes: int
+
+
+def mex(
+    model: Operator,
+    folder: str | os.PathLike[str],
+    name: str = "stage",
+    force: bool = False,
+    *,
+    description: ModelDescription | None = None,
+) -> MexFolder:
+    """Write a model as one C file that MATLAB and Octave compile, with wrappers in their language.
+
+    Parameters
+    ----------
+    model
+        Any operator.
+    folder
+        What to create: a folder, or a zip if it ends in ``.zip``.
+    name
+        Of the function, a C identifier.
+    force
+        Whether an earlier export of that path is replaced, as a whole.
+    description
+        Names and units of input and output, for comments.
+
+    Returns
+    -------
+    MexFolder
+
+    Raises
+    ------
+    InputError
+        If the model or the name cannot be used, or the path exists.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from hyst import PrandtlIshlinskii
+    >>> model = PrandtlIshlinskii(p=[0.5, 0.2], r=[0.1, 0.3], p0=1.0)
+    >>> with tempfile.TemporaryDirectory() as parent:
+    ...     written = mex(model.inverse(), f"{parent}/inverse", name="inverse")
+    >>> written.files
+    ('README.md', 'inverse.m', 'inverse_mex.c', 'inverse_stepper.m', 'manifest.json')
+    """
+    _as_function_name(name)
+    about = description or ModelDescription()
+    block = block_of(model, "double")
+    files = mex_files(block, name, about)
+    path = write_export(folder, files, name, force=force)
+    return MexFolder(
+        path=path,
+        files=tuple(sorted(files)),
+        name=name,
+        state_length=len(block.start),
+        saved_bytes=int(places(block, name, "double", about)["saved_bytes"]),
+    )
+
+
+def mex_files(block: Block, name: str, about: ModelDescription) -> dict[str, bytes]:
+    """Give the files of a MEX function.
+
+    Parameters
+    ----------
+    block
+        What is exported, in double precision.
+    name
+        Of the function, checked.
+    about
+        What the numbers mean.
+
+    Returns
+    -------
+    dict
+        Content by path.
+    """
+    common = places(block, name, "double", about)
+    common |= {
+        "title": plain_text(block.kind),
+        "signals": ", ".join(block.inputs),
+        "inputs": str(len(block.inputs)),
+        "quoted": ", ".join(f'"{each}"' for each in block.inputs),
+        "elements": ", ".join(f"input[{i}][k]" for i in range(len(block.inputs))),
+        "license": _commented(_LICENSE.read_text(encoding="utf-8"), " *"),
+        "meaning": _meaning(common["signals"]),
+        "rows": _rows(block, common["signals"]),
+    }
+    texts = {
+        f"{name}_mex.c": _c_file(block, common, about),
+        f"{name}.m": filled("mex/stage.m", common),
+        f"{name}_stepper.m": filled("mex/stepper.m", common),
+        "README.md": filled("mex/README.md", common),
+    }
+    files = {path: text.encode("ascii") for path, text in texts.items()}
+    return files | {MANIFEST: _manifest(block, name, files)}
+
+
+def _as_function_name(name: str) -> str:
+    as_c_name(name)
+    if name.lower() in _TAKEN:
+        raise InputError(
+            f"the name is {name!r}, which MATLAB or Octave has itself; give another, as stage"
+        )
+    return name
+
+
+def _c_file(block: Block, common: dict[str, str], about: ModelDescription) -> str:
+    name = common["name"]
+    own = places(block, name, "double", about)
+    stage, declared = source(block, own, "double"), header(own)
+    core = core_files(stage + declared)
+    everything = in_one_file(core, {f"{name}.h": declared, f"{name}.c": stage})
+    return filled("mex/head.c", common) + everything + "\n" + filled("mex/gateway.c", common)
+
+
+def _commented(text: str, mark: str) -> str:
+    return "".join(f"{mark} {line}".rstrip() + "\n" for line in text.strip().splitlines())
+
+
+def _signal_lines(signals: str) -> list[str]:
+    return [line.removeprefix(" *").strip() for line in signals.splitlines() if line.strip(" *")]
+
+
+def _meaning(signals: str) -> str:
+    lines = _signal_lines(signals)
+    return "".join(f"\n%     {line}" for line in lines) + ("\n%" if lines else "")
+
+
+def _rows(block: Block, signals: str) -> str:
+    rows = {
+        "model": plain_text(block.kind),
+        "state": f"{len(block.start)} numbers of memory",
+        "sample time": "any" if block.dt is None else f"{block.dt!r} s, and no other",
+    }
+    rows |= dict(line.split(": ", 1) for line in _signal_lines(signals))
+    return "\n".join(f"| {key} | {value} |" for key, value in rows.items())
+
+
+def _manifest(block: Block, name: str, files: dict[str, bytes]) -> bytes:
+    content = {
+        "format": FORMAT,
+        "version": 1,
+        "hyst": hyst.__version__,
+        "target": "mex",
+        "name": name,
+        "model": {"kind": block.kind, "sha256": block.sha256()},
+        "files": {path: hashlib.sha256(files[path]).hexdigest() for path in sorted(files)},
+    }
+    return (json.dumps(content, indent=2) + "\n").encode()
