@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, final
 
+from hyst import _single
 from hyst.control.tracking_controller import KIND, TrackingController
 from hyst.errors import InputError
 from hyst.export.numbers import Precision
@@ -79,6 +80,30 @@ class Block:
         """Give the number above 0 that marks the states of this model in a ``precision``."""
         digest = hashlib.sha256(f"hyst state 1 {precision} {self.sha256()}".encode()).digest()
         return int.from_bytes(digest[:4], "big") or 1
+
+
+def stepper_of(block: Block, precision: Precision) -> Callable[..., float]:
+    """Give what takes one sample at a time with the numbers of a target.
+
+    Parameters
+    ----------
+    block
+        What is exported.
+    precision
+        Of the target.
+
+    Returns
+    -------
+    callable
+        From the inputs to the output, guarded, from the initial state.
+    """
+    if precision == "double":
+        return block.stepper()
+    stages = [
+        (stage.kind, stage.form, dict(stage.numbers), dict(stage.tables), dict(stage.choices))
+        for stage in block.stages
+    ]
+    return _single.Stepper(stages, block.start)
 
 
 def block_of(model: Model, precision: Precision) -> Block:

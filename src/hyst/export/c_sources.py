@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from hyst import __version__
 from hyst.export.block import Block
-from hyst.export.drive import PERIOD, SAMPLES, Drive
+from hyst.export.drive import PERIOD, SAMPLES
 from hyst.export.names import plain_text
 from hyst.export.numbers import Precision, literal, table
+from hyst.export.selftest import BAD, SEEDS, SelfTest
 from hyst.export.templating import filled, indented
 from hyst.operators.model_file import ModelDescription
 
-SEEDS = (1, 2)
-BAD = (500, 750)
 WORD_BYTES = {"double": 8, "single": 4}
 
 
@@ -87,7 +86,7 @@ def source(block: Block, places: dict[str, str], precision: Precision) -> str:
     return filled("block.c", places | more) + filled("state.c", places)
 
 
-def selftest(block: Block, places: dict[str, str]) -> str:
+def selftest_source(block: Block, places: dict[str, str]) -> str:
     """Give the self-test of a ``block``, filled with ``places``."""
     one = len(block.inputs) == 1
     drives = [f"drive_{each}" for each in block.inputs]
@@ -108,17 +107,16 @@ def selftest(block: Block, places: dict[str, str]) -> str:
     return filled("selftest.c", places | more)
 
 
-def vectors(
-    expected: list[float], drive: Drive, places: dict[str, str], precision: Precision
-) -> str:
-    """Give the header with the ``expected`` outputs for a ``drive``, filled with ``places``."""
+def vectors(test: SelfTest, places: dict[str, str], precision: Precision) -> str:
+    """Give the header with what a ``test`` expects in a ``precision``, filled with ``places``."""
+    drive = test.drive
     more = {
         "low": f"({drive.low})",
         "count": str(drive.count),
         "stride": str(drive.stride),
         "period": str(PERIOD),
         "unit": literal(drive.unit, precision, "unit"),
-        "expected": table(expected, precision, "expected"),
+        "expected": table(test.expected.tolist(), precision, "expected"),
     }
     return filled("selftest_vectors.h", places | more)
 

@@ -51,6 +51,11 @@ class Drive:
         """The largest step between two samples, in units."""
         return self.count // _STRIDES
 
+    @property
+    def high(self) -> float:
+        """The upper end of the range."""
+        return (self.low + self.count - 1) * self.unit
+
     def samples(self, seed: int, bad: int, count: int = SAMPLES) -> Array:
         """Give the input.
 

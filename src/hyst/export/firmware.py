@@ -10,14 +10,14 @@ from pathlib import Path
 from typing import Any, final
 
 from hyst import __version__
-from hyst.export.amplitude import drive_for
 from hyst.export.block import Block, Model, block_of
-from hyst.export.c_sources import BAD, SEEDS, WORD_BYTES, header, places, selftest, source, vectors
+from hyst.export.c_sources import WORD_BYTES, header, places, selftest_source, source, vectors
 from hyst.export.core_sources import core_files
-from hyst.export.drive import Drive
+from hyst.export.drive import SAMPLES
 from hyst.export.folder import FORMAT, MANIFEST, write_export
 from hyst.export.names import as_c_name, plain_text
 from hyst.export.numbers import Precision, as_precision
+from hyst.export.selftest import SelfTest
 from hyst.export.templating import filled
 from hyst.operators import ModelDescription
 
@@ -43,6 +43,8 @@ class CProject:
         Of the state structure.
     saved_bytes
         Of a saved state.
+    away_from_double
+        Largest difference of the self-test's outputs from those in double: 0 in double.
     """
 
     path: Path
@@ -52,6 +54,7 @@ class CProject:
     state_length: int
     state_bytes: int
     saved_bytes: int
+    away_from_double: float
 
 
 def c_project(
@@ -103,7 +106,8 @@ def c_project(
     exact = as_precision(precision)
     about = description or ModelDescription()
     block = block_of(model, exact)
-    files = project_files(block, _drive(block, about), name, exact, about)
+    test = SelfTest.of(block, exact, about)
+    files = project_files(block, test, name, exact, about)
     length = max(len(block.start), 1)
     path = write_export(folder, files, name, force=force)
     return CProject(
@@ -114,11 +118,12 @@ def c_project(
         state_length=len(block.start),
         state_bytes=WORD_BYTES[exact] * (length + 1) + 8,
         saved_bytes=WORD_BYTES[exact] * (length + 1) + 12,
+        away_from_double=test.away_from_double,
     )
 
 
 def project_files(
-    block: Block, drive: Drive, name: str, precision: Precision, about: ModelDescription
+    block: Block, test: SelfTest, name: str, precision: Precision, about: ModelDescription
 ) -> dict[str, bytes]:
     """Give the files of a project.
 
@@ -126,8 +131,8 @@ def project_files(
     ----------
     block
         What is exported.
-    drive
-        Input of the self-test.
+    test
+        Its self-test.
     name
         The prefix, checked.
     precision
@@ -141,7 +146,6 @@ def project_files(
         Content by path.
     """
     common = places(block, name, precision, about)
-    expected = _expected(block, drive)
     main = source(block, common, precision)
     core = {f"core/{path}": text for path, text in core_files(main + header(common)).items()}
     sources = [f"{name}.c", *(path for path in core if path.endswith(".c"))]
@@ -154,32 +158,18 @@ def project_files(
     texts = {
         f"{name}.h": header(common),
         f"{name}.c": main,
-        "selftest.c": selftest(block, common),
-        "selftest_vectors.h": vectors(expected, drive, common, precision),
+        "selftest.c": selftest_source(block, common),
+        "selftest_vectors.h": vectors(test, common, precision),
         "CMakeLists.txt": filled("CMakeLists.txt", common | cmake),
-        "README.md": _readme(block, common, about, len(sources) > 1),
+        "README.md": _readme(block, common, about, len(sources) > 1, test),
     }
     files = {path: text.encode("ascii") for path, text in texts.items()} | core
-    return files | {MANIFEST: _manifest(block, name, precision, files)}
+    return files | {MANIFEST: _manifest(block, name, precision, files, test)}
 
 
-def _drive(block: Block, about: ModelDescription) -> Drive:
-    low, high = about.input_low, about.input_high
-    if len(block.inputs) == 1 and low is not None and high is not None and low < high:
-        return Drive.between(low, high)
-    return drive_for(block.chain)
-
-
-def _expected(block: Block, drive: Drive) -> list[float]:
-    step = block.stepper()
-    signals = [
-        drive.samples(seed, bad).tolist()
-        for _, seed, bad in zip(block.inputs, SEEDS, BAD, strict=False)
-    ]
-    return [step(*sample) for sample in zip(*signals, strict=True)]
-
-
-def _readme(block: Block, common: dict[str, str], about: ModelDescription, has_core: bool) -> str:
+def _readme(
+    block: Block, common: dict[str, str], about: ModelDescription, has_core: bool, test: SelfTest
+) -> str:
     length = max(len(block.start), 1)
     word = int(common["word_bytes"])
     rows = {
@@ -189,6 +179,11 @@ def _readme(block: Block, common: dict[str, str], about: ModelDescription, has_c
         "saved state": f"{common['saved_bytes']} bytes",
         "sample time": "any" if block.dt is None else f"{block.dt!r} s, and no other",
     }
+    if common["precision"] == "single":
+        rows["away from double"] = (
+            f"at most {test.away_from_double:.3g} over the self-test, whose input goes "
+            f"from {test.drive.low * test.drive.unit:.6g} to {test.drive.high:.6g}"
+        )
     if len(block.inputs) == 1:
         rows |= {
             f"input {block.inputs[0]}": _signal(about.input_name, about.input_unit),
@@ -198,6 +193,7 @@ def _readme(block: Block, common: dict[str, str], about: ModelDescription, has_c
         "rows": "\n".join(f"| {key} | {value} |" for key, value in rows.items()),
         "elements": ", ".join(block.inputs),
         "notes": "",
+        "in_precision": " in single precision" if common["precision"] == "single" else "",
     }
     text = filled("README.md", common | more)
     return text if has_core else text.replace(" core/src/*.c", "")
@@ -207,7 +203,9 @@ def _signal(name: str, unit: str) -> str:
     return f"{plain_text(name)} in {plain_text(unit)}" if unit else plain_text(name)
 
 
-def _manifest(block: Block, name: str, precision: str, files: dict[str, bytes]) -> bytes:
+def _manifest(
+    block: Block, name: str, precision: str, files: dict[str, bytes], test: SelfTest
+) -> bytes:
     content: dict[str, Any] = {
         "format": FORMAT,
         "version": 1,
@@ -216,6 +214,7 @@ def _manifest(block: Block, name: str, precision: str, files: dict[str, bytes]) 
         "name": name,
         "precision": precision,
         "model": {"kind": block.kind, "sha256": block.sha256()},
+        "selftest": {"samples": SAMPLES, "away_from_double": test.away_from_double},
         "files": {path: hashlib.sha256(files[path]).hexdigest() for path in sorted(files)},
     }
     return (json.dumps(content, indent=2) + "\n").encode()
