@@ -14,11 +14,11 @@ size_t hyst_stage_state_length(const hyst_stage *stage)
     case HYST_PI:
         return stage->as.pi.count;
     case HYST_RATE_DEPENDENT_PI:
-        return stage->as.rate_dependent_pi.pi.count + 2;
+        return stage->as.rate_dependent_pi.pi.count + 2u;
     case HYST_STATE_SPACE:
         return stage->as.state_space.order + stage->as.state_space.delay;
     case HYST_SECTIONS:
-        return 2 * stage->as.sections.count;
+        return 2u * stage->as.sections.count;
     case HYST_MASING:
         return hyst_masing_state_length(&stage->as.masing);
     case HYST_MEMORY_ELEMENT:

@@ -25,13 +25,13 @@ static void keep_rising(size_t count, hyst_real first, hyst_real *weight, hyst_r
 
 static void keep_map_rising(const hyst_joint_map *map, hyst_real *weight)
 {
-    if (map->count == 0) {
+    if (map->count == 0u) {
         return;
     }
-    const size_t negative = map->count - 1 - map->positive;
+    const size_t negative = map->count - 1u - map->positive;
     keep_rising(1, ZERO, weight, map->least_slope, map->most_slope);
     keep_rising(map->positive, weight[0], weight + 1, map->least_slope, map->most_slope);
-    keep_rising(negative, weight[0], weight + 1 + map->positive, map->least_slope,
+    keep_rising(negative, weight[0], weight + 1u + map->positive, map->least_slope,
                 map->most_slope);
 }
 
@@ -50,7 +50,7 @@ static inequality inequality_of(const hyst_joint *joint, size_t k)
         const inequality slope = {0, k, 0, joint->least_slope, joint->most_slope};
         return slope;
     }
-    const inequality order = {k, k, k == n + 1 ? k : k - 1, ZERO, joint->most_radius};
+    const inequality order = {k, k, k == n + 1u ? k : k - 1u, ZERO, joint->most_radius};
     return order;
 }
 
@@ -87,9 +87,9 @@ static int satisfy(const hyst_joint_layout *at, inequality must, hyst_real *thet
 void hyst_joint_project(const hyst_joint *joint, const hyst_joint_layout *at,
                         hyst_real *theta, hyst_real *a, hyst_real *product)
 {
-    const size_t count = 2 * joint->plays + 1;
+    const size_t count = 2u * joint->plays + 1u;
     size_t left = HYST_JOINT_PROJECTIONS;
-    for (size_t k = 0; k < count && left > 0; ++k) {
+    for (size_t k = 0; k < count && left > 0u; ++k) {
         left -= (size_t)satisfy(at, inequality_of(joint, k), theta, a, product);
     }
 }
@@ -97,9 +97,9 @@ void hyst_joint_project(const hyst_joint *joint, const hyst_joint_layout *at,
 void hyst_joint_clamp(const hyst_joint *joint, hyst_real *theta)
 {
     const size_t n = joint->plays;
-    hyst_real *front = theta + 2 + 2 * n;
-    keep_rising(n + 1, ZERO, theta, joint->least_slope, joint->most_slope);
-    hyst_isotonic(n, theta + 1 + n, ZERO, joint->most_radius);
+    hyst_real *front = theta + 2u + 2u * n;
+    keep_rising(n + 1u, ZERO, theta, joint->least_slope, joint->most_slope);
+    hyst_isotonic(n, theta + 1u + n, ZERO, joint->most_radius);
     keep_map_rising(&joint->front, front);
     keep_map_rising(&joint->back, front + joint->front.count);
 }

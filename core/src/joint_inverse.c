@@ -25,11 +25,11 @@ static hyst_real unmap_side(const hyst_joint_map *map, const hyst_real *weight, 
 
 static hyst_real unmap(const hyst_joint_map *map, const hyst_real *weight, hyst_real y)
 {
-    if (map->count == 0) {
+    if (map->count == 0u) {
         return y;
     }
-    return y > ZERO ? unmap_side(map, weight, 1, 1 + map->positive, y)
-                    : unmap_side(map, weight, 1 + map->positive, map->count, y);
+    return y > ZERO ? unmap_side(map, weight, 1u, 1u + map->positive, y)
+                    : unmap_side(map, weight, 1u + map->positive, map->count, y);
 }
 
 hyst_real hyst_joint_command(const hyst_joint *joint, const hyst_real *state, hyst_real y_ref)
@@ -40,8 +40,8 @@ hyst_real hyst_joint_command(const hyst_joint *joint, const hyst_real *state, hy
     const hyst_real *p = theta + 1;
     const hyst_real *r = p + n;
     const hyst_real *z = state + at.z;
-    const hyst_real *front = theta + 2 + 2 * n;
-    const hyst_real w = unmap(&joint->back, front + joint->front.count, y_ref - theta[1 + 2 * n]);
+    const hyst_real *front = theta + 2u + 2u * n;
+    const hyst_real w = unmap(&joint->back, front + joint->front.count, y_ref - theta[1u + 2u * n]);
     hyst_real beyond = ZERO; /* sum of p_i z_i over the plays that are still to come */
     for (size_t i = 0; i < n; ++i) {
         beyond += p[i] * z[i];
@@ -51,7 +51,7 @@ hyst_real hyst_joint_command(const hyst_joint *joint, const hyst_real *state, hy
     hyst_real v = w / slope;
     for (size_t i = 0; i < n; ++i) {
         const hyst_real next = slope + p[i];
-        threshold += slope * (r[i] - (i > 0 ? r[i - 1] : ZERO));
+        threshold += slope * (r[i] - (i > 0u ? r[i - 1u] : ZERO));
         beyond -= p[i] * z[i];
         v -= p[i] / slope / next * hyst_play(w, threshold, next * z[i] + beyond);
         slope = next;

@@ -19,7 +19,7 @@ hyst_real hyst_joint_term(hyst_real x, hyst_real rho)
 
 hyst_real hyst_joint_map_at(const hyst_joint_map *map, const hyst_real *weight, hyst_real x)
 {
-    hyst_real y = map->count == 0 ? x : ZERO;
+    hyst_real y = map->count == 0u ? x : ZERO;
     for (size_t j = 0; j < map->count; ++j) {
         y += weight[j] * hyst_joint_term(x, map->threshold[j]);
     }
@@ -28,7 +28,7 @@ hyst_real hyst_joint_map_at(const hyst_joint_map *map, const hyst_real *weight, 
 
 hyst_real hyst_joint_map_slope(const hyst_joint_map *map, const hyst_real *weight, hyst_real x)
 {
-    hyst_real slope = map->count == 0 ? ONE : ZERO;
+    hyst_real slope = map->count == 0u ? ONE : ZERO;
     for (size_t j = 0; j < map->count; ++j) {
         const hyst_real rho = map->threshold[j];
         const int acts = rho > ZERO ? x > rho : rho < ZERO ? x < rho : 1;
@@ -71,7 +71,7 @@ static regime regime_of(hyst_real home, hyst_real far, hyst_real side, hyst_real
 
 static hyst_real front_at(const hyst_joint *joint, const hyst_real *theta, hyst_real u)
 {
-    return hyst_joint_map_at(&joint->front, theta + 2 + 2 * joint->plays, u);
+    return hyst_joint_map_at(&joint->front, theta + 2u + 2u * joint->plays, u);
 }
 
 /* Follows the way of play i: home and far end, as inputs u. */
@@ -79,7 +79,7 @@ static void move_play(const hyst_joint *joint, const hyst_joint_layout *at, hyst
                       size_t i, hyst_real u, hyst_real v)
 {
     const hyst_real *theta = state + at->theta;
-    const hyst_real r = theta[1 + joint->plays + i];
+    const hyst_real r = theta[1u + joint->plays + i];
     hyst_real *home = &state[at->home + i];
     hyst_real *far = &state[at->far + i];
     hyst_real *side = &state[at->side + i];
@@ -125,16 +125,16 @@ static hyst_real predict_plays(const hyst_joint *joint, const hyst_joint_layout 
     const size_t n = joint->plays;
     const hyst_real *theta = state + at->theta;
     hyst_real *psi = state + at->psi;
-    hyst_real *by_front = psi + 2 + 2 * n;
+    hyst_real *by_front = psi + 2u + 2u * n;
     hyst_real w = theta[0] * v;
     psi[0] = v;
     for (size_t j = 0; j < joint->front.count; ++j) {
         by_front[j] = theta[0] * hyst_joint_term(u, joint->front.threshold[j]);
     }
     for (size_t i = 0; i < n; ++i) {
-        const hyst_real p = theta[1 + i];
-        const hyst_real r = theta[1 + n + i];
-        const hyst_real of_r = variance[1 + n + i];
+        const hyst_real p = theta[1u + i];
+        const hyst_real r = theta[1u + n + i];
+        const hyst_real of_r = variance[1u + n + i];
         const hyst_real side = state[at->side + i];
         const hyst_real home = state[at->home + i];
         const hyst_real far = state[at->far + i];
@@ -144,10 +144,10 @@ static hyst_real predict_plays(const hyst_joint *joint, const hyst_joint_layout 
             is = regime_of(front_at(joint, theta, home), front_at(joint, theta, far), side, r,
                            width);
         }
-        psi[1 + i] = is.z;
-        psi[1 + n + i] = p * is.by_r;
+        psi[1u + i] = is.z;
+        psi[1u + n + i] = p * is.by_r;
         w += p * is.z;
-        *doubt += p * p * is.doubt + variance[1 + i] * of_r;
+        *doubt += p * p * is.doubt + variance[1u + i] * of_r;
         for (size_t j = 0; j < joint->front.count; ++j) {
             const hyst_real rho = joint->front.threshold[j];
             by_front[j] += p * (is.by_home * hyst_joint_term(home, rho) + is.by_far * hyst_joint_term(far, rho));
@@ -161,7 +161,7 @@ hyst_real hyst_joint_predict(const hyst_joint *joint, const hyst_joint_layout *a
                              hyst_real *doubt)
 {
     const size_t n = joint->plays;
-    const size_t before_back = 2 + 2 * n + joint->front.count;
+    const size_t before_back = 2u + 2u * n + joint->front.count;
     const hyst_real *back = state + at->theta + before_back;
     hyst_real *psi = state + at->psi;
     const hyst_real v = front_at(joint, state + at->theta, u);
@@ -172,11 +172,11 @@ hyst_real hyst_joint_predict(const hyst_joint *joint, const hyst_joint_layout *a
         psi[j] *= slope;
     }
     *doubt *= slope * slope;
-    psi[1 + 2 * n] = ONE;
+    psi[1u + 2u * n] = ONE;
     for (size_t j = 0; j < joint->back.count; ++j) {
         psi[before_back + j] = hyst_joint_term(w, joint->back.threshold[j]);
     }
-    return hyst_joint_map_at(&joint->back, back, w) + state[at->theta + 1 + 2 * n];
+    return hyst_joint_map_at(&joint->back, back, w) + state[at->theta + 1u + 2u * n];
 }
 
 void hyst_joint_set_memory(const hyst_joint *joint, const hyst_joint_layout *at,
@@ -188,7 +188,7 @@ void hyst_joint_set_memory(const hyst_joint *joint, const hyst_joint_layout *at,
     hyst_real from = front_at(joint, theta, u);
     hyst_real within = ZERO;
     for (size_t i = 0; i < n; ++i) {
-        const hyst_real r = theta[1 + n + i];
+        const hyst_real r = theta[1u + n + i];
         const hyst_real side = state[at->side + i];
         if (side > ZERO || side < ZERO) {
             z[i] = regime_of(front_at(joint, theta, state[at->home + i]),

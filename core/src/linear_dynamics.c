@@ -7,9 +7,9 @@
  * shift from start to end into a call of memmove, which a target need not have. */
 static void push(hyst_real *line, size_t delay, hyst_real u)
 {
-    for (size_t i = delay; i > 0; --i) {
-        const hyst_real held = line[i - 1];
-        line[i - 1] = u;
+    for (size_t i = delay; i > 0u; --i) {
+        const hyst_real held = line[i - 1u];
+        line[i - 1u] = u;
         u = held;
     }
 }
@@ -18,7 +18,7 @@ hyst_real hyst_state_space_step(const hyst_state_space *system, hyst_real *state
 {
     const size_t n = system->order;
     hyst_real next[HYST_LARGEST_ORDER];
-    const hyst_real w = system->delay == 0 ? u : state[n];
+    const hyst_real w = system->delay == 0u ? u : state[n];
     hyst_real y = system->d * w;
     for (size_t i = 0; i < n; ++i) {
         next[i] = system->b[i] * w;

@@ -12,8 +12,8 @@ static hyst_real magnitude(hyst_real value)
 static size_t piece_at(const hyst_real *start, size_t count, hyst_real x)
 {
     size_t low = 0, high = count;
-    while (high - low > 1) {
-        const size_t middle = low + (high - low) / 2;
+    while (high - low > 1u) {
+        const size_t middle = low + (high - low) / 2u;
         if (start[middle] <= x) {
             low = middle;
         } else {
@@ -26,8 +26,8 @@ static size_t piece_at(const hyst_real *start, size_t count, hyst_real x)
 static hyst_real polynomial(const hyst_polynomial *f, hyst_real x)
 {
     hyst_real sum = HYST_REAL(0.0);
-    for (size_t j = f->count; j > 0; --j) {
-        sum = (sum + f->coefficient[j - 1]) * x;
+    for (size_t j = f->count; j > 0u; --j) {
+        sum = (sum + f->coefficient[j - 1u]) * x;
     }
     return sum;
 }
@@ -35,8 +35,8 @@ static hyst_real polynomial(const hyst_polynomial *f, hyst_real x)
 static hyst_real polynomial_slope(const hyst_polynomial *f, hyst_real x)
 {
     hyst_real sum = HYST_REAL(0.0);
-    for (size_t j = f->count; j > 0; --j) {
-        sum = sum * x + (hyst_real)j * f->coefficient[j - 1];
+    for (size_t j = f->count; j > 0u; --j) {
+        sum = sum * x + (hyst_real)j * f->coefficient[j - 1u];
     }
     return sum;
 }

@@ -16,21 +16,21 @@ static const point origin = {HYST_REAL(0.0), HYST_REAL(0.0)};
 
 static point point_at(const hyst_real *state, size_t index)
 {
-    const hyst_real *place = state + HYST_MASING_STACK + 2 * index;
+    const hyst_real *place = state + HYST_MASING_STACK + 2u * index;
     const point kept = {place[0], place[1]};
     return kept;
 }
 
 static void keep(hyst_real *state, size_t index, point reversal)
 {
-    hyst_real *place = state + HYST_MASING_STACK + 2 * index;
+    hyst_real *place = state + HYST_MASING_STACK + 2u * index;
     place[0] = reversal.input;
     place[1] = reversal.output;
 }
 
 size_t hyst_masing_state_length(const hyst_masing *model)
 {
-    return HYST_MASING_STACK + 2 * model->depth;
+    return HYST_MASING_STACK + 2u * model->depth;
 }
 
 size_t hyst_masing_reversals(const hyst_masing *model, const hyst_real *state)
@@ -82,10 +82,10 @@ static hyst_real not_against(int rising, hyst_real output, hyst_real last)
 /* Reversals left when the input has come this far: a loop that is closed takes two with it. */
 static size_t left_open(const hyst_real *state, size_t count, int rising, hyst_real input)
 {
-    while (count >= 2 && reached(rising, input, point_at(state, count - 2).input)) {
-        count -= 2;
+    while (count >= 2u && reached(rising, input, point_at(state, count - 2u).input)) {
+        count -= 2u;
     }
-    if (count == 1 && reached(rising, input, -point_at(state, 0).input)) {
+    if (count == 1u && reached(rising, input, -point_at(state, 0u).input)) {
         count = 0;
     }
     return count;
@@ -95,10 +95,10 @@ static size_t left_open(const hyst_real *state, size_t count, int rising, hyst_r
 static hyst_real within_loop(const hyst_real *state, size_t count, int rising, hyst_real output)
 {
     hyst_real limit;
-    if (count == 0) {
+    if (count == 0u) {
         return output;
     }
-    limit = count >= 2 ? point_at(state, count - 2).output : -point_at(state, 0).output;
+    limit = count >= 2u ? point_at(state, count - 2u).output : -point_at(state, 0u).output;
     return reached(rising, output, limit) ? limit : output;
 }
 
@@ -115,12 +115,12 @@ static hyst_real nested(const hyst_masing *model, hyst_real *state, hyst_real in
     const point last = {state[HYST_MASING_INPUT], state[HYST_MASING_OUTPUT]};
     const int rising = input > last.input;
     size_t count = hyst_masing_reversals(model, state);
-    const point start = count > 0 ? point_at(state, count - 1) : origin;
+    const point start = count > 0u ? point_at(state, count - 1u) : origin;
     const int has_moved = last.input > start.input || last.input < start.input;
     const int turns = has_moved && (last.input > start.input) != rising;
     const int is_full = turns && count == model->depth;
     const int goes_back = is_full && !reached(rising, input, start.input);
-    const size_t kept = turns && !is_full ? count + 1 : count;
+    const size_t kept = turns && !is_full ? count + 1u : count;
     hyst_real output;
     if (is_full && !goes_back) {
         --count;
@@ -131,7 +131,7 @@ static hyst_real nested(const hyst_masing *model, hyst_real *state, hyst_real in
     if (!goes_back) {
         count = left_open(state, count, rising, input);
     }
-    output = branch(model, count > 0, count > 0 ? point_at(state, count - 1) : origin, input);
+    output = branch(model, count > 0u, count > 0u ? point_at(state, count - 1u) : origin, input);
     if (!hyst_is_finite(output)) {
         forget(state, hyst_masing_reversals(model, state), kept);
         return output;

@@ -5,15 +5,15 @@
 
 static hyst_real table(const hyst_memory_function *function, hyst_real p)
 {
-    size_t low = 0, high = function->count - 1;
+    size_t low = 0, high = function->count - 1u;
     if (!(p > function->knot[low])) {
         return function->value[low];
     }
     if (!(p < function->knot[high])) {
         return function->value[high];
     }
-    while (high - low > 1) {
-        const size_t middle = low + (high - low) / 2;
+    while (high - low > 1u) {
+        const size_t middle = low + (high - low) / 2u;
         if (function->knot[middle] <= p) {
             low = middle;
         } else {
@@ -33,8 +33,8 @@ hyst_real hyst_memory_value(const hyst_memory_function *function, hyst_real p)
         return table(function, p);
     case HYST_MEMORY_POLYNOMIAL: {
         hyst_real sum = HYST_REAL(0.0);
-        for (size_t j = function->count; j > 0; --j) {
-            sum = sum * p + value[j - 1];
+        for (size_t j = function->count; j > 0u; --j) {
+            sum = sum * p + value[j - 1u];
         }
         return sum;
     }

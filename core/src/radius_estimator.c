@@ -19,8 +19,8 @@ hyst_radius_layout hyst_radius_places(const hyst_radius *radius)
     at.age = at.side + n;
     at.d = at.age + n;
     at.u = at.d + n;
-    at.scratch = at.u + (n > 0 ? hyst_ud_length(n) : 0);
-    at.length = at.scratch + 6 * n;
+    at.scratch = at.u + (n > 0u ? hyst_ud_length(n) : 0u);
+    at.length = at.scratch + 6u * n;
     return at;
 }
 
@@ -97,7 +97,7 @@ static void find_regime(const hyst_radius *radius, hyst_real *state, hyst_real u
     state[HYST_RADIUS_MEAN_U] += share * du;
     state[HYST_RADIUS_MEAN_Y] += share * dy;
     state[HYST_RADIUS_SINCE] += ONE;
-    if (radius->plays == 0 || !(state[HYST_RADIUS_UU] > ZERO) ||
+    if (radius->plays == 0u || !(state[HYST_RADIUS_UU] > ZERO) ||
         state[HYST_RADIUS_SINCE] <= radius->dead_time) {
         state[HYST_RADIUS_REGIME] = -ONE;
         return;
@@ -109,11 +109,11 @@ static void find_regime(const hyst_radius *radius, hyst_real *state, hyst_real u
     /* Up to the middle between two slopes it is the lower one. */
     for (; i < radius->plays && slope > sum + HYST_REAL(0.5) * radius->p[i]; ++i) {
         sum += radius->p[i];
-        regime = i + 1;
+        regime = i + 1u;
     }
     const hyst_real off = slope - sum;
-    const hyst_real gap = off > ZERO ? (i < radius->plays ? radius->p[i] : radius->p[i - 1])
-                                     : (regime > 0 ? radius->p[regime - 1] : radius->p[0]);
+    const hyst_real gap = off > ZERO ? (i < radius->plays ? radius->p[i] : radius->p[i - 1u])
+                                     : (regime > 0u ? radius->p[regime - 1u] : radius->p[0]);
     const hyst_real most = HYST_REAL(0.5) * radius->tolerance * gap;
     state[HYST_RADIUS_SLOPE] = slope;
     if (off <= most && -off <= most) {
@@ -190,7 +190,7 @@ int hyst_radius_step(const hyst_radius *radius, hyst_real *state, hyst_real u, h
         find_regime(radius, state, u, y);
     }
     state[HYST_RADIUS_INPUT] = u;
-    if (n == 0 || state[HYST_RADIUS_REGIME] < ZERO) {
+    if (n == 0u || state[HYST_RADIUS_REGIME] < ZERO) {
         return 0;
     }
     const hyst_real error = regress(radius, &at, state, u, y, phi);

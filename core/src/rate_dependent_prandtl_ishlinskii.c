@@ -6,8 +6,8 @@
 hyst_real hyst_widening(const hyst_rate_dependent_pi *model, hyst_real x)
 {
     hyst_real slope = HYST_REAL(0.0);
-    for (size_t i = model->powers; i > 0; --i) {
-        slope = (slope + model->power[i - 1]) * x;
+    for (size_t i = model->powers; i > 0u; --i) {
+        slope = (slope + model->power[i - 1u]) * x;
     }
     const hyst_real widening =
         (slope + model->growth) * x + hyst_dead_zone_step(&model->ramps, x);

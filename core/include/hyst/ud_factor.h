@@ -16,7 +16,7 @@ extern "C" {
 /* Length of the packed U of m parameters: column j = 1 .. m - 1 holds its j entries above the 1. */
 static inline size_t hyst_ud_length(size_t m)
 {
-    return m * (m - 1) / 2;
+    return m * (m - 1u) / 2u;
 }
 
 /* One measurement y = psi' theta + noise of variance `noise` > 0. Writes the unscaled gain into
