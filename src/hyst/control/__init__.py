@@ -9,8 +9,10 @@ from hyst.control.disturbance_observer import (
     Certificate,
     DisturbanceObserver,
     InternalModel,
+    ObserverProblem,
     design_disturbance_observer,
     evaluate_gain,
+    observer_problem,
 )
 from hyst.control.frequency_responses import LoopResponses, loop_responses
 from hyst.control.inexact_inverse import slope_margin
@@ -28,6 +30,7 @@ __all__ = [
     "InverseComparison",
     "LinearSystem",
     "LoopResponses",
+    "ObserverProblem",
     "TrackingController",
     "closed_loop_poles",
     "compare_inverses",
@@ -37,6 +40,7 @@ __all__ = [
     "evaluate_gain",
     "hinf_norm",
     "loop_responses",
+    "observer_problem",
     "simulate_closed_loop",
     "slope_margin",
 ]

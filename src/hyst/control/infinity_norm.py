@@ -145,7 +145,7 @@ def _start(system: LinearSystem) -> tuple[float, float]:
 def _gains(system: LinearSystem, frequencies: Array) -> Array:
     if frequencies.size == 0:
         return np.zeros(0)
-    return np.linalg.norm(system.response(1j * frequencies), 2, axis=(1, 2))
+    return np.asarray(np.linalg.norm(system.response(1j * frequencies), 2, axis=(1, 2)))
 
 
 def _crossings(system: LinearSystem, level: float) -> Array:
@@ -173,7 +173,7 @@ def _crossings(system: LinearSystem, level: float) -> Array:
 
 
 def _bilinear(system: LinearSystem) -> LinearSystem | None:
-    """The continuous system with the same gains, w = tan(w_sampled dt / 2); None at a pole -1."""
+    """Give the continuous system of the same gains; None if there is a pole at -1."""
     shifted = system.A + np.eye(system.order)
     if system.order and np.linalg.cond(shifted) > 1.0 / np.finfo(float).eps:
         return None

@@ -15,6 +15,7 @@ from hyst.models.realizations import companion
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+Points = NDArray[np.complexfloating[Any, Any]]
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,9 @@ class LinearSystem:
         for name, shape in given.items():
             matrix = np.array(getattr(self, name), dtype=np.float64)
             if matrix.size != shape[0] * shape[1]:
-                raise InputError(f"{name} has shape {matrix.shape}, not {shape}; check the matrices")
+                raise InputError(
+                    f"{name} has shape {matrix.shape}, not {shape}; check the matrices"
+                )
             object.__setattr__(self, name, matrix.reshape(shape))
         object.__setattr__(self, "D", D)
         for name in ("A", "B", "C", "D"):
@@ -58,23 +61,23 @@ class LinearSystem:
     @property
     def order(self) -> int:
         """Number of states."""
-        return self.A.shape[0]
+        return len(self.A)
 
     @property
     def inputs(self) -> int:
         """Number of inputs."""
-        return self.D.shape[1]
+        return int(self.D.shape[1])
 
     @property
     def outputs(self) -> int:
         """Number of outputs."""
-        return self.D.shape[0]
+        return len(self.D)
 
     def poles(self) -> ComplexArray:
         """Eigenvalues of A."""
         return np.asarray(scipy.linalg.eigvals(self.A), dtype=np.complex128).reshape(self.order)
 
-    def response(self, s: ComplexArray) -> ComplexArray:
+    def response(self, s: Points) -> ComplexArray:
         """Values of the transfer function at the complex numbers s, (len(s), q, m)."""
         points = np.atleast_1d(np.asarray(s, dtype=np.complex128))
         if self.order == 0:
@@ -124,11 +127,14 @@ def as_linear_system(system: Any, name: str = "the system") -> LinearSystem:
     if hasattr(system, "num") and hasattr(system, "den"):
         return _from_polynomials(system, name)
     if isinstance(system, int | float) and not isinstance(system, bool):
-        return LinearSystem(np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((1, 0)), np.array([system]))
+        return LinearSystem(
+            np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((1, 0)), np.array([system])
+        )
     if isinstance(system, Sequence) and len(system) == 2:
         return LinearSystem(*_realize(system[0], system[1], name))
     if isinstance(system, Sequence) and len(system) == 4:
-        return LinearSystem(*(np.asarray(each, dtype=np.float64) for each in system))
+        A, B, C, D = (np.asarray(each, dtype=np.float64) for each in system)
+        return LinearSystem(A, B, C, D)
     raise InputError(
         f"{name} is {type(system).__name__}; give a transfer function or state space of "
         "python-control, a pair (num, den) or matrices (A, B, C, D)"
@@ -146,9 +152,7 @@ def _from_polynomials(system: Any, name: str) -> LinearSystem:
     """Realize each entry on its own: not minimal with several inputs or outputs, but exact."""
     rows = []
     for above, below in zip(system.num, system.den, strict=True):
-        entries = [
-            LinearSystem(*_realize(n, d, name)) for n, d in zip(above, below, strict=True)
-        ]
+        entries = [LinearSystem(*_realize(n, d, name)) for n, d in zip(above, below, strict=True)]
         rows.append(entries)
     flat = [each for row in rows for each in row]
     A = scipy.linalg.block_diag(*(each.A for each in flat if each.order))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.linalg
@@ -13,6 +14,7 @@ from hyst.control.linear_system import LinearSystem
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+Points = NDArray[np.complexfloating[Any, Any]]
 
 # A Markov parameter below this share of the product of the norms that make it is rounding.
 _NEGLIGIBLE = 1e-11
@@ -26,7 +28,7 @@ class ZerosAndPoles:
     poles: ComplexArray
     gain: float
 
-    def response(self, s: ComplexArray) -> ComplexArray:
+    def response(self, s: Points) -> ComplexArray:
         """Values at the complex numbers s."""
         value = np.full(s.shape, self.gain, dtype=np.complex128)
         for i in range(max(self.zeros.size, self.poles.size)):
@@ -47,13 +49,13 @@ def zeros_and_poles(system: LinearSystem) -> ZerosAndPoles:
     if abs(d) > _NEGLIGIBLE * np.linalg.norm(b) * np.linalg.norm(c):
         zeros = scipy.linalg.eigvals(A - np.outer(b, c) / d).reshape(system.order)
         return ZerosAndPoles(scale * zeros, poles, d)
-    rows, row, size = [c], c, np.linalg.norm(c)
+    rows, row, size = [c], c, float(np.linalg.norm(c))
     for _ in range(system.order):
         markov = float(row @ b)
         if abs(markov) > _NEGLIGIBLE * size * np.linalg.norm(b):
             break
         row = row @ A
-        size = size * max(np.linalg.norm(A, 2), 1e-300)
+        size = size * max(float(np.linalg.norm(A, 2)), 1e-300)
         rows.append(row)
     else:
         return ZerosAndPoles(np.zeros(0, complex), poles, 0.0)

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from hyst.control.disturbance_observer.certificate import Certificate
-from hyst.control.disturbance_observer.design import design_disturbance_observer, evaluate_gain
+from hyst.control.disturbance_observer.design import (
+    design_disturbance_observer,
+    evaluate_gain,
+    observer_problem,
+)
 from hyst.control.disturbance_observer.internal_model import InternalModel
 from hyst.control.disturbance_observer.problem import ObserverProblem
 from hyst.control.disturbance_observer.result import DisturbanceObserver
@@ -15,4 +19,5 @@ __all__ = [
     "ObserverProblem",
     "design_disturbance_observer",
     "evaluate_gain",
+    "observer_problem",
 ]

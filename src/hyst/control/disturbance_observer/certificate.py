@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.control.disturbance_observer.problem import ObserverProblem
+from hyst.control.disturbance_observer.stacked_gain import feedback_matrix
 from hyst.control.infinity_norm import hinf_norm
 from hyst.control.linear_system import LinearSystem
 from hyst.control.zeros_and_poles import zeros_and_poles
@@ -48,6 +49,8 @@ class Certificate:
         Poles of the whole loop around the nominal plant.
     perturbed_poles
         Poles of the whole loop around the given perturbed plant; None if none was given.
+    perturbed_poles_without_observer
+        The same of plant and controller alone: an unstable one is the controller's doing.
     """
 
     stacked_norm: float
@@ -66,6 +69,7 @@ class Certificate:
     observer_poles: ComplexArray
     nominal_poles: ComplexArray
     perturbed_poles: ComplexArray | None
+    perturbed_poles_without_observer: ComplexArray | None
 
     @property
     def nominal_stable(self) -> bool:
@@ -145,13 +149,20 @@ def certify(
         robust_stability_margin=1.0 / uncertain if uncertain > 0.0 else np.inf,
         Q_numerator=np.real(Q.gain * np.atleast_1d(np.poly(Q.zeros))),
         Q_denominator=np.real(np.poly(Q.poles)),
-        Q_at_zero=float(problem.q_filter(gain).response(np.zeros(1))[0, 0, 0].real),
+        Q_at_zero=float(problem.q_filter(gain).response(np.zeros(1, complex))[0, 0, 0].real),
         Q_relative_degree=Q.poles.size - Q.zeros.size,
         plant_relative_degree=plant.poles.size - plant.zeros.size,
         observer_poles=Q.poles,
         nominal_poles=loop(problem, gain, problem.plant).poles(),
         perturbed_poles=(
             None if perturbed_plant is None else loop(problem, gain, perturbed_plant).poles()
+        ),
+        perturbed_poles_without_observer=(
+            None
+            if perturbed_plant is None
+            else np.linalg.eigvals(feedback_matrix(perturbed_plant, problem.controller)).astype(
+                complex
+            )
         ),
     )
 

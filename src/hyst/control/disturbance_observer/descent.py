@@ -9,61 +9,50 @@ then finished by exchange: the least t above the gain at all peaks met so far is
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
-import scipy.optimize
 from numpy.typing import NDArray
 
+from hyst.control.disturbance_observer.minimax import Descent, finish
 from hyst.control.disturbance_observer.stacked_gain import StackedGain
 
 Array = NDArray[np.float64]
 
-_FAR = 25.0  # logarithms beyond this are poles 10 decades away: no use, and a danger to accuracy
-_SETTLED = 1e-7
-
-
-@dataclass(frozen=True)
-class Descent:
-    """A minimum of the norm: its ``parameters``, the ``norm``, and how many ``evaluations``."""
-
-    parameters: Array
-    norm: float
-    evaluations: int
+_SETTLED = 1e-4
+_SHORT, _LONG = 25, 100
+_KEPT, _AGAIN = 3, 3
 
 
 def norm_and_slope(gain: StackedGain, parameters: Array) -> tuple[float, Array]:
     """Give the norm and its gradient, that of the gain at the highest peak, at the parameters."""
-    highest = gain.peaks(parameters, 1.0)[:1]
+    highest = gain.peaks(parameters)[:1]
     value, slope = gain.values_and_slopes(parameters, gain.at(highest))
     norm = float(np.sqrt(value[0]))
     return norm, slope[0] / (2.0 * norm)
 
 
-def descend(gain: StackedGain, start: Array, steps: int = 100) -> Descent:
-    """Go down from start, first by BFGS and then by exchange of peaks.
-
-    Parameters
-    ----------
-    gain
-        The gain whose norm is minimized.
-    start
-        Parameters of stable poles.
-    steps
-        At most so many of BFGS.
-    """
-    coarse = _bfgs(gain, start, steps)
-    return _exchange(gain, coarse)
+def descend(gain: StackedGain, start: Array) -> Descent:
+    """Go down from the parameters start as far as it goes: BFGS, Newton steps, and again."""
+    found = finish(gain, _bfgs(gain, start, _LONG))
+    for _ in range(_AGAIN):
+        before = found.norm
+        found = finish(gain, _bfgs(gain, found.parameters, _LONG))
+        if found.norm > (1.0 - _SETTLED) * before:
+            break
+    return found
 
 
 def descend_from_many(
     gain: StackedGain,
     given: list[Array],
-    random_starts: int = 8,
+    random_starts: int = 12,
     seed: int = 0,
     progress: Callable[[int, float], None] | None = None,
 ) -> Descent:
-    """Give the best of descents from given and from random parameters.
+    """Give the best of descents from given, from usual and from random parameters.
+
+    Short descents from all, long ones from the best of them.
 
     Parameters
     ----------
@@ -72,22 +61,49 @@ def descend_from_many(
     given
         Parameters tried first.
     random_starts
-        Number of further ones.
+        Number of random ones.
     seed
         Of the random starts: the same seed gives the same result.
     progress
         Called with the number of descents done and the best norm.
     """
-    starts = given + random_parameters(gain, random_starts, seed)
-    best: Descent | None = None
-    for i, start in enumerate(starts):
-        found = descend(gain, start)
-        if best is None or found.norm < best.norm:
-            best = found
+    starts = given + usual_parameters(gain) + random_parameters(gain, random_starts, seed)
+    found: list[Descent] = []
+
+    def note(each: Descent) -> None:
+        found.append(each)
         if progress is not None:
-            progress(i + 1, best.norm)
-    assert best is not None
-    return best
+            progress(len(found), min(other.norm for other in found))
+
+    for start in starts:
+        note(_bfgs(gain, start, _SHORT))
+    for each in sorted(found, key=lambda descent: descent.norm)[:_KEPT]:
+        note(finish(gain, each, _SHORT))
+    note(descend(gain, min(found, key=lambda descent: descent.norm).parameters))
+    best = min(found, key=lambda descent: descent.norm)
+    return replace(best, evaluations=sum(each.evaluations for each in found))
+
+
+def usual_parameters(gain: StackedGain, kept: int = 4) -> list[Array]:
+    """Give Butterworth poles of several bandwidths, the best few on the grid of gain.
+
+    Each eigenvalue of the internal model but one at 0 keeps a pole of its own close by: then it
+    costs little, for what it adds to 1 - Q nearly cancels.
+    """
+    size = np.abs(gain.features)
+    others = _without_one_at_zero(gain.model_poles)
+    count = gain.order - others.size
+    angles = np.pi * (np.arange(count) - 0.5 * (count - 1)) / (2.0 * count)
+    circle = -np.exp(1j * angles)
+    drawn = []
+    for bandwidth in np.geomspace(0.3 * size.min(), 3.0 * size.max(), 24):
+        for shift in (0.01, 0.2):
+            close = others - shift * np.where(np.abs(others) > 0.0, np.abs(others), bandwidth)
+            poles = np.concatenate([bandwidth * circle, close])
+            poles = np.where(np.abs(poles.imag) < 1e-9 * np.abs(poles), poles.real, poles)
+            values = gain.parameters_of(poles)
+            drawn.append((float(gain.values(values, gain.grid).max()), values))
+    return [values for _, values in sorted(drawn, key=lambda each: each[0])[:kept]]
 
 
 def random_parameters(gain: StackedGain, count: int, seed: int) -> list[Array]:
@@ -113,8 +129,12 @@ def random_parameters(gain: StackedGain, count: int, seed: int) -> list[Array]:
     return starts
 
 
+def _without_one_at_zero(poles: Array) -> Array:
+    return np.delete(poles, np.argmin(np.abs(poles)))
+
+
 def _bfgs(gain: StackedGain, start: Array, steps: int) -> Descent:
-    x = np.clip(start, -_FAR, _FAR)
+    x = np.clip(start, gain.lowest, gain.highest)
     f, slope = norm_and_slope(gain, x)
     inverse, evaluations = np.eye(x.size), 1
     for _ in range(steps):
@@ -147,7 +167,7 @@ def _weak_wolfe(
     for tried in range(1, 21):
         point = x + step * direction
         f_new, new_slope = (np.inf, slope)
-        if np.abs(point).max() <= _FAR:
+        if np.all((point >= gain.lowest) & (point <= gain.highest)):
             f_new, new_slope = norm_and_slope(gain, point)
         if not f_new <= f + 1e-4 * step * along:
             high = step
@@ -158,52 +178,3 @@ def _weak_wolfe(
             low = step
         step = 0.5 * (low + high) if np.isfinite(high) else 2.0 * step
     return *best, tried
-
-
-def _exchange(gain: StackedGain, found: Descent, rounds: int = 12) -> Descent:
-    """Minimize the largest of the gains at the peaks, add the peaks that result, and repeat."""
-    x, norm, evaluations = found.parameters, found.norm, found.evaluations
-    known, trust = gain.peaks(x, 0.8), 1.0
-    for _ in range(rounds):
-        at = gain.at(np.unique(np.concatenate([known, gain.grid.w[::4]])))
-        tried, count = _least_maximum(gain, x, norm, at, trust)
-        evaluations += count
-        peaks = gain.peaks(tried, 0.8)
-        reached = float(np.sqrt(gain.values(tried, gain.at(peaks[:1]))[0]))
-        known = np.unique(np.concatenate([known, peaks]))
-        gained = norm - reached
-        if gained > 0.0:
-            x, norm = tried, reached
-            trust = min(2.0 * trust, 3.0)
-        else:
-            trust *= 0.3
-        if abs(gained) < _SETTLED * norm or trust < 1e-3:
-            break
-    return Descent(x, norm, evaluations)
-
-
-def _least_maximum(
-    gain: StackedGain, x: Array, norm: float, at: object, trust: float
-) -> tuple[Array, int]:
-    """Least t with gain(w; x)^2 <= t at given frequencies, within trust of x."""
-    size, unit = x.size, norm**2
-
-    def room(z: Array) -> Array:
-        return np.asarray(z[-1] - gain.values(z[:size], at) / unit)
-
-    def slope_of_room(z: Array) -> Array:
-        slopes = gain.values_and_slopes(z[:size], at)[1]
-        return np.hstack([-slopes / unit, np.ones((slopes.shape[0], 1))])
-
-    towards = np.concatenate([np.zeros(size), [1.0]])
-    low, high = np.maximum(x - trust, -_FAR), np.minimum(x + trust, _FAR)
-    result = scipy.optimize.minimize(
-        lambda z: z[-1],
-        np.concatenate([x, [1.0]]),
-        jac=lambda z: towards,
-        method="SLSQP",
-        bounds=[*zip(low, high, strict=True), (0.0, 2.0)],
-        constraints={"type": "ineq", "fun": room, "jac": slope_of_room},
-        options={"maxiter": 40, "ftol": 1e-10},
-    )
-    return np.clip(result.x[:size], low, high), int(result.nfev)

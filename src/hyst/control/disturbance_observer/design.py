@@ -8,16 +8,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst.control.disturbance_observer.certificate import certify
-from hyst.control.disturbance_observer.descent import descend_from_many
+from hyst.control.disturbance_observer.assumptions import check_assumptions
+from hyst.control.disturbance_observer.certificate import certify, weighted_loop
+from hyst.control.disturbance_observer.descent import descend_from_many, usual_parameters
 from hyst.control.disturbance_observer.internal_model import as_internal_model
+from hyst.control.disturbance_observer.lower_bound import lower_bound
 from hyst.control.disturbance_observer.problem import ObserverProblem
 from hyst.control.disturbance_observer.result import DisturbanceObserver
+from hyst.control.disturbance_observer.slpmm import slpmm
 from hyst.control.disturbance_observer.stacked_gain import StackedGain
-from hyst.control.linear_system import as_linear_system
+from hyst.control.infinity_norm import hinf_norm
+from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.errors import InputError
 
 Array = NDArray[np.float64]
+
+METHODS = ("slpmm+descent", "slpmm", "descent")
 
 
 def design_disturbance_observer(
@@ -89,6 +95,47 @@ def design_disturbance_observer(
     >>> found.feasible, round(found.gamma, 2)
     (True, 0.92)
     """
+    if method not in METHODS:
+        raise InputError(f"method is {method!r}; give one of {', '.join(METHODS)}")
+    problem = observer_problem(plant, controller, Wu, Wp, internal_model)
+    perturbed = _perturbed(perturbed_plant)
+    gain = StackedGain(problem)
+    steps: list[str] = []
+    given: list[Array] = []
+    found = gain.gain_of(usual_parameters(gain, 1)[0])
+    if "slpmm" in method:
+        linear = slpmm(problem, found, progress=_reported(progress, "slpmm"))
+        steps.append(
+            f"SLPMM          {linear.norm:.4f} after {linear.iterations} iterations, "
+            f"trace(P R) - n = {linear.distances[-1]:.2g}"
+        )
+        found = linear.gain
+        given = [gain.parameters_of(problem.q_filter(found).poles())]
+    if "descent" in method:
+        best = descend_from_many(gain, given, starts, seed, _reported(progress, "descent"))
+        steps.append(f"descent        {best.norm:.4f} after {best.evaluations} evaluations")
+        lower = gain.gain_of(best.parameters)
+        found = min(found, lower, key=lambda L: hinf_norm(weighted_loop(problem, L))[0])
+    certificate = certify(problem, found, perturbed)
+    bound = lower_bound(gain, certificate.stacked_norm)
+    return DisturbanceObserver(problem, found, certificate, bound, method, tuple(steps))
+
+
+def observer_problem(
+    plant: Any, controller: Any, Wu: Any, Wp: Any, internal_model: Any = "integrator"
+) -> ObserverProblem:
+    """Read and check what an observer is designed for.
+
+    Parameters
+    ----------
+    plant, controller, Wu, Wp, internal_model
+        As for ``design_disturbance_observer``.
+
+    Raises
+    ------
+    InputError
+        If one cannot be read or an assumption does not hold.
+    """
     problem = ObserverProblem(
         as_linear_system(plant, "the plant"),
         as_linear_system(controller, "the controller"),
@@ -96,19 +143,69 @@ def design_disturbance_observer(
         as_linear_system(Wp, "Wp"),
         as_internal_model(internal_model),
     )
-    gain = StackedGain(problem)
-    found = descend_from_many(gain, [], starts, seed)
-    return evaluate_gain(problem, gain.gain_of(found.parameters), perturbed_plant)
+    check_assumptions(problem)
+    return problem
 
 
 def evaluate_gain(
     problem: ObserverProblem, gain: ArrayLike, perturbed_plant: Any = None
 ) -> DisturbanceObserver:
-    """Certify a given gain, for instance one from a paper."""
+    """Certify a given gain, for instance one from a paper.
+
+    Parameters
+    ----------
+    problem
+        Of ``observer_problem``.
+    gain
+        L, one number for each state of plant and internal model; a transfer function has the
+        companion form ``dx_1/dt = -den_1 x_1 - .. + u``.
+    perturbed_plant
+        A plant around which the certificate also closes the loop.
+
+    Raises
+    ------
+    InputError
+        If the gain has another size or is not finite, or the perturbed plant cannot be read.
+
+    Examples
+    --------
+    The printed gain of the paper, with the printed controller, does not do what is printed.
+
+    >>> w = 2 * np.pi * 90
+    >>> plant, controller = ([w * w], [1.0, 1.6 * w, w * w]), ([8.0, 4.0], [1.0, 0.0])
+    >>> Wu, Wp = ([-1.0, -960.0, 0.0], [1.0, 960.0, 5.76e6]), ([0.5, 64 * np.pi], [1.0, 0.2])
+    >>> problem = observer_problem(plant, controller, Wu, Wp)
+    >>> round(evaluate_gain(problem, [-117.381, 0.197, 17113.1]).gamma, 3)
+    2.234
+    """
     L = np.array(gain, dtype=np.float64).ravel()
-    if L.size != problem.order:
-        raise InputError(f"the gain has {L.size} numbers, not {problem.order}, one for each state")
-    perturbed = None
-    if perturbed_plant is not None:
-        perturbed = as_linear_system(perturbed_plant, "the perturbed plant")
-    return DisturbanceObserver(problem, L, certify(problem, L, perturbed), 0.0, "given")
+    if L.size != problem.order or not np.isfinite(L).all():
+        raise InputError(
+            f"the gain has {L.size} numbers; give {problem.order} finite ones, for "
+            f"{problem.plant.order} states of the plant and {problem.internal_model.order} of the "
+            "internal model"
+        )
+    certificate = certify(problem, L, _perturbed(perturbed_plant))
+    reached = certificate.stacked_norm
+    bound = lower_bound(StackedGain(problem), reached if np.isfinite(reached) else 1e3)
+    return DisturbanceObserver(problem, L, certificate, bound, "given")
+
+
+def _perturbed(plant: Any) -> LinearSystem | None:
+    if plant is None:
+        return None
+    read = as_linear_system(plant, "the perturbed plant")
+    if (read.inputs, read.outputs, read.dt) != (1, 1, 0.0):
+        raise InputError(
+            f"the perturbed plant has {read.inputs} inputs, {read.outputs} outputs and dt = "
+            f"{read.dt:g} s; give one of each, in continuous time"
+        )
+    return read
+
+
+def _reported(
+    progress: Callable[[str, int, float], None] | None, stage: str
+) -> Callable[..., None] | None:
+    if progress is None:
+        return None
+    return lambda step, *values: progress(stage, step, values[-1])

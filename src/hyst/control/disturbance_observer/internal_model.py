@@ -66,7 +66,7 @@ class InternalModel:
     @property
     def order(self) -> int:
         """Number of states."""
-        return self.A_d.shape[0]
+        return len(self.A_d)
 
     @classmethod
     def integrator(cls) -> InternalModel:
@@ -117,7 +117,7 @@ class InternalModel:
         return cls(np.array([[0.0, frequency], [-frequency, 0.0]]), np.array([[1.0, 0.0]]))
 
     def __add__(self, other: InternalModel) -> InternalModel:
-        """Sums of disturbances of both models."""
+        """Join two models: sums of their disturbances."""
         A_d = scipy.linalg.block_diag(self.A_d, other.A_d)
         return InternalModel(A_d, np.hstack([self.C_d, other.C_d]))
 

@@ -67,6 +67,13 @@ class DisturbanceObserver:
             unstable = (
                 f"; the loop around the perturbed plant is UNSTABLE, pole at {_complex(pole)} 1/s"
             )
+            alone = c.perturbed_poles_without_observer
+            if alone is not None and alone.real.max() >= 0.0:
+                pole = alone[np.argmax(alone.real)]
+                unstable += (
+                    f", and so it is without the observer, pole at {_complex(pole)} 1/s: change "
+                    "the controller"
+                )
         if self.gamma < 1.0:
             return (
                 f"gamma = {self.gamma:.4g} < 1 at {c.stacked_frequency:.4g} rad/s: stable for "
@@ -81,8 +88,9 @@ class DisturbanceObserver:
 
     @property
     def observer(self) -> LinearSystem:
-        """The observer of eq. 32 in continuous time: inputs v (that of the inverse) and y, output
-        the estimate of d.
+        """The observer of eq. 32 in continuous time: from v and y to the estimate of d.
+
+        Its first input v is that of the inverse, the command after the estimate was taken off.
         """
         return self.problem.observer(self.gain)
 

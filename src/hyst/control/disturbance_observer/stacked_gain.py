@@ -10,14 +10,13 @@ observer's poles and k (monic, degree of a) and l (degree below m) solve ``m k +
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.control.disturbance_observer.problem import ObserverProblem
 from hyst.control.linear_system import LinearSystem
-from hyst.control.zeros_and_poles import ZerosAndPoles, zeros_and_poles
+from hyst.control.zeros_and_poles import Points, ZerosAndPoles, zeros_and_poles
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -35,8 +34,8 @@ class Frequencies:
     S0: ComplexArray
     Wp2: Array
     powers: ComplexArray
-    model: ComplexArray
-    numerator: ComplexArray
+    model: Points
+    numerator: Points
 
 
 class StackedGain:
@@ -60,6 +59,7 @@ class StackedGain:
         self.numerator = np.real(np.atleast_1d(np.poly(self.plant.zeros / self.scale)))
         self._solution = np.linalg.inv(self._sylvester())
         self.grid = self.at(self._grid())
+        self.lowest, self.highest = self._box()
 
     def _features(self) -> ComplexArray:
         parts = (self.plant, self.Wu, self.Wp, self.S0)
@@ -67,6 +67,16 @@ class StackedGain:
         found = np.concatenate([found, self.model_poles])
         found = found[np.abs(found) > 1e-9 * np.abs(found).max()]
         return np.asarray(found)
+
+    def _box(self) -> tuple[Array, Array]:
+        """Parameters with poles up to three decades beyond all features; more is of no use."""
+        size = np.log(np.abs(self.features) / self.scale)
+        slow, fast = size.min() - np.log(1e3), size.max() + np.log(1e3)
+        pairs = 2 * (self.order // 2)
+        lowest, highest = np.full(self.order, slow), np.full(self.order, fast)
+        lowest[1:pairs:2] *= 2.0
+        highest[1:pairs:2] *= 2.0
+        return lowest, highest
 
     def _grid(self) -> Array:
         size = np.abs(self.features)
@@ -79,7 +89,7 @@ class StackedGain:
         """Collect what does not depend on the gain at the frequencies w, rad/s."""
         s = 1j * w
         unit = s / self.scale
-        powers = unit[:, None] ** np.arange(self.order, -1, -1)
+        powers: ComplexArray = (unit[:, None] ** np.arange(self.order, -1, -1)).astype(complex)
         return Frequencies(
             w,
             np.abs(self.Wu.response(s)) ** 2,
@@ -87,7 +97,7 @@ class StackedGain:
             np.abs(self.Wp.response(s)) ** 2,
             powers,
             np.prod(unit[:, None] - self.model_poles / self.scale, axis=1),
-            np.prod(unit[:, None] - self.plant.zeros / self.scale, axis=1),
+            np.asarray(np.prod(unit[:, None] - self.plant.zeros / self.scale, axis=1)),
         )
 
     def _sylvester(self) -> Array:
@@ -164,16 +174,24 @@ class StackedGain:
         return self._refined(parameters, low, w[index], high)
 
     def _refined(self, parameters: Array, low: Array, best: Array, high: Array) -> Array:
-        """Close in on each maximum between its neighbours, all at once."""
-        fractions = np.linspace(0.0, 1.0, 9)
-        for _ in range(5):
-            w = low[:, None] + (high - low)[:, None] * fractions
-            f = self.values(parameters, self.at(w.ravel())).reshape(w.shape)
-            i, rows = np.argmax(f, axis=1), np.arange(w.shape[0])
-            best = w[rows, i]
-            low, high = w[rows, np.maximum(i - 1, 0)], w[rows, np.minimum(i + 1, 8)]
-        final = self.values(parameters, self.at(best))
-        return best[np.argsort(-final)]
+        """Close in on each maximum between its neighbours by parabolas, all at once."""
+        value = np.full(best.size, -np.inf)
+        for _ in range(4):
+            w = np.concatenate([low, best, high])
+            at_low, at_best, at_high = self.values(parameters, self.at(w)).reshape(3, -1)
+            left, right = low - best, high - best
+            with np.errstate(divide="ignore", invalid="ignore"):
+                a, b = (at_low - at_best) / left, (at_high - at_best) / right
+                top = best + 0.5 * (left * b - right * a) / (b - a)
+            top = np.where(np.isfinite(top), np.clip(top, low, high), best)
+            # The first parabola may miss a sharp peak: the sample before it then stays the best.
+            here = self.values(parameters, self.at(top))
+            better = here >= at_best
+            best, value = np.where(better, top, best), np.where(better, here, at_best)
+            width = 0.15 * np.minimum(best - low, high - best)
+            width = np.maximum(width, 1e-6 * best)
+            low, high = best - width, best + width
+        return best[np.argsort(-value)]
 
     def parameters_of(self, poles: ComplexArray) -> Array:
         """Give the parameters of stable poles, rad/s."""
@@ -228,10 +246,10 @@ def _sensitivity(problem: ObserverProblem) -> ZerosAndPoles:
 
 
 def feedback_matrix(plant: LinearSystem, controller: LinearSystem) -> Array:
-    """Matrix of the loop of plant and controller, first factor of eq. 33; plant without D."""
-    return np.block(
-        [
-            [plant.A - plant.B @ controller.D @ plant.C, plant.B @ controller.C],
-            [-controller.B @ plant.C, controller.A],
-        ]
-    )
+    """Matrix of the loop of plant and controller alone, the first factor of eq. 33."""
+    y = np.hstack([plant.C, plant.D @ controller.C]) / (1.0 + plant.D[0, 0] * controller.D[0, 0])
+    u = np.hstack([np.zeros((1, plant.order)), controller.C]) - controller.D @ y
+    A = np.zeros((plant.order + controller.order, plant.order + controller.order))
+    A[: plant.order, : plant.order] = plant.A
+    A[plant.order :, plant.order :] = controller.A
+    return np.asarray(A + np.vstack([plant.B @ u, -controller.B @ y]))
