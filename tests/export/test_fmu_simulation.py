@@ -1,0 +1,131 @@
+"""An FMU gives the numbers of Python, bit for bit, in FMPy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+from fmu_runs import INVERSE_MPI, SHAPES, VERSIONS, FmuRun, has_compiler, rough_signal
+
+import hyst
+from hyst import Operator
+from reference.examples import LAG, PI
+
+pytestmark = has_compiler
+N = 300
+
+
+def stepped(operator: Operator, u: np.ndarray) -> np.ndarray:
+    step = operator.stepper()
+    return np.array([step(value) for value in u.tolist()])
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_every_kind_of_model(name: str, tmp_path: Path) -> None:
+    operator = SHAPES[name]
+    written = hyst.export.fmu(operator, tmp_path / "model.fmu")
+    run = FmuRun(written, tmp_path).initialize()
+    u = rough_signal(N, size=2.0)
+    u[N // 2] = np.nan  # held, here as in Python
+    y = run.run(u, operator.dt or 0.01)
+    assert y.tobytes() == stepped(operator, u).tobytes()
+    assert run.get("fault") == 1
+    run.free()
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("operator", [INVERSE_MPI, LAG @ PI], ids=["inverse", "sampled"])
+def test_a_simulation_by_fmpy(operator: Operator, version: str, tmp_path: Path) -> None:
+    written = hyst.export.fmu(operator, tmp_path / "model.fmu", version)
+    dt = operator.dt or 0.001
+    u = rough_signal(2000)
+    t = np.arange(u.size) * dt
+    drive = np.array(list(zip(t, u, strict=True)), dtype=[("time", "f8"), ("u", "f8")])
+    result = fmpy.simulate_fmu(
+        str(written.path), validate=True, stop_time=t[-1], step_size=dt, output_interval=dt,
+        input=drive, output=["u", "y"],
+    )  # fmt: skip
+    # FMPy interpolates the input at its own times and notes it after the step that used it.
+    used = np.asarray(result["u"][1:])
+    np.testing.assert_allclose(used, u[: used.size], rtol=1e-9, atol=1e-9)
+    assert result["y"][1:].tobytes() == stepped(operator, used).tobytes()
+    assert result["y"][0] == operator.stepper()(result["u"][0])
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_instances_side_by_side(version: str, tmp_path: Path) -> None:
+    first = hyst.export.fmu(INVERSE_MPI, tmp_path / "a.fmu", version)
+    second = hyst.export.fmu(LAG @ PI, tmp_path / "b.fmu", version)
+    runs = [FmuRun(first, tmp_path, "a1"), FmuRun(second, tmp_path, "b"), FmuRun(first, tmp_path)]
+    models = [INVERSE_MPI, LAG @ PI, INVERSE_MPI]
+    signals = [rough_signal(N, seed) for seed in range(3)]
+    outputs = np.empty((3, N))
+    for run in runs:
+        run.initialize()
+    for k in range(N):
+        for i, run in enumerate(runs):
+            run.set(u=signals[i][k])
+            run.step(k * 0.01, 0.01)
+            outputs[i, k] = run.get("y")
+    for model, u, y in zip(models, signals, outputs, strict=True):
+        assert y.tobytes() == stepped(model, u).tobytes()
+    for run in runs:
+        run.free()
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_state_that_was_kept(version: str, tmp_path: Path) -> None:
+    written = hyst.export.fmu(INVERSE_MPI, tmp_path / "model.fmu", version)
+    u = rough_signal(2 * N)
+    expected = stepped(INVERSE_MPI, u)
+    run = FmuRun(written, tmp_path).initialize()
+    run.run(u[:N], 0.1)
+    state = run.fmu.getFMUState()
+    assert run.run(u[N:], 0.1, N).tobytes() == expected[N:].tobytes()
+    run.fmu.setFMUState(state)
+    assert run.get("y") == expected[N - 1]
+    assert run.run(u[N:], 0.1, N).tobytes() == expected[N:].tobytes()
+    # In another instance, as after a restart of the computer.
+    serialize = run.fmu.serializeFMUState
+    saved = serialize(state)
+    run.fmu.freeFMUState(state)
+    other = FmuRun(written, tmp_path, "other")
+    read = getattr(other.fmu, "deserializeFMUState", None) or other.fmu.deSerializeFMUstate
+    copy = read(saved)
+    other.fmu.setFMUState(copy)
+    assert other.run(u[N:], 0.1, N).tobytes() == expected[N:].tobytes()
+    assert serialize(copy) == saved
+    other.fmu.freeFMUState(copy)
+    other.free()
+    run.free()
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_reset_starts_anew(version: str, tmp_path: Path) -> None:
+    run = FmuRun(hyst.export.fmu(INVERSE_MPI, tmp_path / "model.fmu", version), tmp_path)
+    u = rough_signal(N)
+    first = run.initialize(u=2.0).run(u, 0.1)
+    run.set_all({next(name for name in run.variables if name.endswith("weight[1]")): 7.0})
+    run.fmu.reset()
+    assert run.get("u") == 0.0
+    assert run.initialize().run(u, 0.1).tobytes() == first.tobytes()
+    run.free()
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_initialization_looks_without_moving(version: str, tmp_path: Path) -> None:
+    written = hyst.export.fmu(PI, tmp_path / "model.fmu", version)
+    run = FmuRun(written, tmp_path)
+    if run.is_2:
+        run.fmu.setupExperiment()
+    run.fmu.enterInitializationMode()
+    for u in (5.0, -8.0, 1.0):
+        run.set(u=u)
+        assert run.get("y") == PI.stepper()(u)  # from rest, whatever was looked at before
+    run.fmu.exitInitializationMode()
+    assert run.get("y") == PI.stepper()(1.0)
+    u = rough_signal(50)
+    assert run.run(u, 1.0).tobytes() == stepped(PI, u).tobytes()
+    run.free()
