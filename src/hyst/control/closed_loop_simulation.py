@@ -121,84 +121,71 @@ def simulate_closed_loop(
     True
     """
     time, r = sample_time(dt), _record(reference, "reference")
-    settled = as_number(settle, "settle")
-    if not 0.0 <= settled < (r.size - 1) * time + 1e-9 * time:
-        raise InputError(f"settle is {settled} s of {r.size * time:.6g} s; leave some to measure")
-    for name, value, allowed in (
-        ("disturbance_at", disturbance_at, get_args(Place)),
-        ("algebraic_loop", algebraic_loop, get_args(AlgebraicLoop)),
-    ):
-        if value not in allowed:
-            raise InputError(f"{name} is {value!r}; give one of {', '.join(allowed)}")
-    spread = _noise(noise, r.size, seed)
-    d = _signal(disturbance, r.size, "disturbance")
+    settled = _settling(settle, r.size, time)
+    _refuse_other(disturbance_at, get_args(Place), "disturbance_at")
+    _refuse_other(algebraic_loop, get_args(AlgebraicLoop), "algebraic_loop")
+    spread, d = _noise(noise, r.size, seed), _signal(disturbance, r.size, "disturbance")
     # Rows: r, noise, disturbance before and behind the hysteresis.
-    inputs = np.zeros((4, r.size))
+    inputs, outputs = np.zeros((4, r.size)), np.zeros((5, r.size))
     inputs[0], inputs[1] = r, spread
     inputs[2 if disturbance_at == "hysteresis" else 3] = d
-    bound = _limit(limit, r, spread)
-    outputs = np.zeros((5, r.size))
+    actuator = _chain(hysteresis, "hysteresis", time), _start(hysteresis)
+    signals = inputs, outputs, _limit(limit, r, spread)
     if isinstance(controller, TrackingController):
         if inverse is not None or observer is not None:
             raise InputError(
                 "a TrackingController has its own inverse and observer; leave them out"
             )
-        end, good = _sampled(controller, plant, hysteresis, time, inputs, outputs, bound)
+        end, good = _sampled(controller, plant, actuator, time, signals)
     else:
         part = joined(feedback_controller(controller), disturbance_observer_of(observer))
         step = held_step(continuous_loop(plant_of(plant), part), time)
-        chains = (_chain(inverse, "inverse", time), _chain(hysteresis, "hysteresis", time))
-        states = (_start(inverse), _start(hysteresis))
+        chain, states = _chain(inverse, "inverse", time), (_start(inverse), actuator[1])
+        is_late = algebraic_loop == "delay"
         end, good = _engine.run_continuous_loop(
-            step, algebraic_loop == "delay", *chains, *states, inputs, outputs, bound
+            step, is_late, chain, actuator[0], *states, *signals
         )
     if end == "no-solution":
         raise SolverError(
             f"the algebraic loop through plant and controller has no solution at {good * time:.6g} "
             "s; give algebraic_loop='delay', or add a pole to the plant"
         )
+    r, spread, d = r[:good], spread[:good], d[:good]
     v, u, eta, y, d_hat = outputs[:, :good]
     if isinstance(controller, TrackingController) and controller.E is not None and good:
-        d_hat = controller.estimate(r[:good], y + spread[:good])
-    return ClosedLoop(
-        dt=time,
-        r=r[:good],
-        y=y,
-        noise=spread[:good],
-        v=v,
-        u=u,
-        eta=eta,
-        d_hat=d_hat,
-        disturbance=d[:good],
-        settle=settled,
-        diverged_at=good * time if end == "diverged" else None,
-    )
+        d_hat = controller.estimate(r, y + spread)
+    diverged_at = good * time if end == "diverged" else None
+    return ClosedLoop(time, r, y, spread, v, u, eta, d_hat, d, settled, diverged_at)
 
 
 def _sampled(
     controller: TrackingController,
     plant: Any,
-    hysteresis: Operator | None,
+    actuator: tuple[_engine.Chain, Array],
     dt: float,
-    inputs: Array,
-    outputs: Array,
-    limit: float,
+    signals: tuple[Array, Array, float],
 ) -> tuple[str, int]:
     if abs(controller.dt - dt) > 1e-6 * dt:
         raise InputError(
             f"the controller has dt = {controller.dt:.6g} s, the loop {dt:.6g} s; "
             "give the same for both"
         )
+    step, (chain, state) = held_step(plant_of(plant), dt), actuator
     return _engine.run_sampled_loop(
-        held_step(plant_of(plant), dt),
-        controller.compiled,
-        _chain(hysteresis, "hysteresis", dt),
-        controller.initial_state(),
-        _start(hysteresis),
-        inputs,
-        outputs,
-        limit,
+        step, controller.compiled, chain, controller.initial_state(), state, *signals
     )
+
+
+def _settling(settle: float, samples: int, dt: float) -> float:
+    settled = as_number(settle, "settle")
+    if not 0.0 <= settled < (samples - 1 + 1e-9) * dt:
+        raise InputError(f"settle is {settled} s of {samples * dt:.6g} s; leave some to measure")
+    return settled
+
+
+def _refuse_other(given: str, allowed: tuple[str, ...], name: str) -> None:
+    if given not in allowed:
+        raise InputError(f"{name} is {given!r}; give one of {', '.join(allowed)}")
 
 
 def _record(values: ArrayLike, name: str) -> Array:
