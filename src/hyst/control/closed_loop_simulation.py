@@ -140,10 +140,9 @@ def simulate_closed_loop(
     else:
         part = joined(feedback_controller(controller), disturbance_observer_of(observer))
         step = held_step(continuous_loop(plant_of(plant), part), time)
-        chain, states = _chain(inverse, "inverse", time), (_start(inverse), actuator[1])
-        is_late = algebraic_loop == "delay"
+        first, late = _chain(inverse, "inverse", time), algebraic_loop == "delay"
         end, good = _engine.run_continuous_loop(
-            step, is_late, chain, actuator[0], *states, *signals
+            step, late, first, actuator[0], _start(inverse), actuator[1], *signals
         )
     if end == "no-solution":
         raise SolverError(
