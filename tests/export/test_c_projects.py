@@ -1,0 +1,137 @@
+"""Every example, written as C, compiled and compared with Python: equal bits, no exceptions."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from c_builds import (
+    AS_C,
+    AS_CXX,
+    Exported,
+    Objects,
+    build_library,
+    check_syntax,
+    run_selftest,
+    same_bits,
+    stepped,
+    wandering,
+)
+
+from hyst import InputError, Operator, PrandtlIshlinskii
+from hyst.control.tracking_controller import TrackingController
+from hyst.export import c_project
+from hyst.models import LinearDynamics
+from hyst.models.stable_inverse import StableInverse
+from reference.examples import EXAMPLES
+
+SAMPLES = 100_000
+# 10^5 samples of an inverse loading curve, each of them solved for, take a second in Python.
+SLOW = {"inverse ramberg-osgood": 20_000}
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_every_example_gives_the_bits_of_python(
+    name: str, tmp_path: Path, objects: Objects
+) -> None:
+    model = EXAMPLES[name]
+    project = c_project(model, tmp_path / "out")
+    u = wandering(SLOW.get(name, SAMPLES))
+    half = u.size // 3
+    in_python = model.stepper()
+    y = stepped(in_python, u)
+    assert np.isfinite(y).all()
+    for driver, language in (("gcc", AS_C), ("clang++", AS_CXX)):
+        library = build_library(project.path, objects, driver, language)
+        code = Exported(library, project.state_length, project.saved_bytes)
+        assert code.state_size == project.state_bytes
+        state = code.initial_state()
+        assert same_bits(code.memory(state), model.initial_state())
+        first = code.run(state, u[:half])
+        other = code.unset_state()
+        assert code.load(other, code.save(state)) == 0
+        second = code.run(other, u[half:])
+        assert same_bits(np.concatenate([first, second]), y)
+        assert same_bits(code.memory(other), np.asarray(in_python.state))
+        assert code.fault(other) == 1
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_every_self_test_finds_no_difference(
+    name: str, precision: str, tmp_path: Path, objects: Objects
+) -> None:
+    project = c_project(EXAMPLES[name], tmp_path / "out", precision)
+    finished = run_selftest(project.path, objects)
+    assert finished.stdout == "10000 samples, max difference 0\n"
+    assert finished.returncode == 0
+    # The compilers and languages that no library is built with.
+    driver, language = ("clang", AS_C) if precision == "single" else ("g++", AS_CXX)
+    check_syntax(project.path, driver, language)
+    # The bits are those of the core in single; this finds a constant that is wrong in both. 1e-3 of
+    # the output's range leaves room for sums over 10^4 samples.
+    largest = np.abs(expected_outputs(project.path)).max()
+    assert project.away_from_double <= (0.0 if precision == "double" else 1e-3 * max(largest, 1.0))
+
+
+def expected_outputs(project: Path) -> np.ndarray:
+    """The table of the self-test, read back."""
+    text = (project / "selftest_vectors.h").read_text()
+    numbers = text[text.index("= {") + 3 :].rstrip("};\n").split(",")
+    return np.array([float.fromhex(each.strip().rstrip("f")) for each in numbers])
+
+
+CONTROLLERS = {
+    "pi and inverse": TrackingController.from_continuous(
+        ([4.0, 8.0], [1.0, 0.0]), dt=1e-3, inverse=EXAMPLES["inverse of mpi"]
+    ),
+    "observer": TrackingController.from_continuous(
+        ([4.0, 8.0], [1.0, 0.0]),
+        dt=1e-3,
+        observer=([[-2.0]], [[0.5, -1.0]], [[1.0]], [[0.0, 0.25]]),
+        inverse=PrandtlIshlinskii([0.5, 0.2], [0.1, 0.3], 1.0).inverse(),
+    ),
+    "gain": TrackingController([], [], [], [2.0, -1.0], dt=1e-3),
+    "with memory": TrackingController(
+        [[0.5, 0.1], [0.0, 0.9]], [[1.0, 0.5], [0.0, -1.0]], [1.0, 2.0], [0.5, -0.25], 0.1,
+        inverse=EXAMPLES["inverse ramberg-osgood"], x0=[0.5, -0.25],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CONTROLLERS)
+def test_controllers_give_the_bits_of_python(name: str, tmp_path: Path, objects: Objects) -> None:
+    model = CONTROLLERS[name]
+    project = c_project(model, tmp_path / "out", name="loop")
+    y_ref, y = wandering(20_000), wandering(20_000, seed=8)
+    in_python = model.stepper()
+    u = stepped(in_python, y_ref, y)
+    for driver, language in (("gcc", AS_C), ("clang++", AS_CXX)):
+        library = build_library(project.path, objects, driver, language)
+        code = Exported(library, project.state_length, project.saved_bytes, inputs=2)
+        state = code.initial_state()
+        assert same_bits(code.run(state, y_ref, y), u)
+        assert same_bits(code.memory(state), np.asarray(in_python.state))
+    for precision in ("double", "single"):
+        other = c_project(model, tmp_path / precision, precision)
+        assert run_selftest(other.path, objects).stdout == "10000 samples, max difference 0\n"
+
+
+def test_controllers_need_no_chain(tmp_path: Path) -> None:
+    project = c_project(CONTROLLERS["observer"], tmp_path / "out")
+    sources = {file for file in project.files if file.endswith(".c") and "/" in file}
+    assert sources == {"core/src/prandtl_ishlinskii.c", "core/src/tracking_linear.c"}
+
+
+def test_what_looks_ahead_is_refused_with_the_reason(tmp_path: Path) -> None:
+    dynamics = LinearDynamics.from_zeros_poles_gain([1.6], [0.5, 0.3], 1.0, dt=1e-3)
+    with pytest.raises(InputError, match="samples ahead"):
+        c_project(StableInverse.of(dynamics), tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("nonsense", [None, 1.0, [1.0], "model.json", Operator])
+def test_what_is_no_model_is_refused(nonsense: object, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="cannot be exported"):
+        c_project(nonsense, tmp_path / "out")  # type: ignore[arg-type]
