@@ -101,7 +101,7 @@ class ObserverAnswer:
         """Give the answer in one sentence."""
         failed = [what for what, holds, _ in self.checks() if not holds]
         if failed:
-            return f"NOT SAFE: it does not hold that {failed[0]}. {self.design.message}."
+            return f"NOT SAFE. Not so: {'; '.join(failed)}. And {self.design.message}."
         margin = self.design.certificate.robust_stability_margin
         demand = (
             "rejects what Wp asks for"
@@ -130,10 +130,13 @@ class ObserverAnswer:
         if name == EXACT:
             return f"{said}."
         recovered = c.recovered(name)
+        if EXACT not in c.without:
+            return f"{said}."
+        exact = _told(c.without[EXACT].rms_error)
         if math.isnan(recovered):
-            return f"{said}; the exact inverse alone has {number(c.without[EXACT].rms_error)}."
+            return f"{said}; with the exact inverse and no observer: {exact}."
         return (
-            f"{said}; the exact inverse alone has {number(c.without[EXACT].rms_error)}, so the "
+            f"{said}; the exact inverse alone has {exact}, so the "
             f"observer recovers {100.0 * recovered:.1f} % of what the inexact inverse adds."
         )
 
@@ -183,10 +186,10 @@ class ObserverAnswer:
         rows = [
             (
                 name,
-                number(c.without[name].rms_error),
-                number(c.without[name].max_error),
-                number(c.observed[name].rms_error),
-                number(c.observed[name].max_error),
+                _told(c.without[name].rms_error),
+                _told(c.without[name].max_error),
+                _told(c.observed[name].rms_error),
+                _told(c.observed[name].max_error),
             )
             for name in c.without
         ]
@@ -195,8 +198,8 @@ class ObserverAnswer:
                 f"{self.inverse_name}, sampled at {self.block.dt:g} s",
                 "-",
                 "-",
-                number(self.sampled.rms_error),
-                number(self.sampled.max_error),
+                _told(self.sampled.rms_error),
+                _told(self.sampled.max_error),
             )
         )
         names = [row[0] for row in rows]
@@ -297,6 +300,10 @@ class ObserverAnswer:
                 f"u = step(y_ref, y)   # every {self.block.dt:g} s"
             )
         return page.to_html()
+
+
+def _told(error: float) -> str:
+    return "diverges" if math.isinf(error) else number(error)
 
 
 def _finite(value: float | None) -> float | str | None:

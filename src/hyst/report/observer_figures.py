@@ -11,6 +11,8 @@ from hyst.control.frequency_responses import LoopResponses
 from hyst.report.panels import Panel, draw_panels
 
 _HZ = "frequency [Hz]"
+# A filter that falls for ever must not squeeze the rest.
+_LOWEST = 1e-3
 
 
 def draw_observer_bode(found: LoopResponses, heading: str) -> bytes:
@@ -35,11 +37,12 @@ def draw_observer_bode(found: LoopResponses, heading: str) -> bytes:
         "|Q|": (f, found.Q),
     }
     sensitivity = {"with the observer": (f, found.S), "without": (f, found.S_without)}
+    uncertain = {"|Wu T|": (f, found.Wu_T)}
     return draw_panels(
         (
-            Panel("Left of a disturbance", _HZ, "", rejected, True, lowest=_floor(rejected)),
-            Panel("Output over disturbance", _HZ, "", sensitivity, True),
-            Panel("|Wu T|: stable below 1", _HZ, "", {"|Wu T|": (f, found.Wu_T)}, True, 1.0),
+            Panel("Left of a disturbance", _HZ, "", rejected, True, lowest=_LOWEST),
+            Panel("Output over disturbance", _HZ, "", sensitivity, True, lowest=_LOWEST),
+            Panel("|Wu T|: stable below 1", _HZ, "", uncertain, True, 1.0, _LOWEST),
         ),
         3,
         heading,
@@ -47,7 +50,7 @@ def draw_observer_bode(found: LoopResponses, heading: str) -> bytes:
 
 
 def output_panel(title: str, loops: Mapping[str, ClosedLoop]) -> Panel:
-    """Give the panel of output over reference.
+    """Give the panel of output over reference, after the start that metrics leave out.
 
     Parameters
     ----------
@@ -60,7 +63,10 @@ def output_panel(title: str, loops: Mapping[str, ClosedLoop]) -> Panel:
     -------
     Panel
     """
-    lines = {label: (each.r, each.y) for label, each in loops.items()}
+    lines = {}
+    for label, each in loops.items():
+        after = each.t >= each.settle
+        lines[label] = each.r[after], each.y[after]
     return Panel(title, "reference", "output", lines)
 
 
@@ -80,8 +86,3 @@ def error_panel(title: str, loops: Mapping[str, ClosedLoop]) -> Panel:
     """
     lines = {label: (each.t, each.e) for label, each in loops.items()}
     return Panel(title, "time [s]", "reference - output", lines, limit=0.0)
-
-
-def _floor(lines: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> float:
-    """Let a filter that falls for ever end the axis at a thousandth."""
-    return max(1e-3, min(float(y.min()) for _, y in lines.values()))

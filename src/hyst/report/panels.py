@@ -91,4 +91,5 @@ def _draw(axes: Axes, panel: Panel) -> None:
     if panel.lowest is not None:
         axes.set_ylim(bottom=panel.lowest)
     if len(panel.lines) > 1:
-        axes.legend(loc="best")
+        # Below, where it hides no line.
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=len(panel.lines))
