@@ -11,14 +11,21 @@ from closed_loop_cases import (
     CONTROLLER,
     HYSTERESIS,
     INVERSE,
+    MODES,
     OBSERVER,
     PLANT,
     PRINTED_CONTROLLER,
+    mode,
     reference,
 )
 
 import hyst
-from hyst.control import ClosedLoop, closed_loop_poles, simulate_closed_loop
+from hyst.control import (
+    ClosedLoop,
+    closed_loop_poles,
+    design_disturbance_observer,
+    simulate_closed_loop,
+)
 from hyst.errors import SolverError
 
 SLOW_PLANT = ([50.0], [1.0, 50.0])
@@ -247,3 +254,21 @@ def test_poles_of_the_loop() -> None:
     for pole in poles:
         assert np.abs(expected - pole).min() < 1e-6 * abs(pole)
     assert np.poly(observer) == pytest.approx([1.0, 6.390e4, 1.978e7, 5.472e9], rel=1e-3)
+
+
+def test_designed_observer_recovers_as_much() -> None:
+    (above, below), (damping, frequency) = mode(*MODES[0]), MODES[1]
+    design = design_disturbance_observer(
+        (above, below),
+        CONTROLLER,
+        ([-1.0, -2.0 * damping * frequency, 0.0], [1.0, 2.0 * damping * frequency, frequency**2]),
+        ([0.5, 64.0 * np.pi], [1.0, 0.2]),
+        method="descent",
+        starts=1,
+    )
+    inexact = hyst.Affine(0.7) @ INVERSE
+    exact, alone, observed = (
+        example(inverse=inverse, observer=observer).rms_error
+        for inverse, observer in ((INVERSE, None), (inexact, None), (inexact, design))
+    )
+    assert (alone - observed) / (alone - exact) >= 0.95
