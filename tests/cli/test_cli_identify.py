@@ -230,6 +230,7 @@ def test_bad_validation_data_are_refused(
         (("--time", "t", "--plays", "many"), "--plays"),
         (("--time", "t", "--plays", 0), "plays"),
         (("--time", "t", "--plays", 2, "--knots", -1), "knots"),
+        (("--rate", 100, "--time-unit", "ms"), "time_unit"),
         (("--time", "t", "--weights", "heavy"), "non-negative"),
         (("--time", "t", "--delay", -1), "delay"),
         (("--time", "t", "--start", 100000), "start"),
@@ -241,6 +242,42 @@ def test_bad_arguments_are_refused(
 ) -> None:
     message = refused("identify", record_file, *COLUMNS, *arguments, "-o", "out")
     assert part in message
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (
+            ("--family", "ramberg-osgood", "--plays", 3),
+            "--plays is for --family gpi, hammerstein, ",
+        ),
+        (("--family", "linear", "--plays", "auto"), "not for linear; leave it out"),
+        (("--family", "pi", "--knots", 4), "--knots is for"),
+        (("--family", "pi", "--hysteresis", "mpi"), "--hysteresis is for --family hammerstein"),
+        (("--fir-order", 30), "--fir-order is for --family hammerstein"),
+        (("--state-order", 2), "not for gpi, linear, mpi or pi;"),
+        (("--family", "pi,mpi", "--spacing", "free"), "--spacing is for --family rdpi"),
+        (("--family", "rdpi", "--weights", "invertible"), "--weights is for"),
+        (("--family", "rdpi", "--memory", "masing"), "--memory is for --family ramberg-osgood"),
+        (
+            ("--family", "hammerstein", "--hysteresis", "pi", "--knots", 4),
+            "--hysteresis gpi or mpi",
+        ),
+        (("--family", "hammerstein", "--hysteresis", "linear", "--plays", 4), "not for linear"),
+        (("--family", "ramberg-osgood", "--signal-to-noise", 5), "is for --regression slope"),
+    ],
+)
+def test_options_that_would_be_passed_over_are_refused(
+    arguments: tuple[object, ...], says: str, refused: Callable[..., str], record_file: Path
+) -> None:
+    assert says in refused(
+        "identify", record_file, *COLUMNS, "--time", "t", *arguments, "-o", "out"
+    )
+
+
+def test_an_option_that_one_of_several_families_takes_is_used(run: Run, record_file: Path) -> None:
+    options = ("--family", "linear,pi", "--plays", 1, "--delay", 0)
+    assert run("identify", record_file, *COLUMNS, "--time", "t", *options, "-o", "out").code == 0
 
 
 def test_a_record_is_needed(refused: Callable[..., str]) -> None:

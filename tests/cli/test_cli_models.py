@@ -119,6 +119,10 @@ def test_no_range_in_the_file_means_no_limits_and_says_so(run: Run, folder: Path
     ("arguments", "part"),
     [
         (("--method", "oracle"), "exact"),
+        (("--method", "oracle", "--preview", 5), "exact"),
+        (("--preview", 5), "--preview is for --method preview, not for exact"),
+        (("--rate-limit", 5), "--rate-limit is for --method preview or trajectory"),
+        (("--method", "explicit", "--allow-unconverged"), "--allow-unconverged is for"),
         (("--outside", "ignore"), "clip"),
         (("--limits", "0,4", "--no-limits"), "--no-limits"),
         (("--limits", "0"), "--limits"),

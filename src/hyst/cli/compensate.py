@@ -16,6 +16,7 @@ from hyst.cli.arguments import (
     sample_time_known,
 )
 from hyst.cli.console import note, progress_bar, show_files, show_table
+from hyst.cli.relevant_options import refuse_irrelevant
 from hyst.operators.composition import leaves_of
 
 if TYPE_CHECKING:
@@ -72,8 +73,15 @@ History = Annotated[
     ),
 ]
 
+_BY_METHOD = {
+    "preview": ("preview",),
+    "rate_limit": ("preview", "trajectory"),
+    "allow_unconverged": ("trajectory",),
+}
+
 
 def compensate(
+    context: typer.Context,
     model_file: ModelFile,
     reference: Reference,
     column: Column,
@@ -89,6 +97,8 @@ def compensate(
     allow_unconverged: AllowUnconverged = False,
 ) -> None:
     """Turn a wanted output into the input that produces it, and predict how well."""
+    if method in hyst.compensation.METHODS:
+        refuse_irrelevant(context, _BY_METHOD, [method], "--method")
     model, about = hyst.models.load_described(model_file)
     y_ref, _, unit = hyst.io.read_column(reference, column)
     require_same_unit(unit, about.output_unit, "the reference")

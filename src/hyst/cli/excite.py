@@ -11,6 +11,7 @@ import typer
 import hyst
 from hyst.cli.arguments import numbers, positive
 from hyst.cli.console import note, show_files, show_table
+from hyst.cli.relevant_options import given, refuse_irrelevant
 
 KINDS = (
     "multisine",
@@ -23,6 +24,17 @@ KINDS = (
     "forc",
     "staircase",
 )
+
+_MULTISINES, _RANDOM = KINDS[:3], ("multisine", "odd-multisine", "prbs")
+_BY_KIND = {
+    "rms": _MULTISINES,
+    "duration": (*_MULTISINES, "swept-sine", "staircase"),
+    "band": (*_MULTISINES, "swept-sine"),
+    "decay": ("decaying-triangle",),
+    "clock": ("prbs",),
+    "register": ("prbs",),
+    "seed": _RANDOM,
+}
 
 Kind = Annotated[str, typer.Option(help=f"One of {', '.join(KINDS)}.", show_default=False)]
 Rate = Annotated[float, typer.Option(metavar="HZ", help="Samples per second.", show_default=False)]
@@ -60,6 +72,7 @@ Out = Annotated[
 
 
 def excite(
+    context: typer.Context,
     kind: Kind,
     rate: Rate,
     out: Out,
@@ -81,6 +94,10 @@ def excite(
     """Design an input within limits; write it with a figure, and say what it can determine."""
     if not (math.isfinite(rate) and rate > 0.0):
         raise hyst.InputError(f"--rate is {rate}; give samples per second, above 0")
+    if kind in KINDS:
+        refuse_irrelevant(context, _BY_KIND, [kind], "--kind")
+    if rms is not None and given(context, "amplitude"):
+        raise hyst.InputError("--amplitude and --rms are both given; give one of them")
     if fir_order < 0:
         raise hyst.InputError(f"--fir-order is {fir_order}; give 0 or more samples")
     ends = None if band is None else numbers(band, "band")

@@ -11,6 +11,7 @@ import typer
 import hyst
 from hyst.cli.arguments import InputColumn, numbers, whole_or_auto
 from hyst.cli.console import at_work, show_files, show_table
+from hyst.cli.relevant_options import refuse_irrelevant
 from hyst.identification.hammerstein import average_periods
 
 Data = Annotated[
@@ -99,8 +100,22 @@ AllowUnconverged = Annotated[
     bool, typer.Option("--allow-unconverged", help="Accept a fit that did not converge.")
 ]
 
+_PLAYS, _MAPS = ("pi", "gpi", "mpi"), ("gpi", "mpi")
+_DYNAMICS = ("hysteresis", "fir_order", "state_order", "period")
+# Which families, and which hysteresis of hammerstein, take an option that not all take.
+_BY_FAMILY = {
+    "plays": (*_PLAYS, "rdpi", "hammerstein"),
+    "knots": (*_MAPS, "hammerstein"),
+    "weights": (*_PLAYS, "hammerstein"),
+    **dict.fromkeys(("memory", "regression", "signal_to_noise"), ("ramberg-osgood",)),
+    **dict.fromkeys(("spacing", "record_weights"), ("rdpi",)),
+    **dict.fromkeys(_DYNAMICS, ("hammerstein",)),
+}
+_BY_HYSTERESIS = {"plays": _PLAYS, "knots": _MAPS, "weights": ("pi", "mpi")}
+
 
 def identify(
+    context: typer.Context,
     data: Data,
     input_column: InputColumn,
     output_column: OutputColumn,
@@ -131,6 +146,7 @@ def identify(
 ) -> None:
     """Identify a model from measured records, and write model, numbers, figures and a report."""
     hyst.files.require_folder(folder)
+    _refuse_what_is_not_used(context, family, hysteresis, regression)
 
     how_to_read = {"input": input_column, "output": output_column, "time": time, "rate": rate}
     how_to_read |= {"time_unit": time_unit, "repair": repair}
@@ -160,6 +176,21 @@ def identify(
         )
     _tell(found, records)
     show_files(files)
+
+
+def _refuse_what_is_not_used(
+    context: typer.Context, family: str, hysteresis: str, regression: str
+) -> None:
+    """Refuse options of other families; what is unknown is refused where it is looked up."""
+    families = [each.strip() for each in family.split(",")]
+    if family == "auto":
+        families = ["linear", *_PLAYS]
+    if set(families) <= {"linear", *(each for those in _BY_FAMILY.values() for each in those)}:
+        refuse_irrelevant(context, _BY_FAMILY, families, "--family")
+    if families == ["hammerstein"] and hysteresis in ("linear", "ramberg-osgood", *_PLAYS):
+        refuse_irrelevant(context, _BY_HYSTERESIS, [hysteresis], "--hysteresis")
+    if regression == "output":
+        refuse_irrelevant(context, {"signal_to_noise": ["slope"]}, [regression], "--regression")
 
 
 def _read(path: Path, how: dict[str, Any], labels: tuple[str | None, str | None]) -> hyst.Record:

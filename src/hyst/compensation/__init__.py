@@ -6,9 +6,10 @@ from hyst.compensation.compensation import Compensation
 from hyst.compensation.inverse_error import ErrorBound, error_bound
 from hyst.compensation.inverse_reduction import reduce_inverse
 from hyst.compensation.inverse_slopes import slope_range
-from hyst.compensation.trajectory_inversion import invert_trajectory
+from hyst.compensation.trajectory_inversion import METHODS, invert_trajectory
 
 __all__ = [
+    "METHODS",
     "Compensation",
     "ErrorBound",
     "error_bound",
