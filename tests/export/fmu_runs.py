@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -60,7 +59,9 @@ def rough_signal(samples: int, seed: int = 0, size: float = 6.0) -> np.ndarray:
     """Runs, reversals, jumps and plateaus."""
     rng = np.random.default_rng(seed)
     t = np.arange(samples)
-    u = size * np.sin(0.05 * t + rng.uniform(0, 6)) * np.cos(0.017 * t) + rng.normal(0, 0.4, samples)
+    u = size * np.sin(0.05 * t + rng.uniform(0, 6)) * np.cos(0.017 * t) + rng.normal(
+        0, 0.4, samples
+    )
     u[samples // 3 : samples // 3 + 5] = u[samples // 3]
     return np.asarray(u)
 
@@ -68,7 +69,9 @@ def rough_signal(samples: int, seed: int = 0, size: float = 6.0) -> np.ndarray:
 class FmuRun:
     """One instance of an FMU that has been written."""
 
-    def __init__(self, written: hyst.export.Fmu, folder: Path, name: str = "one") -> None:
+    def __init__(
+        self, written: hyst.export.Fmu, folder: Path, name: str = "one", token: str = ""
+    ) -> None:
         self.log: list[tuple[int, str]] = []
         unpacked = folder / f"{written.path.stem}-unpacked"
         if not unpacked.exists():
@@ -77,7 +80,7 @@ class FmuRun:
         self.variables = {each.name: each for each in self.description.modelVariables}
         self.is_2 = written.version == "2.0"
         arguments: dict[str, Any] = {
-            "guid": self.description.guid if self.is_2 else self.description.instantiationToken,
+            "guid": token or self.description.guid,
             "unzipDirectory": str(unpacked),
             "modelIdentifier": written.name,
             "instanceName": name,
@@ -145,7 +148,3 @@ class FmuRun:
 
     def free(self) -> None:
         self.fmu.freeInstance()
-
-
-def close_library(handle: int) -> None:
-    ctypes.CDLL(None).dlclose(ctypes.c_void_p(handle))
