@@ -1,0 +1,218 @@
+"""A MEX function gives the numbers of Python, bit for bit, in Octave."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmu_runs import INVERSE_MPI, SHAPES, rough_signal
+
+import hyst
+from hyst.operators import ModelDescription
+from reference.examples import PI
+
+needs_octave = pytest.mark.skipif(
+    shutil.which("mkoctfile") is None or shutil.which("octave-cli") is None,
+    reason="Octave and its mkoctfile are not installed",
+)
+N = 300
+READ = "fid = fopen('{0}.bin'); {0} = fread(fid, Inf, 'double'); fclose(fid);\n"
+WRITE = "fid = fopen('{0}.bin', 'w'); fwrite(fid, {0}, 'double'); fclose(fid);\n"
+
+
+def compiled(written: hyst.export.MexFolder, *options: str) -> Path:
+    command = ["mkoctfile", "--mex", *options, f"{written.name}_mex.c"]
+    done = subprocess.run(command, cwd=written.path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""  # warnings
+    return written.path
+
+
+def octave(folder: Path, program: str) -> str:
+    """What a program prints, run in a folder."""
+    (folder / "program.m").write_text(program + "\ndisp('done')\n")
+    done = subprocess.run(
+        ["octave-cli", "--quiet", "--norc", "program.m"],
+        cwd=folder, capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert done.stdout.endswith("done\n"), done.stdout + done.stderr
+    return done.stdout.removesuffix("done\n")
+
+
+def stepped(model: hyst.Operator, u: np.ndarray) -> np.ndarray:
+    step = model.stepper()
+    return np.array([step(value) for value in u.tolist()])
+
+
+@needs_octave
+@pytest.mark.parametrize("part", range(4))
+def test_every_kind_of_model(part: int, tmp_path: Path) -> None:
+    """One Octave for several: it takes longer to start than to run."""
+    models = dict(list(SHAPES.items())[part::4])
+    u = rough_signal(N, size=2.0)
+    u.tofile(tmp_path / "u.bin")
+    program = READ.format("u")
+    for i, model in enumerate(models.values()):
+        name = f"model_{i}"
+        folder = compiled(hyst.export.mex(model, tmp_path / name, name), "-Wall", "-Wextra", "-O0")
+        program += f"addpath('{folder}'); y = {name}(u);\n"
+        program += WRITE.format("y").replace("y.bin", f"{name}.bin")
+    octave(tmp_path, program)
+    for i, (kind, model) in enumerate(models.items()):
+        y = (tmp_path / f"model_{i}.bin").read_bytes()
+        assert y == stepped(model, u).tobytes(), kind
+
+
+@pytest.fixture(scope="module")
+def inverse(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("mex") / "inverse"
+    compiled(hyst.export.mex(INVERSE_MPI, folder, "inverse"))
+    return folder
+
+
+@pytest.fixture
+def run(inverse: Path) -> Callable[[str], str]:
+    return lambda program: octave(inverse, program)
+
+
+@needs_octave
+def test_records_steps_and_states(inverse: Path, run: Callable[[str], str]) -> None:
+    u = rough_signal(N)
+    u.tofile(inverse / "u.bin")
+    program = """
+    row = inverse(u'); column = inverse(u);
+    assert(size(row), [1 numel(u)]); assert(size(column), [numel(u) 1]); assert(row', column);
+    [first, state] = inverse(u(1:100));
+    [second, state] = inverse(u(101:200), state);
+    third = inverse(u(201:end), state);
+    assert(class(state), 'uint8');
+    again = inverse(u(1), []);
+    object = inverse();
+    stepped = zeros(size(u));
+    for k = 1:150, stepped(k) = object.step(u(k)); end
+    saved = object.state;
+    save('-binary', 'state.dat', 'saved');
+    stepped(151:end) = object.step(u(151:end));
+    other = inverse_stepper();
+    other.state = load('state.dat').saved;
+    loaded = zeros(150, 1);
+    for k = 151:300, loaded(k - 150) = other.step(u(k)); end
+    object.reset();
+    anew = object.step(u(1));
+    same = anew == again && anew == column(1) && isequal(loaded, stepped(151:end));
+    assert(same);
+    joined = [first; second; third];
+    """
+    wanted = ("column", "joined", "stepped")
+    run(READ.format("u") + program + "".join(map(WRITE.format, wanted)))
+    for name in wanted:
+        assert (inverse / f"{name}.bin").read_bytes() == INVERSE_MPI(u).tobytes(), name
+
+
+@needs_octave
+def test_a_step_that_is_not_finite_is_held(run: Callable[[str], str]) -> None:
+    said = run("""
+    object = inverse(); twin = inverse();
+    y = object.step([1 2]); twin.step([1 2]);
+    disp(isequal(object.step([NaN Inf -Inf]), [y(2) y(2) y(2)]))
+    disp([object.fault(), twin.fault()])
+    disp(isequal(object.step(0.5), twin.step(0.5)))
+    disp(object.fault())
+    object.clear_fault();
+    disp(object.fault())
+    """)
+    assert said.split() == ["1", "1", "0", "1", "1", "0"]
+
+
+BAD = {
+    "inverse([1 NaN 3])": ("hyst:input", "sample 2 is not finite"),
+    "inverse([1; 2; -Inf])": ("hyst:input", "sample 3 is not finite"),
+    "inverse(1 + 2i)": ("hyst:input", "u is complex"),
+    "inverse([])": ("hyst:input", "u is empty"),
+    "inverse(zeros(1, 0))": ("hyst:input", "u is empty"),
+    "inverse(single(1))": ("hyst:input", "u is not of class double"),
+    "inverse(int32(1))": ("hyst:input", "u is not of class double"),
+    "inverse('text')": ("hyst:input", "u is not of class double"),
+    "inverse({1})": ("hyst:input", "u is not of class double"),
+    "inverse(true)": ("hyst:input", "u is not of class double"),
+    "inverse(sparse(1))": ("hyst:input", "u is sparse"),
+    "inverse(ones(2))": ("hyst:input", "u is a matrix"),
+    "inverse(ones(1, 1, 2))": ("hyst:input", "u is a matrix"),
+    "inverse(1, 5)": ("hyst:state", "the state is damaged"),
+    "inverse(1, uint8(1:20))": ("hyst:state", "the state is damaged"),
+    "inverse(1, damaged)": ("hyst:state", "the state is damaged"),
+    "inverse_mex()": ("hyst:call", "not one it knows"),
+    "inverse_mex(1)": ("hyst:call", "not one it knows"),
+    "inverse_mex('strange', state)": ("hyst:call", "not one it knows"),
+    "inverse_mex('run', state)": ("hyst:call", "not one it knows"),
+    "inverse_mex('start', state)": ("hyst:call", "not one it knows"),
+    "inverse_mex('a command far too long', state)": ("hyst:call", "not one it knows"),
+}
+
+
+@needs_octave
+def test_calls_that_are_wrong(run: Callable[[str], str]) -> None:
+    program = "[~, state] = inverse(1); damaged = state; damaged(30) = bitxor(damaged(30), 1);\n"
+    for call in BAD:
+        program += (
+            f"try, {call}; disp('nothing'), catch e, disp([e.identifier ' ' e.message]), end\n"
+        )
+    lines = run(program).splitlines()
+    assert len(lines) == len(BAD)
+    for line, (call, (identifier, part)) in zip(lines, BAD.items(), strict=True):
+        assert line.startswith(identifier), call
+        assert part in line, call
+        assert line.endswith("."), call
+
+
+@needs_octave
+def test_compilers_that_would_fuse_products_and_sums(tmp_path: Path) -> None:
+    written = hyst.export.mex(INVERSE_MPI, tmp_path / "fused", "fused")
+    compiled(written, "-march=native", "-ffp-contract=fast")
+    u = rough_signal(N)
+    u.tofile(written.path / "u.bin")
+    octave(written.path, READ.format("u") + "y = fused(u);\n" + WRITE.format("y"))
+    assert (written.path / "y.bin").read_bytes() == INVERSE_MPI(u).tobytes()
+
+
+def test_the_c_file_stands_alone(tmp_path: Path) -> None:
+    about = ModelDescription('"*/ #error', "% \\ <b>", "V\n%{", "\N{MICRO SIGN}m")
+    written = hyst.export.mex(INVERSE_MPI, tmp_path / "a", description=about)
+    assert written.files == (
+        "README.md", "manifest.json", "stage.m", "stage_mex.c", "stage_stepper.m",
+    )  # fmt: skip
+    text = (written.path / "stage_mex.c").read_text(encoding="ascii")
+    own = [line for line in text.splitlines() if line.lstrip().startswith('#include "')]
+    assert own == ['#include "mex.h"']
+    assert "Permission is hereby granted" in text
+    assert "#error\n" not in text.replace('#error "', "")
+    core = Path(__file__).resolve().parents[2] / "core"
+    for line in (core / "src/prandtl_ishlinskii.c").read_text().splitlines():
+        assert line in text or line.startswith("#include")
+
+
+def test_the_same_model_gives_the_same_bytes(tmp_path: Path) -> None:
+    folders = [hyst.export.mex(PI, tmp_path / name) for name in ("a", "b")]
+    for file in folders[0].files:
+        assert (folders[0].path / file).read_bytes() == (folders[1].path / file).read_bytes()
+
+
+@pytest.mark.parametrize(
+    "name", ["end", "function", "mex", "pi", "classdef", "while", "1st", "a b"]
+)
+def test_names_that_cannot_be(name: str, tmp_path: Path) -> None:
+    with pytest.raises(hyst.InputError, match="the name is"):
+        hyst.export.mex(PI, tmp_path / "a", name)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_exists(tmp_path: Path) -> None:
+    hyst.export.mex(PI, tmp_path / "a")
+    with pytest.raises(hyst.InputError, match="exists"):
+        hyst.export.mex(INVERSE_MPI, tmp_path / "a")
+    again = hyst.export.mex(INVERSE_MPI, tmp_path / "a", "other", force=True)
+    assert {each.name for each in (tmp_path / "a").iterdir()} == set(again.files)
