@@ -28,10 +28,11 @@ export MKL_NUM_THREADS := 1
 export CC CXX
 
 .DEFAULT_GOAL := help
-.PHONY: help venv install demo test core-test lint types bench clean distclean
+.PHONY: help venv install demo test core-test embedded embedded-table misra lint types bench \
+	clean distclean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 venv: $(bin)/python ## create the virtual environment
 
@@ -51,6 +52,15 @@ core-test: $(installed_dev) ## C tests of the core: double and float, plain and 
 	@$(bin)/ctest --test-dir $(core_build) --output-on-failure --parallel $(JOBS) \
 		--quiet --output-log $(core_build)/ctest.log || { cat $(core_build)/ctest.log; exit 1; }
 	@grep 'tests passed' $(core_build)/ctest.log
+
+embedded: $(installed_dev) ## exported models on emulated Cortex-M4F and M7: numbers and costs
+	PYTHONPATH=tests $(bin)/python -m embedded --jobs $(JOBS)
+
+embedded-table: $(installed_dev) ## the same, and write the table of docs/embedded.md
+	PYTHONPATH=tests $(bin)/python -m embedded --jobs $(JOBS) --write
+
+misra: $(installed_dev) ## cppcheck's MISRA C:2012 report on the core against docs/misra.md
+	$(bin)/python -m embedded.misra
 
 lint: $(installed_dev) ## style, formatting and import direction
 	$(bin)/ruff check
