@@ -72,7 +72,9 @@ def slope_range(
     inner = _composed(phi, phi_hat, between, into)
     end = phi.largest_output(between.largest_value(out))
     last = _slopes(own.after, end)
-    if _undo(approximate.before, own.after, reach) and np.ptp(inner) <= _ROUNDING:
+    # Only where the plays cancel does the last map meet again what the first one made.
+    cancelled = bool(np.abs(inner - 1.0).max() <= _ROUNDING)
+    if cancelled and _undo(approximate.before, own.after, reach):
         return float(inner.min()), float(inner.max())
     return _product(_product(_range(first), _range(inner)), _range(last))
 
