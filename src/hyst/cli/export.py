@@ -12,6 +12,7 @@ import typer
 import hyst
 from hyst.cli.arguments import ModelFile
 from hyst.cli.console import show_table
+from hyst.cli.relevant_options import refuse_irrelevant
 
 if TYPE_CHECKING:
     from hyst.operators import ModelDescription, Operator
@@ -66,7 +67,6 @@ def _c(order: _Order) -> _Done:
 
 
 def _fmu(order: _Order) -> _Done:
-    _refuse_single(order, "fmu")
     path = order.out
     if path.suffix.lower() != ".fmu":
         if path.parent.is_dir() and not path.exists():
@@ -93,7 +93,6 @@ def _fmu(order: _Order) -> _Done:
 
 
 def _mex(order: _Order) -> _Done:
-    _refuse_single(order, "mex")
     written = hyst.export.mex(
         order.model, order.out, order.name, order.force, description=order.about
     )
@@ -110,13 +109,6 @@ def _mex(order: _Order) -> _Done:
     )
 
 
-def _refuse_single(order: _Order, target: str) -> None:
-    if order.precision != "double":
-        raise hyst.InputError(
-            f"--precision is {order.precision!r}; {target} is in double, so leave it out"
-        )
-
-
 def _shortened(names: tuple[str, ...], most: int = 6) -> str:
     if len(names) <= most:
         return ", ".join(names) or "none"
@@ -125,9 +117,11 @@ def _shortened(names: tuple[str, ...], most: int = 6) -> str:
 
 # One function a target, by the name the command line gives it.
 _TARGETS: dict[str, Callable[[_Order], _Done]] = {"c": _c, "fmu": _fmu, "mex": _mex}
+_BY_TARGET = {"precision": ["c"], "fmi": ["fmu"], "binary": ["fmu"]}
 
 
 def export(
+    context: typer.Context,
     model_file: ModelFile,
     out: Annotated[
         Path,
@@ -152,7 +146,7 @@ def export(
             "--explicit", help="Export the explicit inverse of a rate-dependent model; not exact."
         ),
     ] = False,
-    precision: Annotated[str, typer.Option(help="double or single.")] = "double",
+    precision: Annotated[str, typer.Option(help="Of C: double or single.")] = "double",
     name: Annotated[
         str, typer.Option(metavar="NAME", help="Prefix of files, functions and types.")
     ] = "stage",
@@ -170,6 +164,7 @@ def export(
     """Write a model as code for other tools: the numbers of Python, bit for bit in double."""
     if target not in _TARGETS:
         raise hyst.InputError(f"--target is {target!r}; give {' or '.join(_TARGETS)}")
+    refuse_irrelevant(context, _BY_TARGET, [target], "--target")
     model, about = hyst.models.load_described(model_file)
     if inverse or explicit:
         model = hyst.export.explicit_inverse(model) if explicit else model.inverse()
