@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 
 import numpy as np
 import pytest
@@ -97,9 +98,7 @@ def test_every_source_of_the_core_is_found_by_what_it_defines() -> None:
         name = path.removeprefix("src/").removesuffix(".c")
         lines = (folder / path).read_text().splitlines()
         # A definition starts in column 0 and its brace stands alone on a line after it.
-        heads = [
-            line for line in lines if "hyst_" in line and "(" in line and line[0] not in " /#s"
-        ]
+        heads = [line for line in lines if re.match(r"[a-rt-z][^=]*\bhyst_\w+\(", line)]
         assert heads, name
         for head in heads:
             function = head[head.index("hyst_", head.index(" ")) :].split("(")[0]

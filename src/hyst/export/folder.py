@@ -128,7 +128,7 @@ def _write_folder(target: Path, files: Files) -> None:
             target.rename(old)
         try:
             new.rename(target)
-        except OSError:
+        except BaseException:
             if old.exists():
                 old.rename(target)
             raise
