@@ -1,0 +1,199 @@
+"""hyst observer: the template runs, the answer is honest, mistakes in a spec are named."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_runs import Run
+
+import hyst
+from hyst.cli import main
+from hyst.cli.observer_template import TEMPLATE
+from hyst.control import TrackingController
+
+# As quick as it can be: one period after the start is left out.
+QUICK = TEMPLATE.replace("duration = 3.0", "duration = 1.5").replace("settle = 1.0", "settle = 0.5")
+PRINTED = QUICK.replace("num = [4.0, 8.0]", "num = [8.0, 4.0]")
+
+
+@pytest.fixture(scope="module")
+def answered(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, str], Path]:
+    """Design from a spec, once for each name."""
+    folder = tmp_path_factory.mktemp("observer")
+
+    def design(name: str, text: str) -> Path:
+        if not (folder / name).exists():
+            (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+            assert main(["observer", str(folder / f"{name}.toml"), "-o", str(folder / name)]) == 0
+        return folder / name
+
+    return design
+
+
+def test_the_template_is_printed_and_read(run: Run, folder: Path) -> None:
+    ended = run("observer", "--template")
+    assert (ended.code, ended.out, ended.err) == (0, TEMPLATE, "")
+
+
+def test_the_template_gives_a_safe_loop(answered: Callable[[str, str], Path]) -> None:
+    out = answered("repaired", QUICK)
+    names = {each.name for each in out.iterdir()}
+    assert names == {
+        *("certificate.json", "controller.json", "report.html", "signals.csv"),
+        *("bode.png", "closed_loop.png"),
+    }
+    told = json.loads((out / "certificate.json").read_text(encoding="utf-8"))
+    assert told["safe"] is True
+    # The notes on the paper: 0.9238 is the best known, to the digits the search is asked for.
+    assert 0.92 < told["gamma"] < 0.93
+    assert told["slope_margin"] > 1.0
+    scaled = told["tracking"]["0.7 of the exact"]
+    exact = told["tracking"]["exact"]["without"]["rms"]
+    recovered = (scaled["without"]["rms"] - scaled["with_observer"]["rms"]) / (
+        scaled["without"]["rms"] - exact
+    )
+    assert recovered > 0.95
+    assert told["verdict"] in (out / "report.html").read_text(encoding="utf-8").replace(
+        "&#x27;", "'"
+    )
+
+
+def test_what_is_to_be_implemented_is_what_was_simulated(
+    answered: Callable[[str, str], Path],
+) -> None:
+    out = answered("repaired", QUICK)
+    block = TrackingController.load(out / "controller.json")
+    assert block.dt == 1e-4
+    signals = hyst.read_record(out / "signals.csv", input="y_ref", output="y", time="time [s]")
+    u = hyst.io.read_column(out / "signals.csv", "u")[0]
+    # Noise-free: the recorded output, given to the block again, makes the recorded drive.
+    again, _ = block.run(signals.u, signals.y)
+    assert np.abs(again - u).max() < 1e-9 * np.abs(u).max()
+
+
+def test_the_printed_example_is_refused_in_words(answered: Callable[[str, str], Path]) -> None:
+    out = answered("printed", PRINTED)
+    assert not (out / "controller.json").exists()
+    told = json.loads((out / "certificate.json").read_text(encoding="utf-8"))
+    assert told["safe"] is False
+    assert told["verdict"].startswith("NOT SAFE")
+    assert "UNSTABLE" in told["verdict"]
+    # The notes on the paper: not below 2.126.
+    assert told["gamma"] == pytest.approx(2.126, abs=2e-3)
+    assert told["tracking"]["exact"]["without"]["rms"] is None
+
+
+def change(old: str, new: str) -> str:
+    assert old in TEMPLATE
+    return TEMPLATE.replace(old, new)
+
+
+MISTAKES = {
+    "[plant] has an unknown entry 'denn'; did you mean 'den'": change(
+        "[plant]", "[plant]\ndenn = [1.0]\n#"
+    ),
+    "unknown entry 'plants'; did you mean 'plant'": change("[true_plant]", "[plants]"),
+    "the spec has no [controller]": change("[controller]", "[other]"),
+    "[inverse] kind is 'half'": change('kind = "scaled"', 'kind = "half"'),
+    "[inverse] has an unknown entry 'factor'": change('kind = "scaled"', 'kind = "exact"'),
+    "[inverse] has no 'plays'": change('kind = "scaled"', 'kind = "reduced"'),
+    "[inverse] factor is 0": change("factor = 0.7", "factor = 0.0"),
+    "[simulation] dt is 'fast'": change("dt = 5e-5", 'dt = "fast"'),
+    "[simulation] dt is nan": change("dt = 5e-5", "dt = nan"),
+    "settle is 5 s of 3 s": change("settle = 1.0", "settle = 5.0"),
+    "noise is -1": change("noise = 0.0", "noise = -1.0"),
+    "[simulation] seed is -3": change("seed = 0", "seed = -3"),
+    "[filter] dt is 0": change("dt = 1e-4", "dt = 0.0"),
+    "[filter] method is 'euler'": change('method = "tustin"', 'method = "euler"'),
+    "[weights] Wu has num": change(
+        "Wu = { num = [-1.0, -960.0, 0.0], den", "Wu = { num = [1.0], d"
+    ),
+    "[weights] Wp num is": change("Wp = { num = [0.5", 'Wp = { num = ["a"'),
+    "[reference] sines has shape (1, 3)": change(
+        "[[18.0, 1.0], [28.0, 3.0]]", "[[18.0, 1.0, 2.0]]"
+    ),
+    "[reference] duration is 1e+06 s": change("duration = 3.0", "duration = 1e6"),
+    "[internal_model] kind is 'sine'": change('"integrator"\n', '"sine"\n'),
+    "[internal_model] sinusoids has -50": change("# sinusoids = [50.0]", "sinusoids = [-50.0]"),
+    "p has 9 entries but r has 10": change("1.1, 1.7]", "1.1]"),
+    "p0 is -0.1": change("p0 = 0.1", "p0 = -0.1"),
+    "is no TOML file": change("[plant]", "[plant"),
+    "[controller] is improper": change("num = [4.0, 8.0]", "num = [4.0, 8.0, 1.0]"),
+}
+
+
+@pytest.mark.parametrize("said", MISTAKES)
+def test_mistakes_in_a_spec(said: str, folder: Path, refused: Callable[..., str]) -> None:
+    (folder / "spec.toml").write_text(MISTAKES[said], encoding="utf-8")
+    message = refused("observer", "spec.toml", "-o", "out")
+    assert said in message
+    assert "spec.toml" in message
+
+
+def test_other_mistakes(folder: Path, refused: Callable[..., str]) -> None:
+    assert "no such file" in refused("observer", "nothing.toml", "-o", "out")
+    assert "--template" in refused("observer")
+    assert "--template" in refused("observer", "--template", "-o", "out")
+    (folder / "model.toml").write_text(change("p0 = 0.1", 'file = "model.json"'), encoding="utf-8")
+    assert "unknown entry" in refused("observer", "model.toml", "-o", "out")
+    (folder / "folder.toml").mkdir()
+    assert "is a folder" in refused("observer", "folder.toml", "-o", "out")
+
+
+def test_a_plant_that_cannot_be_observed_is_refused(
+    folder: Path, refused: Callable[..., str]
+) -> None:
+    text = change("den = [1.0, 904.7786842338605, 319775.1825952952]", "den = [1.0, 0.0, -4.0]")
+    (folder / "spec.toml").write_text(text, encoding="utf-8")
+    assert "plant" in refused("observer", "spec.toml", "-o", "out")
+
+
+def test_a_model_file_other_forms_of_systems_and_a_reduced_inverse(run: Run, folder: Path) -> None:
+    model = hyst.GeneralizedPrandtlIshlinskii(
+        hyst.DeadZone.odd([0.65, 0.2], [0.0, 7.56]), hyst.PrandtlIshlinskii([0.5, 0.5], [1, 2], 0.5)
+    )
+    model.save(folder / "model.json")
+    hyst.io.write_columns(
+        folder / "wanted.csv", ["y_ref"], [10.0 * np.sin(np.linspace(0.0, 20.0, 6000))]
+    )
+    spec = """
+        [plant]
+        zeros = []
+        poles = [[-50.0, 20.0]]
+        gain = 2900.0
+        [controller]
+        A = [[0.0]]
+        B = [1.0]
+        C = [20.0]
+        D = [[1.0]]
+        [weights]
+        Wu = { num = [0.4, 0.0], den = [1.0, 400.0] }
+        Wp = { num = [0.3, 3.0], den = [1.0, 0.1] }
+        [internal_model]
+        A = [[0.0]]
+        C = [1.0]
+        [hysteresis]
+        file = "model.json"
+        [inverse]
+        kind = "reduced"
+        plays = 1
+        reach = 12.0
+        [reference]
+        file = "wanted.csv"
+        column = "y_ref"
+        [simulation]
+        dt = 1e-3
+        [filter]
+        dt = 1e-3
+    """
+    (folder / "spec.toml").write_text(spec, encoding="utf-8")
+    ended = run("observer", "spec.toml", "-o", "out")
+    assert ended.code == 0, ended
+    told = json.loads((folder / "out" / "certificate.json").read_text(encoding="utf-8"))
+    assert told["inverse"] == "1 plays"
+    assert told["inverse_error_bound"]["bound"] >= told["inverse_error_bound"]["reached"] > 0.0
+    assert "1 plays" in ended.out
