@@ -53,6 +53,9 @@ public:
         config_.limit = limit_.data();
         places_ = hyst_joint_places(&config_);
         require(limit_.size() == places_.m, "limit must have one entry for each parameter");
+        search_ = {};
+        search_.joint = &config_;
+        all_ = hyst_search_places(&search_);
     }
     Joint(const Joint &) = delete;
     Joint &operator=(const Joint &) = delete;
@@ -70,17 +73,38 @@ public:
         config_.least_share = least_share;
         config_.patience = patience;
     }
+    // Cells of fixed radii, from which rivals of the estimate come.
+    void set_search(std::vector<double> radius, std::vector<double> start,
+                    std::vector<double> limit, double noise) {
+        require(start.size() == radius.size() + 2 && limit.size() == start.size(),
+                "start and limit must have two entries more than radius");
+        require(radius.size() >= config_.plays, "there must be as many cells as plays");
+        cell_radius_ = std::move(radius);
+        cell_start_ = std::move(start);
+        cell_limit_ = std::move(limit);
+        search_ = {&config_,           cell_radius_.size(), cell_radius_.data(),
+                   cell_start_.data(), cell_limit_.data(),  noise};
+        all_ = hyst_search_places(&search_);
+    }
     std::map<std::string, std::size_t> places() const {
         return {{"m", places_.m},       {"theta", places_.theta}, {"d", places_.d},
                 {"u", places_.u},       {"z", places_.z},         {"side", places_.side},
                 {"age", places_.age},   {"home", places_.home},   {"far", places_.far},
-                {"psi", places_.psi},   {"length", places_.length}};
+                {"psi", places_.psi},   {"scratch", places_.scratch},
+                {"scalars", all_.scalars}, {"rival", all_.rival}, {"cells", all_.weight},
+                {"cell_memory", all_.z},
+                {"points", all_.point_weight}, {"length", all_.length}};
     }
     void start(State state, double noise) const {
-        hyst_joint_start(&config_, checked(state), noise);
+        double *values = checked(state);
+        hyst_joint_start(&config_, values, noise);
+        hyst_search_start(&search_, values);
     }
     int step(State state, double u, double y) const {
-        return hyst_joint_step(&config_, checked(state), u, y);
+        return hyst_search_step(&search_, checked(state), u, y);
+    }
+    double correlation(State state) const {
+        return hyst_search_correlation(&search_, checked(state));
     }
     // The memory of the input, in terms of parameters that have been replaced.
     void remember(State state) const {
@@ -89,10 +113,7 @@ public:
     }
     // An input whose output was not measured.
     void follow(State state, double u) const {
-        double *values = checked(state);
-        hyst_joint_follow(&config_, &places_, values, u);
-        hyst_joint_set_memory(&config_, &places_, values, u);
-        values[HYST_JOINT_INPUT] = u;
+        hyst_search_follow(&search_, checked(state), u);
     }
     double command(State state, double y_ref) const {
         return hyst_joint_command(&config_, checked(state), y_ref);
@@ -108,7 +129,7 @@ public:
                 "theta and variance have the wrong shape");
         nb::gil_scoped_release unlocked;
         for (std::size_t k = 0; k < samples; ++k) {
-            const int end = hyst_joint_step(&config_, values, u.data()[k], y.data()[k]);
+            const int end = hyst_search_step(&search_, values, u.data()[k], y.data()[k]);
             error.data()[k] = end == HYST_JOINT_UPDATED ? values[HYST_JOINT_ERROR] : 0.0;
             if ((k + 1) % every == 0) store(values, k / every, theta, variance);
         }
@@ -116,7 +137,7 @@ public:
 
 private:
     double *checked(const State &state) const {
-        require(state.shape(0) == places_.length, "state has the wrong length");
+        require(state.shape(0) == all_.length, "state has the wrong length");
         return state.data();
     }
     void store(const double *state, std::size_t row, const Rows &theta, const Rows &variance) const {
@@ -129,6 +150,9 @@ private:
     Map front_, back_;
     hyst_joint config_;
     hyst_joint_layout places_;
+    std::vector<double> cell_radius_, cell_start_, cell_limit_;
+    hyst_search search_;
+    hyst_search_layout all_;
 };
 
 class Radius {
@@ -215,11 +239,13 @@ void bind_online_estimation(nb::module_ &module) {
              })
         .def("set_bounds", &Joint::set_bounds)
         .def("set_memory", &Joint::set_memory)
+        .def("set_search", &Joint::set_search)
         .def("places", &Joint::places)
         .def("start", &Joint::start, nb::arg("state").noconvert(), nb::arg("noise"))
         .def("step", &Joint::step, nb::arg("state").noconvert(), nb::arg("u"), nb::arg("y"))
         .def("follow", &Joint::follow, nb::arg("state").noconvert(), nb::arg("u"))
         .def("remember", &Joint::remember, nb::arg("state").noconvert())
+        .def("correlation", &Joint::correlation, nb::arg("state").noconvert())
         .def("command", &Joint::command, nb::arg("state").noconvert(), nb::arg("y_ref"))
         .def("run", &Joint::run, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
              nb::arg("y").noconvert(), nb::arg("every"), nb::arg("theta").noconvert(),

@@ -97,11 +97,11 @@ static void copy(hyst_real *to, const hyst_real *from, size_t count)
     }
 }
 
-/* The noise follows the errors, each counting for at most HYST_JOINT_OUTLIER times what is usual. */
-static hyst_real noise_after(const hyst_joint *joint, const hyst_real *state, hyst_real surprise)
+/* Each error counts for at most HYST_JOINT_OUTLIER times what is usual. */
+hyst_real hyst_joint_noise(const hyst_joint *joint, hyst_real noise, hyst_real seen,
+                           hyst_real surprise)
 {
-    const hyst_real noise = state[HYST_JOINT_NOISE];
-    const hyst_real memory = state[HYST_JOINT_UPDATES] + HYST_REAL(20.0);
+    const hyst_real memory = seen + HYST_REAL(20.0);
     const hyst_real change = hyst_clamp(-ONE, HYST_JOINT_OUTLIER - ONE, surprise - ONE);
     const hyst_real updated =
         noise + change * noise / (memory < joint->noise_memory ? memory : joint->noise_memory);
@@ -138,18 +138,21 @@ static int measure(const hyst_joint *joint, const hyst_joint_layout *at, hyst_re
     }
     hyst_joint_clamp(joint, theta);
     copy(state + at->theta, theta, count);
-    state[HYST_JOINT_NOISE] = noise_after(joint, state, surprise);
+    state[HYST_JOINT_NOISE] =
+        hyst_joint_noise(joint, state[HYST_JOINT_NOISE], state[HYST_JOINT_UPDATES], surprise);
     state[HYST_JOINT_VARIANCE] = a;
     state[HYST_JOINT_UPDATES] += ONE;
     return 1;
 }
 
-static void watch_range(const hyst_joint *joint, hyst_real *state, hyst_real v, int started)
+/* The range of v over the last samples that were used: an absurd one that is refused has no place in
+ * it. */
+static void watch_range(const hyst_joint *joint, hyst_real *state, hyst_real v)
 {
-    const int is_full = state[HYST_JOINT_BLOCK] >= joint->patience;
-    if (is_full || !started) {
-        state[HYST_JOINT_LOW_BEFORE] = started ? state[HYST_JOINT_LOW] : v;
-        state[HYST_JOINT_HIGH_BEFORE] = started ? state[HYST_JOINT_HIGH] : v;
+    const int is_first = !(state[HYST_JOINT_UPDATES] > ONE);
+    if (is_first || state[HYST_JOINT_BLOCK] >= joint->patience) {
+        state[HYST_JOINT_LOW_BEFORE] = is_first ? v : state[HYST_JOINT_LOW];
+        state[HYST_JOINT_HIGH_BEFORE] = is_first ? v : state[HYST_JOINT_HIGH];
         state[HYST_JOINT_LOW] = state[HYST_JOINT_HIGH] = v;
         state[HYST_JOINT_BLOCK] = ZERO;
     }
@@ -174,7 +177,6 @@ hyst_joint_end hyst_joint_step(const hyst_joint *joint, hyst_real *state, hyst_r
     hyst_joint_follow(joint, &at, state, u);
     hyst_ud_variances(at.m, state + at.u, state + at.d, variance);
     const hyst_real error = y - hyst_joint_predict(joint, &at, state, u, variance, &doubt);
-    watch_range(joint, state, v, started);
     state[HYST_JOINT_INPUT] = u;
     state[HYST_JOINT_STARTED] = ONE;
     if (moves) {
@@ -186,6 +188,7 @@ hyst_joint_end hyst_joint_step(const hyst_joint *joint, hyst_real *state, hyst_r
         state[HYST_JOINT_REFUSED] += ONE;
         return HYST_JOINT_WAS_REFUSED;
     }
+    watch_range(joint, state, v);
     state[HYST_JOINT_ERROR] = error;
     return HYST_JOINT_UPDATED;
 }

@@ -141,8 +141,8 @@ static hyst_real regress(const hyst_radius *radius, const hyst_radius_layout *at
     return error;
 }
 
-static void descend(const hyst_radius *radius, const hyst_radius_layout *at, hyst_real *state,
-                    const hyst_real *phi, hyst_real error, hyst_real *r)
+static void descend(const hyst_radius *radius, const hyst_radius_layout *at,
+                    const hyst_real *state, const hyst_real *phi, hyst_real error, hyst_real *r)
 {
     for (size_t i = 0; i < radius->plays; ++i) {
         r[i] = state[at->free + i] + radius->gain[i] * phi[i] * error;
@@ -174,7 +174,8 @@ int hyst_radius_step(const hyst_radius *radius, hyst_real *state, hyst_real u, h
     const size_t n = radius->plays;
     hyst_real *phi = state + at.scratch;
     hyst_real *r = phi + n;
-    if (!hyst_is_finite(u) || !hyst_is_finite(y)) {
+    /* Squares of what is taken in are summed over many samples, so absurd sizes are refused here. */
+    if (!hyst_is_finite(HYST_REAL(1e10) * (u * u + y * y))) {
         state[HYST_RADIUS_SKIPPED] += ONE;
         return 0;
     }

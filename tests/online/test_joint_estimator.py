@@ -236,9 +236,9 @@ def test_no_estimate_on_its_bounds_is_taken_for_tampered(tmp_path: Path) -> None
         ("not json", "cannot be read"),
         ('{"format": "x"}', "is no estimator"),
         ('{"format": "hyst estimator", "version": 9}', "version 9"),
-        ('{"format": "hyst estimator", "version": 1, "kind": "joint"}', "damaged"),
+        ('{"format": "hyst estimator", "version": 2, "kind": "joint"}', "damaged"),
         (
-            '{"format": "hyst estimator", "version": 1, "kind": "joint", "settings": "x", '
+            '{"format": "hyst estimator", "version": 2, "kind": "joint", "settings": "x", '
             '"state": []}',
             "damaged",
         ),

@@ -9,6 +9,7 @@
 #include "hyst/isotonic.h"
 #include "hyst/joint_estimator.h"
 #include "hyst/joint_parts.h"
+#include "hyst/joint_search.h"
 #include "hyst/linear_dynamics.h"
 #include "hyst/loading_curve.h"
 #include "hyst/masing.h"

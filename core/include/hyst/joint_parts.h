@@ -1,8 +1,9 @@
-/* Parts of joint_estimator.h that are tested by themselves. */
+/* Parts of joint_estimator.h and joint_search.h that are tested by themselves. */
 #ifndef HYST_JOINT_PARTS_H
 #define HYST_JOINT_PARTS_H
 
 #include "hyst/joint_estimator.h"
+#include "hyst/joint_search.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -34,6 +35,24 @@ void hyst_joint_project(const hyst_joint *joint, const hyst_joint_layout *at, hy
 
 /* Takes theta among the models that can be inverted, parameter by parameter. */
 void hyst_joint_clamp(const hyst_joint *joint, hyst_real *theta);
+
+/* The variance of the noise after one more sample, the squared error of which is `surprise` times
+ * its variance; seen: how many came before. */
+hyst_real hyst_joint_noise(const hyst_joint *joint, hyst_real noise, hyst_real seen,
+                           hyst_real surprise);
+
+/* The cells of a search: many plays of fixed radii, and their weights by recursive least squares. */
+void hyst_cells_start(const hyst_search *search, const hyst_search_layout *at, hyst_real *state);
+void hyst_cells_follow(const hyst_search *search, const hyst_search_layout *at, hyst_real *state,
+                       hyst_real v);
+void hyst_cells_measure(const hyst_search *search, const hyst_search_layout *at, hyst_real *state,
+                        hyst_real v, hyst_real y);
+/* Forgets what HYST_SEARCH_GROWTH says, never beyond the variances of the start. */
+void hyst_cells_forget(const hyst_search *search, const hyst_search_layout *at, hyst_real *state);
+/* Begins to merge, and makes one of those two neighbours whose union loses least. */
+void hyst_cells_begin_merging(const hyst_search *search, const hyst_search_layout *at,
+                              hyst_real *state);
+void hyst_cells_merge(const hyst_search_layout *at, hyst_real *state);
 
 #ifdef __cplusplus
 }

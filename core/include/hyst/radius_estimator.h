@@ -48,7 +48,7 @@ enum {
     HYST_RADIUS_SLOPE,   /* filtered slope */
     HYST_RADIUS_REGIME,  /* plays on their envelopes, or -1 if the slope fits no regime */
     HYST_RADIUS_UPDATES, /* samples used */
-    HYST_RADIUS_SKIPPED, /* samples that were not finite, or would not have led to finite radii */
+    HYST_RADIUS_SKIPPED, /* samples not finite, too large to be squared, or leading to an overflow */
     HYST_RADIUS_STARTED,
     HYST_RADIUS_INPUT,     /* last input */
     HYST_RADIUS_DIRECTION, /* s */

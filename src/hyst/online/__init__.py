@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from hyst.online.adaptive_inverse import AdaptiveInverse
 from hyst.online.excitation import Excitation, PlayExcitation
+from hyst.online.innovation import Innovation
 from hyst.online.joint_estimator import JointEstimator
-from hyst.online.loading import load_estimator
+from hyst.online.loading import load_described_estimator, load_estimator
 from hyst.online.radius_estimator import RadiusEstimator
 from hyst.online.trajectory import Trajectory
 
 __all__ = [
     "AdaptiveInverse",
     "Excitation",
+    "Innovation",
     "JointEstimator",
     "PlayExcitation",
     "RadiusEstimator",
     "Trajectory",
+    "load_described_estimator",
     "load_estimator",
 ]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -113,8 +115,94 @@ def one_each(values: ArrayLike, count: int, name: str) -> Array:
     return given
 
 
-def samples_of(record: Record, dt: float) -> tuple[Array, Array]:
-    """Give the signals of a record made at the estimator's sample time.
+def number(value: float, name: str) -> float:
+    """Read a number, finite or not.
+
+    Parameters
+    ----------
+    value
+        The number.
+    name
+        What it is called.
+
+    Raises
+    ------
+    InputError
+        If it is no number.
+
+    Examples
+    --------
+    >>> number(1, "y_ref")
+    1.0
+    """
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} is {value!r}; give a number") from None
+
+
+def sample(u: float, y: float) -> tuple[float, float]:
+    """Read one sample.
+
+    Parameters
+    ----------
+    u, y
+        Numbers, finite or not.
+
+    Raises
+    ------
+    InputError
+        If one is no number.
+
+    Examples
+    --------
+    >>> sample(1, 2.0)
+    (1.0, 2.0)
+    """
+    try:
+        return float(u), float(y)
+    except (TypeError, ValueError):
+        raise InputError(f"the sample is u = {u!r}, y = {y!r}; give two numbers") from None
+
+
+def names_of(held: Iterable[str], known: Iterable[str]) -> list[str]:
+    """Read names of parameters.
+
+    Parameters
+    ----------
+    held
+        Names; one name may come without a list.
+    known
+        Those there are.
+
+    Returns
+    -------
+    list of str
+        In alphabetical order.
+
+    Raises
+    ------
+    InputError
+        If it is no list of known names.
+
+    Examples
+    --------
+    >>> names_of("p0", ("p0", "p[1]"))
+    ['p0']
+    """
+    try:
+        names = [held] if isinstance(held, str) else list(held)
+    except TypeError:
+        raise InputError(f"held is {held!r}; give a list of names of parameters") from None
+    there = list(known)
+    for name in names:
+        if name not in there:
+            raise InputError(f"held names {name!r}; there are {', '.join(there)}")
+    return sorted(names)
+
+
+def samples_of(record: Record, dt: float, every: int) -> tuple[Array, Array, Array]:
+    """Give the signals of a record made at the estimator's sample time, and when rows are kept.
 
     Parameters
     ----------
@@ -122,27 +210,39 @@ def samples_of(record: Record, dt: float) -> tuple[Array, Array]:
         The record.
     dt
         Sample time of the estimator, seconds.
+    every
+        A row is kept after every so many samples.
+
+    Returns
+    -------
+    u, y : numpy.ndarray
+        Shape (N,).
+    time : numpy.ndarray
+        Shape (N // every,), seconds since the first sample.
 
     Raises
     ------
     InputError
-        If it has another sample time.
+        If it has another sample time, or ``every`` is not a whole number above 0.
 
     Examples
     --------
-    >>> samples_of(Record([1.0, 2.0], [0.0, 0.0], 0.1), 0.1)[0]
-    array([1., 2.])
+    >>> samples_of(Record([1.0, 2.0], [0.0, 0.0], 0.1), 0.1, 2)[2]
+    array([0.1])
     """
     if not math.isclose(record.dt, dt, rel_tol=1e-9):
         raise InputError(
             f"the record has dt = {record.dt:.9g} s but the estimator was made for {dt:.9g} s; "
             "make one for this sample time, or resample the record"
         )
-    return record.u, record.y
+    if isinstance(every, bool) or not isinstance(every, int) or every < 1:
+        raise InputError(f"every is {every!r}; give a whole number of samples, 1 or more")
+    rows = record.u.size // every
+    return record.u, record.y, np.asarray(dt * (np.arange(1, rows + 1) * every - 1.0))
 
 
 def patience_in_samples(patience: float | None, memory: float, dt: float) -> float:
-    """Give the patience of an estimator in samples: what was asked for, its memory, or 10,000.
+    """Give the patience in whole samples: what was asked for, the memory, or 10,000.
 
     Parameters
     ----------
@@ -160,8 +260,8 @@ def patience_in_samples(patience: float | None, memory: float, dt: float) -> flo
     10.0
     """
     if patience is not None:
-        return max(positive(patience, "patience", "seconds") / dt, 1.0)
-    return max(memory / dt, 1.0) if math.isfinite(memory) else 1e4
+        return max(float(round(positive(patience, "patience", "seconds") / dt)), 1.0)
+    return max(float(round(memory / dt)), 1.0) if math.isfinite(memory) else 1e4
 
 
 def given_or(value: float | None, otherwise: float) -> float:
@@ -169,6 +269,13 @@ def given_or(value: float | None, otherwise: float) -> float:
     return otherwise if value is None else value
 
 
-def finite_or_none(value: float) -> float | None:
-    """Give None for an infinity, which JSON does not have."""
-    return value if math.isfinite(value) else None
+def memory_or_none(memory: float) -> float | None:
+    """Read a memory in seconds; None stands for an infinite one, which JSON does not have."""
+    seconds = positive(memory, "memory", "seconds, or infinity", True)
+    return seconds if math.isfinite(seconds) else None
+
+
+def memory_from(settings: dict[str, Any]) -> float:
+    """Take the memory out of saved settings, in seconds."""
+    memory: float | None = settings.pop("memory")
+    return math.inf if memory is None else memory

@@ -10,33 +10,38 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst import _engine
-from hyst.errors import InputError
 from hyst.online.checks import (
-    finite_or_none,
-    given_or,
+    memory_from,
+    memory_or_none,
+    names_of,
+    number,
     patience_in_samples,
     positive,
+    sample,
     samples_of,
 )
 from hyst.online.excitation import Excitation, watch
+from hyst.online.innovation import Innovation
+from hyst.online.joint_core import GROUPS, new_core, prior_of, search_cells
 from hyst.online.parts import take_apart
-from hyst.online.prior import covariance_of, factors, start_covariance
+from hyst.online.prior import covariance_of, factors
+from hyst.online.saved import check_saved
 from hyst.online.saving import restored_state, save_estimator
-from hyst.online.start import check_saved, checked_start
+from hyst.online.start import checked_start, complete_scales
 from hyst.online.trajectory import Trajectory
-from hyst.operators import Operator
+from hyst.operators import ModelDescription, Operator
 from hyst.operators.registry import operator_from_dict
 from hyst.signals import Record
 from hyst.signals.vector import finite_vector
 
 Array = NDArray[np.float64]
 
-_GROUPS = ("p0", "p", "r", "offset", "front", "back")
-_LINEAR_TERMS = ("front[1]", "back[1]")
 # Places of the scalars in the state, as joint_estimator.h has them.
-_ERROR, _VARIANCE, _NOISE, _UPDATES, _SKIPPED, _REFUSED, _RANGES = 0, 1, 2, 5, 6, 7, 8
-_NOISE_SAMPLES = 150.0
+_ERROR, _VARIANCE, _NOISE, _UPDATES, _SKIPPED, _REFUSED = 0, 1, 2, 5, 6, 7
+# Ranges of the input; and what is known of the input altogether, which a restart keeps.
+_RANGES, _KEPT = slice(8, 12), (3, 13)
+# And from the place "scalars" on, as joint_search.h has them.
+_TRIALS, _REPLACEMENTS, _SQUARE = 5, 6, 15
 
 
 @final
@@ -80,6 +85,10 @@ class JointEstimator:
     patience
         Seconds after which a play that has not gone from one envelope to the other is frozen;
         ``memory`` if that is finite, else 10,000 samples.
+    search
+        Whether other estimates are tried beside this one, which may be in a false minimum: started
+        from the weights of many plays of fixed radii, and taken over once their errors are smaller
+        beyond doubt. Not done where p0, a weight or a radius is held, or a weight is negative.
 
     Raises
     ------
@@ -121,33 +130,32 @@ class JointEstimator:
         most_slope: float | None = None,
         most_radius: float | None = None,
         patience: float | None = None,
+        search: bool = True,
     ) -> None:
         self._parts = take_apart(model)
         self.dt = positive(dt, "dt", "the time between samples in seconds")
-        theta = self._parts.theta()
-        total = float(np.abs(theta[: 1 + self._parts.pi.p.size]).sum())
-        radius = float(self._parts.pi.r[-1]) if self._parts.pi.r.size else 1.0
-        loop = float(np.abs(self._parts.pi.p) @ self._parts.pi.r)
-        patience_samples = patience_in_samples(patience, memory, self.dt)
         self.settings: dict[str, Any] = {
             "model": model.to_dict(),
             "dt": self.dt,
-            "memory": finite_or_none(positive(memory, "memory", "seconds, or infinity", True)),
+            "memory": memory_or_none(memory),
             "radius_spread": positive(radius_spread, "radius_spread", "a share"),
             "weight_spread": positive(weight_spread, "weight_spread", "a share"),
-            "noise": positive((loop or total) if noise is None else noise, "noise", "a deviation"),
-            "held": sorted(held),
+            "noise": noise,
+            "held": names_of(held, (*self.names, *GROUPS)),
             "estimate_maps": bool(estimate_maps),
-            "least_slope": positive(given_or(least_slope, 1e-6 * total), "least_slope", "a slope"),
-            "most_slope": positive(given_or(most_slope, 1e3 * total), "most_slope", "a slope"),
-            "most_radius": positive(
-                given_or(most_radius, 1e3 * radius or 1.0), "most_radius", "a radius"
-            ),
-            "patience": patience_samples * self.dt,
+            "least_slope": least_slope,
+            "most_slope": most_slope,
+            "most_radius": most_radius,
+            "patience": patience_in_samples(patience, memory, self.dt) * self.dt,
+            "search": bool(search),
         }
+        theta = self._parts.theta()
+        complete_scales(self.settings, theta, self._parts.pi.p.size)
         self._theta_at_start = checked_start(self._parts, theta, self.settings)
-        prior = self._prior(self._theta_at_start)
-        self._core = self._new_core(np.diag(prior), patience_samples)
+        prior = prior_of(self._parts, self._theta_at_start, self.settings)
+        limit = np.diag(prior)
+        self._cells = search_cells(self._parts, self._theta_at_start, limit, self.settings)
+        self._core = new_core(self._parts, limit, self._cells, self.settings)
         self._at = self._core.places()
         self.state = np.zeros(self._at["length"])
         self._begin(prior)
@@ -206,9 +214,24 @@ class JointEstimator:
             theta[n + 1 : 2 * n + 1],
             age,
             self.settings["patience"] / self.dt,
-            float(
-                self.state[_RANGES : _RANGES + 4].max() - self.state[_RANGES : _RANGES + 4].min()
-            ),
+            float(np.ptp(self.state[_RANGES])),
+        )
+
+    @property
+    def innovation(self) -> Innovation:
+        """What the estimate leaves unexplained, and whether that can be noise."""
+        n, theta, scalars = (
+            self._parts.pi.p.size,
+            self.parameters,
+            self.state[self._at["scalars"] :],
+        )
+        gain = abs(self._parts.after.gain)
+        return Innovation(
+            rms=gain * math.sqrt(float(scalars[_SQUARE])),
+            correlation=self._core.correlation(self.state),
+            loop_height=2.0 * gain * float(np.abs(theta[1 : n + 1]) @ theta[n + 1 : 2 * n + 1]),
+            rivals=int(scalars[_TRIALS]),
+            replacements=int(scalars[_REPLACEMENTS]),
         )
 
     def update(self, u: float, y: float) -> bool:
@@ -224,9 +247,8 @@ class JointEstimator:
         bool
             Whether the sample was used.
         """
-        before, after = self._parts.before, self._parts.after
-        v = float(u) if before is None else before.gain * float(u) + before.offset
-        return self._core.step(self.state, v, float(y) / after.gain) == 0
+        u, y = sample(u, y)
+        return self._core.step(self.state, self._plays_input(u), y / self._parts.after.gain) == 0
 
     def run(self, record: Record, every: int = 1) -> Trajectory:
         """Take in a whole record.
@@ -247,17 +269,12 @@ class JointEstimator:
         InputError
             If the sample time is another one, or ``every`` is not a whole number above 0.
         """
-        u, y = samples_of(record, self.dt)
-        if not isinstance(every, int) or every < 1:
-            raise InputError(f"every is {every!r}; give a whole number of samples, 1 or more")
-        before, after = self._parts.before, self._parts.after
-        v = u if before is None else before.gain * u + before.offset
-        rows, m = u.size // every, self._at["m"]
-        theta, variance, error = np.empty((rows, m)), np.empty((rows, m)), np.empty(u.size)
-        self._core.run(self.state, v, y / after.gain, every, theta, variance, error)
-        time = np.asarray(self.dt * (np.arange(1, rows + 1) * every - 1.0))
+        u, y, time = samples_of(record, self.dt, every)
+        gain, shape = self._parts.after.gain, (time.size, self._at["m"])
+        theta, variance, error = np.empty(shape), np.empty(shape), np.empty(u.size)
+        self._core.run(self.state, self._plays_input(u), y / gain, every, theta, variance, error)
         errors = np.sqrt(np.maximum(variance, 0.0))
-        return Trajectory(time, self.names, theta, errors, error * after.gain)
+        return Trajectory(time, self.names, theta, errors, error * gain)
 
     def follow(self, u: ArrayLike) -> None:
         """Let the memory follow inputs whose outputs were not measured; learns nothing.
@@ -272,9 +289,7 @@ class JointEstimator:
         InputError
             If it is not a finite vector.
         """
-        before = self._parts.before
-        for u_k in finite_vector(u, "u").tolist():
-            v = u_k if before is None else before.gain * u_k + before.offset
+        for v in self._plays_input(finite_vector(u, "u")).tolist():
             self._core.follow(self.state, v)
 
     def command(self, y_ref: float) -> float:
@@ -290,7 +305,7 @@ class JointEstimator:
         float
         """
         before, after = self._parts.before, self._parts.after
-        v = self._core.command(self.state, float(y_ref) / after.gain)
+        v = self._core.command(self.state, number(y_ref, "y_ref") / after.gain)
         return v if before is None else (v - before.offset) / before.gain
 
     def restart(self, model: Operator | None = None) -> None:
@@ -304,27 +319,41 @@ class JointEstimator:
         at = self._at
         kept = self.state.copy()
         if model is not None:
-            self._theta_at_start = checked_start(
-                self._parts, take_apart(model).theta(), self.settings
-            )
-        self._begin(self._prior(self._theta_at_start))
-        for first, last in ((3, 13), (at["side"], at["psi"])):
+            theta = take_apart(model).theta()
+            self._theta_at_start = checked_start(self._parts, theta, self.settings)
+        self._begin(prior_of(self._parts, self._theta_at_start, self.settings))
+        cells = (at["cell_memory"], at["points"])
+        for first, last in (_KEPT, (at["side"], at["psi"]), cells):
             self.state[first:last] = kept[first:last]
         self._core.remember(self.state)
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def save(
+        self, path: str | os.PathLike[str], description: ModelDescription | None = None
+    ) -> None:
         """Write settings and state, every double exact; ``load_estimator`` continues from them.
 
         Parameters
         ----------
         path
             The file to create or replace.
+        description
+            What the model's numbers mean; ``load_described_estimator`` gives it back.
         """
-        state = self.state.copy()
-        scratch = state[self._at["psi"] :]
-        # A refused sample leaves NaN there; the next one overwrites it before reading.
-        scratch[~np.isfinite(scratch)] = 0.0
-        save_estimator(path, "joint", self.settings, state)
+        settings, state = self.saved()
+        save_estimator(path, "joint", settings, state, description)
+
+    def saved(self) -> tuple[dict[str, Any], Array]:
+        """Give settings and state, from which ``restore`` rebuilds the estimator."""
+        at, state = self._at, self.state.copy()
+        # A refused sample leaves NaN in scratch areas; the next one overwrites it before reading.
+        for first, last in (
+            (at["psi"], at["scalars"]),
+            (at["rival"] + at["psi"], at["cells"]),
+            (at["points"], at["length"]),
+        ):
+            scratch = state[first:last]
+            scratch[~np.isfinite(scratch)] = 0.0
+        return {**self.settings, "start": self._theta_at_start.tolist()}, state
 
     @classmethod
     def restore(cls, settings: dict[str, Any], state: list[float]) -> JointEstimator:
@@ -341,53 +370,27 @@ class JointEstimator:
             If the state does not fit the settings, or holds an inadmissible estimate.
         """
         given = dict(settings)
-        memory = given.pop("memory")
-        model = operator_from_dict(given.pop("model"))
-        estimator = cls(model, memory=math.inf if memory is None else memory, **given)
+        model, start = operator_from_dict(given.pop("model")), given.pop("start", None)
+        estimator = cls(model, memory=memory_from(given), **given)
+        if start is not None:
+            theta = finite_vector(start, "start")
+            estimator._theta_at_start = checked_start(estimator._parts, theta, estimator.settings)
         restored_state(estimator.state, state)
-        check_saved(estimator._parts, estimator.parameters, estimator.settings)
+        check_saved(estimator._parts, estimator.settings, estimator.state, estimator._at)
         return estimator
 
-    def _prior(self, theta: Array) -> Array:
-        settings = self.settings
-        spreads = settings["radius_spread"], settings["weight_spread"]
-        return start_covariance(
-            theta, self._parts.pi.p.size, *spreads, settings["noise"], ~self._is_held()
-        )
-
-    def _is_held(self) -> NDArray[np.bool_]:
-        wanted, names = self.settings["held"], self.names
-        unknown = [each for each in wanted if each not in names and each not in _GROUPS]
-        if unknown:
-            raise InputError(
-                f"held names {unknown[0]!r}; there are {', '.join(names)} and the groups "
-                f"{', '.join(_GROUPS)}"
-            )
-        maps = () if self.settings["estimate_maps"] else ("front", "back")
-        groups = {*wanted, *maps}
-        return np.array(
-            [
-                name in groups or name.partition("[")[0] in groups or name in _LINEAR_TERMS
-                for name in names
-            ]
-        )
-
-    def _new_core(self, limit: Array, patience: float) -> _engine.JointEstimation:
-        parts, settings = self._parts, self.settings
-        maps = [[] if m is None else m.thresholds.tolist() for m in (parts.front, parts.back)]
-        core = _engine.JointEstimation(parts.pi.p.size, limit.tolist(), maps[0], maps[1], 1e-6, 1e6)
-        core.set_bounds(settings["least_slope"], settings["most_slope"], settings["most_radius"])
-        memory = settings["memory"]
-        forgetting = 0.0 if memory is None else min(self.dt / memory, 0.5)
-        least_noise = (1e-10 * settings["noise"]) ** 2
-        core.set_memory(forgetting, _NOISE_SAMPLES, least_noise, 1e-14, patience)
-        return core
+    def _plays_input(self, u: Any) -> Any:
+        before = self._parts.before
+        return u if before is None else before.gain * u + before.offset
 
     def _begin(self, prior: Array) -> None:
         at = self._at
         self.state[at["theta"] : at["d"]] = self._theta_at_start
         self.state[at["z"] : at["side"]] = self._parts.pi.z0
         self._core.start(self.state, self.settings["noise"] ** 2)
+        if self._cells is not None:
+            memory = self._cells.memory_from(self._parts.pi.r, self._parts.pi.z0)
+            self.state[at["cell_memory"] : at["points"]] = memory
         d, u = factors(prior)
         self.state[at["d"] : at["u"]] = d
         self.state[at["u"] : at["z"]] = u

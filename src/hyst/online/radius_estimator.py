@@ -12,11 +12,19 @@ from numpy.typing import ArrayLike, NDArray
 from hyst import _engine
 from hyst.errors import InputError
 from hyst.models import PrandtlIshlinskii
-from hyst.online.checks import finite_or_none, not_negative, one_each, positive, samples_of
+from hyst.online.checks import (
+    memory_from,
+    memory_or_none,
+    not_negative,
+    one_each,
+    positive,
+    sample,
+    samples_of,
+)
 from hyst.online.excitation import Excitation, watch
 from hyst.online.prior import covariance_of
+from hyst.online.saved import check_saved_radii
 from hyst.online.saving import restored_state, save_estimator
-from hyst.online.start import check_saved_radii
 from hyst.online.trajectory import Trajectory
 from hyst.signals import Record
 
@@ -24,6 +32,7 @@ Array = NDArray[np.float64]
 
 # Places of the scalars in the state, as radius_estimator.h has them.
 _ERROR, _SLOPE, _REGIME, _UPDATES, _SKIPPED = 0, 1, 2, 3, 4
+_TOLERANCES = {"gradient": 1.0, "least-squares": 0.25}
 
 
 @final
@@ -63,7 +72,9 @@ class RadiusEstimator:
         By how much the input must go back for a reversal, input units.
     tolerance
         An update is left out while the slope is farther than this share of half the distance
-        between two slopes of the model from the nearest; 1 takes all.
+        between two slopes of the model from the nearest; 1 takes all. Left out: 1 for the gradient,
+        which is the paper's, and 0.25 for least squares, to which a sample that straddles two
+        regimes does more harm than good.
     most_radius
         Upper bound of the radii, input units.
     z0
@@ -104,7 +115,7 @@ class RadiusEstimator:
         filter_time: float = 0.0,
         dead_time: float = 0.0,
         dead_band: float = 0.0,
-        tolerance: float = 1.0,
+        tolerance: float | None = None,
         most_radius: float | None = None,
         z0: ArrayLike | None = None,
     ) -> None:
@@ -127,6 +138,8 @@ class RadiusEstimator:
                 f"most_radius is {bound:.6g}, but the start has r[{n}] = {largest:.6g}; raise the "
                 "bound or start below it"
             )
+        if tolerance is None:
+            tolerance = _TOLERANCES.get(method, 1.0)
         share = positive(tolerance, "tolerance", "a share of at most 1")
         if share > 1.0:
             raise InputError(f"tolerance is {tolerance!r}; give a share of at most 1")
@@ -137,7 +150,7 @@ class RadiusEstimator:
             "dt": self.dt,
             "p0": start.p0,
             "method": method,
-            "memory": finite_or_none(positive(memory, "memory", "seconds, or infinity", True)),
+            "memory": memory_or_none(memory),
             "filter_time": not_negative(filter_time, "filter_time"),
             "dead_time": not_negative(dead_time, "dead_time"),
             "dead_band": not_negative(dead_band, "dead_band"),
@@ -224,7 +237,7 @@ class RadiusEstimator:
             Whether the radii were updated: not at the first sample, not during dead time, not where
             the slope fits no regime.
         """
-        return self._core.step(self.state, float(u), float(y))
+        return self._core.step(self.state, *sample(u, y))
 
     def run(self, record: Record, every: int = 1) -> Trajectory:
         """Take in a whole record.
@@ -245,13 +258,10 @@ class RadiusEstimator:
         InputError
             If the sample time is another one, or ``every`` is not a whole number above 0.
         """
-        u, y = samples_of(record, self.dt)
-        if not isinstance(every, int) or every < 1:
-            raise InputError(f"every is {every!r}; give a whole number of samples, 1 or more")
-        rows, n = u.size // every, self._p.size
-        r, error = np.empty((rows, n)), np.empty(u.size)
+        u, y, time = samples_of(record, self.dt, every)
+        n = self._p.size
+        r, error = np.empty((time.size, n)), np.empty(u.size)
         self._core.run(self.state, u, y, every, r, error)
-        time = np.asarray(self.dt * (np.arange(1, rows + 1) * every - 1.0))
         names = tuple(f"r[{i}]" for i in range(1, n + 1))
         return Trajectory(time, names, r, np.full(r.shape, np.nan), error)
 
@@ -280,8 +290,7 @@ class RadiusEstimator:
             If the state does not fit the settings, or holds inadmissible radii.
         """
         given = dict(settings)
-        memory = given.pop("memory")
-        estimator = cls(memory=math.inf if memory is None else memory, **given)
+        estimator = cls(memory=memory_from(given), **given)
         restored_state(estimator.state, state)
         check_saved_radii(estimator.radii, estimator._settings["most_radius"])
         return estimator

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -11,15 +12,21 @@ from numpy.typing import NDArray
 
 from hyst.errors import InputError
 from hyst.files import replacing
+from hyst.operators import ModelDescription
 
 Array = NDArray[np.float64]
 
 FORMAT = "hyst estimator"
-VERSION = 1
+# 2: a search beside the joint estimate.
+VERSION = 2
 
 
 def save_estimator(
-    path: str | os.PathLike[str], kind: str, settings: dict[str, Any], state: Array
+    path: str | os.PathLike[str],
+    kind: str,
+    settings: dict[str, Any],
+    state: Array,
+    description: ModelDescription | None = None,
 ) -> None:
     """Write an estimator to a file of JSON, whole or not at all.
 
@@ -28,11 +35,13 @@ def save_estimator(
     path
         The file to create or replace.
     kind
-        ``joint`` or ``radius``.
+        ``joint``, ``radius`` or ``inverse``.
     settings
         Arguments of the constructor.
     state
         The state.
+    description
+        What the numbers of the model mean, if that is known.
 
     Raises
     ------
@@ -51,6 +60,8 @@ def save_estimator(
         "settings": settings,
         "state": state.tolist(),
     }
+    if description is not None:
+        content["description"] = asdict(description)
     with replacing(path) as temporary:
         temporary.write_text(
             json.dumps(content, indent=1, allow_nan=False) + "\n", encoding="utf-8"

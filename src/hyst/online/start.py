@@ -8,9 +8,48 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError, NotInvertibleError
+from hyst.online.checks import given_or, positive
 from hyst.online.parts import Parts
 
 Array = NDArray[np.float64]
+
+LEAST_MAP_SLOPE, MOST_MAP_SLOPE = 1e-6, 1e6
+
+
+def complete_scales(settings: dict[str, Any], theta: Array, plays: int) -> None:
+    """Fill in the noise and the bounds that were left out, and check those that were not.
+
+    Parameters
+    ----------
+    settings
+        Of the joint estimator, changed in place.
+    theta
+        The parameters to start from, shape (m,).
+    plays
+        n.
+
+    Raises
+    ------
+    InputError
+        If a number is out of range, or all weights are 0 and a bound was left out.
+    """
+    p, r = theta[: plays + 1], theta[plays + 1 : 2 * plays + 1]
+    total = float(np.abs(p).sum())
+    loop = float(np.abs(p[1:]) @ r)
+    left_out = [each for each in ("least_slope", "most_slope") if settings[each] is None]
+    if total == 0.0 and left_out:
+        raise InputError(
+            "every weight of the model is 0, which gives no scale; start from weights of "
+            "the right size, such as those of identify_weights_from_slopes"
+        )
+    radius = float(r[-1]) if plays else 1.0
+    for name, value, what in (
+        ("noise", loop or total, "a standard deviation"),
+        ("least_slope", 1e-6 * total, "a slope"),
+        ("most_slope", 1e3 * total, "a slope"),
+        ("most_radius", 1e3 * radius or 1.0, "a radius"),
+    ):
+        settings[name] = positive(given_or(settings[name], value), name, what)
 
 
 def checked_start(parts: Parts, theta: Array, settings: dict[str, Any]) -> Array:
@@ -67,75 +106,27 @@ def checked_start(parts: Parts, theta: Array, settings: dict[str, Any]) -> Array
         parts.assemble(start, parts.pi.z0).inverse()
     except NotInvertibleError as error:
         raise NotInvertibleError(f"the estimation cannot start: {error}") from None
+    name = falling_map(parts, start)
+    if name:
+        raise InputError(
+            f"the {name} map falls; the estimator keeps maps rising, so turn its weights round and "
+            "give the sign to a gain"
+        )
     return start
 
 
-def check_saved(parts: Parts, theta: Array, settings: dict[str, Any]) -> None:
-    """Refuse saved parameters that no joint estimator can have reached.
-
-    Parameters
-    ----------
-    parts
-        The model.
-    theta
-        The parameters, shape (m,).
-    settings
-        Of the estimator: the bounds.
-
-    Raises
-    ------
-    InputError
-        If radii are out of order or bounds, p0 or a sum of weights is not within the bounds of the
-        slope, or a map cannot be inverted.
-    """
-    n = parts.pi.p.size
-    check_saved_radii(theta[n + 1 : 2 * n + 1], settings["most_radius"])
-    least, most = settings["least_slope"], settings["most_slope"]
-    slopes, reach = np.cumsum(theta[: n + 1]), np.cumsum(np.abs(theta[: n + 1]))
-    # Sums of an estimate on its bounds are exact to rounding only; p0 is exact.
-    rounding = 4.0 * np.arange(n + 1) * np.finfo(np.float64).eps * reach
-    bad = np.flatnonzero((slopes < least - rounding) | (slopes > most + rounding))
-    if bad.size:
-        k = int(bad[0])
-        name = "p0" if k == 0 else f"the sum of weights up to p[{k}]"
-        raise InputError(
-            f"the saved estimate has {name} = {slopes[k]:.6g}, outside {least:.6g} to {most:.6g}, "
-            "which no estimator reaches; save the estimator again"
-        )
-    try:
-        parts.assemble(theta, parts.pi.z0).inverse()
-    except (InputError, NotInvertibleError) as error:
-        raise InputError(f"the saved estimate cannot be inverted: {error}") from None
-
-
-def check_saved_radii(r: Array, most_radius: float) -> None:
-    """Refuse saved radii that no estimator can have reached.
-
-    Parameters
-    ----------
-    r
-        Shape (n,), input units.
-    most_radius
-        Their bound, input units.
-
-    Raises
-    ------
-    InputError
-        If they do not ascend from 0 or more to ``most_radius`` or less.
-
-    Examples
-    --------
-    >>> check_saved_radii(np.array([0.0, 1.0, 1.0]), 2.0)
-    """
-    steps = np.diff(np.concatenate([[0.0], r, [most_radius]]))
-    if (steps < 0.0).any():
-        k = int(np.argmax(steps < 0.0))
-        below = "0" if k == 0 else f"r[{k}] = {r[k - 1]:.6g}"
-        text = (
-            f"r[{k + 1}] = {r[k]:.6g} below {below}"
-            if k < r.size
-            else f"{below} above most_radius = {most_radius:.6g}"
-        )
-        raise InputError(
-            f"the saved estimate has {text}, which no estimator reaches; save the estimator again"
-        )
+def falling_map(parts: Parts, theta: Array) -> str:
+    """Name the map that has a slope outside its bounds, or nothing if there is none."""
+    first = 2 * parts.pi.p.size + 2
+    for name, each in (("front", parts.front), ("back", parts.back)):
+        if each is None:
+            continue
+        weights = theta[first : first + each.weights.size]
+        first += weights.size
+        rising = weights[0] + np.cumsum(np.where(each.thresholds > 0.0, weights, 0.0))
+        falling = weights[0] + np.cumsum(np.where(each.thresholds < 0.0, weights, 0.0))
+        slopes = np.concatenate([rising, falling])
+        rounding = 1e-12 * float(np.abs(weights).sum())
+        if slopes.min() < LEAST_MAP_SLOPE - rounding or slopes.max() > MOST_MAP_SLOPE + rounding:
+            return name
+    return ""
