@@ -387,6 +387,6 @@ def conclusions() -> Table:
         f"{100.0 * found.recovered('0.7'):.1f} % of what the inexact inverse adds is recovered.",
         f"Without any inverse it is {found.without['none'].rms_error:.2f}. The loop is unstable "
         "for slopes above 1.4, the plays have up to 3.4:",
-        "the output rings as long as they are that steep, but no limit cycle as in Fig. 8 stays.",
+        "the drive breaks into bursts as long as they are that steep; the loop stays bounded.",
     )
     return Table("What follows", ("",), tuple((each,) for each in sentences))
