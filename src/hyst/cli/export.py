@@ -15,14 +15,15 @@ from hyst.cli.console import show_table
 from hyst.cli.relevant_options import refuse_irrelevant
 
 if TYPE_CHECKING:
-    from hyst.operators import ModelDescription, Operator
+    from hyst.export.block import Model
+    from hyst.operators import ModelDescription
 
 
 @dataclass(frozen=True)
 class _Order:
     """What is asked for: model and meaning, where to, and how."""
 
-    model: Operator
+    model: Model
     about: ModelDescription
     out: Path
     precision: str
@@ -165,9 +166,9 @@ def export(
     if target not in _TARGETS:
         raise hyst.InputError(f"--target is {target!r}; give {' or '.join(_TARGETS)}")
     refuse_irrelevant(context, _BY_TARGET, [target], "--target")
-    model, about = hyst.models.load_described(model_file)
+    model, about = hyst.export.load_exportable(model_file)
     if inverse or explicit:
-        model = hyst.export.explicit_inverse(model) if explicit else model.inverse()
+        model = hyst.export.inverse_of(model, explicit)
         about = hyst.export.reversed_description(about)
     done = _TARGETS[target](_Order(model, about, out, precision, name, force, fmi, binary))
     what = "inverse of " if inverse or explicit else ""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from hyst.export.firmware import CProject, c_project
 from hyst.export.fmu_archive import Fmu, fmu
-from hyst.export.inverses import explicit_inverse, reversed_description
+from hyst.export.inverses import explicit_inverse, inverse_of, reversed_description
+from hyst.export.loading import load_exportable
 from hyst.export.mex_folder import MexFolder, mex
 
 __all__ = [
@@ -14,6 +15,8 @@ __all__ = [
     "c_project",
     "explicit_inverse",
     "fmu",
+    "inverse_of",
+    "load_exportable",
     "mex",
     "reversed_description",
 ]

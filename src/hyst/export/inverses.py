@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from hyst.errors import InputError
+from hyst.export.block import Model
 from hyst.models import RateDependentPrandtlIshlinskii
 from hyst.operators import ModelDescription, Operator
 from hyst.operators.composition import leaves_of
@@ -47,6 +48,32 @@ def explicit_inverse(model: Operator) -> Operator:
             for leaf in reversed(leaves)
         )
     )
+
+
+def inverse_of(model: Model, explicit: bool = False) -> Operator:
+    """Give the inverse that is exported.
+
+    Parameters
+    ----------
+    model
+        An operator.
+    explicit
+        Whether the explicit inverse is wanted.
+
+    Returns
+    -------
+    Operator
+
+    Raises
+    ------
+    InputError
+        If it is no operator, or has no explicit inverse.
+    NotInvertibleError
+        If it has no inverse.
+    """
+    if not isinstance(model, Operator):
+        raise InputError(f"a {type(model).__name__} has no inverse; export it as it is")
+    return explicit_inverse(model) if explicit else model.inverse()
 
 
 def reversed_description(about: ModelDescription) -> ModelDescription:

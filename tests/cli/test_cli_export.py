@@ -1,0 +1,118 @@
+"""The verb export: folders and zips that compile, and refusals in one sentence."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+from command_runs import STAGE, Run, describe, snapshot
+
+from hyst import RateDependentPrandtlIshlinskii
+from hyst.control import TrackingController
+from hyst.export import c_project, explicit_inverse
+
+RATE_DEPENDENT = RateDependentPrandtlIshlinskii([0.5, 0.3], [0.1, 0.4], 0.01, 0.001, 1.0)
+
+
+@pytest.fixture
+def model_file(folder: Path) -> Path:
+    STAGE.save(folder / "model.json", describe(STAGE))
+    return folder / "model.json"
+
+
+def test_writes_what_python_writes(run: Run, folder: Path, model_file: Path) -> None:
+    ended = run("export", model_file, "--inverse", "-o", "out", "--name", "lens")
+    assert ended.code == 0
+    assert "inverse of model.json as c: out" in ended.out
+    assert "48 bytes" in ended.out or "bytes, 2 numbers of memory" in ended.out
+    assert "next: cd out && cmake" in ended.out
+    header = (folder / "out" / "lens.h").read_text()
+    # Input and output have changed places with their names and units.
+    assert "u: stroke in um" in header
+    assert "y: drive in V" in header
+    run("export", model_file, "-o", "forward", "--name", "lens")
+    about = describe(STAGE)
+    python = c_project(STAGE, folder / "python", name="lens", description=about)
+    assert snapshot(folder / "forward") == snapshot(python.path)
+
+
+def test_a_zip_unpacks_compiles_and_tests_itself(run: Run, folder: Path, model_file: Path) -> None:
+    """The command that the verb prints, as it prints it."""
+    ended = run("export", model_file, "--inverse", "--precision", "single", "-o", "stage.zip")
+    command = ended.out.split("next: ")[1].split(";")[0]
+    assert command.startswith("unzip ")
+    finished = subprocess.run(
+        command, shell=True, cwd=folder, capture_output=True, text=True, check=False
+    )
+    assert "100% tests passed" in finished.stdout, finished.stderr
+    assert "HYST_SINGLE" in (folder / "stage" / "CMakeLists.txt").read_text()
+
+
+def test_a_folder_that_exists_is_replaced_only_by_force(
+    run: Run, folder: Path, model_file: Path
+) -> None:
+    assert run("export", model_file, "-o", "out").code == 0
+    before = snapshot(folder / "out")
+    refused = run("export", model_file, "--inverse", "-o", "out")
+    assert refused.code == 2
+    assert "out exists" in refused.err
+    assert "--force" in refused.err
+    assert snapshot(folder / "out") == before
+    assert run("export", model_file, "--inverse", "-o", "out", "--force").code == 0
+    assert snapshot(folder / "out") != before
+
+
+def test_the_explicit_inverse_of_a_rate_dependent_model(run: Run, folder: Path) -> None:
+    RATE_DEPENDENT.save(folder / "model.json")
+    refused = run("export", "model.json", "--inverse", "-o", "out")
+    assert refused.code == 2
+    assert "beta is 0.01" in refused.err
+    assert run("export", "model.json", "--explicit", "-o", "out").code == 0
+    python = c_project(explicit_inverse(RATE_DEPENDENT), folder / "python")
+    for file in ("stage.c", "selftest_vectors.h"):
+        assert (folder / "out" / file).read_bytes() == (python.path / file).read_bytes()
+    STAGE.save(folder / "stage.json")
+    assert "no rate-dependent plays" in run("export", "stage.json", "--explicit", "-o", "x").err
+
+
+def test_a_tracking_controller_is_exported_from_its_file(run: Run, folder: Path) -> None:
+    model = TrackingController.from_continuous(([4.0, 8.0], [1.0, 0.0]), dt=1e-3)
+    model.save(folder / "loop.json")
+    ended = run("export", "loop.json", "-o", "out", "--name", "loop")
+    assert ended.code == 0
+    assert (
+        "loop_step(loop_state *state, hyst_real y_ref, hyst_real y)"
+        in (folder / "out" / "loop.h").read_text()
+    )
+    assert "no inverse" in run("export", "loop.json", "--inverse", "-o", "x").err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--name", "int"], "a word of C or C++"),
+        (["--name", "../x"], "C identifier"),
+        (["--precision", "half"], "double or single"),
+        (["--target", "rust"], "--target is 'rust'"),
+        (["-o", "nowhere/out"], "does not exist"),
+    ],
+)
+def test_bad_arguments_end_in_one_sentence(
+    arguments: list[str], said: str, run: Run, folder: Path, model_file: Path
+) -> None:
+    before = snapshot(folder)
+    ended = run("export", model_file, "-o", "out", *arguments)
+    assert ended.code == 2
+    assert said in ended.err
+    assert ended.err.count("\n") == 1
+    assert "Traceback" not in ended.err
+    assert snapshot(folder) == before
+
+
+def test_a_file_that_is_no_model_is_refused(run: Run, folder: Path) -> None:
+    (folder / "model.json").write_text("{}")
+    ended = run("export", "model.json", "-o", "out")
+    assert ended.code == 2
+    assert "not a model file" in ended.err
+    assert run("export", "missing.json", "-o", "out").code == 2
