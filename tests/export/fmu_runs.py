@@ -17,8 +17,9 @@ from fmpy.fmi3 import FMU3Slave
 
 import hyst
 from hyst import DeadZone, ModifiedPrandtlIshlinskii, Operator, PrandtlIshlinskii
+from hyst.control import TrackingController
 from hyst.export.recording import record_stages
-from reference.examples import EXAMPLES
+from reference.examples import EXAMPLES, PI
 
 VERSIONS = ("2.0", "3.0")
 WARNING, DISCARD, ERROR = 1, 2, 3
@@ -53,6 +54,11 @@ INVERSE_MPI = ModifiedPrandtlIshlinskii(
     PrandtlIshlinskii(np.linspace(0.3, 0.05, 10), np.linspace(0.1, 2.0, 10), p0=1.0),
     DeadZone([1.0, 0.2, 0.1, 0.3], [0.0, 0.5, 1.5, -0.4]),
 ).inverse()
+
+CONTROLLER = TrackingController(
+    [[0.9, 0.1], [0.0, 0.5]], [[1.0, -1.0], [0.2, 0.3]], [0.5, 0.1], [0.7, 0.0],
+    dt=1e-3, inverse=PI.inverse(),
+)  # fmt: skip
 
 
 def rough_signal(samples: int, seed: int = 0, size: float = 6.0) -> np.ndarray:

@@ -7,7 +7,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
-from fmu_runs import INVERSE_MPI, SHAPES, VERSIONS, FmuRun, has_compiler, rough_signal
+from fmu_runs import CONTROLLER, INVERSE_MPI, SHAPES, VERSIONS, FmuRun, has_compiler, rough_signal
 
 import hyst
 from hyst import Operator
@@ -15,6 +15,7 @@ from reference.examples import LAG, PI
 
 pytestmark = has_compiler
 N = 300
+STRICT = "cc -Wall -Wextra -Wconversion -Wpedantic -Werror"
 
 
 def stepped(operator: Operator, u: np.ndarray) -> np.ndarray:
@@ -25,7 +26,7 @@ def stepped(operator: Operator, u: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("name", SHAPES)
 def test_every_kind_of_model(name: str, tmp_path: Path) -> None:
     operator = SHAPES[name]
-    written = hyst.export.fmu(operator, tmp_path / "model.fmu")
+    written = hyst.export.fmu(operator, tmp_path / "model.fmu", compiler=STRICT)
     run = FmuRun(written, tmp_path).initialize()
     u = rough_signal(N, size=2.0)
     u[N // 2] = np.nan  # held, here as in Python
@@ -128,4 +129,21 @@ def test_initialization_looks_without_moving(version: str, tmp_path: Path) -> No
     assert run.get("y") == PI.stepper()(1.0)
     u = rough_signal(50)
     assert run.run(u, 1.0).tobytes() == stepped(PI, u).tobytes()
+    run.free()
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_controller_with_two_inputs(version: str, tmp_path: Path) -> None:
+    written = hyst.export.fmu(CONTROLLER, tmp_path / "model.fmu", version)
+    assert (written.inputs, written.output) == (("y_ref", "y"), "u")
+    run = FmuRun(written, tmp_path).initialize()
+    y_ref, y = rough_signal(N, 1), rough_signal(N, 2)
+    u = np.empty(N)
+    for k in range(N):
+        run.set(y_ref=y_ref[k], y=y[k])
+        run.step(k * 1e-3, 1e-3)
+        u[k] = run.get("u")
+    assert u.tobytes() == CONTROLLER.run(y_ref, y)[0].tobytes()
+    # The drive answers y_ref at once, but y only in the next sample: D is [0.7, 0].
+    assert [each.name for each in run.description.outputs[0].dependencies] == ["y_ref"]
     run.free()

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fmu_runs import INVERSE_MPI, SHAPES, rough_signal
+from fmu_runs import CONTROLLER, INVERSE_MPI, SHAPES, rough_signal
 
 import hyst
 from hyst.operators import ModelDescription
@@ -126,6 +126,26 @@ def test_a_step_that_is_not_finite_is_held(run: Callable[[str], str]) -> None:
     disp(object.fault())
     """)
     assert said.split() == ["1", "1", "0", "1", "1", "0"]
+
+
+@needs_octave
+def test_a_controller_with_two_inputs(tmp_path: Path) -> None:
+    folder = compiled(hyst.export.mex(CONTROLLER, tmp_path / "loop", "loop"))
+    y_ref, y = rough_signal(N, 1), rough_signal(N, 2)
+    y_ref.tofile(folder / "y_ref.bin")
+    y.tofile(folder / "y.bin")
+    program = """
+    u = loop(y_ref, y); object = loop();
+    assert(object.step(y_ref(1), y(1)), u(1));
+    [~, state] = loop(y_ref(1:9), y(1:9));
+    assert(loop(y_ref(10:end), y(10:end), state), u(10:end));
+    try, loop(y_ref), catch e, disp(e.message), end
+    try, loop(y_ref, y(2:end)), catch e, disp(e.message), end
+    """
+    said = octave(folder, READ.format("y_ref") + READ.format("y") + program + WRITE.format("u"))
+    assert (folder / "u.bin").read_bytes() == CONTROLLER.run(y_ref, y)[0].tobytes()
+    assert "a signal is missing" in said
+    assert "the signals differ in length" in said
 
 
 BAD = {

@@ -11,6 +11,7 @@ from typing import final
 
 import hyst
 from hyst.errors import InputError
+from hyst.export.block import Model
 from hyst.export.fmu_binary import binary_path, compiled
 from hyst.export.fmu_description import (
     FmiVersion,
@@ -22,7 +23,7 @@ from hyst.export.fmu_description import (
 from hyst.export.fmu_sources import FmuModel, fmu_model, fmu_sources
 from hyst.export.folder import FORMAT, MANIFEST, write_export
 from hyst.export.names import as_c_name
-from hyst.operators import ModelDescription, Operator
+from hyst.operators import ModelDescription
 
 _VERSIONS: tuple[FmiVersion, ...] = ("2.0", "3.0")
 _LICENSE = Path(__file__).resolve().parent / "templates" / "LICENSE"
@@ -66,7 +67,7 @@ class Fmu:
 
 
 def fmu(
-    model: Operator,
+    model: Model,
     path: str | os.PathLike[str],
     version: str = "2.0",
     name: str = "stage",
@@ -81,7 +82,7 @@ def fmu(
     Parameters
     ----------
     model
-        Any operator.
+        Any operator, or a tracking controller.
     path
         The file to create; it ends in ``.fmu``.
     version
@@ -179,7 +180,7 @@ def _describe(model: FmuModel, name: str, about: ModelDescription, token: str) -
         token=token,
         inputs=inputs,
         output=output,
-        is_direct=model.is_direct,
+        direct=model.direct,
         parameters=model.parameters,
         dt=block.dt,
     )
@@ -204,7 +205,7 @@ def _below_sources(files: dict[str, bytes]) -> dict[str, bytes]:
     }
 
 
-def _manifest(model: Operator, name: str, version: str, files: dict[str, bytes]) -> bytes:
+def _manifest(model: Model, name: str, version: str, files: dict[str, bytes]) -> bytes:
     block = fmu_model(model).block
     content = {
         "format": FORMAT,

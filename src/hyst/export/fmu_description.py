@@ -58,8 +58,8 @@ class FmuDescription:
         Hash of the content.
     inputs, output
         The signals.
-    is_direct
-        Whether the output depends on the inputs of the same sample.
+    direct
+        Of each input, whether the output depends on it in the same sample.
     parameters
         The constants that may be set.
     dt
@@ -71,7 +71,7 @@ class FmuDescription:
     token: str
     inputs: tuple[Signal, ...]
     output: Signal
-    is_direct: bool
+    direct: tuple[bool, ...]
     parameters: tuple[ParameterVariable, ...]
     dt: float | None
 
@@ -262,7 +262,7 @@ def _add_structure(root: Element, about: FmuDescription, is_2: bool) -> None:
     """Name the output's dependencies: by place among the variables in 2.0, by reference in 3.0."""
     structure = ElementTree.SubElement(root, "ModelStructure")
     output, _, first = _references(about)
-    inputs = range(1, output) if about.is_direct else ()
+    inputs = [place for place, is_direct in enumerate(about.direct, 1) if is_direct]
     if is_2:
         # Places and references of inputs and output agree; parameters follow the fault.
         settable: Sequence[int] = range(output + 2, output + 2 + len(about.parameters))

@@ -8,20 +8,20 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
 
-from hyst.export.block import Block, block_of
+from hyst.export.block import Block, Model, block_of
 from hyst.export.c_sources import header, places, source
 from hyst.export.core_sources import core_files
 from hyst.export.fmu_description import FmiVersion
 from hyst.export.fmu_variables import (
     ParameterVariable,
     constant_rules,
-    feeds_through,
+    direct_inputs,
     parameter_variables,
 )
 from hyst.export.numbers import table
 from hyst.export.stage_code import StageCode
 from hyst.export.templating import filled, indented
-from hyst.operators import ModelDescription, Operator
+from hyst.operators import ModelDescription
 
 _TEMPLATES = Path(__file__).resolve().parent / "templates" / "fmu"
 _COMMON = ("hyst_fmu.c", "hyst_fmu.h")
@@ -55,16 +55,16 @@ class FmuModel:
         return tuple(parameter_variables(self.code))
 
     @property
-    def is_direct(self) -> bool:
-        """Whether the output depends on the inputs of the same sample."""
-        return feeds_through(self.block.stages)
+    def direct(self) -> tuple[bool, ...]:
+        """Of each input, whether the output depends on it in the same sample."""
+        return direct_inputs(self.block.stages, self.block.inputs)
 
     def values(self) -> tuple[float, ...]:
         """Give all constants, one after the other."""
         return tuple(value for each in self.code.constants() for value in each.values)
 
 
-def fmu_model(model: Operator) -> FmuModel:
+def fmu_model(model: Model) -> FmuModel:
     """Give a model as an FMU runs it.
 
     Parameters
@@ -82,11 +82,13 @@ def fmu_model(model: Operator) -> FmuModel:
         If it cannot be exported.
     """
     block = block_of(model, "double")
-    if block.body != StageCode(block.stages, "double").calls():
-        # More than stages one after the other: all constants stay those of the file.
-        return FmuModel(block, StageCode((), "double", _HELD_BY))
+    fixed = StageCode(block.stages, "double").calls(block.signal)
     code = StageCode(block.stages, "double", _HELD_BY)
-    return FmuModel(replace(block, head="", body=code.calls()), code)
+    if fixed not in block.body:
+        # More than stages one after the other: all constants stay those of the file.
+        return FmuModel(block, replace(code, stages=()))
+    body = block.body.replace(fixed, code.calls(block.signal))
+    return FmuModel(replace(block, head="", body=body), code)
 
 
 def fmu_sources(

@@ -130,20 +130,24 @@ def parameter_variables(code: StageCode) -> Iterator[ParameterVariable]:
         place += len(constant.values)
 
 
-def feeds_through(stages: tuple[Stage, ...]) -> bool:
-    """Tell whether the output of a sample depends on the input of the same sample.
+def direct_inputs(stages: tuple[Stage, ...], inputs: tuple[str, ...]) -> tuple[bool, ...]:
+    """Tell of each input whether the output of a sample depends on it in the same sample.
 
     Parameters
     ----------
     stages
         In the order the signal passes them.
+    inputs
+        Their names.
 
     Returns
     -------
-    bool
-        False if a stage has a delay or no feedthrough.
+    tuple of bool
+        False where a stage has a delay or no feedthrough.
     """
-    return not any(_is_strictly_causal(stage) for stage in stages)
+    passes = not any(_is_strictly_causal(stage) for stage in stages)
+    first = stages[0].numbers if stages and stages[0].kind == "tracking_controller" else {}
+    return tuple(passes and first.get(f"d_{name}", 1.0) != 0.0 for name in inputs)
 
 
 def _rule(stage: Stage, constant: Constant) -> Rule:

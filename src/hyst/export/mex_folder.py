@@ -11,14 +11,14 @@ from typing import final
 
 import hyst
 from hyst.errors import InputError
-from hyst.export.block import Block, block_of
+from hyst.export.block import Block, Model, block_of
 from hyst.export.c_sources import header, places, source
 from hyst.export.core_sources import core_files
 from hyst.export.folder import FORMAT, MANIFEST, write_export
 from hyst.export.names import as_c_name, plain_text
 from hyst.export.one_file import in_one_file
 from hyst.export.templating import filled
-from hyst.operators import ModelDescription, Operator
+from hyst.operators import ModelDescription
 
 _LICENSE = Path(__file__).resolve().parent / "templates" / "LICENSE"
 
@@ -57,7 +57,7 @@ class MexFolder:
 
 
 def mex(
-    model: Operator,
+    model: Model,
     folder: str | os.PathLike[str],
     name: str = "stage",
     force: bool = False,
@@ -69,7 +69,7 @@ def mex(
     Parameters
     ----------
     model
-        Any operator.
+        Any operator, or a tracking controller.
     folder
         What to create: a folder, or a zip if it ends in ``.zip``.
     name
@@ -134,6 +134,7 @@ def mex_files(block: Block, name: str, about: ModelDescription) -> dict[str, byt
         "title": plain_text(block.kind),
         "signals": ", ".join(block.inputs),
         "inputs": str(len(block.inputs)),
+        "with_state": str(len(block.inputs) + 1),
         "quoted": ", ".join(f'"{each}"' for each in block.inputs),
         "elements": ", ".join(f"input[{i}][k]" for i in range(len(block.inputs))),
         "license": _commented(_LICENSE.read_text(encoding="utf-8"), " *"),
