@@ -77,6 +77,12 @@ def test_steps_that_rounding_has_touched_are_taken(start) -> None:
     assert run.log == []
 
 
+def test_a_clock_too_coarse_for_the_sample_time(start) -> None:
+    run = start("sampled").initialize(time=1e15)
+    with run.refusal(DISCARD):
+        run.step(1e15, 0.125)
+
+
 def test_any_step_will_do_without_a_sample_time(start) -> None:
     run = start("pi").initialize()
     u = rough_signal(20)

@@ -151,9 +151,11 @@ static uint32_t hyst_fmu_samples(const hyst_fmu_instance *fmu, double time, doub
                  time, step);
     } else {
 #ifdef HYST_FMU_DT
-        /* A part in a million, as for records, and the rounding of two points in time. */
+        /* A part in a million, as for records, and the rounding of two points in time; late in a
+         * run that is too long for its clock, no more than a hundredth. */
         const double ratio = step / HYST_FMU_DT;
-        const double tolerance = 1e-6 + 1e-15 * ((time < 0.0 ? -time : time) + step) / HYST_FMU_DT;
+        const double rounding = 1e-15 * ((time < 0.0 ? -time : time) + step) / HYST_FMU_DT;
+        const double tolerance = 1e-6 + (rounding < 0.01 ? rounding : 0.01);
         if (ratio < 4294967295.0) {
             const uint32_t samples = (uint32_t)(ratio + 0.5);
             const double rest = ratio - (double)samples;
