@@ -1,4 +1,4 @@
-"""What is exported, compiled and measured: every example of the contract tests, and two sizes."""
+"""What is exported, compiled and measured: every example of the contract tests, and more."""
 
 from __future__ import annotations
 
@@ -8,8 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from embedded.rounding_bound import single_precision_bound
+from embedded.rounding_bound import controller_bound, single_precision_bound
 from hyst import ModifiedPrandtlIshlinskii, Operator, PrandtlIshlinskii
+from hyst.control import TrackingController
+from hyst.export.block import block_of, stepper_of
+from hyst.export.numbers import Precision
 from hyst.operators import DeadZone
 from reference.examples import EXAMPLES
 
@@ -21,28 +24,30 @@ HEADLINE = "inverse mpi of 10 plays"
 
 @dataclass(frozen=True)
 class Case:
-    """A model and the record it is given, shape (N, inputs); some samples are not finite.
-
-    `step` is the C that takes inputs u[..] into `model`, `roots` the functions it needs, the step
-    last, and `fault` the bits that stand at the end.
-    """
+    """A model and the record it is given, shape (N, inputs); some samples are not finite."""
 
     name: str
-    model: Operator
+    model: Operator | TrackingController
     inputs: Array
-    step: str = "return stage_step(model, u[0]);"
-    roots: tuple[str, ...] = ("stage_init", "stage_step")
-    fault: int = 1
 
-    def expected(self) -> Array:
-        """Give the outputs in double precision, sample by sample."""
-        step = self.model.stepper()
-        return np.array([step(u) for u in self.inputs[:, 0].tolist()])
+    @property
+    def step(self) -> str:
+        """The C that takes inputs u[..] into `model` and returns its output."""
+        inputs = ", ".join(f"u[{i}]" for i in range(self.inputs.shape[1]))
+        return f"return stage_step(model, {inputs});"
+
+    def expected(self, precision: Precision) -> NDArray[np.floating]:
+        """Give Python's outputs in a precision, sample by sample."""
+        step = stepper_of(block_of(self.model, precision), precision)
+        y = np.array([step(*sample) for sample in self.inputs.tolist()])
+        return y.astype(np.float32) if precision == "single" else y
 
     def bound(self) -> float:
         """Give the bound of single precision's error."""
-        u = self.inputs[:, 0]
-        return single_precision_bound(self.model, u[np.isfinite(u)])
+        finite = self.inputs[np.isfinite(self.inputs).all(axis=1)]
+        if isinstance(self.model, TrackingController):
+            return controller_bound(self.model, finite)
+        return single_precision_bound(self.model, finite[:, 0])
 
 
 def drive(seed: int = 0) -> Array:
@@ -72,8 +77,20 @@ def thirty_one_plays() -> Operator:
     return PrandtlIshlinskii(np.full(31, 0.05), 0.2 * np.arange(1.0, 32.0), p0=0.3)
 
 
+def controller(inverse: Operator | None) -> TrackingController:
+    """Give a proportional-integral controller with an observer of slow disturbances."""
+    slow = 20.0  # rad/s
+    observer = ([[-slow]], [[-slow, slow]], [[1.0]], [[0.0, 0.0]])
+    return TrackingController.from_continuous(
+        ([4.0, 8.0], [1.0, 0.0]), dt=1e-3, observer=observer, inverse=inverse
+    )
+
+
 def cases() -> Iterator[Case]:
     """Give every case, the ones with a goal first."""
     models = {HEADLINE: ten_plays(), "pi of 31 plays": thirty_one_plays(), **EXAMPLES}
     for name, model in models.items():
         yield Case(name, model, drive().reshape(-1, 1))
+    both = np.column_stack([drive(), drive(1)[::-1]])
+    yield Case("controller and observer", controller(None), both)
+    yield Case("controller, observer and inverse mpi", controller(ten_plays()), both)

@@ -1,4 +1,4 @@
-"""Runs a program on the emulated processor, or on this machine, and reads its report."""
+"""Runs a program on the emulated processor and reads its report."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from embedded.building import FIRMWARE
 from embedded.target import (
     EMULATOR,
     ICOUNT_SHIFT,
@@ -36,24 +35,10 @@ def on_processor(program: Path, processor: Processor, precision: str) -> Report:
     command = [EMULATOR, "-M", processor.board, "-nographic", "-monitor", "none", "-serial", "none"]
     command += ["-semihosting-config", "enable=on,target=native"]
     command += ["-icount", f"shift={ICOUNT_SHIFT}", "-kernel", str(program)]
-    return read_report(run(command), precision, is_counted=True)
+    return read_report(run(command), precision)
 
 
-def on_this_machine(project: Path, work: Path, precision: str) -> Report:
-    """Compile a project for this machine and run it here."""
-    work.mkdir(parents=True, exist_ok=True)
-    program = work / "program"
-    sources = [project / "stage.c", *sorted((project / "core" / "src").glob("*.c"))]
-    sources += [FIRMWARE / "measure.c", FIRMWARE / "host.c"]
-    folders = (work, FIRMWARE, project / "core" / "include", project)
-    options = ["-std=c99", "-O2", "-ffp-contract=off"]
-    options += ["-DHYST_SINGLE"] if precision == "single" else []
-    includes = [f"-I{each}" for each in folders]
-    run(["gcc", *options, *includes, *map(str, sources), "-o", str(program)])
-    return read_report(run([str(program)]), precision, is_counted=False)
-
-
-def read_report(text: str, precision: str, *, is_counted: bool) -> Report:
+def read_report(text: str, precision: str) -> Report:
     """Read what the program wrote; a count that cannot be right is an error."""
     numbers: dict[str, list[int]] = {}
     for line in text.splitlines():
@@ -65,10 +50,9 @@ def read_report(text: str, precision: str, *, is_counted: bool) -> Report:
     if numbers["unsaved"] != [0]:
         raise RuntimeError("a state that was saved and loaded does not go on as before")
     ticks = np.array(numbers["ticks"])
-    if is_counted:
-        hundred = (numbers["hundred"][0] - numbers["return"][0]) / TICKS_PER_INSTRUCTION
-        if round(hundred) != 100:
-            raise RuntimeError(f"100 instructions are counted as {hundred:g}")
+    hundred = (numbers["hundred"][0] - numbers["return"][0]) / TICKS_PER_INSTRUCTION
+    if round(hundred) != 100:
+        raise RuntimeError(f"100 instructions are counted as {hundred:g}")
     counts = np.rint((ticks - numbers["nothing"][0]) / TICKS_PER_INSTRUCTION).astype(np.int64)
     y: NDArray[np.floating] = (
         np.array(numbers["y"], np.uint32).view(np.float32)

@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 
 from embedded.curve_rounding import curve_bound, memory_element_bound
 from hyst import _engine
+from hyst.control import TrackingController
 from hyst.operators import Operator
 
 Array = NDArray[np.float64]
@@ -85,12 +86,11 @@ class Passage:
             raise NoBoundError
 
 
-def single_precision_bound(model: Operator, u: Array) -> float:
-    """Bound the output error of a record of finite samples that single precision holds exactly."""
+def single_precision_bound(model: Operator, u: Array, error: float = 0.0) -> float:
+    """Bound the output error of a record of finite samples, given that of its input."""
     calls = Calls()
     model.append_to(calls)
     states = model.initial_state()
-    error = 0.0
     for name, constants in calls.made:
         chain = _engine.Chain()
         getattr(chain, f"add_{name}")(*constants)
@@ -100,6 +100,27 @@ def single_precision_bound(model: Operator, u: Array) -> float:
         error = BOUNDS[name](Passage(constants, u, state, y[0], error))
         u = y[0]
     return SECOND_ORDER * error
+
+
+def controller_bound(controller: TrackingController, inputs: Array) -> float:
+    """Bound the output error of a tracking controller for finite rows (y_ref, y) held exactly."""
+    A, B, c, D = controller.A, controller.B, controller.C, controller.D
+    x, most = controller.x0.copy(), np.abs(controller.x0)
+    v = np.empty(inputs.shape[0])
+    for k, row in enumerate(inputs):
+        v[k] = c @ x + D @ row
+        x = A @ x + B @ row
+        most = np.maximum(most, np.abs(x))
+    top = np.abs(inputs).max(axis=0)
+    terms = g(c.size + 4)
+    rounding = terms * (np.abs(A) @ most + np.abs(B) @ top) + g(1) * most
+    error = terms * float(np.abs(c) @ most + np.abs(D) @ top)
+    error = SECOND_ORDER * (error + carried(A, c, rounding, v.size))
+    return (
+        error
+        if controller.inverse is None
+        else single_precision_bound(controller.inverse, v, error)
+    )
 
 
 def _affine(passage: Passage) -> float:

@@ -120,7 +120,8 @@ def _agree(column: str, before: str, now: str, same_compiler: bool) -> bool:
         return True
     # Logarithms and powers behind the error's bound are NumPy's, whose last bits differ.
     if column in ("error", "bound"):
-        return "none" not in (before, now) and abs(float(now) / float(before) - 1.0) < 0.1
+        numbers = () if "none" in (before, now) else (float(before), float(now))
+        return bool(numbers) and max(numbers) <= 1.1 * min(numbers)
     if same_compiler or column in EXACT:
         return False
     room = max(OTHER_COMPILER * float(before), OTHER_COMPILER_LEAST)

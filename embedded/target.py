@@ -6,9 +6,11 @@ import shutil
 import subprocess
 from dataclasses import dataclass
 
+from hyst.export.numbers import Precision
+
 COMPILER = "arm-none-eabi-gcc"
 EMULATOR = "qemu-system-arm"
-NEEDED = (COMPILER, "arm-none-eabi-size", "arm-none-eabi-nm", EMULATOR, "gcc")
+NEEDED = (COMPILER, "arm-none-eabi-size", "arm-none-eabi-nm", EMULATOR)
 
 # An instruction takes 2^8 ns of the emulator's time and SysTick counts the boards' 25 MHz, so there
 # are 6.4 ticks to an instruction and a single one can be told; with shift=0 there would be 40
@@ -49,7 +51,7 @@ class Build:
     """One way to compile a model: for a processor, in a precision, at an optimisation level."""
 
     processor: Processor
-    precision: str
+    precision: Precision
     level: str
 
     @property

@@ -1,0 +1,102 @@
+"""cppcheck's MISRA C:2012 report on the core and on exports, against docs/misra.md."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import sys
+import tempfile
+from collections import defaultdict
+from collections.abc import Iterable
+from pathlib import Path
+
+from embedded.cases import cases
+from embedded.target import run
+from hyst.control import TrackingController
+from hyst.export import c_project
+from hyst.export.block import block_of
+from hyst.operators import Operator
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = ROOT / "docs" / "misra.md"
+
+FINDING = re.compile(r"^(?P<file>[^:]+):(?P<line>\d+):(?P<what>\S+)", re.MULTILINE)
+ROW = re.compile(
+    r"^\| (?P<rule>[\d.]+) \| \w+ \| (?P<core>\d+|any) \| (?P<export>\d+|any) \| .{20,} \|$",
+    re.MULTILINE,
+)
+
+Place = tuple[str, int]
+
+
+def report(sources: Iterable[Path], includes: Iterable[Path]) -> dict[str, set[Place]]:
+    """Give where cppcheck finds what, in both precisions, by its names, as misra-c2012-15.5."""
+    found: defaultdict[str, set[Place]] = defaultdict(set)
+    for precision in ("-UHYST_SINGLE", "-DHYST_SINGLE"):
+        command = ["cppcheck", "--addon=misra", "--std=c99", "--quiet", "--inline-suppr"]
+        command += ["--enable=warning,style,performance,portability", "--platform=unix32"]
+        command += ["--template={file}:{line}:{id}", precision, "-UHYST_POWER_HEADER"]
+        command += [*(f"-I{each}" for each in includes), *map(str, sources)]
+        for each in FINDING.finditer(run(command, seconds=300.0)):
+            found[each["what"]].add((each["file"], int(each["line"])))
+    return dict(found)
+
+
+def accepted(page: str, column: str) -> dict[str, float]:
+    """Give the rules that the core or an export may break, and in how many places at most."""
+    return {
+        f"misra-c2012-{row['rule']}": float("inf") if row[column] == "any" else float(row[column])
+        for row in ROW.finditer(page)
+    }
+
+
+def excess(found: dict[str, set[Place]], allowed: dict[str, float]) -> list[str]:
+    """Tell what is found and not accepted, with all places of its kind."""
+    problems = []
+    for what, places in sorted(found.items()):
+        most = allowed.get(what, 0.0)
+        if len(places) > most:
+            listed = ", ".join(f"{Path(file).name}:{line}" for file, line in sorted(places))
+            problems.append(f"{what}: {len(places)} places, {most:g} accepted: {listed}")
+    return problems
+
+
+def exported_sources(folder: Path) -> list[Path]:
+    """Export one model with stages of every kind, in single precision."""
+    kinds: dict[str, Operator | TrackingController] = {}
+    for case in cases():
+        for stage in block_of(case.model, "single").stages:
+            kinds.setdefault(f"{stage.kind} {stage.form}", case.model)
+    sources = []
+    for number, model in enumerate({id(each): each for each in kinds.values()}.values()):
+        project = folder / f"export_{number}"
+        c_project(model, project, "single")
+        sources.append(project / "stage.c")
+    return sources
+
+
+def main() -> int:
+    """Check the core, and exports with stages of every kind."""
+    if shutil.which("cppcheck") is None:
+        print("misra: skipped, for there is no cppcheck")
+        return 1 if os.environ.get("CI") else 0
+    core, include = ROOT / "core" / "src", ROOT / "core" / "include"
+    page = PAGE.read_text(encoding="utf-8")
+    problems = excess(report(sorted(core.glob("*.c")), [include]), accepted(page, "core"))
+    with tempfile.TemporaryDirectory() as folder:
+        for source in exported_sources(Path(folder)):
+            found = report([source], [include, source.parent])
+            own = {
+                what: {place for place in places if not place[0].startswith(str(include))}
+                for what, places in found.items()
+            }
+            problems += excess(own, accepted(page, "export"))
+    for problem in problems:
+        print(problem)
+    print(f"misra: {len(problems)} problems")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
