@@ -41,20 +41,57 @@ class Section:
         return key in self._data
 
     def whole(self, key: str) -> Any:
-        """Give an entry that must be there, as it is."""
+        """Give an entry that must be there, as it is.
+
+        Parameters
+        ----------
+        key
+            Name of the entry.
+
+        Raises
+        ------
+        InputError
+            If it is not there.
+        """
         if not self.has(key):
             raise hyst.InputError(f"{self._name} has no {key!r}; give it")
         return self._data[key]
 
     def section(self, key: str) -> Section:
-        """Give a table inside this one, which must be there."""
+        """Give a table inside this one, which must be there.
+
+        Parameters
+        ----------
+        key
+            Name of the entry.
+
+        Raises
+        ------
+        InputError
+            If it is not there, or is no table.
+        """
         where = f"[{key}]" if self._name == "the spec" else f"{self._name} {key}"
         if not self.has(key):
             raise hyst.InputError(f"{self._name} has no {where}; give it")
         return Section(self._data[key], where)
 
     def number(self, key: str, default: float | None = None, *, positive: bool = False) -> float:
-        """Give a finite number, perhaps one that must be above 0."""
+        """Give a finite number, perhaps one that must be above 0.
+
+        Parameters
+        ----------
+        key
+            Name of the entry.
+        default
+            What it is if it is left out.
+        positive
+            Whether it must be above 0.
+
+        Raises
+        ------
+        InputError
+            If it is missing or none.
+        """
         value = default if default is not None and not self.has(key) else self.whole(key)
         if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
             raise hyst.InputError(f"{self._name} {key} is {_said(value)}; give a finite number")
@@ -63,14 +100,42 @@ class Section:
         return float(value)
 
     def count(self, key: str, default: int | None = None) -> int:
-        """Give a whole number, 0 or more."""
+        """Give a whole number, 0 or more.
+
+        Parameters
+        ----------
+        key
+            Name of the entry.
+        default
+            What it is if it is left out.
+
+        Raises
+        ------
+        InputError
+            If it is missing or none.
+        """
         value = default if default is not None and not self.has(key) else self.whole(key)
         if isinstance(value, bool) or not isinstance(value, int) or value < 0:
             raise hyst.InputError(f"{self._name} {key} is {_said(value)}; give a whole number >= 0")
         return value
 
     def text(self, key: str, default: str | None = None, choices: Sequence[str] = ()) -> str:
-        """Give a text, one of some choices if there are any."""
+        """Give a text, one of some choices if there are any.
+
+        Parameters
+        ----------
+        key
+            Name of the entry.
+        default
+            What it is if it is left out.
+        choices
+            All that is allowed; anything if empty.
+
+        Raises
+        ------
+        InputError
+            If it is missing, no text or none of the choices.
+        """
         value = default if default is not None and not self.has(key) else self.whole(key)
         if not isinstance(value, str) or (choices and value not in choices):
             wanted = f"one of {', '.join(choices)}" if choices else "a text"
@@ -78,12 +143,36 @@ class Section:
         return value
 
     def numbers(self, key: str, default: Sequence[float] | None = None) -> Array:
-        """Give a list of finite numbers."""
+        """Give a list of finite numbers.
+
+        Parameters
+        ----------
+        key
+            Name of the entry.
+        default
+            What it is if it is left out.
+
+        Raises
+        ------
+        InputError
+            If it is missing or none.
+        """
         value = default if default is not None and not self.has(key) else self.whole(key)
         return _array(value, f"{self._name} {key}", 1, "a list of numbers")
 
     def pairs(self, key: str) -> Array:
-        """Give a list of pairs of finite numbers, shape (n, 2)."""
+        """Give a list of pairs of finite numbers, shape (n, 2).
+
+        Parameters
+        ----------
+        key
+            Name of the entry.
+
+        Raises
+        ------
+        InputError
+            If it is missing or none.
+        """
         array = _array(self.whole(key), f"{self._name} {key}", 2, "pairs as [[18.0, 1.0]]")
         if array.shape[0] == 0 or array.shape[1] != 2:
             raise hyst.InputError(
@@ -92,7 +181,18 @@ class Section:
         return array
 
     def matrix(self, key: str) -> Array:
-        """Give a matrix; a list of numbers is a row."""
+        """Give a matrix; a list of numbers is a row.
+
+        Parameters
+        ----------
+        key
+            Name of the entry.
+
+        Raises
+        ------
+        InputError
+            If it is missing or none.
+        """
         value = self.whole(key)
         flat = isinstance(value, list) and not any(isinstance(each, list) for each in value)
         dimensions = 1 if flat else 2
@@ -101,7 +201,13 @@ class Section:
         )
 
     def system(self) -> LinearSystem:
-        """Read this table as a linear system in continuous time."""
+        """Read this table as a linear system in continuous time.
+
+        Raises
+        ------
+        InputError
+            If it has entries of no form of a system, or of several.
+        """
         forms = {
             form: [key for key in form if self.has(key)]
             for form in (("num", "den"), ("zeros", "poles", "gain"), ("A", "B", "C", "D"))
