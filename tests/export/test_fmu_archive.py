@@ -18,7 +18,8 @@ from fmpy.validation import validate_fmu
 from fmu_runs import INVERSE_MPI, SHAPES, VERSIONS, FmuRun, has_compiler, rough_signal
 
 import hyst
-from hyst import Operator
+from hyst import LinearDynamics, Operator
+from hyst.models import StableInverse
 from hyst.operators import ModelDescription
 from reference.examples import LAG, PI
 
@@ -285,3 +286,12 @@ def test_without_a_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
 def test_a_compiler_that_fails(tmp_path: Path) -> None:
     with pytest.raises(hyst.HystError, match="could not compile"):
         hyst.export.fmu(PI, tmp_path / "a.fmu", compiler="false")
+
+
+def test_what_looks_ahead_has_no_fmu(tmp_path: Path) -> None:
+    dynamics = LinearDynamics.from_zeros_poles_gain([1.6], [0.5, 0.3], 1.0, dt=1e-3)
+    with pytest.raises(hyst.InputError, match="samples ahead"):
+        hyst.export.fmu(StableInverse.of(dynamics), tmp_path / "a.fmu")
+    with pytest.raises(hyst.NotInvertibleError):
+        hyst.export.fmu(dynamics.inverse(), tmp_path / "a.fmu")
+    assert list(tmp_path.iterdir()) == []
