@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hyst import Affine, DeadZone, InputError, Operator, Play, PrandtlIshlinskii
+from hyst.models import RateCurve
 from reference.examples import EXAMPLES, GPI, NESTED
 from reference.random_operators import every_operator, signals
 
@@ -60,10 +61,15 @@ def test_names_say_what_they_are() -> None:
     assert dict(zip(pi.names, pi.values.tolist(), strict=True)) == {
         "p0": 4.0, "p[1]": 5.0, "p[2]": 6.0, "r[1]": 1.0, "r[2]": 2.0
     }  # fmt: skip
-    assert GPI.parameters().names[:2] == ("dead_zone.weights[0]", "dead_zone.weights[1]")
+    assert GPI.parameters().names[:2] == ("dead_zone.weights[1]", "dead_zone.weights[2]")
     assert GPI.parameters().names[-1] == "prandtl_ishlinskii.r[3]"
+    assert DeadZone([1.0, 2.0], [0.0, 3.0]).parameters().names == (
+        "weights[1]", "weights[2]", "thresholds[1]", "thresholds[2]"
+    )  # fmt: skip
+    curve = RateCurve(0.5, (0.1,), [0.2, 0.3], [1.0, 2.0])
+    assert curve.parameters().names == ("beta", "powers[2]", "slopes[1]", "slopes[2]")
     numbered = NESTED.parameters().names
-    assert "dead_zone_1.weights[0]" in numbered
+    assert "dead_zone_1.weights[1]" in numbered
     assert "prandtl_ishlinskii_2.r[3]" in numbered
     assert "affine.gain" in numbered
 

@@ -105,7 +105,7 @@ def test_thresholds_that_drift_apart_still_invert_exactly() -> None:
 
 def test_thresholds_whose_distance_shrinks_are_refused() -> None:
     r = np.array([[1.0, 3.0], [2.0, 4.0], [2.0, 3.5]])
-    with pytest.raises(NotInvertibleError, match=r"0 and 1 shrinks from 2 to 1.5 at sample 2"):
+    with pytest.raises(NotInvertibleError, match=r"1 and 2 shrinks from 2 to 1.5 at sample 2"):
         GivenThresholds([1.0, 1.0], r, 0.5).inverse()
     # And rightly: the inverse that eqs. 14-15 would give does not undo the model there.
     u = reference_signal(10.0)

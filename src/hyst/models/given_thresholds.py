@@ -136,8 +136,8 @@ class GivenThresholds:
         if shrinks.size:
             k, i = (int(each) for each in shrinks[0])
             raise NotInvertibleError(
-                f"the distance of thresholds {i} and {i + 1} shrinks from {distances[k, i]:.6g} to "
-                f"{distances[k + 1, i]:.6g} at sample {k + 1}; the inverse is exact only while "
+                f"the distance of thresholds {i + 1} and {i + 2} shrinks from "
+                f"{distances[k, i]:.6g} to {distances[k + 1, i]:.6g} at sample {k + 1}; the inverse is exact only while "
                 "distances do not shrink"
             )
         with np.errstate(all="ignore"):

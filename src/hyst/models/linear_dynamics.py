@@ -284,7 +284,7 @@ class LinearDynamics(Operator):
         values = np.concatenate([self.A.ravel(), self.B, self.C, [self.D]])
         entries_of_a = [f"A[{i},{j}]" for i in range(1, n + 1) for j in range(1, n + 1)]
         free = np.full(values.size, np.inf)
-        names = (*entries_of_a, *numbered("B", n, 1), *numbered("C", n, 1), "D")
+        names = (*entries_of_a, *numbered("B", n), *numbered("C", n), "D")
         return Parameters(values, names, -free, free)
 
     def with_parameters(self, theta: Sequence[float] | Array) -> LinearDynamics:

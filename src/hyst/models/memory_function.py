@@ -125,12 +125,12 @@ class MemoryFunction:
         count = self.values.size
         tiny, free = np.nextafter(0.0, 1.0), np.full(count, np.inf)
         if self.form == "polynomial":
-            return Parameters(self.values, numbered("a", count), -free, free)
+            return Parameters(self.values, numbered("a", count, 0), -free, free)
         lower = np.full(count, tiny)
         if self.form == "power-law":
             lower[1] = 0.0
             return Parameters(self.values, ("c1", "c2", "c3"), lower, free)
-        return Parameters(self.values, numbered("values", count, 1), lower, free)
+        return Parameters(self.values, numbered("values", count), lower, free)
 
     def with_parameters(self, theta: Sequence[float] | Array) -> MemoryFunction:
         """Give the same form with other values.

@@ -163,7 +163,7 @@ class PiecewiseLinear(LoadingCurve):
         free = np.full(n + 1, np.inf)
         return Parameters(
             values=np.concatenate([[self.p0], self.p, self.r]),
-            names=("p0", *numbered("p", n, 1), *numbered("r", n, 1)),
+            names=("p0", *numbered("p", n), *numbered("r", n)),
             lower=np.concatenate([-free, np.zeros(n)]),
             upper=np.concatenate([free, free[1:]]),
         )

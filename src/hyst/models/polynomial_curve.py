@@ -95,7 +95,7 @@ class PolynomialCurve(LoadingCurve):
         """Give the coefficients."""
         n = self.coefficients.size
         free = np.full(n, np.inf)
-        return Parameters(self.coefficients, numbered("a", n, 1), -free, free)
+        return Parameters(self.coefficients, numbered("a", n), -free, free)
 
     def with_parameters(self, theta: Sequence[float] | Array) -> PolynomialCurve:
         """Give another polynomial of the same degree."""

@@ -257,7 +257,7 @@ class RateDependentPrandtlIshlinskii(Operator):
         rate = self.rate_curve.parameters()
         return Parameters(
             values=np.concatenate([[self.p0], self.p, self.r, rate.values]),
-            names=("p0", *numbered("p", n, 1), *numbered("r", n, 1), *rate.names),
+            names=("p0", *numbered("p", n), *numbered("r", n), *rate.names),
             lower=np.concatenate([-free, np.zeros(n), rate.lower]),
             upper=np.concatenate([free, free[1:], rate.upper]),
         )

@@ -54,8 +54,8 @@ def refuse_sample(array: Array, bad: int, name: str) -> NoReturn:
     where = index[0] if len(index) == 1 else index
     if np.isfinite(array[index]):
         raise InputError(
-            f"at {name}[{where}] = {array[index]:.6g} the operator overflows; choose units in which "
-            "signals and constants are of moderate size"
+            f"at {name}[{where}] = {array[index]:.6g} the operator overflows; choose units in "
+            "which signals and constants are of moderate size"
         )
     raise InputError(f"{name}[{where}] is {array[index]}; every number must be finite")
 

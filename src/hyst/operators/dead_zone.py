@@ -136,8 +136,8 @@ class DeadZone(Operator):
         """Give the exact inverse, again a dead-zone map.
 
         Thresholds are the images of the thresholds, weights
-        ``-w_i / ((w_0 + .. + w_i)(w_0 + .. + w_{i-1}))`` counted from the linear part outwards on
-        either side.
+        ``-w_i / (c_i c_{i-1})``, c the slopes of the pieces between them, on either side from the
+        linear part c_0 outwards, ``c_i = c_{i-1} + w_i``.
 
         Raises
         ------

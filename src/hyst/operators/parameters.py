@@ -33,8 +33,8 @@ class Parameters:
         return len(self.names)
 
 
-def numbered(name: str, count: int, first: int = 0) -> tuple[str, ...]:
-    """Names ``name[first]`` ... of ``count`` entries of one array.
+def numbered(name: str, count: int, first: int = 1) -> tuple[str, ...]:
+    """Give names ``name[first]`` ... for ``count`` entries, counted from 1 as in the formulas.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def numbered(name: str, count: int, first: int = 0) -> tuple[str, ...]:
     count
         How many entries it has.
     first
-        Index of the first one.
+        Number of the first one; other than 1 only where it is a power.
 
     Returns
     -------
