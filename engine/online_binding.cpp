@@ -103,6 +103,23 @@ public:
     int step(State state, double u, double y) const {
         return hyst_search_step(&search_, checked(state), u, y);
     }
+    // All that the core is told, by the names of its structures; exports write it down.
+    std::map<std::string, std::vector<double>> constants() const {
+        return {{"plays", {static_cast<double>(config_.plays)}},
+                {"front", front_.threshold},
+                {"front_slopes", {front_.least_slope, front_.most_slope}},
+                {"back", back_.threshold},
+                {"back_slopes", {back_.least_slope, back_.most_slope}},
+                {"bounds", {config_.least_slope, config_.most_slope, config_.most_radius}},
+                {"memory",
+                 {config_.forgetting, config_.noise_memory, config_.least_noise,
+                  config_.least_share, config_.patience}},
+                {"limit", limit_},
+                {"cell_radius", cell_radius_},
+                {"cell_start", cell_start_},
+                {"cell_limit", cell_limit_},
+                {"cell_noise", {search_.noise}}};
+    }
     double correlation(State state) const {
         return hyst_search_correlation(&search_, checked(state));
     }
@@ -245,6 +262,7 @@ void bind_online_estimation(nb::module_ &module) {
         .def("step", &Joint::step, nb::arg("state").noconvert(), nb::arg("u"), nb::arg("y"))
         .def("follow", &Joint::follow, nb::arg("state").noconvert(), nb::arg("u"))
         .def("remember", &Joint::remember, nb::arg("state").noconvert())
+        .def("constants", &Joint::constants)
         .def("correlation", &Joint::correlation, nb::arg("state").noconvert())
         .def("command", &Joint::command, nb::arg("state").noconvert(), nb::arg("y_ref"))
         .def("run", &Joint::run, nb::arg("state").noconvert(), nb::arg("u").noconvert(),

@@ -192,6 +192,63 @@ private:
     bool has_two_inputs_ = false;
 };
 
+// A joint estimator; the constants are those that the engine's estimator in double tells.
+class Estimator {
+public:
+    Estimator(const Tables &constants, const std::vector<double> &start)
+        : state_(start.begin(), start.end()) {
+        const auto of = [&](const std::string &name) { return keep(constants.at(name)); };
+        const float *bounds = of("bounds"), *memory = of("memory");
+        joint_ = {static_cast<std::size_t>(constants.at("plays").at(0)),
+                  map(constants, "front"),
+                  map(constants, "back"),
+                  bounds[0],
+                  bounds[1],
+                  bounds[2],
+                  memory[0],
+                  memory[1],
+                  memory[2],
+                  memory[3],
+                  memory[4],
+                  of("limit")};
+        search_ = {&joint_,          constants.at("cell_radius").size(),
+                   of("cell_radius"), of("cell_start"),
+                   of("cell_limit"),  *of("cell_noise")};
+        if (hyst_search_places(&search_).length != state_.size()) {
+            throw std::invalid_argument("start has the wrong length");
+        }
+    }
+    Estimator(const Estimator &) = delete;
+    Estimator &operator=(const Estimator &) = delete;
+
+    int step(double u, double y) {
+        return hyst_search_step(&search_, state_.data(), static_cast<float>(u),
+                                static_cast<float>(y));
+    }
+    double command(double y_ref) const {
+        return hyst_joint_command(&joint_, state_.data(), static_cast<float>(y_ref));
+    }
+    std::vector<double> state() const { return {state_.begin(), state_.end()}; }
+
+private:
+    const float *keep(const std::vector<double> &values) {
+        home_.emplace_back(values.begin(), values.end());
+        return home_.back().data();
+    }
+    hyst_joint_map map(const Tables &constants, const std::string &name) {
+        const std::vector<double> &threshold = constants.at(name);
+        const float *slopes = keep(constants.at(name + "_slopes"));
+        std::size_t positive = 0;
+        for (double each : threshold) positive += each > 0.0;
+        return {threshold.size(), positive, keep(threshold), slopes[0], slopes[1]};
+    }
+
+    std::deque<std::vector<float>> home_;
+    std::vector<float> state_;
+    hyst_joint joint_{};
+    hyst_search search_{};
+};
+
 }  // namespace
 
 NB_MODULE(_single, module) {
@@ -203,4 +260,10 @@ NB_MODULE(_single, module) {
         .def_prop_ro("state", &Stepper::state)
         .def_prop_ro("fault", &Stepper::fault)
         .def("clear_fault", &Stepper::clear_fault);
+    nb::class_<Estimator>(module, "Estimator")
+        .def(nb::init<const Tables &, const std::vector<double> &>(), nb::arg("constants"),
+             nb::arg("start"))
+        .def("step", &Estimator::step, nb::arg("u"), nb::arg("y"))
+        .def("command", &Estimator::command, nb::arg("y_ref"))
+        .def_prop_ro("state", &Estimator::state);
 }
