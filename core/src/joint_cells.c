@@ -10,7 +10,7 @@
 
 void hyst_cells_start(const hyst_search *search, const hyst_search_layout *at, hyst_real *state)
 {
-    const size_t count = search->cells + 2;
+    const size_t count = search->cells + 2u;
     for (size_t j = 0; j < count; ++j) {
         state[at->weight + j] = search->start[j];
         state[at->d + j] = search->limit[j];
@@ -37,13 +37,13 @@ static hyst_real predict(const hyst_search *search, const hyst_search_layout *at
                          const hyst_real *state, hyst_real v, hyst_real *psi)
 {
     const hyst_joint *joint = search->joint;
-    const size_t last = search->cells + 1;
+    const size_t last = search->cells + 1u;
     const hyst_real *weight = state + at->weight;
-    const hyst_real *back = state + at->joint.theta + 2 + 2 * joint->plays + joint->front.count;
+    const hyst_real *back = state + at->joint.theta + 2u + 2u * joint->plays + joint->front.count;
     hyst_real w = weight[0] * v;
     psi[0] = v;
     for (size_t i = 1; i < last; ++i) {
-        psi[i] = state[at->z + i - 1];
+        psi[i] = state[at->z + i - 1u];
         w += weight[i] * psi[i];
     }
     const hyst_real slope = hyst_joint_map_slope(&joint->back, back, w);
@@ -57,7 +57,7 @@ static hyst_real predict(const hyst_search *search, const hyst_search_layout *at
 void hyst_cells_measure(const hyst_search *search, const hyst_search_layout *at, hyst_real *state,
                         hyst_real v, hyst_real y)
 {
-    const size_t count = search->cells + 2;
+    const size_t count = search->cells + 2u;
     hyst_real *psi = state + at->scratch;
     hyst_real *gain = psi + count;
     hyst_real *scalar = state + at->scalars;
@@ -87,7 +87,7 @@ void hyst_cells_measure(const hyst_search *search, const hyst_search_layout *at,
 
 void hyst_cells_forget(const hyst_search *search, const hyst_search_layout *at, hyst_real *state)
 {
-    const size_t count = search->cells + 2;
+    const size_t count = search->cells + 2u;
     const hyst_real growth = state[at->scalars + HYST_SEARCH_GROWTH];
     hyst_real *variance = state + at->scratch;
     hyst_real *scale = variance + count;
@@ -107,9 +107,9 @@ static void set_cost(const hyst_search_layout *at, hyst_real *state, size_t k)
 {
     const hyst_real *weight = state + at->point_weight;
     const hyst_real *radius = state + at->point_radius;
-    const hyst_real gap = radius[k + 1] - radius[k];
-    const hyst_real lighter = weight[k] < weight[k + 1] ? weight[k] : weight[k + 1];
-    const hyst_real heavier = weight[k] < weight[k + 1] ? weight[k + 1] : weight[k];
+    const hyst_real gap = radius[k + 1u] - radius[k];
+    const hyst_real lighter = weight[k] < weight[k + 1u] ? weight[k] : weight[k + 1u];
+    const hyst_real heavier = weight[k] < weight[k + 1u] ? weight[k + 1u] : weight[k];
     state[at->point_cost + k] = lighter / (ONE + lighter / heavier) * gap * gap;
 }
 
@@ -117,7 +117,7 @@ void hyst_cells_begin_merging(const hyst_search *search, const hyst_search_layou
                               hyst_real *state)
 {
     const size_t cells = search->cells;
-    const hyst_real *weight = state + at->weight + 1;
+    const hyst_real *weight = state + at->weight + 1u;
     hyst_real total = ZERO;
     for (size_t i = 0; i < cells; ++i) {
         total += weight[i] > ZERO ? weight[i] : -weight[i];
@@ -128,7 +128,7 @@ void hyst_cells_begin_merging(const hyst_search *search, const hyst_search_layou
         state[at->point_weight + i] = weight[i] > least ? weight[i] : least;
         state[at->point_radius + i] = search->radius[i];
     }
-    for (size_t i = 0; i + 1 < cells; ++i) {
+    for (size_t i = 0; i + 1u < cells; ++i) {
         set_cost(at, state, i);
     }
     state[at->scalars + HYST_SEARCH_COUNT] = (hyst_real)cells;
@@ -141,22 +141,22 @@ void hyst_cells_merge(const hyst_search_layout *at, hyst_real *state)
     hyst_real *radius = state + at->point_radius;
     hyst_real *cost = state + at->point_cost;
     size_t k = 0;
-    for (size_t i = 1; i + 1 < count; ++i) {
+    for (size_t i = 1u; i + 1u < count; ++i) {
         k = cost[i] < cost[k] ? i : k;
     }
-    const hyst_real sum = weight[k] + weight[k + 1];
-    radius[k] += weight[k + 1] / sum * (radius[k + 1] - radius[k]);
+    const hyst_real sum = weight[k] + weight[k + 1u];
+    radius[k] += weight[k + 1u] / sum * (radius[k + 1u] - radius[k]);
     weight[k] = sum;
-    for (size_t i = k + 1; i + 1 < count; ++i) {
-        weight[i] = weight[i + 1];
-        radius[i] = radius[i + 1];
-        cost[i] = cost[i + 1];
+    for (size_t i = k + 1u; i + 1u < count; ++i) {
+        weight[i] = weight[i + 1u];
+        radius[i] = radius[i + 1u];
+        cost[i] = cost[i + 1u];
     }
-    if (k > 0) {
-        set_cost(at, state, k - 1);
+    if (k > 0u) {
+        set_cost(at, state, k - 1u);
     }
-    if (k + 2 < count) {
+    if (k + 2u < count) {
         set_cost(at, state, k);
     }
-    state[at->scalars + HYST_SEARCH_COUNT] = (hyst_real)(count - 1);
+    state[at->scalars + HYST_SEARCH_COUNT] = (hyst_real)(count - 1u);
 }

@@ -11,7 +11,7 @@
 
 size_t hyst_joint_parameters(const hyst_joint *joint)
 {
-    return 2 + 2 * joint->plays + joint->front.count + joint->back.count;
+    return 2u + 2u * joint->plays + joint->front.count + joint->back.count;
 }
 
 hyst_joint_layout hyst_joint_places(const hyst_joint *joint)
@@ -29,7 +29,7 @@ hyst_joint_layout hyst_joint_places(const hyst_joint *joint)
     at.far = at.home + n;
     at.psi = at.far + n;
     at.scratch = at.psi + at.m;
-    at.length = at.scratch + 4 * at.m + hyst_ud_length(at.m);
+    at.length = at.scratch + 4u * at.m + hyst_ud_length(at.m);
     return at;
 }
 
@@ -113,7 +113,7 @@ static int measure(const hyst_joint *joint, const hyst_joint_layout *at, hyst_re
                    hyst_real error, hyst_real doubt)
 {
     const size_t m = at->m;
-    const size_t count = 2 * m + hyst_ud_length(m);
+    const size_t count = 2u * m + hyst_ud_length(m);
     hyst_real *theta = state + at->scratch;
     hyst_real *d = theta + m; /* and the packed U after it, as in the state */
     hyst_real *gain = d + m + hyst_ud_length(m);
@@ -164,7 +164,7 @@ static void watch_range(const hyst_joint *joint, hyst_real *state, hyst_real v)
 hyst_joint_end hyst_joint_step(const hyst_joint *joint, hyst_real *state, hyst_real u, hyst_real y)
 {
     const hyst_joint_layout at = hyst_joint_places(joint);
-    const hyst_real *front = state + at.theta + 2 + 2 * joint->plays;
+    const hyst_real *front = state + at.theta + 2u + 2u * joint->plays;
     const hyst_real v = hyst_is_finite(u) ? hyst_joint_map_at(&joint->front, front, u) : u;
     if (!hyst_is_finite(v) || !hyst_is_finite(y)) {
         state[HYST_JOINT_SKIPPED] += ONE;

@@ -29,19 +29,19 @@ hyst_search_layout hyst_search_places(const hyst_search *search)
 {
     hyst_search_layout at;
     const size_t cells = search->cells;
-    const size_t count = cells > 0 ? cells + 2 : 0;
+    const size_t count = cells > 0u ? cells + 2u : 0u;
     at.joint = hyst_joint_places(search->joint);
     at.scalars = at.joint.length;
     at.rival = at.scalars + HYST_SEARCH_SCALARS;
-    at.weight = at.rival + (cells > 0 ? at.joint.length : 0);
+    at.weight = at.rival + (cells > 0u ? at.joint.length : 0u);
     at.d = at.weight + count;
     at.u = at.d + count;
-    at.z = at.u + (count > 0 ? hyst_ud_length(count) : 0);
+    at.z = at.u + (count > 0u ? hyst_ud_length(count) : 0u);
     at.point_weight = at.z + cells;
     at.point_radius = at.point_weight + cells;
     at.point_cost = at.point_radius + cells;
     at.scratch = at.point_cost + cells;
-    at.length = at.scratch + 3 * count;
+    at.length = at.scratch + 3u * count;
     return at;
 }
 
@@ -55,7 +55,7 @@ static hyst_real front_at(const hyst_search *search, const hyst_search_layout *a
                           const hyst_real *state, hyst_real u)
 {
     const hyst_joint *joint = search->joint;
-    return hyst_joint_map_at(&joint->front, state + at->joint.theta + 2 + 2 * joint->plays, u);
+    return hyst_joint_map_at(&joint->front, state + at->joint.theta + 2u + 2u * joint->plays, u);
 }
 
 void hyst_search_start(const hyst_search *search, hyst_real *state)
@@ -64,7 +64,7 @@ void hyst_search_start(const hyst_search *search, hyst_real *state)
     for (size_t i = at.scalars; i < at.length; ++i) {
         state[i] = ZERO;
     }
-    if (search->cells > 0) {
+    if (search->cells > 0u) {
         hyst_cells_start(search, &at, state);
     }
 }
@@ -112,34 +112,34 @@ static void believe(const hyst_search *search, const hyst_search_layout *at, hys
     const hyst_joint *joint = search->joint;
     const size_t n = joint->plays;
     const hyst_real *theta = rival + at->joint.theta;
-    const hyst_real *r = theta + 1 + n;
+    const hyst_real *r = theta + 1u + n;
     hyst_real *d = rival + at->joint.d;
     hyst_real *variance = rival + at->joint.scratch;
     hyst_real total = theta[0] > ZERO ? theta[0] : -theta[0];
     hyst_real sum = ZERO;
     for (size_t i = 0; i < n; ++i) {
-        total += theta[1 + i] > ZERO ? theta[1 + i] : -theta[1 + i];
+        total += theta[1u + i] > ZERO ? theta[1u + i] : -theta[1u + i];
     }
     for (size_t i = 0; i <= n; ++i) {
         const hyst_real size = theta[i] > ZERO ? theta[i] : -theta[i];
-        const hyst_real share = i > 0 ? HYST_REAL(0.01) : HYST_REAL(0.1);
+        const hyst_real share = i > 0u ? HYST_REAL(0.01) : HYST_REAL(0.1);
         const hyst_real deviation = RIVAL_WEIGHT_SPREAD * (size + share * total);
         d[i] = deviation * deviation;
     }
-    d[2 * n + 1] = noise < joint->limit[2 * n + 1] ? noise : joint->limit[2 * n + 1];
+    d[2u * n + 1u] = noise < joint->limit[2u * n + 1u] ? noise : joint->limit[2u * n + 1u];
     for (size_t i = 0; i < n; ++i) {
-        const hyst_real least = HYST_REAL(0.05) * r[n - 1] / (hyst_real)n;
-        const hyst_real gap = r[i] - (i > 0 ? r[i - 1] : ZERO);
+        const hyst_real least = HYST_REAL(0.05) * r[n - 1u] / (hyst_real)n;
+        const hyst_real gap = r[i] - (i > 0u ? r[i - 1u] : ZERO);
         const hyst_real deviation = RIVAL_SPREAD * (gap > least ? gap : least);
         sum += deviation * deviation;
         variance[i] = sum;
     }
     for (size_t j = 0; j < n; ++j) {
-        hyst_real *column = rival + at->joint.u + hyst_ud_length(1 + n + j);
-        const hyst_real above = j + 1 < n ? variance[j + 1] : variance[j];
-        d[1 + n + j] = j + 1 < n ? variance[j] * ((above - variance[j]) / above) : above;
+        hyst_real *column = rival + at->joint.u + hyst_ud_length(1u + n + j);
+        const hyst_real above = j + 1u < n ? variance[j + 1u] : variance[j];
+        d[1u + n + j] = j + 1u < n ? variance[j] * ((above - variance[j]) / above) : above;
         for (size_t i = 0; i < j && variance[j] > ZERO; ++i) {
-            column[1 + n + i] = variance[i] / variance[j];
+            column[1u + n + i] = variance[i] / variance[j];
         }
     }
 }
@@ -151,16 +151,16 @@ static hyst_real cell_memory(const hyst_search *search, const hyst_search_layout
     const hyst_real *radius = search->radius;
     const hyst_real *z = state + at->z;
     size_t k = 0;
-    while (k + 2 < search->cells && radius[k + 1] < r) {
+    while (k + 2u < search->cells && radius[k + 1u] < r) {
         ++k;
     }
-    if (k + 1 >= search->cells) {
+    if (k + 1u >= search->cells) {
         *gap = radius[0];
         return z[0];
     }
-    *gap = radius[k + 1] - radius[k];
+    *gap = radius[k + 1u] - radius[k];
     const hyst_real share = hyst_clamp(ZERO, ONE, (r - radius[k]) / *gap);
-    return z[k] + share * (z[k + 1] - z[k]);
+    return z[k] + share * (z[k + 1u] - z[k]);
 }
 
 static void remember(const hyst_search *search, const hyst_search_layout *at, hyst_real *state,
@@ -173,7 +173,7 @@ static void remember(const hyst_search *search, const hyst_search_layout *at, hy
     const hyst_real far = front_at(search, at, state, scalar[HYST_SEARCH_FAR]);
     hyst_real *rival = state + at->rival;
     for (size_t i = 0; i < n; ++i) {
-        const hyst_real r = rival[at->joint.theta + 1 + n + i];
+        const hyst_real r = rival[at->joint.theta + 1u + n + i];
         const hyst_real inside = home + side * r;
         const hyst_real outside = far - side * r;
         const hyst_real z = (outside - inside) * side > ZERO ? outside : inside;
@@ -206,14 +206,14 @@ static void put_on_trial(const hyst_search *search, const hyst_search_layout *at
         theta[j] = state[at->joint.theta + j];
     }
     theta[0] = state[at->weight];
-    theta[1 + 2 * n] = state[at->weight + search->cells + 1];
+    theta[1u + 2u * n] = state[at->weight + search->cells + 1u];
     for (size_t i = 0; i < n; ++i) {
-        theta[1 + i] = state[at->point_weight + i];
-        theta[1 + n + i] = state[at->point_radius + i];
+        theta[1u + i] = state[at->point_weight + i];
+        theta[1u + n + i] = state[at->point_radius + i];
     }
     hyst_joint_clamp(joint, theta);
     for (size_t i = 0; i < n; ++i) {
-        rival[at->joint.z + i] = cell_memory(search, at, state, theta[1 + n + i], &gap);
+        rival[at->joint.z + i] = cell_memory(search, at, state, theta[1u + n + i], &gap);
     }
     hyst_joint_start(joint, rival, noise);
     believe(search, at, rival, noise);
@@ -305,7 +305,7 @@ hyst_joint_end hyst_search_step(const hyst_search *search, hyst_real *state, hys
     if (end == HYST_JOINT_UPDATED) {
         watch_errors(search, &at, state);
     }
-    if (search->cells == 0 || end == HYST_JOINT_WAS_SKIPPED) {
+    if (search->cells == 0u || end == HYST_JOINT_WAS_SKIPPED) {
         return end;
     }
     const hyst_real v = front_at(search, &at, state, u);
@@ -344,7 +344,7 @@ void hyst_search_follow(const hyst_search *search, hyst_real *state, hyst_real u
     hyst_joint_follow(search->joint, &at.joint, state, u);
     hyst_joint_set_memory(search->joint, &at.joint, state, u);
     state[HYST_JOINT_INPUT] = u;
-    if (search->cells > 0) {
+    if (search->cells > 0u) {
         hyst_cells_follow(search, &at, state, front_at(search, &at, state, u));
         if (state[at.scalars + HYST_SEARCH_STAGE] >= ON_TRIAL) {
             enter(state + at.scalars, GATHERING);
