@@ -31,7 +31,7 @@ hyst_real hyst_joint_map_slope(const hyst_joint_map *map, const hyst_real *weigh
     hyst_real slope = map->count == 0u ? ONE : ZERO;
     for (size_t j = 0; j < map->count; ++j) {
         const hyst_real rho = map->threshold[j];
-        const int acts = rho > ZERO ? x > rho : rho < ZERO ? x < rho : 1;
+        const int acts = rho > ZERO ? x > rho : !(rho < ZERO) || x < rho;
         slope += acts ? weight[j] : ZERO;
     }
     return slope;
