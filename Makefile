@@ -60,7 +60,7 @@ embedded-table: $(installed_dev) ## the same, and write the table of docs/embedd
 	PYTHONPATH=tests $(bin)/python -m embedded --jobs $(JOBS) --write
 
 misra: $(installed_dev) ## cppcheck's MISRA C:2012 report on the core against docs/misra.md
-	$(bin)/python -m embedded.misra
+	PYTHONPATH=tests $(bin)/python -m embedded.misra
 
 lint: $(installed_dev) ## style, formatting and import direction
 	$(bin)/ruff check
