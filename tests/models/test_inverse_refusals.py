@@ -20,6 +20,7 @@ from hyst import (
     PrandtlIshlinskii,
     Stop,
 )
+from hyst.models import SecondOrderSections
 from reference.random_operators import RANDOM, numbers
 
 BANK = PrandtlIshlinskii([0.5], [1.0], p0=0.5)
@@ -224,3 +225,13 @@ def test_memory_is_admissible_up_to_its_edge(excess: float, r: float) -> None:
     assert bank(2.0 - r).traits().invertible
     assert not bank(2.0 + r + excess).traits().invertible
     assert not bank(2.0 - r - excess).traits().invertible
+
+
+def test_a_section_whose_numerator_hardly_answers_at_once_is_refused_quietly() -> None:
+    # Zeros at +-0.5i times 2e156: far outside; their quotients overflow.
+    tiny = SecondOrderSections([2.2e-313, 0.0, 0.25, 0.0, 0.0], 0.01)
+    with pytest.raises(NotInvertibleError, match="section 1 has the numerator"):
+        tiny.inverse()
+    # (z - 0.5)(z + 0.9) and (z - 0.5)(z + 1.1).
+    assert SecondOrderSections([1.0, 0.4, -0.45, 0.0, 0.0], 0.01).is_invertible()
+    assert not SecondOrderSections([1.0, 0.6, -0.55, 0.0, 0.0], 0.01).is_invertible()

@@ -137,8 +137,8 @@ class GivenThresholds:
             k, i = (int(each) for each in shrinks[0])
             raise NotInvertibleError(
                 f"the distance of thresholds {i + 1} and {i + 2} shrinks from "
-                f"{distances[k, i]:.6g} to {distances[k + 1, i]:.6g} at sample {k + 1}; the inverse is exact only while "
-                "distances do not shrink"
+                f"{distances[k, i]:.6g} to {distances[k + 1, i]:.6g} at sample {k + 1}; "
+                "the inverse is exact only while distances do not shrink"
             )
         with np.errstate(all="ignore"):
             thresholds = np.cumsum(slopes[:-1] * np.diff(self.r, axis=1, prepend=0.0), axis=1)
