@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -197,3 +199,24 @@ def test_a_model_file_other_forms_of_systems_and_a_reduced_inverse(run: Run, fol
     assert told["inverse"] == "1 plays"
     assert told["inverse_error_bound"]["bound"] >= told["inverse_error_bound"]["reached"] > 0.0
     assert "1 plays" in ended.out
+
+
+def test_without_the_solvers_the_descent_alone_designs(
+    run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    verb = importlib.import_module("hyst.cli.observer")
+    asked: list[str] = []
+    design = verb.design_disturbance_observer
+
+    def without_solvers(*given: Any, method: str, **options: Any) -> Any:
+        asked.append(method)
+        if "slpmm" in method:
+            raise hyst.MissingExtraError("cvxpy is not installed; pip install hyst[control]")
+        return design(*given, method=method, **options)
+
+    monkeypatch.setattr(verb, "design_disturbance_observer", without_solvers)
+    (folder / "spec.toml").write_text(QUICK, encoding="utf-8")
+    ended = run("observer", "spec.toml", "-o", "out")
+    assert ended.code == 0
+    assert asked == ["slpmm+descent", "descent"]
+    assert "note: cvxpy is not installed" in ended.err

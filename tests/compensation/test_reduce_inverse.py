@@ -43,7 +43,9 @@ def least_of_all_grids(exact: hyst.PrandtlIshlinskii, plays: int, y_max: float) 
 @pytest.mark.parametrize("seed", range(4))
 def test_no_other_choice_is_better(plays: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
+    # Every other case falls throughout, as with positive weights: it takes another way.
     levels = rng.uniform(0.2, 3.0, 6)
+    levels = -np.sort(-levels) if seed % 2 else levels
     starts = 0.125 * np.sort(rng.choice(np.arange(1, 24), 5, replace=False))
     exact = hyst.PrandtlIshlinskii(np.diff(levels), starts, float(levels[0]))
     model = exact.inverse()
@@ -121,3 +123,18 @@ def test_other_refusals() -> None:
         reduce_inverse(PAPER, 1, float("nan"))
     with pytest.raises(NotInvertibleError, match="p0 is -1"):
         reduce_inverse(hyst.PrandtlIshlinskii([2.0], [1.0], -1.0), 1, 1.0)
+
+
+def test_it_is_the_same_either_way() -> None:
+    """The order of levels that rise throughout is known; a dip of no width forces a search."""
+    levels = np.array([3.0, 2.0, 1.5, 1.1, 0.4])
+    exact = hyst.PrandtlIshlinskii(np.diff(levels), [0.3, 0.9, 1.4, 2.0], 3.0)
+    dip = hyst.PrandtlIshlinskii(
+        [-1.0, -0.5, -0.9, 0.5, -0.7], [0.3, 0.9, 1.4, np.nextafter(1.4, 2.0), 2.0], 3.0
+    )
+    for plays in range(4):
+        plain = reduce_inverse(exact.inverse(), plays, 2.5)
+        dipped = reduce_inverse(dip.inverse(), plays, 2.5)
+        assert error_bound(exact.inverse(), plain, 2.5).bound == pytest.approx(
+            error_bound(dip.inverse(), dipped, 2.5).bound, abs=1e-12
+        )

@@ -10,7 +10,7 @@ import numpy as np
 import typer
 
 import hyst
-from hyst.cli.console import at_work, progress_bar, show_files, show_table
+from hyst.cli.console import at_work, note, progress_bar, show_files, show_table
 from hyst.cli.observer_spec import ObserverSpec, read_spec
 from hyst.cli.observer_template import TEMPLATE
 from hyst.compensation import ErrorBound, error_bound, slope_range
@@ -82,6 +82,14 @@ def observer(spec_file: SpecFile = None, folder: Folder = None, template: Templa
 
 
 def _design(spec: ObserverSpec) -> DisturbanceObserver:
+    try:
+        return _designed(spec, "slpmm+descent")
+    except hyst.MissingExtraError as missing:
+        note(f"{missing}; the descent alone is used, which needs neither")
+        return _designed(spec, "descent")
+
+
+def _designed(spec: ObserverSpec, method: str) -> DisturbanceObserver:
     with at_work("designing the observer") as say:
         return design_disturbance_observer(
             spec.plant,
@@ -90,6 +98,7 @@ def _design(spec: ObserverSpec) -> DisturbanceObserver:
             spec.Wp,
             spec.internal_model,
             perturbed_plant=spec.true_plant,
+            method=method,
             progress=lambda stage, step, best: say(f"{stage} {step}, best norm {best:.4f}"),
         )
 
