@@ -50,10 +50,11 @@ def one_of_each(operators: dict[str, Operator]) -> dict[str, Operator]:
 
 SHAPES = one_of_each(EXAMPLES)
 
-INVERSE_MPI = ModifiedPrandtlIshlinskii(
+MPI = ModifiedPrandtlIshlinskii(
     PrandtlIshlinskii(np.linspace(0.3, 0.05, 10), np.linspace(0.1, 2.0, 10), p0=1.0),
     DeadZone([1.0, 0.2, 0.1, 0.3], [0.0, 0.5, 1.5, -0.4]),
-).inverse()
+)
+INVERSE_MPI = MPI.inverse()
 
 CONTROLLER = TrackingController(
     [[0.9, 0.1], [0.0, 0.5]], [[1.0, -1.0], [0.2, 0.3]], [0.5, 0.1], [0.7, 0.0],

@@ -7,7 +7,16 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
-from fmu_runs import CONTROLLER, INVERSE_MPI, SHAPES, VERSIONS, FmuRun, has_compiler, rough_signal
+from fmu_runs import (
+    CONTROLLER,
+    INVERSE_MPI,
+    MPI,
+    SHAPES,
+    VERSIONS,
+    FmuRun,
+    has_compiler,
+    rough_signal,
+)
 
 import hyst
 from hyst import Operator
@@ -147,3 +156,22 @@ def test_a_controller_with_two_inputs(version: str, tmp_path: Path) -> None:
     # The drive answers y_ref at once, but y only in the next sample: D is [0.7, 0].
     assert [each.name for each in run.description.outputs[0].dependencies] == ["y_ref"]
     run.free()
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_an_inverse_before_its_model(version: str, tmp_path: Path) -> None:
+    """Two FMUs connected: what is wanted comes out."""
+    inverse = FmuRun(hyst.export.fmu(INVERSE_MPI, tmp_path / "i.fmu", version), tmp_path)
+    model = FmuRun(hyst.export.fmu(MPI, tmp_path / "m.fmu", version), tmp_path)
+    inverse.initialize()
+    model.initialize()
+    y_ref = rough_signal(N)
+    for k, wanted in enumerate(y_ref.tolist()):
+        inverse.set(u=wanted)
+        inverse.step(float(k), 1.0)
+        model.set(u=inverse.get("y"))
+        model.step(float(k), 1.0)
+        # Some forty operations of rounding 1e-16 on numbers of size 10.
+        assert abs(model.get("y") - wanted) < 1e-13
+    inverse.free()
+    model.free()

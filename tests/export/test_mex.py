@@ -215,6 +215,52 @@ def test_the_c_file_stands_alone(tmp_path: Path) -> None:
         assert line in text or line.startswith("#include")
 
 
+# What MATLAB documents of its C matrix API, as far as it is called, in the form for interleaved
+# complex numbers. MATLAB has more; a call of anything else does not compile.
+INTERLEAVED_MEX_H = """
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#define MX_HAS_INTERLEAVED_COMPLEX 1
+typedef struct mxArray_tag mxArray;
+typedef size_t mwSize;
+typedef bool mxLogical;
+typedef double mxDouble;
+typedef uint8_t mxUint8;
+typedef enum { mxREAL, mxCOMPLEX } mxComplexity;
+typedef enum { mxUINT8_CLASS = 9 } mxClassID;
+bool mxIsDouble(const mxArray *);
+bool mxIsComplex(const mxArray *);
+bool mxIsSparse(const mxArray *);
+bool mxIsEmpty(const mxArray *);
+bool mxIsUint8(const mxArray *);
+mwSize mxGetNumberOfDimensions(const mxArray *);
+size_t mxGetM(const mxArray *);
+size_t mxGetN(const mxArray *);
+size_t mxGetNumberOfElements(const mxArray *);
+mxDouble *mxGetDoubles(const mxArray *);
+mxUint8 *mxGetUint8s(const mxArray *);
+int mxGetString(const mxArray *, char *, mwSize);
+mxArray *mxCreateDoubleMatrix(mwSize, mwSize, mxComplexity);
+mxArray *mxCreateNumericMatrix(mwSize, mwSize, mxClassID, mxComplexity);
+mxArray *mxCreateLogicalScalar(mxLogical);
+_Noreturn void mexErrMsgIdAndTxt(const char *, const char *, ...);
+void mexFunction(int, mxArray *[], int, const mxArray *[]);
+"""
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_interleaved_complex_numbers(compiler: str, tmp_path: Path) -> None:
+    if shutil.which(compiler) is None:
+        pytest.skip(f"there is no {compiler}")
+    written = hyst.export.mex(CONTROLLER, tmp_path / "a")
+    (written.path / "mex.h").write_text(INTERLEAVED_MEX_H)
+    strict = ["-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-O2", "-I.", "-c"]
+    command = [compiler, *strict, "stage_mex.c"]
+    done = subprocess.run(command, cwd=written.path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
 def test_the_same_model_gives_the_same_bytes(tmp_path: Path) -> None:
     folders = [hyst.export.mex(PI, tmp_path / name) for name in ("a", "b")]
     for file in folders[0].files:

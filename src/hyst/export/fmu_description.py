@@ -166,6 +166,7 @@ def _add_interface(root: Element, about: FmuDescription, is_2: bool) -> None:
         },
     )
     if is_2:
+        interface.set("canNotUseMemoryManagementFunctions", "true")  # it uses calloc and free
         files = ElementTree.SubElement(interface, "SourceFiles")
         ElementTree.SubElement(files, "File", name=_SOURCE)
     elif about.dt is not None:
