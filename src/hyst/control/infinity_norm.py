@@ -8,12 +8,13 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from hyst.control.linear_system import LinearSystem, as_linear_system
+from hyst.control.linear_system import LinearSystem, as_linear_system, balanced
 from hyst.errors import SolverError
 
 Array = NDArray[np.float64]
 
 _ITERATIONS = 60
+_AROUND = np.array([-2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0])
 
 
 def hinf_norm(system: Any, tolerance: float = 1e-8) -> tuple[float, float]:
@@ -103,28 +104,6 @@ def peak_gain(system: LinearSystem, tolerance: float = 1e-8) -> tuple[float, flo
     return norm, frequency * scale
 
 
-def balanced(system: LinearSystem) -> LinearSystem:
-    """Scale the states by powers of two until rows and columns of [A B; C 0] are alike."""
-    A, B, C = system.A.copy(), system.B.copy(), system.C.copy()
-    for _ in range(50):
-        settled = True
-        for i in range(system.order):
-            row = np.hypot(np.linalg.norm(np.delete(A[i], i)), np.linalg.norm(B[i]))
-            column = np.hypot(np.linalg.norm(np.delete(A[:, i], i)), np.linalg.norm(C[:, i]))
-            if row == 0.0 or column == 0.0:
-                continue
-            factor = 2.0 ** round(0.5 * float(np.log2(column / row)))
-            if factor != 1.0:
-                settled = False
-                A[i] *= factor
-                B[i] *= factor
-                A[:, i] /= factor
-                C[:, i] /= factor
-        if settled:
-            break
-    return LinearSystem(A, B, C, system.D, system.dt)
-
-
 def _in_units(system: LinearSystem, scale: float) -> tuple[Array, Array, Array, Array]:
     """Measure time in 1/scale: the gains are the same, at frequencies divided by scale."""
     root = np.sqrt(scale)
@@ -135,7 +114,9 @@ def _start(system: LinearSystem) -> tuple[float, float]:
     """Gain at 0, at infinity and near each resonance: a good lower bound saves steps."""
     norm, frequency = float(np.linalg.norm(system.D, 2)), np.inf
     poles = system.poles()
-    tried = np.unique(np.concatenate([[0.0], np.abs(poles), np.abs(poles.imag)]))
+    # Around each pole too: where eigenvalues are ill-conditioned a sharp peak shows only here.
+    around = np.abs(poles.imag)[:, None] + np.abs(poles.real)[:, None] * _AROUND
+    tried = np.unique(np.concatenate([[0.0], np.abs(poles), np.abs(around).ravel()]))
     gains = _gains(system, tried)
     if gains.max() >= norm:
         norm, frequency = float(gains.max()), float(tried[np.argmax(gains)])

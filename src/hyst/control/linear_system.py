@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -82,10 +83,10 @@ class LinearSystem:
         points = np.atleast_1d(np.asarray(s, dtype=np.complex128))
         if self.order == 0:
             return np.broadcast_to(self.D.astype(complex), (points.size, *self.D.shape)).copy()
-        states = np.linalg.solve(
-            points[:, None, None] * np.eye(self.order) - self.A, self.B.astype(complex)
-        )
-        return np.asarray(self.C @ states + self.D)
+        # Companion forms of high order have entries of all sizes, where elimination loses digits.
+        A, B, C = balanced_matrices(self.A, self.B, self.C)
+        matrices = points[:, None, None] * np.eye(self.order) - A
+        return np.asarray(C @ np.linalg.solve(matrices, B.astype(complex)) + self.D)
 
     def as_control(self) -> Any:
         """Give the ``control.StateSpace`` of the same matrices.
@@ -97,6 +98,36 @@ class LinearSystem:
         """
         control = _python_control()
         return control.ss(self.A, self.B, self.C, self.D, self.dt, remove_useless_states=False)
+
+
+def balanced(system: LinearSystem) -> LinearSystem:
+    """Scale the states of system by powers of two, which changes no digit."""
+    return LinearSystem(*balanced_matrices(system.A, system.B, system.C), system.D, system.dt)
+
+
+def balanced_matrices(A: Array, B: Array, C: Array) -> tuple[Array, Array, Array]:
+    """Scale states by powers of two until rows and columns of [A B; C 0] are alike."""
+    n = A.shape[0]
+    sizes = np.zeros((n + 1, n + 1))
+    sizes[:n, :n] = A**2
+    np.fill_diagonal(sizes, 0.0)
+    sizes[:n, n], sizes[n, :n] = np.sum(B**2, axis=1), np.sum(C**2, axis=0)
+    scales = np.ones(n)
+    for _ in range(50):
+        settled = True
+        for i in range(n):
+            row, column = float(sizes[i].sum()), float(sizes[:, i].sum())
+            if row == 0.0 or column == 0.0:
+                continue
+            factor = 2.0 ** round(0.25 * math.log2(column / row))
+            if factor != 1.0:
+                settled = False
+                sizes[i] *= factor**2
+                sizes[:, i] /= factor**2
+                scales[i] *= factor
+        if settled:
+            break
+    return scales[:, None] * A / scales, scales[:, None] * B, C / scales
 
 
 def transfer_function_of(num: Array, den: Array) -> Any:

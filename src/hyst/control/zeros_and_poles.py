@@ -9,15 +9,14 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from hyst.control.infinity_norm import balanced
-from hyst.control.linear_system import LinearSystem
+from hyst.control.linear_system import LinearSystem, balanced
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Points = NDArray[np.complexfloating[Any, Any]]
 
 # A Markov parameter below this share of the product of the norms that make it is rounding.
-_NEGLIGIBLE = 1e-11
+_NEGLIGIBLE = 1e-14
 
 
 @dataclass(frozen=True)
@@ -29,14 +28,10 @@ class ZerosAndPoles:
     gain: float
 
     def response(self, s: Points) -> ComplexArray:
-        """Values at the complex numbers s."""
-        value = np.full(s.shape, self.gain, dtype=np.complex128)
-        for i in range(max(self.zeros.size, self.poles.size)):
-            if i < self.zeros.size:
-                value *= s - self.zeros[i]
-            if i < self.poles.size:
-                value /= s - self.poles[i]
-        return value
+        """Values at the complex numbers s, (n,)."""
+        above = np.prod(s[:, None] - self.zeros, axis=1)
+        below = np.prod(s[:, None] - self.poles, axis=1)
+        return np.asarray(self.gain * above / below, dtype=np.complex128)
 
 
 def zeros_and_poles(system: LinearSystem) -> ZerosAndPoles:

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from hyst.control.disturbance_observer.internal_model import InternalModel
 from hyst.control.disturbance_observer.problem import ObserverProblem
 from hyst.control.disturbance_observer.stacked_gain import feedback_matrix
-from hyst.control.infinity_norm import balanced
-from hyst.control.linear_system import LinearSystem
+from hyst.control.linear_system import LinearSystem, balanced
 from hyst.control.zeros_and_poles import zeros_and_poles
 from hyst.errors import InputError
 
@@ -18,7 +17,7 @@ ComplexArray = NDArray[np.complex128]
 
 _AXIS = 1e-9  # of the largest pole: nearer to the axis than this is on it
 _SAME = 1e-6  # relative distance of an eigenvalue and a zero that coincide
-_RANK = 1e-10  # smallest singular value of a scaled matrix of full rank
+_RANK = 1e-13  # smallest singular value of a scaled matrix of full rank
 
 
 def check_assumptions(problem: ObserverProblem) -> None:
@@ -157,7 +156,7 @@ def _not_left(values: ComplexArray, scale: float | None = None) -> ComplexArray:
 def _least_seen(A: Array, C: Array, eigenvalues: ComplexArray) -> complex | None:
     """Find a mode that the output does not show, by the test of Popov, Belevitch and Hautus."""
     n = A.shape[0]
-    size = float(np.abs(A).max(initial=0.0)) or 1.0
+    size = float(np.abs(eigenvalues).max(initial=0.0)) or 1.0
     scaled = balanced(LinearSystem(A / size, np.ones((n, 1)), C, np.zeros((1, 1))))
     row = scaled.C / max(float(np.linalg.norm(scaled.C)), 1e-300)
     for value in eigenvalues:

@@ -13,7 +13,7 @@ from hyst.control.disturbance_observer.problem import ObserverProblem
 from hyst.control.disturbance_observer.stacked_gain import feedback_matrix
 from hyst.control.infinity_norm import hinf_norm
 from hyst.control.linear_system import LinearSystem
-from hyst.control.zeros_and_poles import zeros_and_poles
+from hyst.control.zeros_and_poles import ZerosAndPoles, zeros_and_poles
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -133,11 +133,11 @@ def certify(
         A plant to close the same loop around.
     """
     closed = weighted_loop(problem, gain)
-    stacked, at = hinf_norm(closed)
-    uncertain, at_uncertain = hinf_norm(_output(closed, 0))
-    performance, at_performance = hinf_norm(_output(closed, 1))
-    Q = zeros_and_poles(problem.q_filter(gain))
+    stacked, at = _checked_norm(closed)
+    uncertain, at_uncertain = _checked_norm(_output(closed, 0))
+    performance, at_performance = _checked_norm(_output(closed, 1))
     plant = zeros_and_poles(problem.plant)
+    Q = _factored_q(problem, gain, plant)
     return Certificate(
         stacked_norm=stacked,
         stacked_frequency=at,
@@ -164,6 +164,18 @@ def certify(
                 complex
             )
         ),
+    )
+
+
+def _factored_q(problem: ObserverProblem, gain: Array, plant: ZerosAndPoles) -> ZerosAndPoles:
+    """Factor Q: its zeros are those of the plant and of C_d (s - A_d)^-1 L_2."""
+    model = problem.internal_model
+    L_2 = np.asarray(gain)[problem.plant.order :, None]
+    branch = zeros_and_poles(LinearSystem(model.A_d, L_2, model.C_d, np.zeros((1, 1))))
+    return ZerosAndPoles(
+        np.concatenate([plant.zeros, branch.zeros]),
+        problem.q_filter(gain).poles(),
+        plant.gain * branch.gain,
     )
 
 
@@ -209,6 +221,32 @@ def weighted_loop(problem: ObserverProblem, gain: Array) -> LinearSystem:
     C[0, :n], C[0, n : n + n_u] = (Wu.D @ v)[0], Wu.C[0]
     C[1, :n], C[1, n + n_u :] = (Wp.D @ error)[0], Wp.C[0]
     return LinearSystem(A, B, C, np.vstack([Wu.D @ v_d, Wp.D @ error_d]))
+
+
+def _checked_norm(system: LinearSystem) -> tuple[float, float]:
+    """Give the norm by the Hamiltonian, unless a grid of frequencies shows a higher peak.
+
+    That happens where poles are so far apart that eigenvalues lose their digits.
+    """
+    norm, frequency = hinf_norm(system)
+    if not np.isfinite(norm):
+        return norm, frequency
+    poles = system.poles()
+    size = np.abs(poles)[np.abs(poles) > 0.0]
+    around = np.abs(poles.imag)[:, None] + np.abs(poles.real)[:, None] * np.linspace(-3, 3, 25)
+    w = np.concatenate(
+        [np.geomspace(0.01 * size.min(), 100.0 * size.max(), 400), np.abs(around).ravel()]
+    )
+    for _ in range(4):
+        gains = np.linalg.norm(system.response(1j * w), axis=(1, 2))
+        top = int(np.argmax(gains))
+        if gains[top] <= norm * (1.0 + 1e-9):
+            break
+        norm, frequency = float(gains[top]), float(w[top])
+        near = np.sort(np.abs(w - frequency))
+        width = float(near[near > 0.0][:1].max(initial=0.0)) or 1e-6 * frequency
+        w = frequency + width * np.linspace(-1.0, 1.0, 41)
+    return norm, frequency
 
 
 def _output(system: LinearSystem, i: int) -> LinearSystem:

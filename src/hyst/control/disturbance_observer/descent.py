@@ -26,10 +26,14 @@ _KEPT, _AGAIN = 3, 3
 
 def norm_and_slope(gain: StackedGain, parameters: Array) -> tuple[float, Array]:
     """Give the norm and its gradient, that of the gain at the highest peak, at the parameters."""
-    highest = gain.peaks(parameters)[:1]
-    value, slope = gain.values_and_slopes(parameters, gain.at(highest))
-    norm = float(np.sqrt(value[0]))
-    return norm, slope[0] / (2.0 * norm)
+    highest = gain.peaks(parameters, rounds=2)[:1]
+    with np.errstate(all="ignore"):
+        value, slope = gain.values_and_slopes(parameters, gain.at(highest))
+        norm = float(np.sqrt(value[0]))
+        slope = slope[0] / (2.0 * norm)
+    if not (np.isfinite(norm) and np.isfinite(slope).all()):
+        return np.inf, np.zeros(parameters.size)
+    return norm, slope
 
 
 def descend(gain: StackedGain, start: Array) -> Descent:

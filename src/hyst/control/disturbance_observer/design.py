@@ -19,11 +19,14 @@ from hyst.control.disturbance_observer.slpmm import slpmm
 from hyst.control.disturbance_observer.stacked_gain import StackedGain
 from hyst.control.infinity_norm import hinf_norm
 from hyst.control.linear_system import LinearSystem, as_linear_system
-from hyst.errors import InputError
+from hyst.errors import InputError, SolverError
 
 Array = NDArray[np.float64]
 
 METHODS = ("slpmm+descent", "slpmm", "descent")
+# Iterations of SLPMM: all of them, as many as the paper's, or a few where each takes long and the
+# descent that follows needs no more than a start.
+_FULL, _FEW, _LARGE = 14, 2, 5
 
 
 def design_disturbance_observer(
@@ -104,13 +107,19 @@ def design_disturbance_observer(
     given: list[Array] = []
     found = gain.gain_of(usual_parameters(gain, 1)[0])
     if "slpmm" in method:
-        linear = slpmm(problem, found, progress=_reported(progress, "slpmm"))
-        steps.append(
-            f"SLPMM          {linear.norm:.4f} after {linear.iterations} iterations, "
-            f"trace(P R) - n = {linear.distances[-1]:.2g}"
-        )
-        found = linear.gain
-        given = [gain.parameters_of(problem.q_filter(found).poles())]
+        try:
+            iterations = _FULL if method == "slpmm" or problem.order < _LARGE else _FEW
+            linear = slpmm(problem, found, iterations, progress=_reported(progress, "slpmm"))
+            steps.append(
+                f"SLPMM          {linear.norm:.4f} after {linear.iterations} iterations, "
+                f"trace(P R) - n = {linear.distances[-1]:.2g}"
+            )
+            found = linear.gain
+            given = [gain.parameters_of(problem.q_filter(found).poles())]
+        except SolverError as reason:
+            if method == "slpmm":
+                raise
+            steps.append(f"SLPMM          failed: {reason}")
     if "descent" in method:
         best = descend_from_many(gain, given, starts, seed, _reported(progress, "descent"))
         steps.append(f"descent        {best.norm:.4f} after {best.evaluations} evaluations")
@@ -137,7 +146,7 @@ def observer_problem(
         If one cannot be read or an assumption does not hold.
     """
     problem = ObserverProblem(
-        as_linear_system(plant, "the plant"),
+        _nominal(plant),
         as_linear_system(controller, "the controller"),
         as_linear_system(Wu, "Wu"),
         as_linear_system(Wp, "Wp"),
@@ -157,8 +166,8 @@ def evaluate_gain(
     problem
         Of ``observer_problem``.
     gain
-        L, one number for each state of plant and internal model; a transfer function has the
-        companion form ``dx_1/dt = -den_1 x_1 - .. + u``.
+        L, one number for each state of plant and internal model; which states those are is in
+        ``problem.plant``.
     perturbed_plant
         A plant around which the certificate also closes the loop.
 
@@ -189,6 +198,19 @@ def evaluate_gain(
     reached = certificate.stacked_norm
     bound = lower_bound(StackedGain(problem), reached if np.isfinite(reached) else 1e3)
     return DisturbanceObserver(problem, L, certificate, bound, "given")
+
+
+def _nominal(plant: Any) -> LinearSystem:
+    """Read the plant; one without states of its own gets those in which L keeps its digits.
+
+    That is the companion form whose output is the first state, where L adds to the denominator
+    directly. The paper's example, order 2, is in the other one.
+    """
+    read = as_linear_system(plant, "the plant")
+    has_states = hasattr(plant, "A") or (isinstance(plant, tuple | list) and len(plant) == 4)
+    if has_states or read.order <= 2 or (read.inputs, read.outputs) != (1, 1):
+        return read
+    return LinearSystem(read.A.T, read.C.T, read.B.T, read.D, read.dt)
 
 
 def _perturbed(plant: Any) -> LinearSystem | None:

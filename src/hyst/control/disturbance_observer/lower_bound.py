@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from hyst.control.disturbance_observer.problem import ObserverProblem
 from hyst.control.disturbance_observer.stacked_gain import StackedGain, feedback_matrix
-from hyst.control.infinity_norm import balanced
-from hyst.control.linear_system import LinearSystem
+from hyst.control.linear_system import LinearSystem, balanced
 
 Array = NDArray[np.float64]
 

@@ -25,8 +25,9 @@ class DisturbanceObserver:
     problem
         Plant, controller, weights and internal model it was designed for.
     gain
-        L, (n_p + n_d,): first the states of the plant as given (of a transfer function: in
-        companion form, dx_1/dt from the denominator), then those of the internal model.
+        L, (n_p + n_d,): first for the states of ``plant``, then for those of the internal model.
+        A transfer function gets a companion form: up to order 2 that of the paper, whose input
+        drives the first state, above it the one whose output is the first state.
     certificate
         Norms, poles and Q(s), computed from the gain.
     lower_bound

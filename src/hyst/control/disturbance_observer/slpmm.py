@@ -122,11 +122,10 @@ def in_coordinates_of(plant: GeneralizedPlant, gain: Array) -> tuple[Generalized
     norm = hinf_norm(LinearSystem(A, B, C, D))[0]
     if not np.isfinite(norm):
         raise SolverError("the start does not stabilize the observer; give another, or none")
-    proved = 1.5 * norm
-    P = scipy.linalg.solve_continuous_are(
-        A, B, C.T @ C + 1e-4 * np.eye(plant.order), D.T @ D - proved**2 * np.eye(1), s=C.T @ D
-    )
-    T = np.linalg.cholesky(0.5 * (P + P.T) / proved).T
+    T = np.eye(plant.order)
+    for _ in range(3):  # each round in the coordinates of the one before, so the last is accurate
+        inverse = np.linalg.inv(T)
+        T = _root_of_proof(T @ A @ inverse, T @ B, C @ inverse, D, norm) @ T
     inverse = np.linalg.inv(T)
     B2, C2 = T @ plant.B2, plant.C2 @ inverse
     columns, row = np.linalg.norm(B2, axis=0), float(np.linalg.norm(C2))
@@ -140,6 +139,22 @@ def in_coordinates_of(plant: GeneralizedPlant, gain: Array) -> tuple[Generalized
         gain_units=plant.gain_units / (columns * row),
     )
     return moved, norm
+
+
+def _root_of_proof(A: Array, B: Array, C: Array, D: Array, norm: float) -> Array:
+    """Find T with P = T'T a proof of the bounded real lemma, for a norm a little above."""
+    for above in (1.5, 3.0, 10.0):
+        gamma = above * norm
+        try:
+            P = scipy.linalg.solve_continuous_are(
+                A, B, C.T @ C + 1e-4 * np.eye(len(A)), D.T @ D - gamma**2 * np.eye(1), s=C.T @ D
+            )
+        except np.linalg.LinAlgError:
+            continue
+        sizes, vectors = np.linalg.eigh(0.5 * (P + P.T) / gamma)
+        if sizes[-1] > 0.0:
+            return np.asarray(np.sqrt(np.maximum(sizes, 1e-9 * sizes[-1]))[:, None] * vectors.T)
+    return np.eye(len(A))  # balanced states are all that is left to try
 
 
 def inequalities(

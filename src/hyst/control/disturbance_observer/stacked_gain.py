@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 _PER_DECADE = 24
+_SLOWER, _FASTER = 100.0, 10.0  # than all poles and zeros of the problem
 _AROUND = np.array([-3.0, -1.5, -0.7, -0.3, 0.0, 0.3, 0.7, 1.5, 3.0])
 
 
@@ -58,6 +59,7 @@ class StackedGain:
         # As a polynomial in s/scale; its size is kept in l, so a factor common to all is harmless.
         self.numerator = np.real(np.atleast_1d(np.poly(self.plant.zeros / self.scale)))
         self._solution = np.linalg.inv(self._sylvester())
+        self._latest = (np.zeros(0), np.zeros(0), np.zeros((0, 0)))
         self.grid = self.at(self._grid())
         self.lowest, self.highest = self._box()
 
@@ -69,9 +71,13 @@ class StackedGain:
         return np.asarray(found)
 
     def _box(self) -> tuple[Array, Array]:
-        """Parameters with poles up to three decades beyond all features; more is of no use."""
+        """Bounds of the parameters: poles a little beyond all features of plant and weights.
+
+        Some weights are met best by infinitely fast poles: nobody can sample those, and the
+        doubles of L cannot hold them beside slow ones.
+        """
         size = np.log(np.abs(self.features) / self.scale)
-        slow, fast = size.min() - np.log(1e3), size.max() + np.log(1e3)
+        slow, fast = size.min() - np.log(_SLOWER), size.max() + np.log(_FASTER)
         pairs = 2 * (self.order // 2)
         lowest, highest = np.full(self.order, slow), np.full(self.order, fast)
         lowest[1:pairs:2] *= 2.0
@@ -113,6 +119,11 @@ class StackedGain:
 
     def polynomial(self, parameters: Array) -> tuple[Array, Array]:
         """Give the coefficients of x, and their derivatives (parameters, n + 1)."""
+        if not np.array_equal(parameters, self._latest[0]):
+            self._latest = (parameters.copy(), *self._expanded(parameters))
+        return self._latest[1:]
+
+    def _expanded(self, parameters: Array) -> tuple[Array, Array]:
         n = self.order
         a, b, c = _split(np.exp(parameters), n)
         factors = [np.array([1.0, p, q]) for p, q in zip(a, b, strict=True)]
@@ -134,9 +145,10 @@ class StackedGain:
         return x, slopes
 
     def values(self, parameters: Array, at: Frequencies) -> Array:
-        """Square of the stacked gain at each frequency."""
+        """Square of the stacked gain at each frequency, for parameters of the poles of Q."""
         E, _ = self._one_minus_q(self.polynomial(parameters)[0], at)
-        return np.asarray(at.Wu2 * np.abs(1.0 - at.S0 * E) ** 2 + at.Wp2 * np.abs(E) ** 2)
+        value = at.Wu2 * np.abs(1.0 - at.S0 * E) ** 2 + at.Wp2 * np.abs(E) ** 2
+        return np.asarray(np.where(np.isfinite(value), value, np.inf))
 
     def values_and_slopes(self, parameters: Array, at: Frequencies) -> tuple[Array, Array]:
         """Square of the stacked gain and its derivatives (frequencies, parameters)."""
@@ -155,10 +167,15 @@ class StackedGain:
     def _one_minus_q(self, x: Array, at: Frequencies) -> tuple[ComplexArray, ComplexArray]:
         k = (self._solution @ x)[: self.problem.plant.order + 1]
         below = at.powers @ x
-        return at.model * (at.powers[:, -k.size :] @ k) / below, below
+        # A pole of Q all but on the axis may meet a frequency of the grid.
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return at.model * (at.powers[:, -k.size :] @ k) / below, below
 
-    def peaks(self, parameters: Array, share: float = 0.9) -> Array:
-        """Frequencies of the local maxima that reach a share of the largest, highest first."""
+    def peaks(self, parameters: Array, share: float = 0.9, rounds: int = 4) -> Array:
+        """Frequencies of the local maxima that reach a share of the largest, highest first.
+
+        Each is closed in on in so many rounds; parameters as for ``values``.
+        """
         roots = np.roots(self.polynomial(parameters)[0]) * self.scale
         sharp = (np.abs(roots.imag)[:, None] + np.abs(roots.real)[:, None] * _AROUND).ravel()
         inside = (sharp > self.grid.w[0]) & (sharp < self.grid.w[-1])
@@ -171,12 +188,14 @@ class StackedGain:
         top = (f >= above[:-2]) & (f >= above[2:]) & (f >= share**2 * f.max())
         index = np.flatnonzero(top)
         low, high = w[np.maximum(index - 1, 0)], w[np.minimum(index + 1, w.size - 1)]
-        return self._refined(parameters, low, w[index], high)
+        return self._refined(parameters, low, w[index], high, rounds)
 
-    def _refined(self, parameters: Array, low: Array, best: Array, high: Array) -> Array:
+    def _refined(
+        self, parameters: Array, low: Array, best: Array, high: Array, rounds: int
+    ) -> Array:
         """Close in on each maximum between its neighbours by parabolas, all at once."""
         value = np.full(best.size, -np.inf)
-        for _ in range(4):
+        for _ in range(rounds):
             w = np.concatenate([low, best, high])
             at_low, at_best, at_high = self.values(parameters, self.at(w)).reshape(3, -1)
             left, right = low - best, high - best
