@@ -30,8 +30,9 @@ def test_an_fmu_is_what_python_writes(run: Run, folder: Path, model_file: Path) 
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler cc")
-def test_an_fmu_of_an_inverse_in_a_new_folder(run: Run, folder: Path, model_file: Path) -> None:
+def test_an_fmu_of_an_inverse_in_a_folder(run: Run, folder: Path, model_file: Path) -> None:
     options = ("--inverse", "--target", "fmu", "--fmi", "3.0", "--name", "lens")
+    (folder / "out").mkdir()
     ended = run("export", model_file, *options, "-o", "out")
     assert ended.code == 0
     assert "binaries/" in ended.out
@@ -64,6 +65,7 @@ def test_the_command_that_mex_prints_compiles(run: Run, folder: Path, model_file
         (("--target", "mex", "--fmi", "3.0", "-o", "out"), "--fmi is for --target fmu"),
         (("--target", "mex", "--name", "end", "-o", "out"), "MATLAB or Octave"),
         (("--target", "fmu", "--fmi", "1.0", "-o", "a.fmu"), "2.0 or 3.0"),
+        (("--target", "fmu", "-o", "nowhere"), "nowhere is no folder"),
         (("--target", "rust", "-o", "out"), "c or fmu or mex"),
     ],
 )

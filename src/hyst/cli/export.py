@@ -70,8 +70,8 @@ def _c(order: _Order) -> _Done:
 def _fmu(order: _Order) -> _Done:
     path = order.out
     if path.suffix.lower() != ".fmu":
-        if path.parent.is_dir() and not path.exists():
-            path.mkdir()
+        if not path.is_dir():
+            raise hyst.InputError(f"{path} is no folder; name one, or a file that ends in .fmu")
         path = path / f"{order.name}.fmu"
     written = hyst.export.fmu(
         order.model,
