@@ -303,3 +303,26 @@ def test_a_folder_in_the_place_of_a_file_is_refused(
     assert ended.code == 2
     assert "model.json is a folder" in ended.err
     assert snapshot(folder) == before
+
+
+def test_validation_records_may_call_their_columns_otherwise(
+    run: Run, refused: Callable[..., str], record_file: Path, folder: Path
+) -> None:
+    other = write_csv(folder / "other.csv", "stamp,volts,y,position", T, U, T, Y)
+    words = ("identify", record_file, *COLUMNS, "--time", "t", *QUICK, "-o", "out")
+    message = refused(*words, "--validate", other)
+    assert "no column 'u'" in message
+    assert "--validate-input" in message
+    message = refused(*words, "--validate-output", "position")
+    assert "--validate-output names a column of validation records, and there are none" in message
+    columns = ("--validate-input", "volts", "--validate-output", "position")
+    ended = run(*words, "--validate", other, *columns, "--validate-time", "stamp")
+    assert ended.code == 0, ended.err
+    numbers = (folder / "out" / "metrics.json").read_text(encoding="utf-8")
+    plain = write_csv(folder / "plain.csv", "t,u,y", T, U, Y)
+    assert run(*words, "--validate", plain).code == 0
+    again = (folder / "out" / "metrics.json").read_text(encoding="utf-8")
+    # The same signals under other names.
+    assert (
+        json.loads(numbers)["metrics"]["validation"] == (json.loads(again)["metrics"]["validation"])
+    )

@@ -89,6 +89,16 @@ Validate = Annotated[
     list[Path] | None,
     typer.Option(metavar="DATA", show_default=False, help="A record to judge by; repeatable."),
 ]
+ValidateInput = Annotated[
+    str | None,
+    typer.Option(metavar="COL", show_default=False, help="Their input, where it is called other."),
+]
+ValidateOutput = Annotated[
+    str | None, typer.Option(metavar="COL", show_default=False, help="Their output, likewise.")
+]
+ValidateTime = Annotated[
+    str | None, typer.Option(metavar="COL", show_default=False, help="Their time, likewise.")
+]
 InputLabel = Annotated[
     str | None,
     typer.Option(metavar="LABEL", show_default=False, help='Call the input so, as "drive [V]".'),
@@ -140,6 +150,9 @@ def identify(
     state_order: StateOrder = "auto",
     period: Period = None,
     validate: Validate = None,
+    validate_input: ValidateInput = None,
+    validate_output: ValidateOutput = None,
+    validate_time: ValidateTime = None,
     input_label: InputLabel = None,
     output_label: OutputLabel = None,
     allow_unconverged: AllowUnconverged = False,
@@ -147,33 +160,29 @@ def identify(
     """Identify a model from measured records, and write model, numbers, figures and a report."""
     hyst.files.require_folder(folder)
     _refuse_what_is_not_used(context, family, hysteresis, regression)
-
     how_to_read = {"input": input_column, "output": output_column, "time": time, "rate": rate}
     how_to_read |= {"time_unit": time_unit, "repair": repair}
+    columns = {"input": validate_input, "output": validate_output, "time": validate_time}
+    how_to_validate = _otherwise(how_to_read, columns, validate)
     labels = (input_label, output_label)
     counts = {"plays": plays, "delay": delay, "start": start}
     options = _whole_or_auto(counts | {"fir_order": fir_order, "state_order": state_order})
-    options |= {"knots": knots, "weights": weights, "memory": memory, "regression": regression}
-    options["signal_to_noise"] = signal_to_noise
+    options |= {"memory": memory, "regression": regression, "signal_to_noise": signal_to_noise}
+    options |= {"knots": knots, "weights": weights, "hysteresis": hysteresis, "period": period}
     options |= {"spacing": spacing, "record_weights": _numbers_or_word(record_weights)}
-    options |= {"hysteresis": hysteresis, "allow_unconverged": allow_unconverged}
-    options["period"] = period
+    options["allow_unconverged"] = allow_unconverged
     with at_work("identifying") as say:
         say("reading")
         records = [_read(path, how_to_read, labels) for path in data]
         if period is not None:
             # The report shows what was identified from; averaging once more changes nothing.
             records = [average_periods(record, period) for record in records]
-        validation = [_read(path, how_to_read, labels) for path in validate or []]
+        validation = [_read_validation(path, how_to_validate, labels) for path in validate or []]
         found = hyst.identify(
             records, family=family, validation=validation, progress=say, **options
         )
         say("report")
-        sources = [str(path) for path in (*data, *(validate or []))]
-        sections = hyst.report.dynamics_sections(found)
-        files = hyst.report.write_report(
-            found, records, validation, folder, sources=sources, sections=sections
-        )
+        files = _write(found, records, validation, folder, [*data, *(validate or [])])
     _tell(found, records)
     show_files(files)
 
@@ -195,6 +204,51 @@ def _refuse_what_is_not_used(
 
 def _read(path: Path, how: dict[str, Any], labels: tuple[str | None, str | None]) -> hyst.Record:
     return _labelled(hyst.read_record(path, **how), *labels)
+
+
+def _otherwise(
+    how: dict[str, Any], columns: dict[str, str | None], validate: list[Path] | None
+) -> dict[str, Any]:
+    """Read validation records like the others, but from their own columns where those are named."""
+    named = {role: column for role, column in columns.items() if column is not None}
+    if named and not validate:
+        raise hyst.InputError(
+            f"--validate-{min(named)} names a column of validation records, and there are none; "
+            "give --validate too"
+        )
+    return how | named
+
+
+def _read_validation(
+    path: Path, how: dict[str, Any], labels: tuple[str | None, str | None]
+) -> hyst.Record:
+    try:
+        return _read(path, how, labels)
+    except hyst.InputError as error:
+        if "has no column" not in str(error):
+            raise
+        raise hyst.InputError(
+            f"{error}; columns of validation records are called as those of DATA unless "
+            "--validate-input, --validate-output or --validate-time say otherwise"
+        ) from error
+
+
+def _write(
+    found: hyst.Identified,
+    records: list[hyst.Record],
+    validation: list[hyst.Record],
+    folder: Path,
+    sources: list[Path],
+) -> tuple[Path, ...]:
+    sections = hyst.report.dynamics_sections(found)
+    return hyst.report.write_report(
+        found,
+        records,
+        validation,
+        folder,
+        sources=[str(path) for path in sources],
+        sections=sections,
+    )
 
 
 def _whole_or_auto(counts: dict[str, str]) -> dict[str, Any]:

@@ -10,9 +10,10 @@ from typing import Any, Self, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst.errors import InputError, NotInvertibleError
+from hyst.errors import InputError
 from hyst.models.linear_properties import (
     answers_after,
+    causal_inverse,
     poles_of,
     settling_samples,
     values_at,
@@ -21,7 +22,7 @@ from hyst.models.linear_properties import (
 from hyst.models.matrices import checked_matrices
 from hyst.models.realizations import cascade, companion, sections_of, zero_order_hold
 from hyst.operators.base import Operator
-from hyst.operators.checks import as_constants, as_number, as_whole_number, refuse_overflow
+from hyst.operators.checks import as_constants, as_number, as_whole_number
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries, register
 from hyst.operators.stage_sink import StageSink
@@ -261,22 +262,8 @@ class LinearDynamics(Operator):
             If G is delayed or strictly proper, or a zero does not lie inside the unit circle; use
             ``hyst.models.StableInverse``, which looks ahead, for a whole trajectory then.
         """
-        hint = "use hyst.models.StableInverse, which looks ahead, on whole trajectories"
-        if self.relative_degree() > 0:
-            raise NotInvertibleError(
-                f"the output answers {self.relative_degree()} samples late, so no causal inverse "
-                f"follows at once; {hint}"
-            )
-        zeros = self.zeros()
-        if zeros.size and np.abs(zeros).max() >= 1.0:
-            worst = zeros[np.abs(zeros).argmax()]
-            raise NotInvertibleError(
-                f"the zero {worst:.6g} does not lie inside the unit circle, so the causal inverse "
-                f"is unstable; {hint}"
-            )
-        A, B = self.A - np.outer(self.B, self.C) / self.D, self.B / self.D
-        refuse_overflow(A, B, self.C / self.D, 1.0 / self.D)
-        return LinearDynamics(A, B, -self.C / self.D, 1.0 / self.D, self.dt, 0, self.x0)
+        matrices = causal_inverse(self.A, self.B, self.C, self.D, self.relative_degree())
+        return LinearDynamics(*matrices, self.dt, 0, self.x0)
 
     def parameters(self) -> Parameters:
         """Give A row after row, B, C, D."""

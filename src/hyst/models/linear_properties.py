@@ -7,6 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.errors import NotInvertibleError
+from hyst.operators.checks import refuse_overflow
+
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
@@ -49,6 +52,46 @@ def zeros_of(A: Array, B: Array, C: Array, D: float) -> Complex:
     for _ in range(ahead):
         row, first = row @ A, float(row @ B)
     return poles_of(A - np.outer(B, row) / first)[: B.size - ahead]
+
+
+def causal_inverse(
+    A: Array, B: Array, C: Array, D: float, late: int
+) -> tuple[Array, Array, Array, float]:
+    """Give ``(A - B C/D, B/D, -C/D, 1/D)`` of the state space A, B, C, D.
+
+    Parameters
+    ----------
+    A, B, C, D
+        Matrices of the state space.
+    late
+        Samples until its output answers, with its delay.
+
+    Returns
+    -------
+    tuple
+        The matrices of the inverse.
+
+    Raises
+    ------
+    NotInvertibleError
+        If the output does not answer at once, a zero does not lie inside the unit circle, or a
+        constant overflows.
+    """
+    hint = "use hyst.models.StableInverse, which looks ahead, on whole trajectories"
+    if late > 0:
+        raise NotInvertibleError(
+            f"the output answers {late} samples late, so no causal inverse follows at once; {hint}"
+        )
+    zeros = zeros_of(A, B, C, D)
+    if zeros.size and np.abs(zeros[0]) >= 1.0:
+        raise NotInvertibleError(
+            f"the zero {zeros[0]:.6g} does not lie inside the unit circle, so the causal inverse "
+            f"is unstable; {hint}"
+        )
+    with np.errstate(all="ignore"):
+        inverse = A - np.outer(B, C) / D, B / D, -C / D, float(1.0 / np.float64(D))
+    refuse_overflow(*inverse)
+    return inverse
 
 
 def settling_samples(A: Array) -> int:
