@@ -89,6 +89,18 @@ def test_the_printed_example_is_refused_in_words(answered: Callable[[str, str], 
     assert told["tracking"]["exact"]["without"]["rms"] is None
 
 
+def test_bounded_is_not_safe(answered: Callable[[str, str], Path]) -> None:
+    """Without an inverse the loop stays bounded, but its plays are too steep for it."""
+    text = QUICK.replace('kind = "scaled"\nfactor = 0.7', 'kind = "none"')
+    assert text != QUICK
+    told = json.loads((answered("none", text) / "certificate.json").read_text(encoding="utf-8"))
+    assert told["safe"] is False
+    assert told["tracking"]["none"]["with_observer"]["rms"] < 5.0
+    # An eigenvalue computation by hand gives 1.35 to 1.4; the plays go up to 3.4.
+    assert 1.3 < told["unstable_slope"] < 1.5
+    assert told["seen_slopes"][1] > 3.0
+
+
 def change(old: str, new: str) -> str:
     assert old in TEMPLATE
     return TEMPLATE.replace(old, new)

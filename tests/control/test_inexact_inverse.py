@@ -12,6 +12,7 @@ from hyst.compensation import slope_range
 from hyst.control import (
     closed_loop_poles,
     compare_inverses,
+    first_unstable_slope,
     loop_responses,
     simulate_closed_loop,
     slope_margin,
@@ -64,9 +65,23 @@ def test_scaled_inverses_of_the_paper_are_proven_stable(printed: DisturbanceObse
         assert slope_margin(TRUE_PLANT, CONTROLLER, printed, slopes) > 1.0
 
 
+def test_the_first_unstable_slope(printed: DisturbanceObserver) -> None:
+    # 1/s around 1/(s + 1)^2: s^3 + 2 s^2 + s + k is stable below k = 2, by Routh.
+    blocks = (([1.0], [1.0, 2.0, 1.0]), ([1.0], [1.0, 0.0]), None)
+    assert first_unstable_slope(*blocks, (0.5, 1.99)) is None
+    # 200 slopes from 1 to 3.
+    assert first_unstable_slope(*blocks, (1.0, 3.0)) == pytest.approx(2.0, abs=0.011)
+    # Without any inverse the plays of S1 are too steep; with the exact one they are not.
+    steep = slope_range(PLAYS, hyst.Affine(1.0), 37.0)
+    assert first_unstable_slope(TRUE_PLANT, CONTROLLER, printed, steep) is not None
+    assert first_unstable_slope(TRUE_PLANT, CONTROLLER, printed, (1.0, 1.0)) is None
+
+
 def test_slopes_in_the_wrong_order() -> None:
     with pytest.raises(InputError, match="smaller one first"):
         slope_margin(1.0, ([1.0], [1.0, 0.0]), None, (2.0, 1.0))
+    with pytest.raises(InputError, match="smaller one first"):
+        first_unstable_slope(1.0, ([1.0], [1.0, 0.0]), None, (2.0, 1.0))
 
 
 def test_comparison_of_inverses() -> None:

@@ -19,6 +19,7 @@ from hyst.control import (
     TrackingController,
     closed_loop_poles,
     design_disturbance_observer,
+    first_unstable_slope,
     simulate_closed_loop,
     slope_margin,
 )
@@ -146,9 +147,31 @@ def _tried(spec: ObserverSpec, design: DisturbanceObserver) -> ObserverAnswer:
     poles = closed_loop_poles(plant, block)
     bound, slopes = _of_inverse(spec, comparison)
     margin = None if slopes is None else slope_margin(plant, spec.controller, design, slopes)
+    seen = _slopes_seen(comparison.observed[spec.inverse_name])
     return hyst.report.ObserverAnswer(
-        design, comparison, spec.inverse_name, block, sampled, poles, bound, slopes, margin
+        design=design,
+        comparison=comparison,
+        inverse_name=spec.inverse_name,
+        block=block,
+        sampled=sampled,
+        sampled_poles=poles,
+        bound=bound,
+        slopes=slopes,
+        slope_margin=margin,
+        seen_slopes=seen,
+        unstable_slope=first_unstable_slope(plant, spec.controller, design, seen),
     )
+
+
+def _slopes_seen(loop: hyst.control.ClosedLoop) -> tuple[float, float]:
+    """Least and largest slope of hysteresis after inverse while v moved; 1 and 1 if it did not."""
+    step = np.diff(loop.v)
+    # Where v nearly rests, at a turn, a quotient of differences is rounding.
+    moving = np.abs(step) > 1e-3 * np.abs(step).max(initial=0.0)
+    if not moving.any():
+        return 1.0, 1.0
+    slopes = np.diff(loop.eta)[moving] / step[moving]
+    return float(slopes.min()), float(slopes.max())
 
 
 def _of_inverse(

@@ -15,7 +15,7 @@ from hyst.control.disturbance_observer import (
     observer_problem,
 )
 from hyst.control.frequency_responses import LoopResponses, loop_responses
-from hyst.control.inexact_inverse import slope_margin
+from hyst.control.inexact_inverse import first_unstable_slope, slope_margin
 from hyst.control.infinity_norm import hinf_norm
 from hyst.control.inverse_comparison import InverseComparison, compare_inverses
 from hyst.control.linear_system import LinearSystem
@@ -38,6 +38,7 @@ __all__ = [
     "discretize",
     "discretized_dynamics",
     "evaluate_gain",
+    "first_unstable_slope",
     "hinf_norm",
     "loop_responses",
     "observer_problem",

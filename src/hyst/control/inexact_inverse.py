@@ -14,6 +14,8 @@ from hyst.control.loop_system import continuous_loop, plant_of
 from hyst.errors import InputError
 from hyst.operators.checks import as_number
 
+_SLOPES = 200
+
 
 def slope_margin(plant: Any, controller: Any, observer: Any, slopes: tuple[float, float]) -> float:
     """Tell how many times wider the range of slopes may be before stability is not proven.
@@ -55,16 +57,65 @@ def slope_margin(plant: Any, controller: Any, observer: Any, slopes: tuple[float
     >>> slope_margin(plant, integrator, None, (1.0, 1.0))
     inf
     """
-    low, high = (as_number(each, "slopes") for each in slopes)
-    if low > high:
-        raise InputError(f"slopes are {low:.6g} and {high:.6g}; give the smaller one first")
-    part = joined(feedback_controller(controller), disturbance_observer_of(observer))
-    loop = continuous_loop(plant_of(plant), part)
-    norm, _ = hinf_norm(_closed(loop, 0.5 * (low + high)))
+    low, high = _ordered(slopes)
+    norm, _ = hinf_norm(_closed(_open(plant, controller, observer), 0.5 * (low + high)))
     if math.isinf(norm):
         return 0.0
     half = 0.5 * (high - low)
     return math.inf if half * norm == 0.0 else 1.0 / (half * norm)
+
+
+def first_unstable_slope(
+    plant: Any, controller: Any, observer: Any, slopes: tuple[float, float]
+) -> float | None:
+    """Look for slopes of hysteresis after inverse at which the loop is unstable.
+
+    While the plays that move stay the same the loop is linear, with their slope as its gain. Where
+    it is unstable for a slope the hysteresis has, small motions there grow into bursts.
+
+    Parameters
+    ----------
+    plant, controller, observer
+        As in ``slope_margin``.
+    slopes
+        Least and largest slope that the hysteresis after the inverse has.
+
+    Returns
+    -------
+    float or None
+        The least of 200 evenly spaced slopes at which it is unstable; None if it is at none.
+
+    Raises
+    ------
+    InputError
+        If a block cannot be used, or the first slope is above the second.
+
+    Examples
+    --------
+    >>> plant, integrator = ([1.0], [1.0, 2.0, 1.0]), ([1.0], [1.0, 0.0])
+    >>> first_unstable_slope(plant, integrator, None, (0.5, 1.5)) is None
+    True
+    >>> round(first_unstable_slope(plant, integrator, None, (0.5, 2.5)), 2)
+    2.01
+    """
+    low, high = _ordered(slopes)
+    loop = _open(plant, controller, observer)
+    for gain in np.linspace(low, high, _SLOPES):
+        if (_closed(loop, float(gain)).poles().real >= 0.0).any():
+            return float(gain)
+    return None
+
+
+def _ordered(slopes: tuple[float, float]) -> tuple[float, float]:
+    low, high = (as_number(each, "slopes") for each in slopes)
+    if low > high:
+        raise InputError(f"slopes are {low:.6g} and {high:.6g}; give the smaller one first")
+    return low, high
+
+
+def _open(plant: Any, controller: Any, observer: Any) -> LinearSystem:
+    part = joined(feedback_controller(controller), disturbance_observer_of(observer))
+    return continuous_loop(plant_of(plant), part)
 
 
 def _closed(loop: LinearSystem, gain: float) -> LinearSystem:

@@ -41,6 +41,11 @@ class ObserverAnswer:
         Of the inverse's error over the range it is used in; None where there is none.
     slopes
         Least and largest slope of hysteresis after inverse over that range; None if not known.
+    unstable_slope
+        Least slope that hysteresis after inverse had in the simulation and at which the loop is
+        unstable; None if there is none.
+    seen_slopes
+        Least and largest slope it had there.
     slope_margin
         How many times wider that range may be before the circle criterion no longer proves the
         loop stable; None if not known.
@@ -55,6 +60,8 @@ class ObserverAnswer:
     bound: ErrorBound | None
     slopes: tuple[float, float] | None
     slope_margin: float | None
+    seen_slopes: tuple[float, float]
+    unstable_slope: float | None
 
     def checks(self) -> tuple[tuple[str, bool, str], ...]:
         """Give each condition of safety: what, whether it holds, and the number behind it."""
@@ -73,9 +80,16 @@ class ObserverAnswer:
         if c.perturbed_poles is not None:
             worst = f"pole {_rightmost(c.perturbed_poles)} 1/s"
             rows.append(("loop around the true plant is stable", c.perturbed_stable is True, worst))
+        low, high = self.seen_slopes
+        limit = self.unstable_slope
         rows += [
             (
-                f"so is the sampled loop, dt = {self.block.dt:g} s",
+                f"stable at each slope of hysteresis after inverse, {low:.3g} to {high:.3g}",
+                limit is None,
+                "poles for 200 slopes" if limit is None else f"unstable from {limit:.3g} on",
+            ),
+            (
+                f"sampled loop is stable, dt = {self.block.dt:g} s",
                 radius < 1.0,
                 f"largest |z| {radius:.6f}",
             ),
@@ -101,7 +115,7 @@ class ObserverAnswer:
         """Give the answer in one sentence."""
         failed = [what for what, holds, _ in self.checks() if not holds]
         if failed:
-            return f"NOT SAFE. Not so: {'; '.join(failed)}. And {self.design.message}."
+            return f"NOT SAFE. It fails: {'; '.join(failed)}. The design: {self.design.message}."
         margin = self.design.certificate.robust_stability_margin
         demand = (
             "rejects what Wp asks for"
@@ -109,10 +123,10 @@ class ObserverAnswer:
             else "does NOT reject all that Wp asks for "
             f"({self.design.certificate.performance_norm:.3g} times as much is left)"
         )
-        inverse = "proven" if self.proven_with_inverse else "simulated, not proven,"
+        inverse = "is proven" if self.proven_with_inverse else "is simulated, not proven"
         return (
             f"SAFE: the loop is stable for every plant within Wu, which may grow {margin:.3g} "
-            f"times, and {inverse} with the inverse ({self.inverse_name}); the observer {demand}."
+            f"times; with the inverse ({self.inverse_name}) it {inverse}; the observer {demand}."
         )
 
     def gain_sentence(self) -> str:
@@ -251,6 +265,8 @@ class ObserverAnswer:
             "inverse": self.inverse_name,
             "inverse_error_bound": None if self.bound is None else self.bound.to_dict(),
             "slopes": None if self.slopes is None else list(self.slopes),
+            "seen_slopes": list(self.seen_slopes),
+            "unstable_slope": self.unstable_slope,
             "slope_margin": _finite(self.slope_margin),
             "tracking": {
                 name: {
