@@ -211,3 +211,26 @@ def test_a_family_that_does_not_fit_at_all_is_left_out_of_a_comparison() -> None
     noisy = Record(u, 3.0 * u + np.random.default_rng(0).normal(size=u.size), 1e-3)
     found = identify(noisy, family="linear,ramberg-osgood", delay=0)
     assert [each.family for each in found.candidates] == ["linear"]
+
+
+def test_an_exponent_at_its_limit_is_told_and_is_no_estimate() -> None:
+    """The median step of the coarse record is a ninth of a branch: it tells no c3 above 8."""
+    for c3, samples, limit in ((45.0, 1000, "upper limit 30"), (25.0, 20, "upper limit")):
+        u = sine(1.0, samples, 3)
+        y = RambergOsgood(1.0, 2.0 * 2.0**-c3, c3)(u)
+        y += 1e-3 * np.random.default_rng(1).normal(size=u.size)
+        result = identify(Record(u, y, 1e-3), family="ramberg-osgood", delay=0, start=0)
+        told = " ".join(result.undetermined)
+        assert f"c3 came out at its {limit}" in told
+        assert "no estimates" in told
+        at = result.parameter_names.index("ramberg_osgood.c3")
+        assert np.isnan(result.standard_errors[at])
+
+
+def test_a_large_exponent_within_its_limits_is_found() -> None:
+    u = sine(1.0, 1000, 3)
+    y = RambergOsgood(1.0, 2.0 * 2.0**-20.0, 20.0)(u)
+    result = identify(Record(u, y, 1e-3), family="ramberg-osgood", delay=0, start=0)
+    # Brent's method ends within 1e-10 of log c3; noise there is none.
+    assert result.parameter_values[2] == pytest.approx(20.0, rel=1e-5)
+    assert result.undetermined == ()

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hyst.identification.covariance import robust_covariance, undetermined_combination
 from hyst.identification.data import Data, prepare
-from hyst.identification.families import RAMBERG_OSGOOD, Parametrization
+from hyst.identification.families import RAMBERG_OSGOOD, Parametrization, at_limit_of_power
 from hyst.identification.fitting import Fit, Fitter, model_jacobian, model_output
 from hyst.identification.identified import Candidate, Identified
 from hyst.operators import ModelDescription, Operator
@@ -52,6 +52,8 @@ def assemble(
         # Those of a fit of the output would be too small for one of slopes.
         errors, not_told_apart = np.full(errors.size, np.nan), ()
     names = np.array(operator.parameters().names)
+    if fit.family == RAMBERG_OSGOOD:
+        left_out += at_limit_of_power(parametrization, fit.solution.theta)
     notes = left_out + _idle_plays(plays_wanted, parametrization.plays) + not_told_apart
     return Identified(
         model=operator,

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.separable import LARGEST_POWER, SMALLEST_POWER, PowerLawFit
+from hyst.identification.separable import SMALLEST_POWER, PowerLawFit
 from hyst.identification.weight_rules import NON_NEGATIVE, basis
 from hyst.models import (
     GeneralizedPrandtlIshlinskii,
@@ -229,10 +229,38 @@ def parametrize_power_law(
             transform=transform,
             fixed=np.array([0.0, 0.0, 0.0, sign, 0.0]),
             lower=np.array([SMALLEST_SLOPE * mean_slope, 0.0, SMALLEST_POWER, -np.inf]),
-            upper=np.array([np.inf, np.inf, LARGEST_POWER, np.inf]),
+            upper=np.array([np.inf, np.inf, fit.largest_power, np.inf]),
             basis=np.eye(1),
         ),
         np.array([fit.c1, fit.c2, fit.c3, fit.offset]),
+    )
+
+
+def at_limit_of_power(parametrization: Parametrization, theta: Array) -> tuple[str, ...]:
+    """Say if the exponent of a power law ended at a limit, so that it is no estimate.
+
+    Parameters
+    ----------
+    parametrization, theta
+        A fit of a Ramberg-Osgood model.
+
+    Returns
+    -------
+    tuple of str
+        A sentence, or nothing.
+    """
+    low, high, c3 = parametrization.lower[2], parametrization.upper[2], theta[2]
+    margin = 1e-3 * c3
+    if low + margin < c3 < high - margin:
+        return ()
+    which, shape = (
+        ("upper", "the loop bends more sharply at its ends")
+        if c3 >= high - margin
+        else ("lower", "the slope grows more suddenly after a reversal")
+    )
+    return (
+        f"c3 came out at its {which} limit {c3:.4g}: {shape} than a power law that this record can "
+        "tell, so c3 and c2 are no estimates; compare family 'pi', or sample more often",
     )
 
 

@@ -24,12 +24,13 @@ from hyst.signals import Record, estimate_noise, reversals, suggest_dead_band
 Array = NDArray[np.float64]
 
 SMALLEST_POWER, LARGEST_POWER = 0.02, 30.0
-"""Of c3: below, a line and c2 p^c3 are one; beyond, the curve is a line with a jump at its end."""
+"""Of c3: below, a line and c2 p^c3 are one; beyond, the curve is a line with a jump at its end.
+Coarse records tell even less; see ``largest_power``."""
 
 GRID = 48
 
 SMALLEST_SHARE = 1e-9
-"""Of c2, in units of half the input range, in c1: below, there is no hysteresis but rounding."""
+"""Of c2 p^c3 at the end of the largest branch in c1: below, there is no hysteresis but rounding."""
 SMALLEST_GAIN = 15.0
 """Squared residual a power law must save against a line, in residual variances."""
 
@@ -78,6 +79,8 @@ class PowerLawFit:
         Of the memory, input units.
     evaluations
         How many exponents were tried.
+    largest_power
+        The largest c3 the records could tell.
     """
 
     c1: float
@@ -86,6 +89,24 @@ class PowerLawFit:
     offset: float
     dead_band: float
     evaluations: int
+    largest_power: float = LARGEST_POWER
+
+
+def largest_power(data: Data) -> float:
+    """Give the largest c3 that records tell from a line with a jump at its end.
+
+    The curve bends within about ``1/(c3 + 1)`` of the end of a branch; a step of the input, the
+    median of those that are one, must be shorter than that.
+
+    Parameters
+    ----------
+    data
+        The records.
+    """
+    windows = zip(data.records, data.windows(), strict=True)
+    steps = np.abs(np.concatenate([np.diff(record.u[window]) for record, window in windows]))
+    share = float(np.median(steps[steps > 0.0])) / (2.0 * data.half_range)
+    return float(np.clip(1.0 / share - 1.0, 2.0, LARGEST_POWER))
 
 
 def fit_power_law(data: Data, options: PowerLawOptions, sign: float = 1.0) -> PowerLawFit:
@@ -121,10 +142,11 @@ def fit_power_law(data: Data, options: PowerLawOptions, sign: float = 1.0) -> Po
         table = _slope_table(data, regressor, sign, options.signal_to_noise)
     else:
         table = _output_table(data, regressor, sign)
-    c3, evaluations = _least(lambda power: _solve(*table(power))[1])
+    largest = largest_power(data)
+    c3, evaluations = _least(lambda power: _solve(*table(power))[1], largest)
     (c1, c2), left = _solve(*table(c3))
-    # In these units a full branch of the largest loop is p = 2, so both parts compare as they are.
-    if not (c1 > 0.0 and c2 > SMALLEST_SHARE * c1):
+    # In these units a full branch of the largest loop is p = 2.
+    if not (c1 > 0.0 and c2 * 2.0**c3 > SMALLEST_SHARE * c1):
         raise NotIdentifiableError(
             "the slope of the loop does not grow with the way since a reversal, so that no power "
             "law with c1, c2 > 0 fits; use family 'pi' or 'linear'"
@@ -134,7 +156,7 @@ def fit_power_law(data: Data, options: PowerLawOptions, sign: float = 1.0) -> Po
     c2 *= regressor.unit**-c3
     modelled = sign * (c1 * regressor.input() + c2 * regressor(c3) * regressor.unit**c3)
     offset = float(np.mean(data.measured() - modelled))
-    return PowerLawFit(float(c1), float(c2), c3, offset, band, evaluations)
+    return PowerLawFit(float(c1), float(c2), c3, offset, band, evaluations, largest)
 
 
 def _require_a_loop(matrix: Array, target: Array, left: float) -> None:
@@ -239,9 +261,9 @@ def _solve(matrix: Array, target: Array) -> tuple[Array, float]:
     return coefficients / scale, max(beyond, 0.0) + float(residual) ** 2
 
 
-def _least(cost: Callable[[float], float]) -> tuple[float, int]:
+def _least(cost: Callable[[float], float], largest: float) -> tuple[float, int]:
     """Find the global minimum over c3: a grid over log c3, then Brent's method in every dip."""
-    grid = np.geomspace(SMALLEST_POWER, LARGEST_POWER, GRID)
+    grid = np.geomspace(SMALLEST_POWER, largest, GRID)
     costs = np.array([cost(float(power)) for power in grid])
     evaluations = GRID
     best, least = float(grid[np.argmin(costs)]), float(costs.min())

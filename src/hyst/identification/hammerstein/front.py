@@ -13,6 +13,7 @@ from hyst.identification.bounded_least_squares import minimize
 from hyst.identification.data import LARGEST_RADIUS, prepare
 from hyst.identification.families import GPI, LINEAR, MPI, PI, Parametrization
 from hyst.identification.fitting import Fitter, problem_of
+from hyst.identification.separable import SMALLEST_POWER, largest_power
 from hyst.models import GeneralizedPrandtlIshlinskii, PrandtlIshlinskii, RambergOsgood
 from hyst.operators import Affine, DeadZone, Operator
 from hyst.signals import Record
@@ -179,16 +180,17 @@ def _ramberg_osgood(record: Record, _: FrontOptions) -> Front:
     constants = template.parameters().values
     transform = np.zeros((5, 4))
     transform[[0, 1, 2, 4], np.arange(4)] = 1.0
-    lower = np.array([1e-3 * abs(slope), 0.0, 0.05, -np.inf])
+    data = prepare(record, "auto", 0)
+    lower = np.array([1e-3 * abs(slope), 0.0, SMALLEST_POWER, -np.inf])
     parametrization = Parametrization(
         template,
         transform,
         np.array([0.0, 0.0, 0.0, sign, 0.0]),
         lower,
-        np.array([np.inf, np.inf, 8.0, np.inf]),
+        np.array([np.inf, np.inf, largest_power(data), np.inf]),
         np.eye(1),
     )
-    problem = problem_of(prepare(record, "auto", 0), parametrization)
+    problem = problem_of(data, parametrization)
     theta = minimize(problem, constants[[0, 1, 2, 4]], 60).theta
     return Front(RAMBERG_OSGOOD, parametrization, theta)
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from hyst.errors import NotIdentifiableError, NotInvertibleError, SolverError
 from hyst.identification.bounded_least_squares import CONVERGED, Solution
 from hyst.identification.data import Data, prepare
+from hyst.identification.families import RAMBERG_OSGOOD, at_limit_of_power
 from hyst.identification.hammerstein.front import FrontOptions, first_front
 from hyst.identification.hammerstein.identified_hammerstein import IdentifiedHammerstein, Loop
 from hyst.identification.hammerstein.joint import (
@@ -275,6 +276,8 @@ def _result(
         loop = Loop(first.u, inverse(first.y), inverse.valid(len(first)), band)
     if realized.stabilized:
         notes += ("the realization was not stable and was replaced by a stable one",)
+    if joint.front.family == RAMBERG_OSGOOD:
+        notes += at_limit_of_power(joint.front.parametrization, theta[: joint.front_size])
     return IdentifiedHammerstein(
         model=model,
         family="hammerstein",
