@@ -100,6 +100,12 @@ class Exported:
     """An exported project in double, loaded from its shared library."""
 
     def __init__(self, library: Path, state_length: int, saved_bytes: int, inputs: int = 1) -> None:
+        self._prepare(library, state_length, saved_bytes)
+        step = self._function("step")
+        step.restype = ctypes.c_double
+        step.argtypes = [ctypes.c_void_p] + [ctypes.c_double] * inputs
+
+    def _prepare(self, library: Path, state_length: int, saved_bytes: int) -> None:
         class State(ctypes.Structure):
             _fields_ = (
                 ("memory", ctypes.c_double * max(state_length, 1)),
@@ -114,10 +120,6 @@ class Exported:
         self._bytes = saved_bytes
         self.state_size = ctypes.sizeof(State)
         self._new = State
-        self._inputs = inputs
-        step = self._function("step")
-        step.restype = ctypes.c_double
-        step.argtypes = [ctypes.c_void_p] + [ctypes.c_double] * inputs
 
     def _function(self, suffix: str) -> Any:
         return getattr(self._library, f"{self._name}_{suffix}")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, final
 
 from hyst import _single
@@ -16,10 +16,11 @@ from hyst.export.recording import record_stages
 from hyst.export.stage_code import StageCode
 from hyst.export.stages import Stage
 from hyst.models.stable_inverse import StableInverse
+from hyst.online import JointEstimator
 from hyst.operators import Affine, Operator
 from hyst.operators.registry import compose
 
-Model = Operator | TrackingController | StableInverse
+Model = Operator | TrackingController | StableInverse | JointEstimator
 
 
 @final
@@ -55,6 +56,12 @@ class Block:
         What a signal passes, for the choice of a test signal.
     stepper
         Makes a function that gives the same numbers in Python, in double.
+    single_stepper
+        The same in single, for what is no chain of stages.
+    is_estimator
+        Whether it takes in samples and gives commands instead of one output a sample.
+    more
+        What else the templates of an estimator need.
     """
 
     kind: str
@@ -70,6 +77,9 @@ class Block:
     stages: tuple[Stage, ...]
     chain: Operator
     stepper: Callable[[], Callable[..., float]]
+    single_stepper: Callable[[], Callable[..., float]] | None = None
+    is_estimator: bool = False
+    more: Mapping[str, str] = field(default_factory=dict)
 
     def sha256(self) -> str:
         """Give the hash of the model."""
@@ -99,6 +109,8 @@ def stepper_of(block: Block, precision: Precision) -> Callable[..., float]:
     """
     if precision == "double":
         return block.stepper()
+    if block.single_stepper is not None:
+        return block.single_stepper()
     stages = [
         (stage.kind, stage.form, dict(stage.numbers), dict(stage.tables), dict(stage.choices))
         for stage in block.stages
@@ -134,7 +146,8 @@ def block_of(model: Model, precision: Precision) -> Block:
         )
     if not isinstance(model, Operator):
         raise InputError(
-            f"{type(model).__name__} cannot be exported; give an operator or a tracking controller"
+            f"{type(model).__name__} cannot be exported here; give an operator or a tracking "
+            "controller; a joint estimator is exported as C"
         )
     code = StageCode(record_stages(model), precision)
     return Block(

@@ -7,6 +7,7 @@ from hyst.export.block import Block
 from hyst.export.drive import PERIOD, SAMPLES
 from hyst.export.names import plain_text
 from hyst.export.numbers import Precision, literal, table
+from hyst.export.readme import signals
 from hyst.export.selftest import BAD, SEEDS, SelfTest
 from hyst.export.templating import filled, indented
 from hyst.operators.model_file import ModelDescription
@@ -62,12 +63,17 @@ def places(
         "samples": str(SAMPLES),
         "signals": _signals(block, about),
         "sample_time": _sample_time(block, name),
+        # What a refused sample leaves in an estimator's scratch area is of no use.
+        "saved_number": "hyst_is_finite(state->memory[i]) ? state->memory[i] : HYST_REAL(0.0)"
+        if block.is_estimator
+        else "state->memory[i]",
+        **block.more,
     }
 
 
-def header(places: dict[str, str]) -> str:
-    """Give the header file, filled with ``places``."""
-    return filled("block.h", places)
+def header(block: Block, places: dict[str, str]) -> str:
+    """Give the header file of a ``block``, filled with ``places``."""
+    return filled(f"{_template(block)}.h", places)
 
 
 def source(block: Block, places: dict[str, str], precision: Precision) -> str:
@@ -83,12 +89,15 @@ def source(block: Block, places: dict[str, str], precision: Precision) -> str:
         "calls": indented(block.body),
         "signal": block.signal,
     }
-    return filled("block.c", places | more) + filled("state.c", places)
+    return filled(f"{_template(block)}.c", places | more) + filled("state.c", places)
 
 
 def selftest_source(block: Block, places: dict[str, str]) -> str:
     """Give the self-test of a ``block``, filled with ``places``."""
-    one = len(block.inputs) == 1
+    shared = places | {"drive": filled("drive.c", {})}
+    if block.is_estimator:
+        bad = {"bad_u": str(BAD[0]), "bad_y": str(BAD[1])}
+        return filled("estimator_selftest.c", shared | bad)
     drives = [f"drive_{each}" for each in block.inputs]
     lines = [
         f"static drive {each} = {{{seed}u, DRIVE_LOW, DRIVE_LOW, 1}};"
@@ -99,12 +108,12 @@ def selftest_source(block: Block, places: dict[str, str]) -> str:
         for name, each, bad in zip(block.inputs, drives, BAD, strict=False)
     ]
     more = {
-        "ones": "1" if one else "1, 1",
+        "ones": ", ".join("1" for _ in block.inputs),
         "drives": indented("\n".join(lines)) + "\n",
         "samples_drawn": indented("\n".join(drawn), 8) + "\n",
         "arguments": ", ".join(block.inputs),
     }
-    return filled("selftest.c", places | more)
+    return filled("selftest.c", shared | more)
 
 
 def vectors(test: SelfTest, places: dict[str, str], precision: Precision) -> str:
@@ -116,20 +125,28 @@ def vectors(test: SelfTest, places: dict[str, str], precision: Precision) -> str
         "stride": str(drive.stride),
         "period": str(PERIOD),
         "unit": literal(drive.unit, precision, "unit"),
+        "measured": _measured(test, precision),
         "expected": table(test.expected.tolist(), precision, "expected"),
     }
     return filled("selftest_vectors.h", places | more)
 
 
+def _template(block: Block) -> str:
+    return "estimator" if block.is_estimator else "block"
+
+
+def _measured(test: SelfTest, precision: Precision) -> str:
+    if test.measured is None:
+        return ""
+    values = table(test.measured.tolist(), precision, "measured")
+    return f"static const hyst_real measured[SAMPLES] = {values};\n"
+
+
 def _signals(block: Block, about: ModelDescription) -> str:
     lines = [""]
-    if len(block.inputs) == 1:
-        for role, name, unit in (
-            (block.inputs[0], about.input_name, about.input_unit),
-            (block.output, about.output_name, about.output_unit),
-        ):
-            said = f" in {plain_text(unit)}" if unit else ""
-            lines.append(f" *   {role}: {plain_text(name)}{said}")
+    for role, (name, unit) in signals(block, about).items():
+        said = f" in {plain_text(unit)}" if unit else ""
+        lines.append(f" *   {role}: {plain_text(name)}{said}")
     return "\n".join(lines) + "\n" if len(lines) > 1 else "\n"
 
 

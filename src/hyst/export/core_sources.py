@@ -11,9 +11,8 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from hyst import _engine
 from hyst.errors import HystError
-
-_HERE = Path(__file__).resolve()
 
 _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 _CALL = re.compile(r"\b(hyst_\w+)\s*\(")
@@ -28,21 +27,18 @@ def core_folder() -> Path:
     Returns
     -------
     pathlib.Path
-        That of the source tree hyst is run from, or the copy in the installed package.
+        The copy beside the compiled engine: what it was compiled from, whatever has been changed in
+        a source tree since.
 
     Raises
     ------
     HystError
-        If there is neither.
+        If it is not there.
     """
-    package = _HERE.parents[1]
-    # An installed copy beside a source tree would be what was built last, not what is there now.
-    for folder in (package.parents[1] / "core", package / "core"):
-        if (folder / "SOURCES").is_file():
-            return folder
-    raise HystError(
-        f"the C sources of the core are not in {package}; install hyst from a wheel or its source"
-    )
+    folder = Path(_engine.__file__).resolve().parent / "core"
+    if not (folder / "SOURCES").is_file():
+        raise HystError(f"the C sources of the core are not in {folder}; install hyst again")
+    return folder
 
 
 def core_files(text: str) -> dict[str, bytes]:

@@ -14,11 +14,14 @@ from hyst.export.block import Block, Model, block_of
 from hyst.export.c_sources import WORD_BYTES, header, places, selftest_source, source, vectors
 from hyst.export.core_sources import core_files
 from hyst.export.drive import SAMPLES
+from hyst.export.estimator import estimator_block
 from hyst.export.folder import FORMAT, MANIFEST, write_export
-from hyst.export.names import as_c_name, plain_text
+from hyst.export.names import as_c_name
 from hyst.export.numbers import Precision, as_precision
+from hyst.export.readme import readme
 from hyst.export.selftest import SelfTest
 from hyst.export.templating import filled
+from hyst.online import JointEstimator
 from hyst.operators import ModelDescription
 
 
@@ -71,7 +74,8 @@ def c_project(
     Parameters
     ----------
     model
-        Any operator, or a tracking controller, whose step takes y_ref and y.
+        Any operator; a tracking controller, whose step takes y_ref and y; or a joint estimator,
+        which takes in samples and gives commands, from the estimate and the memory it has now.
     folder
         What to create: a folder, or a zip if it ends in ``.zip``.
     precision
@@ -105,7 +109,10 @@ def c_project(
     as_c_name(name)
     exact = as_precision(precision)
     about = description or ModelDescription()
-    block = block_of(model, exact)
+    if isinstance(model, JointEstimator):
+        block = estimator_block(model, exact)
+    else:
+        block = block_of(model, exact)
     test = SelfTest.of(block, exact, about)
     files = project_files(block, test, name, exact, about)
     length = max(len(block.start), 1)
@@ -146,8 +153,8 @@ def project_files(
         Content by path.
     """
     common = places(block, name, precision, about)
-    main = source(block, common, precision)
-    core = {f"core/{path}": text for path, text in core_files(main + header(common)).items()}
+    head, main = header(block, common), source(block, common, precision)
+    core = {f"core/{path}": text for path, text in core_files(main + head).items()}
     sources = [f"{name}.c", *(path for path in core if path.endswith(".c"))]
     cmake = {
         "sources": "\n".join(f"  {each}" for each in sources),
@@ -156,51 +163,16 @@ def project_files(
         else "",
     }
     texts = {
-        f"{name}.h": header(common),
+        f"{name}.h": head,
         f"{name}.c": main,
         "selftest.c": selftest_source(block, common),
         "selftest_vectors.h": vectors(test, common, precision),
         "CMakeLists.txt": filled("CMakeLists.txt", common | cmake),
-        "README.md": _readme(block, common, about, len(sources) > 1, test),
+        "LICENSE": filled("LICENSE", {}),
+        "README.md": readme(block, common, about, test, len(sources) > 1),
     }
     files = {path: text.encode("ascii") for path, text in texts.items()} | core
     return files | {MANIFEST: _manifest(block, name, precision, files, test)}
-
-
-def _readme(
-    block: Block, common: dict[str, str], about: ModelDescription, has_core: bool, test: SelfTest
-) -> str:
-    length = max(len(block.start), 1)
-    word = int(common["word_bytes"])
-    rows = {
-        "model": plain_text(block.kind),
-        "precision": common["precision"],
-        "state": f"{word * (length + 1) + 8} bytes, {len(block.start)} numbers of memory",
-        "saved state": f"{common['saved_bytes']} bytes",
-        "sample time": "any" if block.dt is None else f"{block.dt!r} s, and no other",
-    }
-    if common["precision"] == "single":
-        rows["away from double"] = (
-            f"at most {test.away_from_double:.3g} over the self-test, whose input goes "
-            f"from {test.drive.low * test.drive.unit:.6g} to {test.drive.high:.6g}"
-        )
-    if len(block.inputs) == 1:
-        rows |= {
-            f"input {block.inputs[0]}": _signal(about.input_name, about.input_unit),
-            f"output {block.output}": _signal(about.output_name, about.output_unit),
-        }
-    more = {
-        "rows": "\n".join(f"| {key} | {value} |" for key, value in rows.items()),
-        "elements": ", ".join(block.inputs),
-        "notes": "",
-        "in_precision": " in single precision" if common["precision"] == "single" else "",
-    }
-    text = filled("README.md", common | more)
-    return text if has_core else text.replace(" core/src/*.c", "")
-
-
-def _signal(name: str, unit: str) -> str:
-    return f"{plain_text(name)} in {plain_text(unit)}" if unit else plain_text(name)
 
 
 def _manifest(

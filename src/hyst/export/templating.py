@@ -23,7 +23,9 @@ def filled(template: str, values: dict[str, str]) -> str:
     -------
     str
     """
-    text = (_FOLDER / f"{template}.in").read_text(encoding="utf-8")
+    with_places = _FOLDER / f"{template}.in"
+    file = with_places if with_places.exists() else _FOLDER / template
+    text = file.read_text(encoding="utf-8")
     return _PLACE.sub(lambda place: values[place[1]], text)
 
 
