@@ -19,6 +19,7 @@ import hyst
 from hyst import DeadZone, ModifiedPrandtlIshlinskii, Operator, PrandtlIshlinskii
 from hyst.control import TrackingController
 from hyst.export.recording import record_stages
+from hyst.online import JointEstimator
 from reference.examples import EXAMPLES, PI
 
 VERSIONS = ("2.0", "3.0")
@@ -60,6 +61,28 @@ CONTROLLER = TrackingController(
     [[0.9, 0.1], [0.0, 0.5]], [[1.0, -1.0], [0.2, 0.3]], [0.5, 0.1], [0.7, 0.0],
     dt=1e-3, inverse=PI.inverse(),
 )  # fmt: skip
+
+
+def estimation() -> tuple[JointEstimator, np.ndarray, np.ndarray, np.ndarray]:
+    """A fresh estimator; input, measured output and reference, some samples of them missing."""
+    truth = PrandtlIshlinskii(1.2 * PI.p, 0.9 * PI.r, p0=0.4)
+    u, y_ref = rough_signal(400, 1), rough_signal(400, 3)
+    y = truth(u) + np.random.default_rng(0).normal(0.0, 0.01, u.size)
+    u[70], y[100], y_ref[130] = np.inf, np.nan, np.nan
+    return JointEstimator(PI, dt=1e-3), u, y, y_ref
+
+
+def estimated(
+    estimator: JointEstimator, u: np.ndarray, y: np.ndarray, y_ref: np.ndarray
+) -> np.ndarray:
+    """The commands, each after the sample has been taken in; without a number, the last input."""
+    commands, last = np.empty(u.size), 0.0
+    for k in range(u.size):
+        if estimator.update(u[k], y[k]):
+            last = u[k]
+        command = estimator.command(y_ref[k])
+        commands[k] = command if np.isfinite(command) else last
+    return commands
 
 
 def rough_signal(samples: int, seed: int = 0, size: float = 6.0) -> np.ndarray:

@@ -7,13 +7,17 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
+from fmpy.validation import validate_fmu
 from fmu_runs import (
     CONTROLLER,
+    ERROR,
     INVERSE_MPI,
     MPI,
     SHAPES,
     VERSIONS,
     FmuRun,
+    estimated,
+    estimation,
     has_compiler,
     rough_signal,
 )
@@ -175,3 +179,23 @@ def test_an_inverse_before_its_model(version: str, tmp_path: Path) -> None:
         assert abs(model.get("y") - wanted) < 1e-13
     inverse.free()
     model.free()
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_an_estimator(version: str, tmp_path: Path) -> None:
+    estimator, u, y, y_ref = estimation()
+    written = hyst.export.fmu(estimator, tmp_path / "model.fmu", version, compiler=STRICT)
+    assert (written.inputs, written.output) == (("u", "y", "y_ref"), "command")
+    assert validate_fmu(str(written.path)) == []
+    run = FmuRun(written, tmp_path).initialize()
+    commands = np.empty(u.size)
+    for k in range(u.size):
+        run.set(u=u[k], y=y[k], y_ref=y_ref[k])
+        run.step(k * 1e-3, 1e-3)
+        commands[k] = run.get("command")
+    assert commands.tobytes() == estimated(estimator, u, y, y_ref).tobytes()
+    assert [run.get(name) for name in estimator.names] == estimator.parameters.tolist()
+    assert run.get("fault") == 1
+    with run.refusal(ERROR):
+        run.set(p0=1.0)
+    run.free()

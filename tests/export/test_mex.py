@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fmu_runs import CONTROLLER, INVERSE_MPI, SHAPES, rough_signal
+from fmu_runs import CONTROLLER, INVERSE_MPI, SHAPES, estimated, estimation, rough_signal
 
 import hyst
 from hyst.operators import ModelDescription
@@ -146,6 +146,32 @@ def test_a_controller_with_two_inputs(tmp_path: Path) -> None:
     assert (folder / "u.bin").read_bytes() == CONTROLLER.run(y_ref, y)[0].tobytes()
     assert "a signal is missing" in said
     assert "the signals differ in length" in said
+
+
+@needs_octave
+def test_an_estimator(tmp_path: Path) -> None:
+    estimator, *signals = estimation()
+    folder = compiled(hyst.export.mex(estimator, tmp_path / "adapt", "adapt"))
+    reading = ""
+    for name, signal in zip(("u", "y", "y_ref"), signals, strict=True):
+        signal.tofile(folder / f"{name}.bin")
+        reading += READ.format(name)
+    program = """
+    object = adapt();
+    commands = object.step(u, y, y_ref);
+    theta = object.estimate();
+    disp(object.fault())
+    [~, state] = adapt(u(1:70), y(1:70), y_ref(1:70));
+    try, adapt(u, y, y_ref), catch e, disp(e.message), end
+    try, adapt(u(1:5), y(1:5), NaN(5, 1)), catch e, disp(e.message), end
+    """
+    said = octave(folder, reading + program + WRITE.format("commands") + WRITE.format("theta"))
+    assert (folder / "commands.bin").read_bytes() == estimated(estimator, *signals).tobytes()
+    assert (folder / "theta.bin").read_bytes() == estimator.parameters.tobytes()
+    lines = said.splitlines()
+    assert lines[0] == "1"
+    assert "sample 71 is not finite" in lines[1]
+    assert "sample 1 is not finite" in lines[2]
 
 
 BAD = {

@@ -23,6 +23,7 @@ from hyst.export.fmu_description import (
 from hyst.export.fmu_sources import FmuModel, fmu_model, fmu_sources
 from hyst.export.folder import FORMAT, MANIFEST, write_export
 from hyst.export.names import as_c_name
+from hyst.export.tool_block import tool_block
 from hyst.operators import ModelDescription
 
 _VERSIONS: tuple[FmiVersion, ...] = ("2.0", "3.0")
@@ -82,7 +83,7 @@ def fmu(
     Parameters
     ----------
     model
-        Any operator, or a tracking controller.
+        Any operator, a tracking controller or a joint estimator.
     path
         The file to create; it ends in ``.fmu``.
     version
@@ -168,21 +169,20 @@ def _contents(
 
 
 def _describe(model: FmuModel, name: str, about: ModelDescription, token: str) -> FmuDescription:
-    block = model.block
-    inputs = tuple(Signal(each, each, "") for each in block.inputs)
-    output = Signal(block.output, block.output, "")
-    if len(inputs) == 1:
-        inputs = (Signal(block.inputs[0], about.input_name, about.input_unit),)
-        output = Signal(block.output, about.output_name, about.output_unit)
+    tool = model.tool
+    units = {"u": (about.input_name, about.input_unit), "y": (about.output_name, about.output_unit)}
+    units |= {"y_ref": (f"wanted {units['y'][0]}", units["y"][1])}
+    units |= {"command": (f"wanted {units['u'][0]}", units["u"][1])}
     return FmuDescription(
         identifier=name,
-        kind=block.kind,
+        kind=tool.block.kind,
         token=token,
-        inputs=inputs,
-        output=output,
+        inputs=tuple(Signal(each, *units[each]) for each in tool.inputs),
+        output=Signal(tool.output, *units[tool.output]),
         direct=model.direct,
         parameters=model.parameters,
-        dt=block.dt,
+        estimates=tool.estimates,
+        dt=tool.block.dt,
     )
 
 
@@ -206,7 +206,7 @@ def _below_sources(files: dict[str, bytes]) -> dict[str, bytes]:
 
 
 def _manifest(model: Model, name: str, version: str, files: dict[str, bytes]) -> bytes:
-    block = fmu_model(model).block
+    block = tool_block(model).block
     content = {
         "format": FORMAT,
         "version": 1,

@@ -62,6 +62,8 @@ class FmuDescription:
         Of each input, whether the output depends on it in the same sample.
     parameters
         The constants that may be set.
+    estimates
+        Names of the parameters that are estimated.
     dt
         Sample time, seconds; None if any will do.
     """
@@ -73,6 +75,7 @@ class FmuDescription:
     output: Signal
     direct: tuple[bool, ...]
     parameters: tuple[ParameterVariable, ...]
+    estimates: tuple[str, ...]
     dt: float | None
 
 
@@ -220,6 +223,14 @@ def _variables_2(about: FmuDescription) -> Sequence[Element]:
             _scalar(
                 each.name, first + each.place, each.meaning, "parameter", kind,
                 initial="exact", start=start,
+            )
+        )  # fmt: skip
+    # An estimator has no parameters: its estimates follow the fault.
+    for place, name in enumerate(about.estimates):
+        found.append(
+            _scalar(
+                name, first + place, "estimated parameter", "local", "continuous",
+                initial="calculated",
             )
         )  # fmt: skip
     return found

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
 
-from hyst.export.block import Block, Model, block_of
+from hyst.export.block import Model
 from hyst.export.c_sources import header, places, source
 from hyst.export.core_sources import core_files
 from hyst.export.fmu_description import FmiVersion
@@ -19,8 +19,10 @@ from hyst.export.fmu_variables import (
     parameter_variables,
 )
 from hyst.export.numbers import table
+from hyst.export.one_file import renamed, shared_names
 from hyst.export.stage_code import StageCode
 from hyst.export.templating import filled, indented
+from hyst.export.tool_block import ToolBlock, tool_block
 from hyst.operators import ModelDescription
 
 _TEMPLATES = Path(__file__).resolve().parent / "templates" / "fmu"
@@ -40,13 +42,13 @@ class FmuModel:
 
     Parameters
     ----------
-    block
-        One sample of it, with the constants where ``code`` has them.
+    tool
+        One call of it, with the constants where ``code`` has them.
     code
         Its stages.
     """
 
-    block: Block
+    tool: ToolBlock
     code: StageCode
 
     @property
@@ -57,7 +59,7 @@ class FmuModel:
     @property
     def direct(self) -> tuple[bool, ...]:
         """Of each input, whether the output depends on it in the same sample."""
-        return direct_inputs(self.block.stages, self.block.inputs)
+        return direct_inputs(self.tool.block.stages, self.tool.inputs)
 
     def values(self) -> tuple[float, ...]:
         """Give all constants, one after the other."""
@@ -81,14 +83,14 @@ def fmu_model(model: Model) -> FmuModel:
     InputError
         If it cannot be exported.
     """
-    block = block_of(model, "double")
+    tool = tool_block(model)
+    block = tool.block
     fixed = StageCode(block.stages, "double").calls(block.signal)
     code = StageCode(block.stages, "double", _HELD_BY)
-    if fixed not in block.body:
-        # More than stages one after the other: all constants stay those of the file.
-        return FmuModel(block, replace(code, stages=()))
+    if block.is_estimator:
+        return FmuModel(tool, code)
     body = block.body.replace(fixed, code.calls(block.signal))
-    return FmuModel(replace(block, head="", body=body), code)
+    return FmuModel(replace(tool, block=replace(block, head="", body=body)), code)
 
 
 def fmu_sources(
@@ -114,7 +116,7 @@ def fmu_sources(
     dict
         Content by path.
     """
-    block = model.block
+    block = model.tool.block
     common = places(block, name, "double", about)
     held = {
         "arguments": f"const hyst_fmu_constants *constants, {common['arguments']}",
@@ -122,17 +124,17 @@ def fmu_sources(
         "elements": f"constants, {common['elements']}",
     }
     stage = source(block, common | held, "double")
-    if _HELD_BY not in block.body:
+    if _HELD_BY not in block.body and not block.is_estimator:
         stage = stage.replace(
             "    if (state->ready", "    (void)constants;\n    if (state->ready", 1
         )
     core = {
         path.replace("include/", "").replace("src/", "hyst_core_"): text
-        for path, text in core_files(stage + header(common)).items()
+        for path, text in core_files(stage + header(block, common)).items()
     }
     files = (*_COMMON, *_OF_VERSION[version])
     return core | {file: (_TEMPLATES / file).read_bytes() for file in files} | {
-        f"{name}.h": header(common | held).encode("ascii"),
+        f"{name}.h": header(block, common | held).encode("ascii"),
         f"{name}.c": stage.encode("ascii"),
         "hyst_model.h": _model_header(model, common, token).encode("ascii"),
         "hyst_names.h": _names(name, core).encode("ascii"),
@@ -141,20 +143,23 @@ def fmu_sources(
 
 
 def _model_header(model: FmuModel, common: dict[str, str], token: str) -> str:
-    block, values = model.block, model.values()
+    tool, values = model.tool, model.values()
+    dt = tool.block.dt
     rules = [rule.value for rule in constant_rules(model.code)]
     members = model.code.declarations() or "hyst_real none;\n"
-    elements = [f"(input)[{k}]" for k in range(len(block.inputs))]
+    signals = tuple(f"(input)[{k}]" for k in range(len(tool.inputs)))
     more = {
         "token": token,
-        "inputs": str(len(block.inputs)),
+        "inputs": str(len(tool.inputs)),
+        "estimates": str(len(tool.estimates)),
+        "estimate": f"(state)->memory[{common['NAME']}_THETA + (place)]"
+        if tool.estimates
+        else "HYST_REAL(0.0)",
         "count": str(len(values)),
         "size": str(max(len(values), 1)),
-        "sample_time": ""
-        if block.dt is None
-        else f"#define HYST_FMU_DT {block.dt!r} /* seconds */\n",
+        "sample_time": "" if dt is None else f"#define HYST_FMU_DT {dt!r} /* seconds */\n",
         "members": indented(members, 8),
-        "arguments": ", ".join(["state", "constants", *elements]),
+        "evaluate": tool.step(common["name"], "state", signals, "constants, "),
         "defaults": table(values or (0.0,), "double", "constants"),
         "rules": f"{{{_in_rows(rules or [0])}}}",
     }
@@ -180,9 +185,13 @@ def _names(name: str, core: dict[str, bytes]) -> str:
 
 def _all(core: dict[str, bytes], common: dict[str, str], version: FmiVersion) -> str:
     interface = _OF_VERSION[version]
+    texts = {path: text.decode("ascii") for path, text in core.items() if path.endswith(".c")}
+    shared = shared_names(texts)
     more = {
         "api": interface[0].removesuffix(".c").removeprefix("hyst_"),
-        "core": "".join(f'#include "{each}"\n' for each in core if each.endswith(".c")),
+        "core": "".join(
+            renamed(each, shared.get(each, ()), f'#include "{each}"\n') for each in texts
+        ),
         "interface": "".join(f'#include "{each}"\n' for each in interface if each.endswith(".c")),
     }
     return filled("fmu/hyst_all.c", common | more)

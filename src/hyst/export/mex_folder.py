@@ -7,17 +7,19 @@ import json
 import os
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import wrap
 from typing import final
 
 import hyst
 from hyst.errors import InputError
-from hyst.export.block import Block, Model, block_of
+from hyst.export.block import Block, Model
 from hyst.export.c_sources import header, places, source
 from hyst.export.core_sources import core_files
 from hyst.export.folder import FORMAT, MANIFEST, write_export
 from hyst.export.names import as_c_name, plain_text
 from hyst.export.one_file import in_one_file
 from hyst.export.templating import filled
+from hyst.export.tool_block import ToolBlock, tool_block
 from hyst.operators import ModelDescription
 
 _LICENSE = Path(__file__).resolve().parent / "templates" / "LICENSE"
@@ -69,7 +71,7 @@ def mex(
     Parameters
     ----------
     model
-        Any operator, or a tracking controller.
+        Any operator, a tracking controller or a joint estimator.
     folder
         What to create: a folder, or a zip if it ends in ``.zip``.
     name
@@ -100,25 +102,25 @@ def mex(
     """
     _as_function_name(name)
     about = description or ModelDescription()
-    block = block_of(model, "double")
-    files = mex_files(block, name, about)
+    tool = tool_block(model)
+    files = mex_files(tool, name, about)
     path = write_export(folder, files, name, force=force)
     return MexFolder(
         path=path,
         files=tuple(sorted(files)),
         name=name,
-        state_length=len(block.start),
-        saved_bytes=int(places(block, name, "double", about)["saved_bytes"]),
+        state_length=len(tool.block.start),
+        saved_bytes=int(places(tool.block, name, "double", about)["saved_bytes"]),
     )
 
 
-def mex_files(block: Block, name: str, about: ModelDescription) -> dict[str, bytes]:
+def mex_files(tool: ToolBlock, name: str, about: ModelDescription) -> dict[str, bytes]:
     """Give the files of a MEX function.
 
     Parameters
     ----------
-    block
-        What is exported, in double precision.
+    tool
+        What is exported.
     name
         Of the function, checked.
     about
@@ -129,14 +131,21 @@ def mex_files(block: Block, name: str, about: ModelDescription) -> dict[str, byt
     dict
         Content by path.
     """
+    block = tool.block
     common = places(block, name, "double", about)
+    elements = tuple(f"input[{i}][k]" for i in range(len(tool.inputs)))
     common |= {
         "title": plain_text(block.kind),
-        "signals": ", ".join(block.inputs),
-        "inputs": str(len(block.inputs)),
-        "with_state": str(len(block.inputs) + 1),
-        "quoted": ", ".join(f'"{each}"' for each in block.inputs),
-        "elements": ", ".join(f"input[{i}][k]" for i in range(len(block.inputs))),
+        "signals": ", ".join(tool.inputs),
+        "output": tool.output,
+        "inputs": str(len(tool.inputs)),
+        "with_state": str(len(tool.inputs) + 1),
+        "quoted": ", ".join(f'"{each}"' for each in tool.inputs),
+        "step": tool.step(name, "state", elements),
+        "bad_sample": "changes no parameter"
+        if tool.estimates
+        else "is answered with the last output, leaves the memory as it is",
+        **(_estimates(tool, name) if tool.estimates else _NO_ESTIMATES),
         "license": _commented(_LICENSE.read_text(encoding="utf-8"), " *"),
         "meaning": _meaning(common["signals"]),
         "rows": _rows(block, common["signals"]),
@@ -151,6 +160,27 @@ def mex_files(block: Block, name: str, about: ModelDescription) -> dict[str, byt
     return files | {MANIFEST: _manifest(block, name, files)}
 
 
+_NO_ESTIMATES = {"estimate_in_c": "", "estimate_in_m": ""}
+
+
+def _estimates(tool: ToolBlock, name: str) -> dict[str, str]:
+    """Give what the gateway and the object need to tell the estimated parameters."""
+    said = ", ".join(tool.estimates)
+    comment = "\n            % ".join(wrap(f"A row: {said}.", 80))
+    return {
+        "estimate_in_c": f"""    }} else if (strcmp(command, "theta") == 0) {{
+        plhs[0] = mxCreateDoubleMatrix(1, {len(tool.estimates)}, mxREAL);
+        memcpy(HYST_MEX_DOUBLES(plhs[0]), state.memory + {name.upper()}_THETA,
+               {len(tool.estimates)} * sizeof(double));
+""",
+        "estimate_in_m": f"""        function theta = estimate(self)
+            % {comment}
+            theta = {name}_mex('theta', self.state);
+        end
+""",
+    }
+
+
 def _as_function_name(name: str) -> str:
     as_c_name(name)
     if name.lower() in _TAKEN:
@@ -163,7 +193,7 @@ def _as_function_name(name: str) -> str:
 def _c_file(block: Block, common: dict[str, str], about: ModelDescription) -> str:
     name = common["name"]
     own = places(block, name, "double", about)
-    stage, declared = source(block, own, "double"), header(own)
+    stage, declared = source(block, own, "double"), header(block, own)
     core = core_files(stage + declared)
     everything = in_one_file(core, {f"{name}.h": declared, f"{name}.c": stage})
     return filled("mex/head.c", common) + everything + "\n" + filled("mex/gateway.c", common)

@@ -8,6 +8,9 @@
 /* Longer than any message below with its numbers. */
 #define HYST_FMU_MESSAGE 320
 
+/* An estimator has none; compilers object to loops that a constant 0 ends. */
+static const size_t hyst_fmu_constant_count = HYST_FMU_CONSTANTS;
+
 /* Defined for each version of FMI. */
 static void hyst_fmu_tell(const hyst_fmu_instance *fmu, hyst_fmu_status status,
                           const char *message);
@@ -28,7 +31,7 @@ static void hyst_fmu_start(hyst_fmu_instance *fmu)
 {
     memset(&fmu->now, 0, sizeof fmu->now);
     hyst_fmu_init(&fmu->now.stage);
-    for (size_t i = 0; i < HYST_FMU_CONSTANTS; ++i) {
+    for (size_t i = 0; i < hyst_fmu_constant_count; ++i) {
         fmu->now.constant.value[i] = hyst_fmu_default[i];
     }
     fmu->now.mode = HYST_FMU_INSTANTIATED;
@@ -91,8 +94,12 @@ static hyst_fmu_status hyst_fmu_get_real(hyst_fmu_instance *fmu, uint32_t refere
         *value = (double)fmu->now.input[reference - HYST_FMU_FIRST_INPUT];
         return HYST_FMU_OK;
     }
-    if (reference >= HYST_FMU_FIRST_CONSTANT && reference < HYST_FMU_END) {
+    if (reference >= HYST_FMU_FIRST_CONSTANT && reference < HYST_FMU_FIRST_ESTIMATE) {
         *value = (double)fmu->now.constant.value[reference - HYST_FMU_FIRST_CONSTANT];
+        return HYST_FMU_OK;
+    }
+    if (reference >= HYST_FMU_FIRST_ESTIMATE && reference < HYST_FMU_END) {
+        *value = (double)hyst_fmu_estimate(&fmu->now.stage, reference - HYST_FMU_FIRST_ESTIMATE);
         return HYST_FMU_OK;
     }
     if (reference == HYST_FMU_TIME) {
@@ -133,7 +140,7 @@ static hyst_fmu_status hyst_fmu_set_real(hyst_fmu_instance *fmu, uint32_t refere
         fmu->now.input[reference - HYST_FMU_FIRST_INPUT] = (hyst_real)value;
         return HYST_FMU_OK;
     }
-    if (reference >= HYST_FMU_FIRST_CONSTANT && reference < HYST_FMU_END) {
+    if (reference >= HYST_FMU_FIRST_CONSTANT && reference < HYST_FMU_FIRST_ESTIMATE) {
         return hyst_fmu_set_constant(fmu, reference - HYST_FMU_FIRST_CONSTANT, value);
     }
     return hyst_fmu_refuse(fmu, "only inputs and parameters can be set; take a value reference of "
@@ -327,7 +334,7 @@ static hyst_fmu_status hyst_fmu_serialize(const hyst_fmu_instance *fmu, const vo
     at += sizeof(HYST_FMU_TOKEN);
     hyst_fmu_save(&values->stage, at);
     at += HYST_FMU_SAVED_BYTES;
-    for (size_t i = 0; i < HYST_FMU_CONSTANTS; ++i) {
+    for (size_t i = 0; i < hyst_fmu_constant_count; ++i) {
         at = hyst_fmu_put_number(at, (double)values->constant.value[i]);
     }
     for (size_t i = 0; i < HYST_FMU_INPUTS; ++i) {
@@ -354,7 +361,7 @@ static int hyst_fmu_read(const unsigned char *bytes, size_t size, hyst_fmu_value
         return 0;
     }
     at += HYST_FMU_SAVED_BYTES;
-    for (size_t i = 0; i < HYST_FMU_CONSTANTS; ++i, at += 8) {
+    for (size_t i = 0; i < hyst_fmu_constant_count; ++i, at += 8) {
         values->constant.value[i] = (hyst_real)hyst_fmu_take_number(at);
     }
     for (size_t i = 0; i < HYST_FMU_INPUTS; ++i, at += 8) {

@@ -7,6 +7,7 @@
  *   hyst_fmu_state, hyst_fmu_init, hyst_fmu_fault, hyst_fmu_save, hyst_fmu_load   of the stage
  *   hyst_fmu_constants                           union of them as hyst_real value[] and by name
  *   hyst_fmu_evaluate(state, constants, input)   one step
+ *   hyst_fmu_estimate(state, place)              an estimated parameter, of HYST_FMU_ESTIMATES
  *   HYST_FMU_TOKEN, HYST_FMU_INPUTS, HYST_FMU_CONSTANTS, HYST_FMU_SAVED_BYTES
  *   HYST_FMU_DT                                  only if the model has a sample time, seconds
  *   hyst_fmu_default[], hyst_fmu_rule[]          value of each constant, and who may change it */
@@ -26,14 +27,15 @@ enum {
 
 #include "hyst_model.h"
 
-/* Value references: time, the inputs, the output, the fault, then the constants. */
+/* Value references: time, inputs, output, fault, constants, estimated parameters. */
 enum {
     HYST_FMU_TIME,
     HYST_FMU_FIRST_INPUT,
     HYST_FMU_OUTPUT = HYST_FMU_FIRST_INPUT + HYST_FMU_INPUTS,
     HYST_FMU_FAULT,
     HYST_FMU_FIRST_CONSTANT,
-    HYST_FMU_END = HYST_FMU_FIRST_CONSTANT + HYST_FMU_CONSTANTS
+    HYST_FMU_FIRST_ESTIMATE = HYST_FMU_FIRST_CONSTANT + HYST_FMU_CONSTANTS,
+    HYST_FMU_END = HYST_FMU_FIRST_ESTIMATE + HYST_FMU_ESTIMATES
 };
 
 /* The same numbers in FMI 2.0 and 3.0. */
