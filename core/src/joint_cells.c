@@ -102,7 +102,9 @@ void hyst_cells_forget(const hyst_search *search, const hyst_search_layout *at, 
     hyst_ud_scale(count, state + at->u, state + at->d, scale);
 }
 
-/* What the union of two neighbours loses: the second moment of their weights about their mean. */
+/* What the union of two neighbours loses: the square of the difference it makes to the loading curve,
+ * a triangle of height h = w_a w_b / (w_a + w_b) gap over the gap. A weight of 0 or less is what noise
+ * leaves beside a larger one, and joins it for nothing. */
 static void set_cost(const hyst_search_layout *at, hyst_real *state, size_t k)
 {
     const hyst_real *weight = state + at->point_weight;
@@ -110,22 +112,16 @@ static void set_cost(const hyst_search_layout *at, hyst_real *state, size_t k)
     const hyst_real gap = radius[k + 1u] - radius[k];
     const hyst_real lighter = weight[k] < weight[k + 1u] ? weight[k] : weight[k + 1u];
     const hyst_real heavier = weight[k] < weight[k + 1u] ? weight[k + 1u] : weight[k];
-    state[at->point_cost + k] = lighter / (ONE + lighter / heavier) * gap * gap;
+    const hyst_real height = lighter > ZERO ? lighter / (ONE + lighter / heavier) * gap : ZERO;
+    state[at->point_cost + k] = height * height * gap;
 }
 
 void hyst_cells_begin_merging(const hyst_search *search, const hyst_search_layout *at,
                               hyst_real *state)
 {
     const size_t cells = search->cells;
-    const hyst_real *weight = state + at->weight + 1u;
-    hyst_real total = ZERO;
     for (size_t i = 0; i < cells; ++i) {
-        total += weight[i] > ZERO ? weight[i] : -weight[i];
-    }
-    /* A cell of weight 0 or less is nothing but noise; it merges first. */
-    const hyst_real least = total > ZERO ? HYST_REAL(1e-6) * total : ONE;
-    for (size_t i = 0; i < cells; ++i) {
-        state[at->point_weight + i] = weight[i] > least ? weight[i] : least;
+        state[at->point_weight + i] = state[at->weight + 1u + i];
         state[at->point_radius + i] = search->radius[i];
     }
     for (size_t i = 0; i + 1u < cells; ++i) {
@@ -145,7 +141,8 @@ void hyst_cells_merge(const hyst_search_layout *at, hyst_real *state)
         k = cost[i] < cost[k] ? i : k;
     }
     const hyst_real sum = weight[k] + weight[k + 1u];
-    radius[k] += weight[k + 1u] / sum * (radius[k + 1u] - radius[k]);
+    const hyst_real share = sum > ZERO ? weight[k + 1u] / sum : HYST_REAL(0.5);
+    radius[k] += hyst_clamp(ZERO, ONE, share) * (radius[k + 1u] - radius[k]);
     weight[k] = sum;
     for (size_t i = k + 1u; i + 1u < count; ++i) {
         weight[i] = weight[i + 1u];

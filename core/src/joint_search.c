@@ -18,9 +18,9 @@
 /* Standard errors by which a rival must be better, and at which a worse one is given up. */
 #define BETTER HYST_REAL(3.0)
 #define WORSE HYST_REAL(-2.0)
-/* How far off a rival is believed to be, as shares of the gaps between its radii and of its weights;
- * merged cells are better than most starts. */
-#define RIVAL_SPREAD HYST_REAL(0.2)
+/* How far off a rival is believed to be, as shares of the gaps between its radii and of its weights:
+ * merging finds radii better than weights. */
+#define RIVAL_SPREAD HYST_REAL(0.15)
 #define RIVAL_WEIGHT_SPREAD HYST_REAL(0.4)
 /* Of the standard errors of the cells between two turns; more is never needed. */
 #define MOST_GROWTH HYST_REAL(1e6)
@@ -235,6 +235,8 @@ static void replace(const hyst_search_layout *at, hyst_real *state)
         state[i] = rival[i];
     }
     state[at->scalars + HYST_SEARCH_REPLACEMENTS] += ONE;
+    state[at->scalars + HYST_SEARCH_ERROR] = rival[HYST_JOINT_ERROR];
+    state[at->scalars + HYST_SEARCH_SEEN] = ZERO; /* errors so far were not its own */
 }
 
 static hyst_real square_over(hyst_real error, hyst_real noise)
@@ -284,7 +286,7 @@ static void watch_errors(const hyst_search *search, const hyst_search_layout *at
 {
     hyst_real *scalar = state + at->scalars;
     const hyst_real error = state[HYST_JOINT_ERROR];
-    const hyst_real most = HYST_REAL(4.0) * search->joint->noise_memory;
+    const hyst_real most = search->joint->noise_memory;
     if (error * (error / state[HYST_JOINT_VARIANCE]) < HYST_JOINT_OUTLIER) {
         scalar[HYST_SEARCH_SEEN] += scalar[HYST_SEARCH_SEEN] < most ? ONE : ZERO;
         const hyst_real share = ONE / scalar[HYST_SEARCH_SEEN];

@@ -93,3 +93,46 @@ def test_readme_names_the_command_and_its_page() -> None:
     assert "`hyst adapt`" in readme
     assert "(docs/online.md)" in readme
     assert (root / "docs" / "online.md").exists()
+
+
+def test_resuming_needs_no_model_and_refuses_another(
+    files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model, data = files
+    hyst.load(model).save(model, hyst.operators.ModelDescription(output_unit="um"))
+    assert adapt(files, tmp_path / "first") == 0
+    columns = ["--input", "drive", "--output", "way", "--rate", "1000"]
+    resume = ["--resume", str(tmp_path / "first" / "estimator.json")]
+    second = ["-o", str(tmp_path / "second")]
+    assert main(["adapt", str(data), *columns, *resume, *second]) == 0
+    # What the numbers mean came with the estimator.
+    assert '"output_unit": "um"' in (tmp_path / "second" / "model.json").read_text()
+    # The model it started from and the one it ended with are its own, another is not.
+    assert adapt((tmp_path / "first" / "model.json", data), tmp_path / "third", *resume) == 0
+    other = tmp_path / "other.json"
+    hyst.PrandtlIshlinskii(P, 1.2 * R, 0.3).save(other)
+    capsys.readouterr()
+    assert adapt((other, data), tmp_path / "fourth", *resume) == 2
+    assert "is not the model that" in capsys.readouterr().err
+    assert main(["adapt", str(data), *columns, *second]) == 2
+    assert "give MODEL and DATA" in capsys.readouterr().err
+
+
+def test_a_start_at_the_end_of_the_record_is_refused(
+    files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for start in ("3999", "4000", "99999"):
+        assert adapt(files, tmp_path / "out", "--start", start) == 2
+        assert f"--start is {start} but the record has 4000 samples" in capsys.readouterr().err
+    assert adapt(files, tmp_path / "out", "--start", "3998") == 0
+
+
+def test_it_says_when_what_is_left_is_no_noise(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # Plays cannot make a parabola, whatever their constants.
+    u = 30.0 * np.sin(2 * np.pi * np.arange(4000) / 1000.0)
+    hyst.io.write_columns(tmp_path / "data.csv", ["drive", "way"], (u, u + 0.01 * u**2))
+    hyst.PrandtlIshlinskii([0.5], [1.0], 1.0).save(tmp_path / "model.json")
+    assert adapt((tmp_path / "model.json", tmp_path / "data.csv"), tmp_path / "out") == 0
+    assert "model or estimate are wrong" in capsys.readouterr().err

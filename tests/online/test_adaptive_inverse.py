@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 
 import hyst
 from hyst import _engine
-from hyst.online import AdaptiveInverse, JointEstimator
+from hyst.online import AdaptiveInverse, JointEstimator, load_estimator
 from online.plants import DT, P, R
 
 P0 = 0.3
@@ -81,6 +85,87 @@ def test_a_broken_sensor_makes_it_fall_back_to_the_last_good_model() -> None:
     assert inverse.fallbacks >= 4
     assert inverse.trusts_estimate
     assert inverse.good_model.is_invertible()
+
+
+def test_saved_and_restored_it_continues_with_the_same_bits(tmp_path: Path) -> None:
+    start = hyst.PrandtlIshlinskii(P, R, P0)
+    y_ref = 50.0 * np.sin(2 * np.pi * np.arange(6000) * DT)
+    scatter = np.random.default_rng(1).normal(0.0, 1.0, y_ref.size)
+    # A sensor broken for a while, so that the guard has fallen back when it is saved.
+    scatter[1000:2600] *= 100.0
+    truth = hyst.PrandtlIshlinskii(1.1 * P, 0.9 * R, P0)
+    inverse = AdaptiveInverse(JointEstimator(start, dt=DT, memory=0.5), window=0.5)
+    plant = truth.stepper()
+    for k in range(2500):
+        u = inverse.command(y_ref[k])
+        inverse.update(u, plant(u) + scatter[k])
+    inverse.save(tmp_path / "inverse.json")
+    restored = load_estimator(tmp_path / "inverse.json")
+    assert isinstance(restored, AdaptiveInverse)
+    assert not restored.trusts_estimate
+    assert restored.fallbacks == inverse.fallbacks > 0
+    copy = truth.stepper(plant.state)
+    commands = np.zeros((2, y_ref.size))
+    for k in range(2500, y_ref.size):
+        for way, (each, follows) in enumerate(((inverse, plant), (restored, copy))):
+            u = each.command(y_ref[k])
+            commands[way, k] = u
+            each.update(u, follows(u) + scatter[k])
+    assert commands[0].tobytes() == commands[1].tobytes()
+    assert restored.model == inverse.model
+    assert restored.good_model == inverse.good_model
+    assert restored.status == inverse.status
+
+
+def test_a_saved_inverse_that_cannot_be_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "inverse.json"
+    AdaptiveInverse(JointEstimator(hyst.PrandtlIshlinskii(P, R, P0), dt=DT), window=1.0).save(path)
+    content = json.loads(path.read_text())
+    for changes, message in (
+        ({"state": [-1.0, *content["state"][1:]]}, "counts out of range"),
+        ({"state": [1.0]}, "1 entries"),
+        ({"settings": {**content["settings"], "window": -1.0}}, "window is -1.0"),
+        ({"settings": {**content["settings"], "good": 5}}, "entry 'kind'"),
+        ({"settings": {}}, "damaged"),
+    ):
+        path.write_text(json.dumps({**content, **changes}))
+        with pytest.raises(hyst.InputError, match=message):
+            load_estimator(path)
+
+
+def test_an_estimate_in_doubt_does_not_become_the_last_good_model() -> None:
+    # Plays cannot make this plant, so what is left is no noise; the guard counts and says so.
+    start = hyst.PrandtlIshlinskii(P, R, P0)
+    inverse = AdaptiveInverse(JointEstimator(start, dt=DT, memory=1.0), window=1.0)
+    plant = start.stepper()
+    for k in range(6000):
+        u = inverse.command(50.0 * np.sin(2 * np.pi * k * DT))
+        w = plant(u)
+        inverse.update(u, w + 1e-3 * w**2)
+    assert inverse.doubts == 6
+    assert "doubted for 6 windows" in inverse.status
+    # A plant of plays leaves nothing to doubt.
+    for k in range(6000, 11_000):
+        u = inverse.command(50.0 * np.sin(2 * np.pi * k * DT))
+        inverse.update(u, plant(u))
+    assert inverse.doubts == 0
+    assert "doubted" not in inverse.status
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"window": 1.0, "margin": "a"}, "margin is 'a'"),
+        ({"window": 1.0, "margin": 1.0}, "margin is 1.0; give a ratio above 1"),
+        ({"window": "a"}, "window is 'a'"),
+        ({"window": 0.0}, "window is 0.0"),
+    ],
+)
+def test_arguments_that_make_no_sense(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(hyst.InputError, match=message):
+        AdaptiveInverse(JointEstimator(hyst.PrandtlIshlinskii(P, R, P0)), **options)
+    with pytest.raises(hyst.InputError, match="give a JointEstimator"):
+        AdaptiveInverse(5, window=1.0)  # type: ignore[arg-type]
 
 
 def test_engine_runs_a_record_to_the_same_bits() -> None:

@@ -5,20 +5,20 @@
  * there are no false minima. So beside the estimate runs
  *   gathering: recursive least squares on the weights of the cells, until the input has turned twice;
  *   merging:   the cells become as many plays as the estimate has: the two neighbours whose union
- *              loses least, w_a w_b / (w_a + w_b) (r_b - r_a)^2, become one with their weight and
+ *              changes the loading curve least, in the mean square, become one with their weight and
  *              their mean radius, one union a sample;
  *   on trial:  a rival estimate started from those plays. It replaces the estimate once the squares
  *              of its errors are smaller beyond doubt:
- *                sum(e^2 - e_rival^2) > 5 sqrt(sum (e^2 - e_rival^2)^2)   (Vuong 1989),
+ *                sum(e^2 - e_rival^2) > 3 sqrt(sum (e^2 - e_rival^2)^2)   (Vuong 1989),
  *              and is given up if they are larger, or if nothing is decided in many strokes.
- * Then it begins again. The input turns when it goes back by a quarter of its recent range.
+ * Then it begins again. The input turns when it goes back by an eighth of its recent range.
  *
  * Besides, the correlation of successive errors is watched. Noise has none; errors of a model that
  * is wrong, or of an estimate in a false minimum, do.
  *
  * The step costs one of hyst_joint_step and at most one of: another one, or 2 c^2 + 12 c operations
  * for c = cells + 2 (as much again at a turn where the past is forgotten). The state holds
- * hyst_search_places().length numbers: with 32 cells 1353 at n = 5 and 2203 at n = 10. */
+ * hyst_search_places().length numbers: with 32 cells 1385 at n = 5 and 2235 at n = 10. */
 #ifndef HYST_JOINT_SEARCH_H
 #define HYST_JOINT_SEARCH_H
 

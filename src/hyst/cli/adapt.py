@@ -7,16 +7,25 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 import typer
+from numpy.typing import NDArray
 
 import hyst
-from hyst.cli.arguments import InputColumn, ModelFile
+from hyst.cli.arguments import InputColumn
 from hyst.cli.console import at_work, note, show_files, show_table
 from hyst.cli.identify import OutputColumn, Rate, Repair, TimeColumn, TimeUnit
 from hyst.online.parts import units_of_plays
 from hyst.report.tables import Table, number
 
-Data = Annotated[Path, typer.Argument(metavar="DATA", show_default=False, help="Measured record.")]
+Files = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="MODEL DATA",
+        show_default=False,
+        help="Model file and measured record; with --resume the record alone.",
+    ),
+]
 Folder = Annotated[
     Path, typer.Option("-o", "--out", metavar="DIR", show_default=False, help="Where to write.")
 ]
@@ -42,7 +51,7 @@ Resume = Annotated[
     typer.Option(
         metavar="FILE",
         show_default=False,
-        help="Go on from the estimator.json of an earlier run, with its model and options.",
+        help="Go on from the estimator.json of an earlier run; it has the model and all options.",
     ),
 ]
 Start = Annotated[
@@ -58,8 +67,7 @@ _HEADING = "Estimates along {}, bands of two standard errors"
 
 
 def adapt(
-    model_file: ModelFile,
-    data: Data,
+    files: Files,
     input_column: InputColumn,
     output_column: OutputColumn,
     folder: Folder,
@@ -75,9 +83,13 @@ def adapt(
 ) -> None:
     """Estimate a model's constants sample by sample along a record; write them over time."""
     hyst.files.require_folder(folder)
+    model_file, data = _model_and_data(files, resume)
+    estimator: hyst.online.JointEstimator | None = None
     if resume is not None:
         _refuse_options_of_a_start(resume, memory is not None, spread is not None, estimate_maps)
-    model, about = hyst.models.load_described(model_file)
+        estimator, about = _resumed(resume, model_file)
+    else:
+        model, about = hyst.models.load_described(model_file or data)
     record = hyst.read_record(
         data,
         input=input_column,
@@ -88,8 +100,8 @@ def adapt(
         repair=repair,
     )
     record = _without_delay(record, about.delay)
-    history, record = record.u[:start], record.slice(start, record.samples)
-    if resume is None:
+    history, record = _from_start(record, start)
+    if estimator is None:
         estimator = hyst.online.JointEstimator(
             model,
             dt=record.dt,
@@ -98,8 +110,6 @@ def adapt(
             weight_spread=_SPREAD if spread is None else spread,
             estimate_maps=estimate_maps,
         )
-    else:
-        estimator = _resumed(resume)
     if history.size:
         estimator.follow(history)
     before = estimator.parameters
@@ -111,7 +121,7 @@ def adapt(
     with hyst.files.replacing_files(folder) as temporary:
         about = replace(about, dt=record.dt)
         estimator.model.save(temporary / names[0], about)
-        estimator.save(temporary / names[1])
+        estimator.save(temporary / names[1], about)
         _write_parameters(temporary / names[2], trajectory)
         (temporary / names[3]).write_bytes(picture)
     _tell(estimator, before.tolist())
@@ -136,11 +146,33 @@ def _picture(
     return hyst.report.draw_estimates({"": trajectory}, {}, heading, units)
 
 
-def _resumed(path: Path) -> hyst.online.JointEstimator:
-    estimator = hyst.online.load_estimator(path)
+def _model_and_data(files: list[Path], resume: Path | None) -> tuple[Path | None, Path]:
+    if len(files) == 2:
+        return files[0], files[1]
+    if len(files) == 1 and resume is not None:
+        return None, files[0]
+    wanted = "MODEL and DATA" if resume is None else "DATA, or MODEL and DATA,"
+    raise hyst.InputError(f"there are {len(files)} files ({_names(files)}); give {wanted} here")
+
+
+def _names(files: list[Path]) -> str:
+    return ", ".join(str(each) for each in files)
+
+
+def _resumed(
+    path: Path, model_file: Path | None
+) -> tuple[hyst.online.JointEstimator, hyst.operators.ModelDescription]:
+    estimator, about = hyst.online.load_described_estimator(path)
     if not isinstance(estimator, hyst.online.JointEstimator):
-        raise hyst.InputError(f"{path} holds a radius estimator; give one that hyst adapt wrote")
-    return estimator
+        raise hyst.InputError(f"{path} holds no joint estimator; give one that hyst adapt wrote")
+    if model_file is not None:
+        given, about = hyst.models.load_described(model_file)
+        if given.to_dict() not in (estimator.settings["model"], estimator.model.to_dict()):
+            raise hyst.InputError(
+                f"{model_file} is not the model that {path} started from or ended with; leave the "
+                "model out to go on, or --resume to start anew from it"
+            )
+    return estimator, about
 
 
 def _without_delay(record: hyst.Record, delay: int) -> hyst.Record:
@@ -152,6 +184,16 @@ def _without_delay(record: hyst.Record, delay: int) -> hyst.Record:
             "give a longer record"
         )
     return replace(record, u=record.u[: record.samples - delay], y=record.y[delay:])
+
+
+def _from_start(record: hyst.Record, start: int) -> tuple[NDArray[np.float64], hyst.Record]:
+    """Split a record into the inputs that only set the memory, and what is learnt from."""
+    if start > record.samples - 2:
+        raise hyst.InputError(
+            f"--start is {start} but the record has {record.samples} samples; leave two or more to "
+            "learn from"
+        )
+    return record.u[:start], record.slice(start, record.samples)
 
 
 def _write_parameters(path: Path, trajectory: hyst.online.Trajectory) -> None:
@@ -180,3 +222,8 @@ def _tell(estimator: hyst.online.JointEstimator, before: list[float]) -> None:
     if counts["skipped"] or counts["refused"]:
         note(f"{counts['skipped']} samples were not finite, {counts['refused']} led to an overflow")
     print(f"excitation: {estimator.excitation}")
+    innovation = estimator.innovation
+    tell = print if innovation.consistent else note
+    tell(f"innovation: {innovation}")
+    if innovation.replacements:
+        print(f"search: another start did better, {innovation.replacements} of {innovation.rivals}")

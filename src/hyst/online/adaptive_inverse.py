@@ -206,7 +206,7 @@ class AdaptiveInverse:
             self.estimator.restart(self._good)
         elif adaptive <= good + negligible and not is_unusual:
             self.trusts_estimate = True
-            if not is_doubtful or adaptive * self._margin < good:
-                self._usual = adaptive
+            self._usual = adaptive
+            if not is_doubtful or adaptive < max(good / self._margin, negligible):
                 self._good = self.estimator.model
                 self._fallback.restart(self._good)

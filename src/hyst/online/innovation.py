@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 _MOST_CORRELATION = 0.5
-_NEGLIGIBLE = 1e-3
+_NEGLIGIBLE = 1e-4
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Innovation:
     Parameters
     ----------
     rms
-        Root mean square of the last errors (some 600), output units.
+        Root mean square of the last errors (some 150), output units.
     correlation
         Of each error with the one before, from -1 to 1.
     loop_height
@@ -42,7 +42,7 @@ class Innovation:
 
     @property
     def consistent(self) -> bool:
-        """Whether errors are as noise, or below a thousandth of the loop's height."""
+        """Whether errors are as noise, or below a ten-thousandth of the loop's height."""
         negligible = self.rms <= _NEGLIGIBLE * self.loop_height
         return negligible or abs(self.correlation) < _MOST_CORRELATION
 

@@ -13,6 +13,7 @@ from hyst import _engine
 from hyst.errors import InputError
 from hyst.models import PrandtlIshlinskii
 from hyst.online.checks import (
+    given_or,
     memory_from,
     memory_or_none,
     not_negative,
@@ -138,11 +139,6 @@ class RadiusEstimator:
                 f"most_radius is {bound:.6g}, but the start has r[{n}] = {largest:.6g}; raise the "
                 "bound or start below it"
             )
-        if tolerance is None:
-            tolerance = _TOLERANCES.get(method, 1.0)
-        share = positive(tolerance, "tolerance", "a share of at most 1")
-        if share > 1.0:
-            raise InputError(f"tolerance is {tolerance!r}; give a share of at most 1")
         self._settings: dict[str, Any] = {
             "p": start.p.tolist(),
             "r": start.r.tolist(),
@@ -154,7 +150,7 @@ class RadiusEstimator:
             "filter_time": not_negative(filter_time, "filter_time"),
             "dead_time": not_negative(dead_time, "dead_time"),
             "dead_band": not_negative(dead_band, "dead_band"),
-            "tolerance": share,
+            "tolerance": _tolerance(tolerance, method),
             "most_radius": float(bound),
             "z0": start.z0.tolist(),
         }
@@ -321,3 +317,10 @@ class RadiusEstimator:
             settings["tolerance"],
         )
         return core
+
+
+def _tolerance(given: float | None, method: str) -> float:
+    share = given_or(given, _TOLERANCES.get(method, 1.0))
+    if positive(share, "tolerance", "a share of at most 1") > 1.0:
+        raise InputError(f"tolerance is {given!r}; give a share of at most 1")
+    return float(share)

@@ -116,7 +116,20 @@ def checked_start(parts: Parts, theta: Array, settings: dict[str, Any]) -> Array
 
 
 def falling_map(parts: Parts, theta: Array) -> str:
-    """Name the map that has a slope outside its bounds, or nothing if there is none."""
+    """Name the map that has a slope outside its bounds.
+
+    Parameters
+    ----------
+    parts
+        The model.
+    theta
+        The parameters, shape (m,).
+
+    Returns
+    -------
+    str
+        ``front`` or ``back``; empty if neither has.
+    """
     first = 2 * parts.pi.p.size + 2
     for name, each in (("front", parts.front), ("back", parts.back)):
         if each is None:

@@ -21,7 +21,7 @@ def draw_estimates(
     heading: str,
     units: tuple[str, str] = ("", ""),
 ) -> Figure:
-    """Draw parameters over time: one row for each estimator, radii, weights and the rest beside.
+    """Draw parameters over time: a row for each estimator; radii, weights, offset and maps beside.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def draw_estimates(
         for panel, (what, names) in zip(panels, groups[label].items(), strict=False):
             _draw(panel, trajectory, names, truth)
             panel.set_title(f"{label}: {what}" if label else what)
-            panel.set_ylabel(_with_unit(what, names, *units))
+            panel.set_ylabel(_with_unit(what, *units))
     if heading:
         figure.suptitle(heading)
     return figure
@@ -62,18 +62,20 @@ def _groups(trajectory: Trajectory) -> dict[str, list[str]]:
     names = trajectory.names
     radii = [name for name in names if name.startswith("r[")]
     weights = [name for name in names if name == "p0" or name.startswith("p[")]
-    rest = [name for name in names if name not in radii and name not in weights]
-    return {"radii": radii, "weights": weights, "offset and maps": rest}
+    offset = [name for name in names if name == "offset"]
+    maps = [name for name in names if name not in (*radii, *weights, *offset)]
+    # An offset of hundreds of units would flatten the maps' weights, which are about 1.
+    return {"radii": radii, "weights": weights, "offset": offset, "weights of maps": maps}
 
 
-def _with_unit(what: str, names: list[str], input_unit: str, output_unit: str) -> str:
-    """Label the value axis; maps have pure numbers, so an offset among them has no axis' unit."""
+def _with_unit(what: str, input_unit: str, output_unit: str) -> str:
+    """Label the value axis; the weights of maps are pure numbers."""
     if what == "radii":
         return with_unit("radius", input_unit)
     if what == "weights":
         known = bool(input_unit and output_unit) and input_unit != output_unit
         return with_unit("weight", f"{output_unit}/{input_unit}" if known else "")
-    return with_unit("offset", output_unit) if names == ["offset"] else "value"
+    return with_unit("offset", output_unit) if what == "offset" else "weight"
 
 
 def _draw(axes: Axes, trajectory: Trajectory, names: list[str], truth: Mapping[str, float]) -> None:
