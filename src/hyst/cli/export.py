@@ -106,7 +106,8 @@ def _mex(order: _Order) -> _Done:
     return _Done(
         rows,
         f"{unpack}cd {order.name if zipped else order.out} && mkoctfile --mex {order.name}_mex.c, "
-        f"or in MATLAB mex {order.name}_mex.c; then y = {order.name}(u)",
+        f"or in MATLAB mex {order.name}_mex.c; then {written.output} = "
+        f"{order.name}({', '.join(written.inputs)})",
     )
 
 

@@ -45,6 +45,8 @@ class MexFolder:
         What it holds, sorted.
     name
         Of the function in MATLAB and Octave.
+    inputs, output
+        Names of the signals it takes and gives.
     state_length
         Numbers of memory.
     saved_bytes
@@ -54,6 +56,8 @@ class MexFolder:
     path: Path
     files: tuple[str, ...]
     name: str
+    inputs: tuple[str, ...]
+    output: str
     state_length: int
     saved_bytes: int
 
@@ -109,6 +113,8 @@ def mex(
         path=path,
         files=tuple(sorted(files)),
         name=name,
+        inputs=tool.inputs,
+        output=tool.output,
         state_length=len(tool.block.start),
         saved_bytes=int(places(tool.block, name, "double", about)["saved_bytes"]),
     )
