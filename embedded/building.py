@@ -112,7 +112,7 @@ def unexpected_symbols(objects: Objects, build: Build) -> list[str]:
 
 
 def sizes_of(objects: Objects, work: Path, build: Build, roots: tuple[str, ...]) -> Sizes:
-    """Measure what is left when only `roots`, the step last, are kept."""
+    """Measure what is left when only `roots`, the initialisation first, are kept."""
     kept = work / "kept.o"
     keep = ",".join(["-Wl,--gc-sections", "-e", roots[-1], *(f"-u,{each}" for each in roots)])
     files = [str(each) for each in objects.all]
@@ -125,4 +125,5 @@ def sizes_of(objects: Objects, work: Path, build: Build, roots: tuple[str, ...])
         elif parts and parts[0].startswith(".rodata"):
             constants += int(parts[1])
     graphs = (read_call_graph(each.with_suffix(".ci").read_text()) for each in objects.all)
-    return Sizes(code, constants, joined(graphs).deepest(roots[-1]))
+    calls = joined(graphs)
+    return Sizes(code, constants, max(calls.deepest(each) for each in roots[1:]))

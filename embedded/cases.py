@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from embedded.rounding_bound import controller_bound, single_precision_bound
+from embedded.rounding_bound import NoBoundError, controller_bound, single_precision_bound
 from hyst import ModifiedPrandtlIshlinskii, Operator, PrandtlIshlinskii
 from hyst.control import TrackingController
-from hyst.export.block import block_of, stepper_of
+from hyst.export.block import Block, block_of, stepper_of
+from hyst.export.estimator import estimator_block
 from hyst.export.numbers import Precision
+from hyst.online import JointEstimator
 from hyst.operators import DeadZone
 from reference.examples import EXAMPLES
 
@@ -27,23 +29,39 @@ class Case:
     """A model and the record it is given, shape (N, inputs); some samples are not finite."""
 
     name: str
-    model: Operator | TrackingController
+    model: Operator | TrackingController | JointEstimator
     inputs: Array
 
     @property
     def step(self) -> str:
         """The C that takes inputs u[..] into `model` and returns its output."""
+        if isinstance(self.model, JointEstimator):
+            return "(void)stage_update(model, u[0], u[1]);\n    return stage_command(model, u[2]);"
         inputs = ", ".join(f"u[{i}]" for i in range(self.inputs.shape[1]))
         return f"return stage_step(model, {inputs});"
 
+    @property
+    def steps(self) -> tuple[str, ...]:
+        """The functions that a sample calls."""
+        is_estimator = isinstance(self.model, JointEstimator)
+        return ("stage_update", "stage_command") if is_estimator else ("stage_step",)
+
+    def block(self, precision: Precision) -> Block:
+        """Give what is exported."""
+        if isinstance(self.model, JointEstimator):
+            return estimator_block(self.model, precision)
+        return block_of(self.model, precision)
+
     def expected(self, precision: Precision) -> NDArray[np.floating]:
         """Give Python's outputs in a precision, sample by sample."""
-        step = stepper_of(block_of(self.model, precision), precision)
+        step = stepper_of(self.block(precision), precision)
         y = np.array([step(*sample) for sample in self.inputs.tolist()])
         return y.astype(np.float32) if precision == "single" else y
 
     def bound(self) -> float:
         """Give the bound of single precision's error."""
+        if isinstance(self.model, JointEstimator):
+            raise NoBoundError  # an estimate feeds on its own rounding
         finite = self.inputs[np.isfinite(self.inputs).all(axis=1)]
         if isinstance(self.model, TrackingController):
             return controller_bound(self.model, finite)
@@ -86,6 +104,17 @@ def controller(inverse: Operator | None) -> TrackingController:
     )
 
 
+def estimator() -> tuple[JointEstimator, Array]:
+    """Give an estimator of 5 plays that starts off the truth, and u, y and y_ref for it."""
+    p, r = np.array([0.4, 0.3, 0.25, 0.2, 0.15]), np.array([0.5, 1.0, 1.5, 2.5, 3.5])
+    u = drive()
+    y = PrandtlIshlinskii(p, r, p0=0.6)(np.nan_to_num(u, posinf=0.0, neginf=0.0))
+    y = np.round(y * 1024.0) / 1024.0
+    y[150] = np.nan
+    start = PrandtlIshlinskii(1.1 * p, 0.9 * r, p0=0.5)
+    return JointEstimator(start, memory=2000.0), np.column_stack([u, y, np.roll(y, -1)])
+
+
 def cases() -> Iterator[Case]:
     """Give every case, the ones with a goal first."""
     models = {HEADLINE: ten_plays(), "pi of 31 plays": thirty_one_plays(), **EXAMPLES}
@@ -94,3 +123,4 @@ def cases() -> Iterator[Case]:
     both = np.column_stack([drive(), drive(1)[::-1]])
     yield Case("controller and observer", controller(None), both)
     yield Case("controller, observer and inverse mpi", controller(ten_plays()), both)
+    yield Case("joint estimator of 5 plays", *estimator())

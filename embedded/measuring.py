@@ -27,7 +27,6 @@ from hyst.export.numbers import PRECISIONS
 Array = NDArray[np.float64]
 
 NOT_FINITE = 1  # the fault that the records of all cases raise
-ROOTS = ("stage_init", "stage_step")
 
 
 @dataclass(frozen=True)
@@ -107,7 +106,7 @@ def run_build(
     if foreign := unexpected_symbols(objects, build):
         raise RuntimeError(f"the objects need or hold {', '.join(foreign)}")
     program = link_program(objects, project, folder, build)
-    sizes = sizes_of(objects, folder, build, ROOTS)
+    sizes = sizes_of(objects, folder, build, ("stage_init", *case.steps))
     return on_processor(program, build.processor, build.precision), sizes
 
 
