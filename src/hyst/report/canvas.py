@@ -127,3 +127,15 @@ def with_unit(name: str, unit: str) -> str:
     ('drive [V]', 'drive')
     """
     return f"{name} [{unit}]" if unit else name
+
+
+def ratio_unit(numerator: str, denominator: str) -> str:
+    """Give the unit of a ratio: empty for a pure number, or where a unit is not known.
+
+    Examples
+    --------
+    >>> ratio_unit("um", "V"), ratio_unit("um", "um"), ratio_unit("", "V")
+    ('um/V', '', '')
+    """
+    known = bool(numerator and denominator) and numerator != denominator
+    return f"{numerator}/{denominator}" if known else ""

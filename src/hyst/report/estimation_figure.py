@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hyst.online import Trajectory
-from hyst.report.canvas import FAINT, blank, drawn, with_unit
+from hyst.report.canvas import FAINT, blank, drawn, ratio_unit, with_unit
 
 _COLOURS = ("#c2410c", "#1d4ed8", "#047857", "#7c3aed", "#db2777", "#0e7490", "#854d0e", "#4b5563")
 
@@ -73,8 +73,7 @@ def _with_unit(what: str, input_unit: str, output_unit: str) -> str:
     if what == "radii":
         return with_unit("radius", input_unit)
     if what == "weights":
-        known = bool(input_unit and output_unit) and input_unit != output_unit
-        return with_unit("weight", f"{output_unit}/{input_unit}" if known else "")
+        return with_unit("weight", ratio_unit(output_unit, input_unit))
     return with_unit("offset", output_unit) if what == "offset" else "weight"
 
 

@@ -5,15 +5,25 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from hyst.models import PrandtlIshlinskii
-from hyst.operators import Chained, DeadZone, Operator
-from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn, with_unit
+from hyst.models import LinearDynamics, PrandtlIshlinskii
+from hyst.operators import Affine, Chained, DeadZone, Operator
+from hyst.report.canvas import (
+    FAINT,
+    MEASURED,
+    MODELLED,
+    SECOND,
+    blank,
+    drawn,
+    ratio_unit,
+    with_unit,
+)
 
 Array = NDArray[np.float64]
 
@@ -64,16 +74,23 @@ def draw_model(
     bytes
         PNG.
     """
-    parts = [part for part in stages_with_signals(model, u) if _is_drawn(part[0])]
-    count = sum(2 if isinstance(stage, PrandtlIshlinskii) else 1 for stage, _, _ in parts)
+    stages = list(stages_with_signals(model, u))
+    units = _units([stage for stage, _, _ in stages], labels.input_unit, labels.output_unit)
+    parts = [(*part, *pair) for part, pair in zip(stages, pairwise(units), strict=True)]
+    parts = [part for part in parts if _is_drawn(part[0])]
+    count = sum(2 if isinstance(part[0], PrandtlIshlinskii) else 1 for part in parts)
     figure, axes = blank(max(count, 1), 1, 10.0 if count > 1 else 5.0, 3.9)
     free = iter(axes)
-    for stage, before, after in parts:
+    for stage, before, after, unit_before, unit_after in parts:
         if isinstance(stage, PrandtlIshlinskii):
-            _draw_weights(next(free), stage, standard_errors, labels)
-            _draw_loading_curve(next(free), stage, before, labels)
+            _draw_weights(next(free), stage, standard_errors, unit_before, unit_after)
+            _draw_loading_curve(next(free), stage, before, unit_before, unit_after)
         else:
-            _draw_map(next(free), before, after, labels, is_input=before is u)
+            axes_of_map = next(free)
+            axes_of_map.set_title("Envelope map" if before is u else "Output map")
+            name = labels.input_name if before is u else "output of the plays"
+            axes_of_map.set_xlabel(with_unit(name, unit_before))
+            _draw_map(axes_of_map, before, after, unit_after)
     if not parts:
         _draw_line(axes[0], u, model(u), labels)
     if heading:
@@ -113,12 +130,34 @@ def stages_with_signals(model: Operator, u: Array) -> Iterator[tuple[Operator, A
             signal = after
 
 
+def _units(stages: list[Operator], input_unit: str, output_unit: str) -> list[str]:
+    """Units of the signals before and after every stage; empty where a gain has changed them."""
+    keeps = [_keeps_unit(stage) for stage in stages]
+    return [
+        input_unit if all(keeps[:i]) else output_unit if all(keeps[i:]) else ""
+        for i in range(len(stages) + 1)
+    ]
+
+
+def _keeps_unit(stage: Operator) -> bool:
+    """Tell whether what goes through is only bent, turned over, shifted or delayed."""
+    if isinstance(stage, Affine):
+        return abs(stage.gain) == 1.0
+    if isinstance(stage, DeadZone):
+        return bool(np.isclose(stage.weights[stage.thresholds == 0.0].sum(), 1.0, rtol=1e-9))
+    return isinstance(stage, LinearDynamics) and bool(np.isclose(stage.dc_gain(), 1.0, rtol=1e-6))
+
+
 def _is_drawn(stage: Operator) -> bool:
     return isinstance(stage, PrandtlIshlinskii | DeadZone)
 
 
 def _draw_weights(
-    axes: Axes, plays: PrandtlIshlinskii, standard_errors: Mapping[str, float], labels: Labels
+    axes: Axes,
+    plays: PrandtlIshlinskii,
+    standard_errors: Mapping[str, float],
+    unit_before: str,
+    unit_after: str,
 ) -> None:
     errors = {"p": np.zeros(plays.p.size), "r": np.zeros(plays.p.size)}
     for name, value in standard_errors.items():
@@ -141,12 +180,13 @@ def _draw_weights(
     axes.axhline(0.0, color=FAINT, zorder=0)
     axes.set_xlim(left=0.0)
     axes.set_title(f"Weights over radii (p0 = {plays.p0:.3g})")
-    axes.set_xlabel(with_unit("radius r", labels.input_unit))
-    axes.set_ylabel("weight p, +- one standard error" if standard_errors else "weight p")
+    axes.set_xlabel(with_unit("radius r", unit_before))
+    what = "weight p, +- one standard error" if standard_errors else "weight p"
+    axes.set_ylabel(with_unit(what, ratio_unit(unit_after, unit_before)))
 
 
 def _draw_loading_curve(
-    axes: Axes, plays: PrandtlIshlinskii, signal: Array, labels: Labels
+    axes: Axes, plays: PrandtlIshlinskii, signal: Array, unit_before: str, unit_after: str
 ) -> None:
     end = max(0.5 * float(np.ptp(signal)), float(plays.r.max(initial=0.0)))
     rising = np.unique(np.concatenate([np.linspace(0.0, end, 200), plays.r]))
@@ -154,22 +194,18 @@ def _draw_loading_curve(
     axes.plot(rising, plays.p0 * rising, color=SECOND, linestyle="--", label="linear part p0")
     axes.plot(plays.r, plays.initial_loading_curve(plays.r), ".", color=MODELLED)
     axes.set_title("Loading curve of the plays")
-    axes.set_xlabel(with_unit("rise of their input from rest", labels.input_unit))
-    axes.set_ylabel("rise of their output")
+    axes.set_xlabel(with_unit("rise of their input from rest", unit_before))
+    axes.set_ylabel(with_unit("rise of their output", unit_after))
     axes.legend(loc="upper left")
 
 
-def _draw_map(axes: Axes, before: Array, after: Array, labels: Labels, is_input: bool) -> None:
+def _draw_map(axes: Axes, before: Array, after: Array, unit_after: str) -> None:
     order = np.argsort(before)
     x, y = before[order], after[order]
     slope = (y[-1] - y[0]) / (x[-1] - x[0]) if x[-1] > x[0] else 0.0
     axes.plot(x, y - y[0] - slope * (x - x[0]), color=MODELLED)
     axes.axhline(0.0, color=FAINT, zorder=0)
-    axes.set_title("Envelope map" if is_input else "Output map")
-    axes.set_xlabel(
-        with_unit(labels.input_name, labels.input_unit) if is_input else "output of the plays"
-    )
-    axes.set_ylabel(f"its output minus {slope:.3g} times its input")
+    axes.set_ylabel(with_unit(f"its output minus {slope:.3g} times its input", unit_after))
 
 
 def _draw_line(axes: Axes, u: Array, y: Array, labels: Labels) -> None:

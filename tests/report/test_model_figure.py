@@ -1,0 +1,65 @@
+"""Axes of the figure of a model say the units that follow from its stages."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib.figure
+import numpy as np
+import pytest
+
+from hyst import (
+    Affine,
+    DeadZone,
+    GeneralizedPrandtlIshlinskii,
+    ModifiedPrandtlIshlinskii,
+    Operator,
+    PrandtlIshlinskii,
+)
+from hyst.report.model_figure import Labels, draw_model
+
+PLAYS = PrandtlIshlinskii([0.5, 0.2], [1.0, 2.0], p0=0.5)
+MAP = DeadZone([1.0, -0.2], [0.0, 1.0])
+WEIGHT = "weight p [um/V]"
+RISE = "rise of their output [um]"
+U = 5.0 * np.sin(np.linspace(0.0, 10.0, 300))
+
+
+def labels_of(model: Operator, monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, str]]:
+    seen: list[tuple[str, str]] = []
+    save = matplotlib.figure.Figure.savefig
+
+    def watched(figure: matplotlib.figure.Figure, *args: Any, **kwargs: Any) -> None:
+        seen.extend((axes.get_xlabel(), axes.get_ylabel()) for axes in figure.axes)
+        save(figure, *args, **kwargs)
+
+    monkeypatch.setattr(matplotlib.figure.Figure, "savefig", watched)
+    draw_model(model, U, Labels("drive", "V", "position", "um"), {}, "")
+    return seen
+
+
+def test_plays_turn_the_unit_of_the_input_into_that_of_the_output(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    model = Affine(-1.0, 3.0) @ PLAYS
+    assert labels_of(model, monkeypatch) == [
+        ("radius r [V]", WEIGHT),
+        ("rise of their input from rest [V]", RISE),
+    ]
+
+
+def test_maps_of_slope_one_keep_the_unit(monkeypatch: pytest.MonkeyPatch) -> None:
+    before, *_ = labels_of(GeneralizedPrandtlIshlinskii(MAP, PLAYS), monkeypatch)
+    assert before[0] == "drive [V]"
+    assert before[1].endswith("times its input [V]")
+    weights, _, after = labels_of(ModifiedPrandtlIshlinskii(PLAYS, MAP), monkeypatch)
+    assert weights == ("radius r [V]", WEIGHT)
+    assert after[0] == "output of the plays [um]"
+    assert after[1].endswith("times its input [um]")
+
+
+def test_a_unit_that_a_gain_has_changed_is_not_made_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    steep = DeadZone([3.0, -0.2], [0.0, 1.0])
+    (_, bend), *plays = labels_of(GeneralizedPrandtlIshlinskii(steep, PLAYS), monkeypatch)
+    assert bend.endswith("times its input")
+    assert plays == [("radius r", "weight p"), ("rise of their input from rest", RISE)]
