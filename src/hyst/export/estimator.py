@@ -9,7 +9,7 @@ import numpy as np
 
 from hyst import _single
 from hyst.export.block import Block
-from hyst.export.numbers import Precision, literal, table
+from hyst.export.numbers import Precision, literal, refuse_vanishing, table
 from hyst.online import JointEstimator
 from hyst.online.parts import take_apart
 from hyst.operators import Affine
@@ -99,6 +99,7 @@ def _gains(before: Affine | None, after: Affine, precision: Precision) -> dict[s
 
 def _declarations(constants: Constants, precision: Precision) -> str:
     def number(name: str, place: int) -> str:
+        refuse_vanishing([constants[name][place]], precision, f"{name}[{place}]")
         return literal(constants[name][place], precision, f"{name}[{place}]")
 
     tables = {

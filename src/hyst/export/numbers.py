@@ -13,6 +13,7 @@ from hyst.errors import InputError
 Precision = Literal["double", "single"]
 PRECISIONS: tuple[Precision, ...] = ("double", "single")
 _PER_LINE = 4
+_LEAST_NORMAL = 2.0**-126  # of single precision
 
 
 def as_precision(precision: str) -> Precision:
@@ -66,6 +67,31 @@ def rounded(value: float, precision: Precision, name: str) -> float:
             f"{name} is {value:.6g}, beyond single precision; export double, or scale the model"
         )
     return number
+
+
+def refuse_vanishing(values: Sequence[float], precision: Precision, name: str) -> None:
+    """Refuse constants that single precision would make 0, or nearly.
+
+    Parameters
+    ----------
+    values
+        At least one; beside larger ones a tiny one may vanish.
+    precision
+        Of the target.
+    name
+        What messages call them.
+
+    Raises
+    ------
+    InputError
+        If the largest is not 0 but below the normal numbers of single precision.
+    """
+    largest = max(abs(value) for value in values)
+    if precision == "single" and 0.0 < largest < _LEAST_NORMAL:
+        raise InputError(
+            f"{name} is {largest:.6g} at most, below what single precision holds; export double, "
+            "or scale the model"
+        )
 
 
 def literal(value: float, precision: Precision, name: str) -> str:

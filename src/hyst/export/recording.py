@@ -133,7 +133,7 @@ class Recorder:
         The memory is ``inverse``, ``last_reversal``, ``depth`` and ``dead_band``.
         """
         choices = {"inverse": int(inverse), "last_reversal": int(last_reversal), "depth": depth}
-        numbers, tables, positive = _loading_curve(curve, constants, least_slope)
+        numbers, tables = _loading_curve(curve, constants, least_slope)
         self.stages.append(
             Stage(
                 "masing",
@@ -142,7 +142,6 @@ class Recorder:
                 choices,
                 _CURVES[curve],
                 state_length=_MASING_STACK + 2 * depth,
-                positive=positive,
             )
         )
 
@@ -170,7 +169,6 @@ class Recorder:
                 _FUNCTIONS[function],
                 state_length=2,
                 dt=dt,
-                positive=("dt",),
             )
         )
 
@@ -192,15 +190,15 @@ Tables = dict[str, tuple[float, ...]]
 
 def _loading_curve(
     curve: str, constants: Sequence[float], least_slope: float
-) -> tuple[dict[str, float], Tables, tuple[str, ...]]:
+) -> tuple[dict[str, float], Tables]:
     if curve == "power-law":
         linear, c2, c3 = constants
         exponent = c3 + 1.0
         factor = _core_power(2.0, c3) * c2 / exponent
-        return {"linear": linear, "factor": factor, "exponent": exponent}, {}, ("exponent",)
+        return {"linear": linear, "factor": factor, "exponent": exponent}, {}
     if curve == "plays":
-        return {}, _pieces(constants), ()
-    return {"least_slope": least_slope}, {"coefficient": tuple(constants)}, ("least_slope",)
+        return {}, _pieces(constants)
+    return {"least_slope": least_slope}, {"coefficient": tuple(constants)}
 
 
 def _pieces(constants: Sequence[float]) -> Tables:

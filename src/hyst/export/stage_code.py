@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from textwrap import wrap
 from typing import final
 
-from hyst.errors import InputError
-from hyst.export.numbers import Precision, literal, rounded, table
+from hyst.export.numbers import Precision, literal, refuse_vanishing, rounded, table
 from hyst.export.stages import Stage
 
 
@@ -72,13 +71,7 @@ class StageCode:
         for constant in self.constants():
             for value in constant.values:
                 rounded(value, self.precision, constant.name)
-        for index, stage in enumerate(self.stages):
-            for name in stage.positive:
-                if not rounded(stage.numbers[name], self.precision, name) > 0.0:
-                    raise InputError(
-                        f"{_name(stage, index)}_{name} is {stage.numbers[name]:.6g}, which single "
-                        "precision rounds to 0; export double, or scale the model"
-                    )
+            refuse_vanishing(constant.values, self.precision, constant.name)
 
     def constants(self) -> tuple[Constant, ...]:
         """Give all constants, stage after stage; arrays without entries are left out."""

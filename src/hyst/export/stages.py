@@ -30,8 +30,6 @@ class Stage:
         Numbers of memory.
     dt
         Sample time the constants are made for, seconds; None if any will do.
-    positive
-        Which numbers must stay above zero in every precision.
     """
 
     kind: str
@@ -41,4 +39,3 @@ class Stage:
     form: str = ""
     state_length: int = 0
     dt: float | None = None
-    positive: tuple[str, ...] = ()
