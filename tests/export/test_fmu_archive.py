@@ -295,3 +295,11 @@ def test_what_looks_ahead_has_no_fmu(tmp_path: Path) -> None:
     with pytest.raises(hyst.NotInvertibleError):
         hyst.export.fmu(dynamics.inverse(), tmp_path / "a.fmu")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_licence_goes_with_the_sources(tmp_path: Path) -> None:
+    licence = Path(__file__).resolve().parents[2] / "LICENSE"
+    written = hyst.export.fmu(PI, tmp_path / "a.fmu", binary=False)
+    with zipfile.ZipFile(written.path) as archive:
+        copy = archive.read("documentation/licenses/license.txt")
+    assert copy == licence.read_bytes()
