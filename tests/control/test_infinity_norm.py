@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import control
 import numpy as np
 import pytest
 import slycot
 
+import control
 from hyst.control import LinearSystem, hinf_norm
 from hyst.errors import InputError
 

@@ -15,13 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.control.disturbance_observer.minimax import Descent, finish
+from hyst.control.disturbance_observer.smoothing import descend_smoothed
 from hyst.control.disturbance_observer.stacked_gain import StackedGain
 
 Array = NDArray[np.float64]
 
 _SETTLED = 1e-4
-_SHORT, _LONG = 25, 100
+_LONG = 100
 _KEPT, _AGAIN = 3, 3
+_SMALL = 4  # order up to which few starts find the best
+_HOPS, _HOP = 12, 0.7  # from the best so far, and how far in logarithms
 
 
 def norm_and_slope(gain: StackedGain, parameters: Array) -> tuple[float, Array]:
@@ -50,13 +53,14 @@ def descend(gain: StackedGain, start: Array) -> Descent:
 def descend_from_many(
     gain: StackedGain,
     given: list[Array],
-    random_starts: int = 12,
+    random_starts: int | None = None,
     seed: int = 0,
     progress: Callable[[int, float], None] | None = None,
 ) -> Descent:
     """Give the best of descents from given, from usual and from random parameters.
 
-    Short descents from all, long ones from the best of them.
+    Descents on a smoothed norm from all, on the exact one from the best of them; then hops from
+    the best to its neighbourhood, where orders are high and minima many.
 
     Parameters
     ----------
@@ -65,49 +69,76 @@ def descend_from_many(
     given
         Parameters tried first.
     random_starts
-        Number of random ones.
+        Number of random ones; more for higher orders if left out.
     seed
         Of the random starts: the same seed gives the same result.
     progress
         Called with the number of descents done and the best norm.
     """
-    starts = given + usual_parameters(gain) + random_parameters(gain, random_starts, seed)
+    large = gain.order > _SMALL
+    usual = usual_parameters(gain, 2 if large else 1)
+    random_starts = 2 * gain.order if random_starts is None and large else random_starts or 6
     found: list[Descent] = []
 
-    def note(each: Descent) -> None:
+    def note(each: Descent) -> Descent:
         found.append(each)
         if progress is not None:
             progress(len(found), min(other.norm for other in found))
+        return each
 
-    for start in starts:
-        note(_bfgs(gain, start, _SHORT))
-    for each in sorted(found, key=lambda descent: descent.norm)[:_KEPT]:
-        note(finish(gain, each, _SHORT))
+    smooth = []
+    for start in given + usual + random_parameters(gain, random_starts, seed):
+        x = descend_smoothed(gain, start)
+        smooth.append(note(Descent(x, norm_and_slope(gain, x)[0], 1)))
+    for each in sorted(smooth, key=lambda descent: descent.norm)[:_KEPT]:
+        note(finish(gain, each))
+    for start in given + usual if large else given:
+        note(finish(gain, Descent(start, norm_and_slope(gain, start)[0], 1)))
+    rng = np.random.default_rng(seed)
+    for _ in range(_HOPS if large else 0):
+        best = min(found, key=lambda descent: descent.norm)
+        x = best.parameters + rng.normal(0.0, _HOP, gain.order)
+        x = np.clip(x, gain.lowest, gain.highest)
+        note(finish(gain, Descent(x, norm_and_slope(gain, x)[0], 1)))
     note(descend(gain, min(found, key=lambda descent: descent.norm).parameters))
     best = min(found, key=lambda descent: descent.norm)
     return replace(best, evaluations=sum(each.evaluations for each in found))
 
 
-def usual_parameters(gain: StackedGain, kept: int = 4) -> list[Array]:
-    """Give Butterworth poles of several bandwidths, the best few on the grid of gain.
+def usual_parameters(gain: StackedGain, kept: int = 2) -> list[Array]:
+    """Give poles of Q that an engineer would try: of each kind those best on the grid of gain.
 
-    Each eigenvalue of the internal model but one at 0 keeps a pole of its own close by: then it
-    costs little, for what it adds to 1 - Q nearly cancels.
+    Butterworth poles of several bandwidths; with some of the poles on the zeros of the plant, which
+    makes Q a plain low pass, on its poles, or on those of the loop with the controller. Each
+    eigenvalue of the internal model but one at 0 keeps a pole of its own close by: then it costs
+    little, for what it adds to 1 - Q nearly cancels. So many of each kind are kept.
     """
     size = np.abs(gain.features)
     others = _without_one_at_zero(gain.model_poles)
-    count = gain.order - others.size
-    angles = np.pi * (np.arange(count) - 0.5 * (count - 1)) / (2.0 * count)
-    circle = -np.exp(1j * angles)
-    drawn = []
-    for bandwidth in np.geomspace(0.3 * size.min(), 3.0 * size.max(), 24):
-        for shift in (0.01, 0.2):
-            close = others - shift * np.where(np.abs(others) > 0.0, np.abs(others), bandwidth)
-            poles = np.concatenate([bandwidth * circle, close])
-            poles = np.where(np.abs(poles.imag) < 1e-9 * np.abs(poles), poles.real, poles)
-            values = gain.parameters_of(poles)
-            drawn.append((float(gain.values(values, gain.grid).max()), values))
-    return [values for _, values in sorted(drawn, key=lambda each: each[0])[:kept]]
+    kinds = [np.zeros(0, complex), gain.plant.zeros, gain.plant.poles, gain.S0.poles]
+    starts = []
+    for kind in kinds:
+        taken = _slowest(kind, gain.order - others.size - 1)
+        count = gain.order - others.size - taken.size
+        circle = -np.exp(1j * np.pi * (np.arange(count) - 0.5 * (count - 1)) / (2.0 * count))
+        drawn = []
+        for bandwidth in np.geomspace(0.3 * size.min(), 3.0 * size.max(), 24):
+            for shift in (0.01, 0.2):
+                close = others - shift * np.where(np.abs(others) > 0.0, np.abs(others), bandwidth)
+                poles = np.concatenate([bandwidth * circle, close, taken])
+                poles = np.where(np.abs(poles.imag) < 1e-9 * np.abs(poles), poles.real, poles)
+                values = np.clip(gain.parameters_of(poles), gain.lowest, gain.highest)
+                drawn.append((float(gain.values(values, gain.grid).max()), values))
+        if kind.size or kind is kinds[0]:
+            starts += sorted(drawn, key=lambda each: each[0])[:kept]
+    return [values for _, values in sorted(starts, key=lambda each: each[0])]
+
+
+def _slowest(poles: Array, count: int) -> Array:
+    """At most count of the poles, pairs kept together."""
+    ordered = poles[np.argsort(np.abs(poles), kind="stable")][:count]
+    whole = [p for p in ordered if p.imag == 0.0 or np.isclose(ordered, np.conj(p)).any()]
+    return np.array(whole, dtype=complex)
 
 
 def random_parameters(gain: StackedGain, count: int, seed: int) -> list[Array]:

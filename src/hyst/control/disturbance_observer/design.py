@@ -38,7 +38,7 @@ def design_disturbance_observer(
     *,
     perturbed_plant: Any = None,
     method: str = "slpmm+descent",
-    starts: int = 8,
+    starts: int | None = None,
     seed: int = 0,
     progress: Callable[[str, int, float], None] | None = None,
 ) -> DisturbanceObserver:
@@ -66,7 +66,7 @@ def design_disturbance_observer(
     method
         ``"slpmm"`` (the appendix's), ``"descent"`` or ``"slpmm+descent"``.
     starts
-        Number of random starts of the descent.
+        Number of random starts of the descent; by the order if left out.
     seed
         Of those starts: the same seed gives the same gain.
     progress
