@@ -18,6 +18,8 @@ from c_builds import (
     stepped,
     wandering,
 )
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from hyst import InputError, Operator, PrandtlIshlinskii
 from hyst.control.tracking_controller import TrackingController
@@ -25,6 +27,7 @@ from hyst.export import c_project
 from hyst.models import LinearDynamics
 from hyst.models.stable_inverse import StableInverse
 from reference.examples import EXAMPLES
+from reference.random_operators import RANDOM, signals
 
 SAMPLES = 100_000
 # 10^5 samples of an inverse loading curve, each of them solved for, take a second in Python.
@@ -80,6 +83,20 @@ def expected_outputs(project: Path) -> np.ndarray:
     text = (project / "selftest_vectors.h").read_text()
     numbers = text[text.index("= {") + 3 :].rstrip("};\n").split(",")
     return np.array([float.fromhex(each.strip().rstrip("f")) for each in numbers])
+
+
+@settings(max_examples=2)
+@pytest.mark.parametrize("kind", RANDOM)
+@given(data=st.data())
+def test_operators_at_random_give_the_bits_of_python(
+    data: st.DataObject, kind: str, objects: Objects, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    model, u = data.draw(RANDOM[kind]), data.draw(signals(most=64))
+    project = c_project(model, tmp_path_factory.mktemp("random") / "out")
+    library = build_library(project.path, objects)
+    code = Exported(library, project.state_length, project.saved_bytes)
+    record = np.concatenate([u, [np.nan], u[::-1]])
+    assert same_bits(code.run(code.initial_state(), record), stepped(model.stepper(), record))
 
 
 CONTROLLERS = {
