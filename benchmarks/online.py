@@ -2,6 +2,8 @@
 
 Prints, for one machine and one run,
 - the time of one update of the joint estimator in C and from Python, and the bytes of its state,
+- how many of 1000 random starts, radii up to 50 % and weights up to 30 % off, are not within 0.1 %
+  after 3 periods without noise, with the search for a better minimum and without,
 - root mean square errors of 50 runs of 100 s at 10, 20 and 30 dB over the Cramer-Rao bound,
 - the same for the paper's law on sine and staircase, over the bound of the radii alone,
 - the tracking error of the adaptive inverse over that of a frozen one, while a weight and a radius
@@ -25,6 +27,7 @@ P = np.array([0.3, 0.5, 0.8, 0.3, 0.2])
 R = np.array([0.4, 1.0, 1.5, 2.0, 3.6])
 DT = 1e-3
 RUNS = 50
+STARTS = 1000
 
 
 def sine(seconds: float) -> Array:
@@ -32,21 +35,50 @@ def sine(seconds: float) -> Array:
 
 
 def cost() -> None:
-    print("plays  ns an update: C  Python   bytes of state")
+    print("CPU time. plays  search  ns an update: C  Python   bytes of state")
     for plays in (1, 5, 10):
         r = np.linspace(0.4, 3.6, plays)
         truth = hyst.PrandtlIshlinskii(np.full(plays, 2.0 / plays), r, 0.1)
         u = sine(100.0)
         record = hyst.Record(u, truth(u) + np.random.default_rng(0).normal(0.0, 1.0, u.size), DT)
-        estimator = JointEstimator(truth, dt=DT, memory=10.0)
-        begin = time.perf_counter()
-        estimator.run(record, every=record.samples)
-        in_c = (time.perf_counter() - begin) / u.size
-        begin = time.perf_counter()
-        for u_k, y_k in zip(record.u[:20_000].tolist(), record.y[:20_000].tolist(), strict=True):
-            estimator.update(u_k, y_k)
-        in_python = (time.perf_counter() - begin) / 20_000
-        print(f"{plays:5d} {1e9 * in_c:16.0f} {1e9 * in_python:7.0f} {estimator.state.nbytes:12d}")
+        for search in (False, True):
+            estimator = JointEstimator(truth, dt=DT, memory=10.0, search=search)
+            begin = time.process_time()
+            estimator.run(record, every=record.samples)
+            in_c = (time.process_time() - begin) / u.size
+            begin = time.process_time()
+            for u_k, y_k in zip(
+                record.u[:20_000].tolist(), record.y[:20_000].tolist(), strict=True
+            ):
+                estimator.update(u_k, y_k)
+            in_python = (time.process_time() - begin) / 20_000
+            size = estimator.state.nbytes
+            print(f"{plays:14d} {search!s:>7} {1e9 * in_c:16.0f} {1e9 * in_python:7.0f} {size:12d}")
+
+
+def any_start() -> None:
+    truth = hyst.PrandtlIshlinskii(P, R)
+    u = sine(3.0)
+    drive = hyst.Record(u, truth(u), DT)
+    for how in ("corners", "uniform"):
+        for search in (True, False):
+            rng = np.random.default_rng(0)
+            worst = np.zeros(STARTS)
+            for k in range(STARTS):
+                far = (
+                    rng.choice([-1.0, 1.0], 10) if how == "corners" else rng.uniform(-1.0, 1.0, 10)
+                )
+                p, r = P * (1.0 + 0.3 * far[:5]), R * (1.0 + 0.5 * far[5:])
+                order = np.argsort(r)
+                start = hyst.PrandtlIshlinskii(p[order], r[order])
+                estimator = JointEstimator(start, dt=DT, search=search)
+                estimator.run(drive, every=drive.samples)
+                right = np.concatenate([P, R])
+                worst[k] = np.abs(estimator.parameters[1:11] / right - 1.0).max()
+            print(
+                f"{STARTS} {how} starts, search {search}: {int((worst > 1e-3).sum())} beyond "
+                f"0.1 %, worst {100.0 * worst.max():.3g} %"
+            )
 
 
 def over_bound() -> None:
@@ -121,6 +153,7 @@ def drift() -> None:
 
 def main() -> None:
     cost()
+    any_start()
     over_bound()
     paper_law_over_bound()
     drift()
