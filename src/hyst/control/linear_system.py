@@ -79,7 +79,13 @@ class LinearSystem:
         return np.asarray(scipy.linalg.eigvals(self.A), dtype=np.complex128).reshape(self.order)
 
     def response(self, s: Points) -> ComplexArray:
-        """Values of the transfer function at the complex numbers s, (len(s), q, m)."""
+        """Values of the transfer function, (len(s), q, m).
+
+        Parameters
+        ----------
+        s
+            Complex numbers, 1/s.
+        """
         points = np.atleast_1d(np.asarray(s, dtype=np.complex128))
         if self.order == 0:
             return np.broadcast_to(self.D.astype(complex), (points.size, *self.D.shape)).copy()

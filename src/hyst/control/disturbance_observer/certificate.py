@@ -180,9 +180,10 @@ def _factored_q(problem: ObserverProblem, gain: Array, plant: ZerosAndPoles) -> 
 
 
 def loop(problem: ObserverProblem, gain: Array, plant: LinearSystem) -> LinearSystem:
-    """Close Fig. 3 around a plant: from d, outputs v, the estimate of d and y.
+    """Close the loop of Fig. 3: from d, outputs v, the estimate of d and y.
 
-    States are those of plant, controller and observer; the reference and the noise are 0.
+    States are those of plant, controller and observer; the reference and the noise are 0. The
+    controller and the observer, with this gain, are those of the problem, the plant is any.
     """
     controller, observer = problem.controller, problem.observer(gain)
     n, n_c, n_o = plant.order, controller.order, observer.order
@@ -208,7 +209,10 @@ def loop(problem: ObserverProblem, gain: Array, plant: LinearSystem) -> LinearSy
 
 
 def weighted_loop(problem: ObserverProblem, gain: Array) -> LinearSystem:
-    """Give [Wu T; Wp (1 - Q)] as a system with input d, its first output with the sign of v."""
+    """Give [Wu T; Wp (1 - Q)] as a system with input d, first output signed as v.
+
+    The loop is that of the problem, with this gain.
+    """
     inner, Wu, Wp = loop(problem, gain, problem.plant), problem.Wu, problem.Wp
     v, v_d = inner.C[:1], inner.D[:1]
     error, error_d = -inner.C[1:2], np.ones((1, 1))

@@ -40,7 +40,7 @@ def norm_and_slope(gain: StackedGain, parameters: Array) -> tuple[float, Array]:
 
 
 def descend(gain: StackedGain, start: Array) -> Descent:
-    """Go down from the parameters start as far as it goes: BFGS, Newton steps, and again."""
+    """Go down with gain from the parameters start as far as it goes: BFGS, Newton, again."""
     found = finish(gain, _bfgs(gain, start, _LONG))
     for _ in range(_AGAIN):
         before = found.norm

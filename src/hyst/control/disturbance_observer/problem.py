@@ -18,8 +18,16 @@ ComplexArray = NDArray[np.complex128]
 class ObserverProblem:
     """Nominal plant, controller, weights and internal model of one design.
 
-    ``plant`` Pn and ``controller`` C, the weight ``Wu`` of the multiplicative uncertainty, the
-    weight ``Wp`` of 1 - Q, and the ``internal_model`` of the disturbance.
+    ``observer_problem`` makes one from what a user has, and checks it.
+
+    Parameters
+    ----------
+    plant, controller
+        Pn and C, each with one input and one output, in continuous time.
+    Wu, Wp
+        Weights of the multiplicative uncertainty and of 1 - Q.
+    internal_model
+        Of the disturbance.
     """
 
     plant: LinearSystem
@@ -46,13 +54,25 @@ class ObserverProblem:
         return A, B, C, of_disturbance
 
     def observer(self, gain: Array) -> LinearSystem:
-        """Give the Luenberger observer of eq. 32: inputs v and y, output the estimate of d."""
+        """Give the Luenberger observer of eq. 32: inputs v and y, output the estimate of d.
+
+        Parameters
+        ----------
+        gain
+            L, (order,).
+        """
         A, B, C, of_disturbance = self.augmented()
         L = np.asarray(gain, dtype=np.float64).reshape(-1, 1)
         return LinearSystem(A - L @ C, np.hstack([B, L]), of_disturbance, np.zeros((1, 2)))
 
     def q_filter(self, gain: Array) -> LinearSystem:
-        """Give Q(s), eq. 34b: from d to its estimate on the nominal plant."""
+        """Give Q(s), eq. 34b: from d to its estimate on the nominal plant.
+
+        Parameters
+        ----------
+        gain
+            L, (order,).
+        """
         A, B, C, of_disturbance = self.augmented()
         L = np.asarray(gain, dtype=np.float64).reshape(-1, 1)
         return LinearSystem(A - L @ C, -B, of_disturbance, np.zeros((1, 1)))

@@ -116,6 +116,18 @@ def in_coordinates_of(plant: GeneralizedPlant, gain: Array) -> tuple[Generalized
     """Choose states in which P = R = 1 proves a norm 1.5 times that of a stabilizing gain.
 
     Without it P and R have entries from 1e-5 to 1e5 and no solver gets far.
+
+    Parameters
+    ----------
+    plant
+        In any states.
+    gain
+        L, (order of the observer,), in the units of the problem.
+
+    Raises
+    ------
+    SolverError
+        If the gain does not stabilize the plant.
     """
     A = plant.A + plant.B2 @ (gain / plant.gain_units)[:, None] @ plant.C2
     B, C, D = plant.B1, plant.C1, plant.D11

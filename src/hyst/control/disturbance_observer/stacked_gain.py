@@ -28,7 +28,11 @@ _AROUND = np.array([-3.0, -1.5, -0.7, -0.3, 0.0, 0.3, 0.7, 1.5, 3.0])
 
 @dataclass(frozen=True)
 class Frequencies:
-    """Frequencies with all that does not depend on the gain: s, Wu^2, S0, Wp^2, powers of s."""
+    """Frequencies ``w`` with all that does not depend on the gain.
+
+    ``Wu2`` and ``Wp2`` are squares of the weights, ``S0`` is the sensitivity; ``powers`` of s, the
+    ``model`` polynomial and the ``numerator`` of the plant are in units of the scale.
+    """
 
     w: Array
     Wu2: Array
@@ -151,7 +155,7 @@ class StackedGain:
         return np.asarray(np.where(np.isfinite(value), value, np.inf))
 
     def values_and_slopes(self, parameters: Array, at: Frequencies) -> tuple[Array, Array]:
-        """Square of the stacked gain and its derivatives (frequencies, parameters)."""
+        """Square of the stacked gain at each frequency, and its derivatives by the parameters."""
         x, slopes = self.polynomial(parameters)
         E, below = self._one_minus_q(x, at)
         T = 1.0 - at.S0 * E
