@@ -51,3 +51,32 @@ def test_the_range_is_kept_or_the_sample_is_named() -> None:
 def test_models_without_dynamics_are_refused() -> None:
     with pytest.raises(InputError, match="0 stages of linear dynamics"):
         invert_trajectory(PI, rest_to_rest(), "noncausal")
+
+
+def test_the_error_table_splits_the_edges_from_the_interior() -> None:
+    # Begins and ends on its way, where the method takes it to rest.
+    y_ref = 3.0 * np.cos(np.linspace(0.0, 30.0, 2000))
+    done = hyst.compensation.invert_trajectory(MIXED @ PI, y_ref, "noncausal")
+    whole, inside, edges = hyst.compensation.error_parts(done)
+    assert whole.max_abs == edges.max_abs == np.abs(done.predicted_error).max() > 1e-3
+    # What the dynamics held at the start has decayed to 1e-9 of a signal of size 3, and a margin.
+    assert inside.max_abs < 1e-8
+    first, beyond = done.interior
+    assert inside.name == f"samples {first} to {beyond - 1}"
+    # The means of both squares, weighted by their samples, are that of the whole.
+    count = beyond - first
+    both = count * inside.rms**2 + (2000 - count) * edges.rms**2
+    assert both == pytest.approx(2000 * whole.rms**2, rel=1e-12)
+    rows = [row[0] for row in hyst.report.compensation_table(done, "um").rows]
+    assert rows == [
+        "rms",
+        "max",
+        *(f"{each}, {part.name}" for part in (inside, edges) for each in ("rms", "max")),
+    ]
+
+
+def test_without_edges_the_table_is_of_all_samples() -> None:
+    done = hyst.compensation.invert_trajectory(hyst.Affine(2.0), [1.0, 2.0])
+    assert done.interior is None
+    assert [part.name for part in hyst.compensation.error_parts(done)] == [""]
+    assert [row[0] for row in hyst.report.compensation_table(done, "").rows] == ["rms", "max"]

@@ -174,9 +174,16 @@ def test_a_refusal_names_the_range_of_the_input_before_a_map() -> None:
 
 @pytest.mark.parametrize("method", ["preview", "trajectory"])
 @pytest.mark.parametrize("rate_limit", [1.0, 100.0, 1000.0])
-def test_a_rate_limit_out_of_reach_is_told(method: str, rate_limit: float) -> None:
+def test_a_rate_limit_out_of_reach_is_refused_or_told(method: str, rate_limit: float) -> None:
     y_ref = reference_signal(60.0)
-    done = invert_trajectory(MODEL, y_ref, method, rate_limit=rate_limit, allow_unconverged=True)
+    limits = {"rate_limit": rate_limit, "allow_unconverged": True}
+    needed = np.abs(np.diff(MODEL.explicit_inverse()(y_ref))).max() / DT
+    says = rf"rate_limit = {rate_limit:.6g} is out of reach .* needs up to {needed:.4g}: ".replace(
+        "+", r"\+"
+    )
+    with pytest.raises(InputError, match=says):
+        invert_trajectory(MODEL, y_ref, method, **limits)
+    done = invert_trajectory(MODEL, y_ref, method, outside="clip", **limits)
     assert "rate limit is out of reach for this reference" in done.notes[-1]
     # A drive at rest where it starts leaves the reference itself.
     assert done.rms <= np.sqrt(np.mean(y_ref**2)) * (1.0 + 1e-9)
@@ -193,7 +200,7 @@ def test_a_drive_worse_than_rest_is_replaced_where_the_whole_is_known(
     state = None if past is None else MODEL.run(past)[1]
     y_rest = MODEL.run(np.full(500, at), state)[0]
     y_ref = y_rest + reference_signal(60.0)
-    task = prepare_task(MODEL, y_ref, None, False, past)
+    task = prepare_task(MODEL, y_ref, None, True, past)
     # In antiphase, so that it leaves more than rest does.
     bad = SolvedDrive(at - reference_signal(60.0), "converged", 7, ("first",))
     judged = judge_rate_limit(task, bad, 1e3 * DT, True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hyst.compensation.compensation import Compensation
+from hyst.compensation.compensation import Compensation, error_parts
 from hyst.compensation.inverse_error import ErrorBound, error_bound
 from hyst.compensation.inverse_reduction import reduce_inverse
 from hyst.compensation.inverse_slopes import slope_range
@@ -13,6 +13,7 @@ __all__ = [
     "Compensation",
     "ErrorBound",
     "error_bound",
+    "error_parts",
     "invert_trajectory",
     "reduce_inverse",
     "slope_range",

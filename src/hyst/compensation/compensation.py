@@ -35,6 +35,9 @@ class Compensation:
         Steps of the solver.
     notes
         What the user should know of how well the problem was posed, in sentences.
+    interior
+        First sample and the one beyond the last for which the method promises what it does; outside
+        them are the edges, of which it assumes something. None if there are none.
 
     Examples
     --------
@@ -51,6 +54,7 @@ class Compensation:
     status: str = "solved"
     iterations: int = 1
     notes: tuple[str, ...] = ()
+    interior: tuple[int, int] | None = None
 
     @cached_property
     def predicted_error(self) -> Array:
@@ -99,6 +103,53 @@ class Compensation:
         """
         extent = float(np.ptp(self.y_ref))
         return 100.0 * value / extent if extent > 0.0 else None
+
+
+@dataclass(frozen=True)
+class ErrorPart:
+    """The predicted error over some samples.
+
+    Parameters
+    ----------
+    name
+        Which samples.
+    rms, max_abs
+        Output units.
+    """
+
+    name: str
+    rms: float
+    max_abs: float
+
+
+def error_parts(done: Compensation) -> tuple[ErrorPart, ...]:
+    """Give the error over all samples and, where there are edges, over interior and edges.
+
+    Parameters
+    ----------
+    done
+        A compensation.
+
+    Returns
+    -------
+    tuple of ErrorPart
+    """
+    error = done.predicted_error
+    whole = ErrorPart("", done.rms, done.max_abs)
+    if done.interior is None:
+        return (whole,)
+    first, beyond = done.interior
+    inside = error[first:beyond]
+    edges = np.concatenate([error[:first], error[beyond:]])
+    named = ((f"samples {first} to {beyond - 1}", inside), ("the edges", edges))
+    return (
+        whole,
+        *(
+            ErrorPart(name, math.sqrt(float(np.mean(part**2))), float(np.abs(part).max()))
+            for name, part in named
+            if part.size
+        ),
+    )
 
 
 def _ratio(measure: Callable[..., float], u: Array, y_ref: Array) -> float | None:

@@ -53,7 +53,7 @@ def refuse_or_tell(task: RateDependentTask, clipped: NDArray[np.bool_]) -> tuple
 def judge_rate_limit(
     task: RateDependentTask, found: SolvedDrive, change: float, replace: bool
 ) -> SolvedDrive:
-    """Say if a limit of the rate is out of reach, and take a drive at rest if that is better.
+    """Refuse a limit of the rate that is out of reach, or tell it where clipping is allowed.
 
     Parameters
     ----------
@@ -69,6 +69,12 @@ def judge_rate_limit(
     Returns
     -------
     SolvedDrive
+
+    Raises
+    ------
+    InputError
+        If the limit holds the drive at more than half of its steps, or a drive at rest does better,
+        and the task does not allow clipping; the rate the reference needs is named.
     """
     if not np.isfinite(change):
         return found
@@ -79,6 +85,8 @@ def judge_rate_limit(
     worse = left >= left_at_rest
     if not worse and 2 * active <= moves.size:
         return found
+    if not task.clip:
+        raise InputError(_rate_out_of_reach(task, change, (active, moves.size), left, left_at_rest))
     note = (
         f"the rate limit is out of reach for this reference: it holds the drive at {active} of "
         f"{moves.size} steps, the rms error of the plays' output is {left:.4g}, that of a drive "
@@ -88,6 +96,20 @@ def judge_rate_limit(
         note += "; the drive at rest is given"
         return dataclasses.replace(found, drive=rest, notes=(*found.notes, note))
     return dataclasses.replace(found, notes=(*found.notes, note))
+
+
+def _rate_out_of_reach(
+    task: RateDependentTask, change: float, held: tuple[int, int], left: float, at_rest: float
+) -> str:
+    inverse, memory = task.explicit_inverse()
+    needed = float(np.abs(np.diff(inverse.run(task.target, memory)[0])).max())
+    dt = task.plays.dt
+    return (
+        f"rate_limit = {change / dt:.6g} is out of reach for this reference, which needs up to "
+        f"{needed / dt:.4g}: it holds the drive at {held[0]} of {held[1]} steps, the rms error of "
+        f"the plays' output is {left:.4g}, that of a drive at rest {at_rest:.4g}; raise the limit, "
+        f"slow the reference down {needed / change:.3g} times, or choose to clip it"
+    )
 
 
 def _at_rest(task: RateDependentTask) -> Array:

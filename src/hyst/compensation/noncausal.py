@@ -12,10 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from hyst.compensation.compensation import Compensation
 from hyst.errors import InputError
 from hyst.models import LinearDynamics, StableInverse
+from hyst.models.linear_properties import settling_samples
 from hyst.operators import Composition, Operator
 from hyst.signals.vector import finite_vector
 
 Array = NDArray[np.float64]
+
+_FORGOTTEN = 1e-9  # of the sum of the absolute impulse response
 
 
 def invert_noncausally(
@@ -79,13 +82,26 @@ def invert_noncausally(
             )
         clipped, u = int(outside.sum()), np.clip(u, low, high)
     y_predicted, _ = model.run(u, start)
-    edges = inverse.valid(reference.size)
+    known = inverse.valid(reference.size)
+    first = min(known.start + _settled_after(dynamics), reference.size)
+    inside = (first, max(first, known.stop))
+    where = f"exact for samples {inside[0]} to {inside[1] - 1}, and before and after"
+    if inside[0] == inside[1]:
+        where = "the record is too short for it to be exact anywhere but"
     note = (
-        f"looks {inverse.preview} samples ahead; exact for samples {edges.start} to "
-        f"{edges.stop - 1}, and before and after as far as the reference rests there; noise gain "
-        f"{inverse.noise_gain:.3g}"
+        f"looks {inverse.preview} samples ahead; {where} as far as the reference rests there; "
+        f"noise gain {inverse.noise_gain:.3g}"
     )
-    return Compensation(u, reference, y_predicted, "noncausal", clipped, notes=(note,))
+    return Compensation(
+        u, reference, y_predicted, "noncausal", clipped, notes=(note,), interior=inside
+    )
+
+
+def _settled_after(dynamics: LinearDynamics) -> int:
+    """Give the samples after which what the dynamics held at the start is as good as forgotten."""
+    samples = settling_samples(dynamics.A) + dynamics.delay
+    grown = np.cumsum(np.abs(dynamics.impulse_response(samples)))
+    return int(np.searchsorted(grown, (1.0 - _FORGOTTEN) * grown[-1]))
 
 
 def _split(model: Operator) -> tuple[Operator | None, LinearDynamics, Operator | None]:

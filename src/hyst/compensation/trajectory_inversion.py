@@ -75,9 +75,9 @@ def invert_trajectory(
         Inputs the actuator has passed just before the first sample, shape (M,), input units; they
         set its memory. Left out, the model starts from its own initial state.
     rate_limit
-        Largest rate of the input, input units per second, for ``preview`` and ``trajectory``. A
-        note says if it is out of reach; ``trajectory`` then gives nothing worse than a drive at
-        rest, which ``preview`` cannot know beforehand.
+        Largest rate of the input, input units per second, for ``preview`` and ``trajectory``. One
+        that is out of reach is refused; with ``outside="clip"`` a note says so, and ``trajectory``
+        gives nothing worse than a drive at rest, which ``preview`` cannot know beforehand.
     preview
         Samples of the reference known beyond the present one, >= 1, for ``preview``.
     max_iterations
@@ -98,7 +98,8 @@ def invert_trajectory(
         If a signal is empty or not finite (the first bad index is named), the method, ``outside``
         or another option is not one there is, the range is not two finite ascending numbers, the
         method is not for this model, or, with ``"refuse"``, the reference is out of reach or takes
-        the input of ``explicit`` or ``sample-exact`` out of its range.
+        the input of ``explicit`` or ``sample-exact`` out of its range, or the limit of the rate is
+        far below what the reference needs.
     NotInvertibleError
         If the model has no exact inverse and the method needs one, or p0 is not positive.
     SolverError

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from hyst.compensation import Compensation
+from hyst.compensation import Compensation, error_parts
 from hyst.identification import Identified
 from hyst.operators import ModelDescription, Operator
 
@@ -235,7 +235,11 @@ def compensation_table(done: Compensation, unit: str) -> Table:
     return Table(
         "Predicted tracking error (model's output minus reference)",
         ("", with_unit("error", unit and f"[{unit}]"), "% of the reference's range"),
-        (row("rms", done.rms), row("max", done.max_abs)),
+        tuple(
+            row(", ".join(filter(None, (name, part.name))), value)
+            for part in error_parts(done)
+            for name, value in (("rms", part.rms), ("max", part.max_abs))
+        ),
     )
 
 
