@@ -43,7 +43,7 @@ def test_an_offset_does_not_flatten_the_weights_of_maps(monkeypatch: pytest.Monk
     save = matplotlib.figure.Figure.savefig
 
     def watched(self, *args, **kwargs):  # type: ignore[no-untyped-def]
-        limits.update({axes.get_title(): axes.get_ylim() for axes in self.axes})
+        limits.update({axes.get_title(loc="left"): axes.get_ylim() for axes in self.axes})
         return save(self, *args, **kwargs)
 
     monkeypatch.setattr(matplotlib.figure.Figure, "savefig", watched)
