@@ -90,7 +90,12 @@ def slpmm(
         P, R, gamma = _parts(point, n)
         before = float(np.sum(P * R)) + gamma
         cost = np.concatenate([_trace_with(R), _trace_with(P), [1.0]])
-        towards = program.solve(cost, f"iteration {k + 1}").point
+        try:
+            towards = program.solve(cost, f"iteration {k + 1}").point
+        except SolverError:
+            if np.isfinite(best_norm):
+                break  # what was found stays found
+            raise
         alpha = _exact_step(point, towards, n)
         point = point + alpha * (towards - point)
         P, R, gamma = _parts(point, n)
@@ -155,11 +160,12 @@ def in_coordinates_of(plant: GeneralizedPlant, gain: Array) -> tuple[Generalized
 
 def _root_of_proof(A: Array, B: Array, C: Array, D: Array, norm: float) -> Array:
     """Find T with P = T'T a proof of the bounded real lemma, for a norm a little above."""
-    for above in (1.5, 3.0, 10.0):
+    # A little is added to C'C so that P is definite; slow states bear only very little.
+    for above, added in ((1.5, 1e-4), (1.5, 1e-7), (3.0, 1e-9), (10.0, 1e-10)):
         gamma = above * norm
         try:
             P = scipy.linalg.solve_continuous_are(
-                A, B, C.T @ C + 1e-4 * np.eye(len(A)), D.T @ D - gamma**2 * np.eye(1), s=C.T @ D
+                A, B, C.T @ C + added * np.eye(len(A)), D.T @ D - gamma**2 * np.eye(1), s=C.T @ D
             )
         except np.linalg.LinAlgError:
             continue
