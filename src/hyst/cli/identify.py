@@ -173,16 +173,16 @@ def identify(
     options["allow_unconverged"] = allow_unconverged
     with at_work("identifying") as say:
         say("reading")
-        records = [_read(path, how_to_read, labels) for path in data]
-        if period is not None:
-            # The report shows what was identified from; averaging once more changes nothing.
-            records = [average_periods(record, period) for record in records]
+        records = measured = [_read(path, how_to_read, labels) for path in data]
+        if period is not None:  # averaging once more, as identify does, changes nothing
+            records = [average_periods(record, period) for record in measured]
         validation = [_read_validation(path, how_to_validate, labels) for path in validate or []]
         found = hyst.identify(
             records, family=family, validation=validation, progress=say, **options
         )
         say("report")
-        files = _write(found, records, validation, folder, [*data, *(validate or [])])
+        told = hyst.report.distortion_sections(measured, period)
+        files = _write(found, records, validation, folder, [*data, *(validate or [])], told)
     _tell(found, records)
     show_files(files)
 
@@ -239,15 +239,15 @@ def _write(
     validation: list[hyst.Record],
     folder: Path,
     sources: list[Path],
+    told: tuple[hyst.report.Section, ...],
 ) -> tuple[Path, ...]:
-    sections = hyst.report.dynamics_sections(found)
     return hyst.report.write_report(
         found,
         records,
         validation,
         folder,
         sources=[str(path) for path in sources],
-        sections=sections,
+        sections=[*hyst.report.dynamics_sections(found), *told],
     )
 
 

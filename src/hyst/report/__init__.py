@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hyst.report.closed_loop_figure import draw_closed_loops
+    from hyst.report.distortion_section import distortion_sections
     from hyst.report.drive_figure import draw_drive
     from hyst.report.drive_table import drive_table
     from hyst.report.dynamics_figures import dynamics_sections
@@ -39,6 +40,7 @@ _HOME = {
     "constants_table": "tables",
     "delay_sentence": "words",
     "description_table": "tables",
+    "distortion_sections": "distortion_section",
     "draw_closed_loops": "closed_loop_figure",
     "draw_drive": "drive_figure",
     "draw_estimates": "estimation_figure",
@@ -63,6 +65,7 @@ __all__ = [
     "constants_table",
     "delay_sentence",
     "description_table",
+    "distortion_sections",
     "draw_closed_loops",
     "draw_drive",
     "draw_estimates",
