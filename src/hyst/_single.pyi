@@ -3,9 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import overload
 
-Description = tuple[
-    str, str, Mapping[str, float], Mapping[str, Sequence[float]], Mapping[str, int]
-]
+Description = tuple[str, str, Mapping[str, float], Mapping[str, Sequence[float]], Mapping[str, int]]
 
 class Stepper:
     def __init__(self, stages: Sequence[Description], start: Sequence[float]) -> None: ...

@@ -43,9 +43,9 @@ class StageSink(Protocol):
     ) -> None:
         """Add plays as ``p0``, ``p``, ``r`` whose thresholds grow with the rate.
 
-        For a rate of x units per second the growth is ``beta x``, ``powers`` times x^2, x^3, .., and
-        for every one of ``slopes`` and ``knees`` slope max(x - knee, 0); ``dt`` is the sample time,
-        seconds.
+        For a rate of x units per second the growth is ``beta x``, ``powers`` times x^2, x^3, ..,
+        and for every one of ``slopes`` and ``knees`` slope max(x - knee, 0); ``dt`` is the sample
+        time, seconds.
         """
 
     def add_state_space(
