@@ -95,6 +95,23 @@ def test_discretization_that_cannot_be() -> None:
     assert discretize(sampled, 0.1) is sampled
 
 
+def test_trapezoidal_rule_takes_states_of_very_different_size() -> None:
+    # States of an observer may differ by 1e12 in size; the transfer function is that of equal ones.
+    A, b, c = np.array([[-3.0, -40.0], [40.0, -3.0]]), np.array([[1.0], [2.0]]), [[3.0, -1.0]]
+    scale = np.array([1e-9, 1e9])
+    scaled = (A * scale[:, None] / scale, b * scale[:, None], c / scale, [[0.5]])
+    plain = scipy.signal.cont2discrete((A, b, np.array(c), np.eye(1) / 2.0), 0.01, "bilinear")
+    numerator, denominator = scipy.signal.ss2tf(*plain[:4])
+    z = np.exp(1j * np.array([0.01, 0.4, 2.0]))
+    expected = np.polyval(numerator[0], z) / np.polyval(denominator, z)
+    found = discretize(scaled, 0.01)
+    response = [
+        (found.C @ np.linalg.solve(at * np.eye(2) - found.A, found.B) + found.D)[0, 0] for at in z
+    ]
+    # Rounding of polynomials of order 2.
+    np.testing.assert_allclose(response, expected, rtol=1e-10)
+
+
 def test_halves_make_the_whole_bit_for_bit() -> None:
     controller = full()
     whole, end = controller.run(Y_REF, Y)

@@ -156,13 +156,18 @@ def sample_time(dt: Any) -> float:
 
 
 def _trapezoidal(system: LinearSystem, dt: float) -> tuple[Array, Array, Array, Array]:
-    half, one = 0.5 * dt * system.A, np.eye(system.order)
-    if system.order and np.linalg.cond(one - half) > 1e14:
+    if system.order == 0:
+        return system.A, system.B, system.C, system.D
+    # Unbalanced, an observer whose states differ by 1e10 in size would look singular.
+    balanced, (scale, _) = scipy.linalg.matrix_balance(system.A, permute=False, separate=True)
+    half, one = 0.5 * dt * balanced, np.eye(system.order)
+    if np.linalg.cond(one - half) > 1e14:
         raise InputError(
             f"the trapezoidal rule cannot sample a pole at 2/dt = {2.0 / dt:.6g} rad/s; "
             "give method='zoh' or another dt"
         )
-    A: Array = np.linalg.solve(one - half, one + half).astype(np.float64)
-    B: Array = np.linalg.solve(one - half, dt * system.B).astype(np.float64)
-    C: Array = np.linalg.solve((one - half).T, system.C.T).T.astype(np.float64)
+    solved = np.linalg.solve(one - half, np.hstack([one + half, dt * system.B / scale[:, None]]))
+    A: Array = solved[:, : system.order] * scale[:, None] / scale
+    B: Array = solved[:, system.order :] * scale[:, None]
+    C: Array = np.linalg.solve((one - half).T, (system.C * scale).T).T / scale
     return A, B, C, system.D + 0.5 * C @ (dt * system.B)
