@@ -106,7 +106,7 @@ def unexpected_symbols(objects: Objects, build: Build) -> list[str]:
     defined = {name for name, kind in symbols if kind.isupper() and kind != "U"}
     wanted = {name for name, kind in symbols if kind == "U"} - defined
     unexpected = {name for name in wanted if not ALLOWED.fullmatch(name)}
-    if build.precision == "double":
+    if build.processor.lacks_double and build.precision == "double":
         unexpected = {name for name in unexpected if not SOFT_FLOAT.fullmatch(name)}
     return sorted(unexpected | {name for name, kind in symbols if kind in "BbDdCcGgSs"})
 

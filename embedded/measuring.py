@@ -20,7 +20,7 @@ from embedded.building import (
 from embedded.cases import Case
 from embedded.emulator import Report, on_processor
 from embedded.rounding_bound import NoBoundError
-from embedded.target import BUILDS, MAIN, Build
+from embedded.target import BUILDS, Build
 from hyst.export import c_project
 from hyst.export.numbers import PRECISIONS
 
@@ -131,7 +131,7 @@ def _bits(values: NDArray[np.floating]) -> NDArray[np.unsignedinteger]:
 
 def cost_of(report: Report, sizes: Sizes, build: Build, complain: Callable[[str], None]) -> Cost:
     """Gather what a build needs; the stack that was used must be within what was foreseen."""
-    uses_own_arithmetic = build.precision == "double" and build.processor == MAIN.processor
+    uses_own_arithmetic = build.precision == "double" and build.processor.lacks_double
     if report.stack > sizes.stack and not uses_own_arithmetic:
         complain(f"{build.name}: {report.stack} bytes of stack are used, {sizes.stack} foreseen")
     counts = report.instructions

@@ -103,15 +103,16 @@ def stale_rows(kept: str, made: str) -> list[str]:
     By the same compiler costs may differ by one in a hundred, by another one by a quarter; what
     the compiler has no say in must be the same.
     """
-    (_, old), (_, new) = _compiler_and_rows(kept), _compiler_and_rows(made)
-    same = _compiler_and_rows(kept)[0] == _compiler_and_rows(made)[0]
+    (by, old), (now_by, new) = _compiler_and_rows(kept), _compiler_and_rows(made)
+    same = by == now_by
     problems = [f"{name} is not in the table" for name in new.keys() - old.keys()]
     problems += [f"{name} is in the table and is no more" for name in old.keys() - new.keys()]
     for name in old.keys() & new.keys():
         for column, before, now in zip(HEADER[1:], old[name], new[name], strict=True):
             if not _agree(column, before, now, same):
                 problems.append(f"{name}: {column} is {now}, the table says {before}")
-    return sorted(problems)
+    told = [] if same or not problems else [f"Another compiler. The table: {by} Here: {now_by}"]
+    return [*told, *sorted(problems)]
 
 
 def _compiler_and_rows(table: str) -> tuple[str, dict[str, list[str]]]:

@@ -35,15 +35,16 @@ STRICT = (
 
 @dataclass(frozen=True)
 class Processor:
-    """A processor, the board it is emulated on, and what makes the compiler build for it."""
+    """A processor, its board in the emulator, the compiler's options, and what it cannot do."""
 
     name: str
     board: str
     options: tuple[str, ...]
+    lacks_double: bool
 
 
-M4F = Processor("Cortex-M4F", "mps2-an386", ("-mcpu=cortex-m4", "-mfpu=fpv4-sp-d16"))
-M7 = Processor("Cortex-M7", "mps2-an500", ("-mcpu=cortex-m7", "-mfpu=fpv5-d16"))
+M4F = Processor("Cortex-M4F", "mps2-an386", ("-mcpu=cortex-m4", "-mfpu=fpv4-sp-d16"), True)
+M7 = Processor("Cortex-M7", "mps2-an500", ("-mcpu=cortex-m7", "-mfpu=fpv5-d16"), False)
 
 
 @dataclass(frozen=True)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from embedded.__main__ import main, may_skip
 from embedded.building import Sizes
 from embedded.call_graph import read_call_graph
 from embedded.cases import Case, cases
 from embedded.emulator import Report, read_report
 from embedded.measuring import Cost, Result, compare
-from embedded.misra import accepted, excess
+from embedded.misra import accepted, excess, unseen
 from embedded.rounding_bound import NoBoundError
 from embedded.table import stale_rows, table_in, table_of, with_table
 from embedded.target import BUILDS
@@ -136,7 +137,9 @@ def test_another_compiler_may_cost_more_but_not_change_the_state(
     slow = stale_rows(kept, table_of([result_of("pi", 130, 24), result_of("play", 40, 16)]))
     assert "pi: M4F is 130, the table says 100" in slow
     grown = stale_rows(kept, table_of([result_of("pi", 100, 28), result_of("play", 40, 16)]))
-    assert grown == ["pi: state is 28, the table says 24"]
+    told = "Another compiler. The table: Measured with arm-none-eabi-gcc 12.2.1."
+    assert grown[0] == f"{told} Here: Measured with arm-none-eabi-gcc 14.1.0."
+    assert grown[1:] == ["pi: state is 28, the table says 24"]
 
 
 def test_a_model_that_comes_or_goes_makes_a_table_stale(kept: str) -> None:
@@ -145,6 +148,23 @@ def test_a_model_that_comes_or_goes_makes_a_table_stale(kept: str) -> None:
         "play is in the table and is no more",
         "stop is not in the table",
     ]
+
+
+def test_only_the_absence_of_the_compiler_skips(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("CI", raising=False)
+    assert may_skip(["arm-none-eabi-gcc", "qemu-system-arm"])
+    assert not may_skip(["qemu-system-arm"])
+    monkeypatch.setenv("CI", "true")
+    assert not may_skip(["arm-none-eabi-gcc", "qemu-system-arm"])
+
+
+def test_a_model_that_does_not_exist_is_an_error(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", ["embedded", "pi", "pie"])
+    with pytest.raises(SystemExit):
+        main()
+    assert "there is no model pie;" in capsys.readouterr().err
 
 
 PAGE = """| rule | kind | core | exports | why |
@@ -165,6 +185,11 @@ def test_a_deviation_is_accepted_with_a_reason_and_a_number() -> None:
     ]
     assert len(excess({"misra-c2012-21.3": places, "nullPointer": places}, allowed)) == 2
     assert excess({"misra-c2012-10.3": places}, accepted(PAGE, "export")) != []
+
+
+def test_an_add_on_that_did_not_run_is_told() -> None:
+    assert "cannot have run" in unseen({"nullPointer": {("play.c", 1)}})[0]
+    assert unseen({"misra-c2012-15.5": {("play.c", 1)}}) == []
 
 
 def test_the_case_says_how_inputs_enter() -> None:
