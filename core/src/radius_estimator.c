@@ -213,7 +213,8 @@ int hyst_radius_step(const hyst_radius *radius, hyst_real *state, hyst_real u, h
     for (size_t i = 0; i < n; ++i) {
         state[at.free + i] = state[at.r + i] = r[i];
     }
-    hyst_isotonic(n, state + at.r, ZERO, radius->most_radius);
+    hyst_isotonic_weighted(n, state + at.r, radius->least_squares ? NULL : radius->gain, ZERO,
+                           radius->most_radius);
     for (size_t i = 0; i < n && !radius->least_squares; ++i) {
         state[at.free + i] = state[at.r + i];
     }

@@ -27,6 +27,26 @@ static void bounds_come_last(void)
     hyst_isotonic(0, x, R(0.0), R(5.0));
 }
 
+/* By hand: with weights 1 / gain of 1 and 3 the pool of 4 0 is (4 + 3 * 0) / 4; a gain of 0 yields to
+ * none, from either side. */
+static void a_small_gain_yields_less(void)
+{
+    const hyst_real gain[] = {R(3.0), R(1.0)};
+    const hyst_real fixed_last[] = {R(3.0), R(0.0)};
+    const hyst_real fixed_first[] = {R(0.0), R(1.0)};
+    const hyst_real expected[][2] = {{R(1.0), R(1.0)}, {R(0.5), R(0.5)}, {R(4.0), R(4.0)}};
+    hyst_real x[] = {R(4.0), R(0.0)};
+    hyst_real y[] = {R(4.0), R(0.5)};
+    hyst_real z[] = {R(4.0), R(0.5)};
+    hyst_isotonic_weighted(2, x, gain, R(0.0), R(10.0));
+    CHECK_NEAR(x[0], expected[0][0], 4.0 * (double)REAL_EPSILON);
+    CHECK(!(x[0] < x[1] || x[0] > x[1]));
+    hyst_isotonic_weighted(2, y, fixed_last, R(0.0), R(10.0));
+    CHECK_SAME_BITS(y, expected[1], 2);
+    hyst_isotonic_weighted(2, z, fixed_first, R(0.0), R(10.0));
+    CHECK_SAME_BITS(z, expected[2], 2);
+}
+
 /* The projection P of a point x onto a convex set is the one point of it with
  * (x - P)' (q - P) <= 0 for every q of the set. The set is a cone, so q = 0, q = 2 P and its rays
  * (0 .. 0 1 .. 1) are enough. */
@@ -60,6 +80,7 @@ int main(void)
     pools_what_descends();
     a_pool_grows_backwards();
     bounds_come_last();
+    a_small_gain_yields_less();
     is_the_nearest_point();
     return check_result();
 }

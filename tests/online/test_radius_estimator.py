@@ -110,6 +110,28 @@ def test_projection_is_the_nearest_ordered_point() -> None:
             assert projected == pytest.approx(expected, abs=1e-14 * count)
 
 
+def test_gains_that_differ_lead_to_the_truth_where_radii_are_pooled() -> None:
+    # Both radii start at 5 and are pooled at once. A projection in another metric than that of the
+    # gains lets the fast one push the slow one up, stroke by stroke, without end.
+    truth = hyst.PrandtlIshlinskii([1.0, 2.0], [1.0, 2.0], 0.1)
+    u = sine(200.0)
+    estimator = RadiusEstimator([1.0, 2.0], [5.0, 5.0], [100.0, 0.1], DT, p0=0.1)
+    trajectory = estimator.run(record(u, truth(u)), every=1000)
+    distance = ((trajectory.values - truth.r) ** 2 / [100.0, 0.1]).sum(axis=1)
+    # Without noise this distance, the law's own, never grows; samples that straddle two regimes
+    # leave 1 % of a radius (the slow one, 2, weighs 1 / 0.1).
+    assert (np.diff(distance) <= 0.02**2 / 0.1).all()
+    assert estimator.radii == pytest.approx(truth.r, rel=0.01)
+
+
+def test_a_gain_of_zero_keeps_a_radius() -> None:
+    u = sine(5.0)
+    estimator = RadiusEstimator(P, 1.5 * R, [10.0, 10.0, 0.0, 10.0, 10.0], DT)
+    estimator.run(record(u, FIVE_PLAYS(u)))
+    assert estimator.radii[2] == 1.5 * R[2]
+    assert (np.diff(estimator.radii) >= 0.0).all()
+
+
 def test_bad_samples_are_skipped_and_counted() -> None:
     estimator = RadiusEstimator(P, R, gain=10.0, dt=DT)
     u = sine(0.5)

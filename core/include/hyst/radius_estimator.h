@@ -8,7 +8,8 @@
  * and after a reversal from all envelopes this is
  *   phi' r = s (sum_envelope p u + sum_interior p u_m - y), phi_i = +p_i and -p_i.
  * Gradient: r += gain_i phi_i e, e = y - prediction. Least squares: r += P phi e / (phi' P phi + 1).
- * Either is followed by the projection onto 0 <= r_1 <= .. <= r_n (isotonic.h).
+ * Either is followed by the projection onto 0 <= r_1 <= .. <= r_n (isotonic.h), that of the gradient
+ * in the metric of its gains, in which its step approaches the truth.
  *
  * Slope filter: the regression of y on u since the last reversal, the weight of a sample falling by
  * the factor `memory` per sample; memory 0 gives the plain difference of two samples. A reversal

@@ -44,17 +44,19 @@ class RadiusEstimator:
     u_m the input at the last reversal, ``phi_i = p_i`` for plays on their envelope and ``-p_i``
     inside. The measured slope says which are which: it is ``p0 + p_1 + .. + p_k`` when the first k
     plays are on their envelopes. Gradient: ``dr/dt = gain phi e``; or recursive least squares.
-    Either is projected onto ``0 <= r_1 <= .. <= r_n``.
+    Either is projected onto ``0 <= r_1 <= .. <= r_n``, the gradient in the metric of its gains.
 
     Parameters
     ----------
     p
-        Shape (n,), weights, all > 0; a play of weight 0 keeps its radius. n may be 0.
+        Shape (n,), weights, at least 0; a play of weight 0 is moved by the order of radii alone. n
+        may be 0.
     r
         Shape (n,), radii to start from, ``0 <= r_1 <= ... <= r_n``.
     gain
-        Of the gradient, per second: one number or one for each play. For least squares, the
-        variance of the start in units of the noise's; large for a start that is a guess.
+        Of the gradient, per second: one number or one for each play; the gradient leaves a radius
+        of gain 0 where it is. For least squares, the variance of the start in units of the noise's;
+        large for a start that is a guess.
     dt
         Sample time, seconds.
     p0
