@@ -121,6 +121,7 @@ MISTAKES = {
     "settle is 5 s of 3 s": change("settle = 1.0", "settle = 5.0"),
     "noise is -1": change("noise = 0.0", "noise = -1.0"),
     "[simulation] seed is -3": change("seed = 0", "seed = -3"),
+    "[filter] dt is 20 s, and 2 s are measured": change("dt = 1e-4", "dt = 20.0"),
     "[filter] dt is 0": change("dt = 1e-4", "dt = 0.0"),
     "[filter] method is 'euler'": change('method = "tustin"', 'method = "euler"'),
     "[weights] Wu has num": change(
@@ -170,7 +171,8 @@ def test_a_model_file_other_forms_of_systems_and_a_reduced_inverse(run: Run, fol
     model = hyst.GeneralizedPrandtlIshlinskii(
         hyst.DeadZone.odd([0.65, 0.2], [0.0, 7.56]), hyst.PrandtlIshlinskii([0.5, 0.5], [1, 2], 0.5)
     )
-    model.save(folder / "model.json")
+    about = hyst.operators.ModelDescription(input_low=-2.0, input_high=3.0, dt=0.001, delay=4)
+    model.save(folder / "model.json", about)
     hyst.io.write_columns(
         folder / "wanted.csv", ["y_ref"], [10.0 * np.sin(np.linspace(0.0, 20.0, 6000))]
     )
@@ -208,9 +210,16 @@ def test_a_model_file_other_forms_of_systems_and_a_reduced_inverse(run: Run, fol
     ended = run("observer", "spec.toml", "-o", "out")
     assert ended.code == 0, ended
     told = json.loads((folder / "out" / "certificate.json").read_text(encoding="utf-8"))
-    assert told["inverse"] == "1 plays"
+    assert told["inverse"] == "1 play"
+    assert told["identified"] == [-2.0, 3.0]
     assert told["inverse_error_bound"]["bound"] >= told["inverse_error_bound"]["reached"] > 0.0
-    assert "1 plays" in ended.out
+    assert "1 play" in ended.out
+    # The plays need a drive near 10 for an output of 10: far beyond what the file says it knows.
+    u = np.loadtxt(folder / "out" / "signals.csv", delimiter=",", skiprows=1)[:, 3]
+    assert told["drive_range"][0] <= u.min() < -2.5
+    assert told["drive_range"][1] >= u.max() > 3.5
+    assert "identified from -2 to 3: beyond, all of this is a guess" in told["verdict"]
+    assert "lagged the model by 0.004 s: put that lag into plant or Wu" in ended.err
 
 
 def test_without_the_solvers_the_descent_alone_designs(

@@ -79,6 +79,11 @@ def observer(spec_file: SpecFile = None, folder: Folder = None, template: Templa
             names.append("controller.json")
             answer.block.save(temporary / names[5])
     _tell(answer)
+    if spec.about is not None and spec.about.delay:
+        lag = f"{spec.about.delay} samples"
+        if spec.about.dt is not None:
+            lag = f"{spec.about.delay * spec.about.dt:g} s"
+        note(f"the recorded output lagged the model by {lag}: put that lag into plant or Wu")
     show_files([folder / name for name in names])
 
 
@@ -160,7 +165,16 @@ def _tried(spec: ObserverSpec, design: DisturbanceObserver) -> ObserverAnswer:
         slope_margin=margin,
         seen_slopes=seen,
         unstable_slope=first_unstable_slope(plant, spec.controller, design, seen),
+        identified=_identified(spec),
     )
+
+
+def _identified(spec: ObserverSpec) -> tuple[float, float] | None:
+    """Give the drives that the model was identified from, where its file tells."""
+    about = spec.about
+    if about is None or about.input_low is None or about.input_high is None:
+        return None
+    return about.input_low, about.input_high
 
 
 def _slopes_seen(loop: hyst.control.ClosedLoop) -> tuple[float, float]:

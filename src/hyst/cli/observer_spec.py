@@ -17,7 +17,7 @@ from hyst.control.discretization import Method
 from hyst.control.disturbance_observer import InternalModel
 from hyst.control.linear_system import LinearSystem
 from hyst.models import GeneralizedPrandtlIshlinskii
-from hyst.operators import Operator
+from hyst.operators import ModelDescription, Operator
 
 Array = NDArray[np.float64]
 
@@ -29,9 +29,10 @@ class ObserverSpec:
     """A loop, what is asked of its observer, and how to try it.
 
     ``plant``, ``true_plant`` (or None), ``controller``, weights ``Wu`` and ``Wp`` and
-    ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
-    ``inverse_name``), ``reference``, ``dt``, ``settle``, ``noise``, ``disturbance`` and ``seed``
-    what is simulated; ``filter_dt`` and ``filter_method`` say what is implemented.
+    ``internal_model`` are what is designed with; ``hysteresis`` (``about`` is what its model file
+    tells of it, or None), ``inverse`` (or None, named ``inverse_name``), ``reference``, ``dt``,
+    ``settle``, ``noise``, ``disturbance`` and ``seed`` what is simulated; ``filter_dt`` and
+    ``filter_method`` say what is implemented.
     """
 
     plant: LinearSystem
@@ -41,6 +42,7 @@ class ObserverSpec:
     Wp: LinearSystem
     internal_model: InternalModel
     hysteresis: Operator
+    about: ModelDescription | None
     inverse: Operator | None
     inverse_name: str
     reference: Array
@@ -78,7 +80,7 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     weights = spec.section("weights")
     simulation = spec.section("simulation")
     implemented = spec.section("filter")
-    hysteresis = _hysteresis(spec.section("hysteresis"), folder)
+    hysteresis, about = _hysteresis(spec.section("hysteresis"), folder)
     dt = simulation.number("dt", positive=True)
     reference = _reference(spec.section("reference"), dt, folder)
     inverse, name = _inverse(spec.section("inverse"), hysteresis, folder)
@@ -92,6 +94,12 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     if noise < 0.0:
         raise hyst.InputError(f"[simulation] noise is {noise:g}; give a standard deviation >= 0")
     method = implemented.text("method", "tustin", get_args(Method))
+    filter_dt = implemented.number("dt", positive=True)
+    if filter_dt >= reference.size * dt - settle:
+        raise hyst.InputError(
+            f"[filter] dt is {filter_dt:g} s, and {reference.size * dt - settle:g} s are measured; "
+            "give a shorter one"
+        )
     read = ObserverSpec(
         plant=spec.section("plant").system(),
         true_plant=spec.section("true_plant").system() if spec.has("true_plant") else None,
@@ -100,6 +108,7 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         Wp=weights.section("Wp").system(),
         internal_model=_internal_model(spec.section("internal_model")),
         hysteresis=hysteresis,
+        about=about,
         inverse=inverse,
         inverse_name=name,
         reference=reference,
@@ -108,7 +117,7 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         noise=noise,
         disturbance=simulation.number("disturbance", 0.0),
         seed=simulation.count("seed", 0),
-        filter_dt=implemented.number("dt", positive=True),
+        filter_dt=filter_dt,
         filter_method="zoh" if method == "zoh" else "tustin",
     )
     for each in (spec, weights, simulation, implemented):
@@ -133,21 +142,21 @@ def _internal_model(given: Section) -> InternalModel:
     return model
 
 
-def _hysteresis(given: Section, folder: Path) -> Operator:
+def _hysteresis(given: Section, folder: Path) -> tuple[Operator, ModelDescription | None]:
     if given.has("file"):
         path = given.text("file")
         given.done()
-        return hyst.load(folder / path)
+        return hyst.models.load_described(folder / path)
     p, r, p0 = given.numbers("p"), given.numbers("r"), given.number("p0")
     plays = hyst.PrandtlIshlinskii(p, r, p0)
     if not given.has("envelope"):
         given.done()
-        return plays
+        return plays, None
     envelope = given.section("envelope")
     weights, thresholds = envelope.numbers("weights"), envelope.numbers("thresholds")
     envelope.done()
     given.done()
-    return GeneralizedPrandtlIshlinskii(hyst.DeadZone.odd(weights, thresholds), plays)
+    return GeneralizedPrandtlIshlinskii(hyst.DeadZone.odd(weights, thresholds), plays), None
 
 
 def _inverse(given: Section, hysteresis: Operator, folder: Path) -> tuple[Operator | None, str]:
@@ -161,7 +170,10 @@ def _inverse(given: Section, hysteresis: Operator, folder: Path) -> tuple[Operat
         inverse, name = hyst.Affine(factor) @ hysteresis.inverse(), f"{factor:g} of the exact"
     elif kind == "reduced":
         plays, reach = given.count("plays"), given.number("reach", positive=True)
-        inverse, name = reduce_inverse(hysteresis, plays, reach), f"{plays} plays"
+        inverse, name = (
+            reduce_inverse(hysteresis, plays, reach),
+            f"{plays} play{'s' * (plays != 1)}",
+        )
     elif kind == "file":
         path = given.text("file")
         inverse, name = hyst.load(folder / path), path

@@ -49,6 +49,8 @@ class ObserverAnswer:
     slope_margin
         How many times wider that range may be before the circle criterion no longer proves the
         loop stable; None if not known.
+    identified
+        Least and largest drive the model was identified from; None if not known.
     """
 
     design: DisturbanceObserver
@@ -62,6 +64,7 @@ class ObserverAnswer:
     slope_margin: float | None
     seen_slopes: tuple[float, float]
     unstable_slope: float | None
+    identified: tuple[float, float] | None = None
 
     def checks(self) -> tuple[tuple[str, bool, str], ...]:
         """Give each condition of safety: what, whether it holds, and the number behind it."""
@@ -96,10 +99,31 @@ class ObserverAnswer:
             (
                 f"simulation with the inverse ({self.inverse_name}) stays finite",
                 loop.diverged_at is None and self.sampled.diverged_at is None,
-                _ended(loop) if loop.diverged_at is not None else _ended(self.sampled),
+                _ended(loop) if loop.diverged_at is not None else self._driven(),
             ),
         ]
         return tuple(rows)
+
+    def _driven(self) -> str:
+        if self.sampled.diverged_at is not None:
+            return _ended(self.sampled)
+        return "drive {} to {}".format(*map(number, self.drive_range))
+
+    @property
+    def drive_range(self) -> tuple[float, float]:
+        """Least and largest drive with the observer, the start included, in input units."""
+        u = np.concatenate([self.comparison.observed[self.inverse_name].u, self.sampled.u])
+        return (float(u.min()), float(u.max())) if u.size else (0.0, 0.0)
+
+    @property
+    def within_identified(self) -> bool:
+        """Whether the drive stays where the model was identified, or that is not known."""
+        if self.identified is None:
+            return True
+        low, high = self.drive_range
+        # A hundredth of the range is no guess yet.
+        slack = 0.01 * (self.identified[1] - self.identified[0])
+        return self.identified[0] - slack <= low and high <= self.identified[1] + slack
 
     @property
     def safe(self) -> bool:
@@ -127,6 +151,16 @@ class ObserverAnswer:
         return (
             f"SAFE: the loop is stable for every plant within Wu, which may grow {margin:.3g} "
             f"times; with the inverse ({self.inverse_name}) it {inverse}; the observer {demand}."
+            + self._extrapolation()
+        )
+
+    def _extrapolation(self) -> str:
+        if self.identified is None or self.within_identified:
+            return ""
+        (low, high), (least, most) = self.drive_range, self.identified
+        return (
+            f" BUT the drive goes from {number(low)} to {number(high)}, and the model was "
+            f"identified from {number(least)} to {number(most)}: beyond, all of this is a guess."
         )
 
     def gain_sentence(self) -> str:
@@ -174,7 +208,7 @@ class ObserverAnswer:
             "yes" if self.meets_demand else "NO",
             f"norm of Wp (1 - Q) {c.performance_norm:.4f} at {c.performance_frequency:.4g} rad/s",
         )
-        more = (*self._proof(), demand)
+        more = (*self._proof(), *self._within(), demand)
         return Table("Is the loop safe?", ("condition", "holds", "by"), (*rows, *more))
 
     @property
@@ -193,6 +227,15 @@ class ObserverAnswer:
             said = f"range may be {self.slope_margin:.3g} times wider"
         what = f"proven with this inverse: slopes {low:.3g} to {high:.3g} (circle criterion)"
         return ((what, "yes" if self.proven_with_inverse else "open", said),)
+
+    def _within(self) -> tuple[tuple[str, str, str], ...]:
+        if self.identified is None:
+            return ()
+        what = "drive stays where the model was identified, {} to {}".format(
+            *map(number, self.identified)
+        )
+        holds = "yes" if self.within_identified else "NO"
+        return ((what, holds, "{} to {}".format(*map(number, self.drive_range))),)
 
     def tracking_table(self) -> Table:
         """List tracking errors by inverse, without and with the observer."""
@@ -268,6 +311,8 @@ class ObserverAnswer:
             "seen_slopes": list(self.seen_slopes),
             "unstable_slope": self.unstable_slope,
             "slope_margin": _finite(self.slope_margin),
+            "drive_range": list(self.drive_range),
+            "identified": None if self.identified is None else list(self.identified),
             "tracking": {
                 name: {
                     "without": _errors(self.comparison.without[name]),
@@ -337,9 +382,7 @@ def _errors(loop: ClosedLoop) -> dict[str, Any]:
 
 
 def _ended(loop: ClosedLoop) -> str:
-    if loop.diverged_at is not None:
-        return f"diverges at {loop.diverged_at:.4g} s"
-    return f"largest drive {number(loop.max_drive)}"
+    return f"diverges at {loop.diverged_at:.4g} s"
 
 
 def _rightmost(poles: ComplexArray) -> str:
