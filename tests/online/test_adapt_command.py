@@ -136,3 +136,15 @@ def test_it_says_when_what_is_left_is_no_noise(
     hyst.PrandtlIshlinskii([0.5], [1.0], 1.0).save(tmp_path / "model.json")
     assert adapt((tmp_path / "model.json", tmp_path / "data.csv"), tmp_path / "out") == 0
     assert "model or estimate are wrong" in capsys.readouterr().err
+
+
+def test_a_record_of_which_little_can_be_used_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # Squares of these overflow, so that only the 0 at the start can be used.
+    u = 1e200 * np.sin(2 * np.pi * np.arange(4000) / 1000.0)
+    hyst.io.write_columns(tmp_path / "data.csv", ["drive", "way"], (u, 2.0 * u))
+    hyst.PrandtlIshlinskii([0.5], [1.0], 1.0).save(tmp_path / "model.json")
+    assert adapt((tmp_path / "model.json", tmp_path / "data.csv"), tmp_path / "out") == 2
+    assert "overflow at 3999 samples and taught at 1;" in capsys.readouterr().err
+    assert not (tmp_path / "out" / "model.json").exists()

@@ -115,6 +115,7 @@ def adapt(
     before = estimator.parameters
     with at_work("estimating") as say:
         trajectory = estimator.run(record, max(1, record.samples // _ROWS))
+        _refuse_if_few_used(estimator, data)
         say("figure")
         picture = _picture(estimator.model, about, trajectory, _HEADING.format(data.name))
     names = ("model.json", "estimator.json", "parameters.csv", "parameters.png")
@@ -126,6 +127,15 @@ def adapt(
         (temporary / names[3]).write_bytes(picture)
     _tell(estimator, before.tolist())
     show_files([folder / name for name in names])
+
+
+def _refuse_if_few_used(estimator: hyst.online.JointEstimator, data: Path) -> None:
+    counts = estimator.counts
+    if counts["refused"] >= counts["used"]:
+        raise hyst.InputError(
+            f"{data} led to an overflow at {counts['refused']} samples and taught at "
+            f"{counts['used']}; give the columns in the units of the model"
+        )
 
 
 def _refuse_options_of_a_start(resume: Path, *given: bool) -> None:
