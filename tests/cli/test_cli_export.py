@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,17 @@ def test_a_zip_unpacks_compiles_and_tests_itself(run: Run, folder: Path, model_f
     )
     assert "100% tests passed" in finished.stdout, finished.stderr
     assert "HYST_SINGLE" in (folder / "stage" / "CMakeLists.txt").read_text()
+
+
+def test_a_lag_of_the_record_is_said_and_paths_are_quoted(run: Run, folder: Path) -> None:
+    STAGE.save(folder / "model.json", replace(describe(STAGE), delay=4, dt=0.005))
+    ended = run("export", "model.json", "-o", "my stage")
+    assert "lags the model by 4 samples (0.02 s)" in ended.out
+    assert "next: cd 'my stage' && cmake" in ended.out
+    said = "| lag | the recorded output lagged 4 sample(s) of 0.005 s; this code does not |"
+    assert said in (folder / "my stage" / "README.md").read_text()
+    assert run("export", "model.json", "--target", "mex", "-o", "tool").code == 0
+    assert said in (folder / "tool" / "README.md").read_text()
 
 
 def test_a_folder_that_exists_is_replaced_only_by_force(

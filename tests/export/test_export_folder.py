@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
 import subprocess
@@ -14,7 +15,7 @@ from c_builds import Exported, Objects, build_library, compiler, run_selftest
 
 import hyst
 from hyst import InputError, PrandtlIshlinskii
-from hyst.export import c_project
+from hyst.export import c_project, mex
 from reference.examples import EXAMPLES
 
 MODEL = PrandtlIshlinskii([0.5, 0.2], [0.1, 0.3], 1.0)
@@ -155,6 +156,25 @@ def test_a_folder_that_does_not_exist_is_named(tmp_path: Path) -> None:
         c_project(MODEL, tmp_path / "nowhere" / "out")
 
 
+def test_a_folder_that_refuses_is_named_and_no_temporary_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refusing(*_: object, **__: object) -> None:
+        raise PermissionError(errno.EACCES, "Permission denied", str(tmp_path / ".hyst-abc"))
+
+    monkeypatch.setattr("tempfile.mkdtemp", refusing)
+    for name in ("out", "out.zip"):
+        with pytest.raises(InputError, match=rf"{name} cannot be written: Permission denied;"):
+            c_project(MODEL, tmp_path / name)
+
+
+def test_a_c_project_is_no_fmu(tmp_path: Path) -> None:
+    for write in (c_project, mex):
+        with pytest.raises(InputError, match="the name of an FMU"):
+            write(MODEL, tmp_path / "out.fmu")
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_failure_leaves_the_earlier_export(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -168,7 +188,7 @@ def test_a_failure_leaves_the_earlier_export(
         return rename(self, target)
 
     monkeypatch.setattr(Path, "rename", failing)
-    with pytest.raises(OSError, match="disk on fire"):
+    with pytest.raises(InputError, match="cannot be written: disk on fire"):
         c_project(OTHER, out, force=True)
     monkeypatch.undo()
     assert contents(out) == before

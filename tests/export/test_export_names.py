@@ -19,7 +19,7 @@ MODEL = PrandtlIshlinskii([0.5, 0.2], [0.1, 0.3], 1.0)
 
 
 @pytest.mark.parametrize(
-    "name", ["stage", "Stage_2", "u", "y", "k", "state", "samples", "place", "pi_1"]
+    "name", ["stage", "Stage_2", "u", "y", "k", "state", "samples", "place", "pi_1", "check"]
 )
 def test_names_that_are_c_compile(name: str, tmp_path: Path, objects: Objects) -> None:
     # Among them names that the generated code uses itself.

@@ -276,6 +276,8 @@ def test_what_cannot_be_asked_for(tmp_path: Path) -> None:
 def test_without_a_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(hyst.InputError, match="no-such-cc"):
         hyst.export.fmu(PI, tmp_path / "a.fmu", compiler="no-such-cc")
+    with pytest.raises(hyst.InputError, match="there is no C compiler"):
+        hyst.export.fmu(PI, tmp_path / "a.fmu", compiler="gcc '-O2")
     monkeypatch.delenv("CC", raising=False)
     monkeypatch.setenv("PATH", os.fspath(tmp_path))
     with pytest.raises(hyst.HystError, match=r"no C compiler was found.*leave the binary out"):

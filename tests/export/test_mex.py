@@ -70,7 +70,7 @@ def test_every_kind_of_model(part: int, tmp_path: Path) -> None:
 @pytest.fixture(scope="module")
 def inverse(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("mex") / "inverse"
-    compiled(hyst.export.mex(INVERSE_MPI, folder, "inverse"))
+    compiled(hyst.export.mex(INVERSE_MPI, folder, "lens"))
     return folder
 
 
@@ -84,20 +84,20 @@ def test_records_steps_and_states(inverse: Path, run: Callable[[str], str]) -> N
     u = rough_signal(N)
     u.tofile(inverse / "u.bin")
     program = """
-    row = inverse(u'); column = inverse(u);
+    row = lens(u'); column = lens(u);
     assert(size(row), [1 numel(u)]); assert(size(column), [numel(u) 1]); assert(row', column);
-    [first, state] = inverse(u(1:100));
-    [second, state] = inverse(u(101:200), state);
-    third = inverse(u(201:end), state);
+    [first, state] = lens(u(1:100));
+    [second, state] = lens(u(101:200), state);
+    third = lens(u(201:end), state);
     assert(class(state), 'uint8');
-    again = inverse(u(1), []);
-    object = inverse();
+    again = lens(u(1), []);
+    object = lens();
     stepped = zeros(size(u));
     for k = 1:150, stepped(k) = object.step(u(k)); end
     saved = object.state;
     save('-binary', 'state.dat', 'saved');
     stepped(151:end) = object.step(u(151:end));
-    other = inverse_stepper();
+    other = lens_stepper();
     other.state = load('state.dat').saved;
     loaded = zeros(150, 1);
     for k = 151:300, loaded(k - 150) = other.step(u(k)); end
@@ -116,7 +116,7 @@ def test_records_steps_and_states(inverse: Path, run: Callable[[str], str]) -> N
 @needs_octave
 def test_a_step_that_is_not_finite_is_held(run: Callable[[str], str]) -> None:
     said = run("""
-    object = inverse(); twin = inverse();
+    object = lens(); twin = lens();
     y = object.step([1 2]); twin.step([1 2]);
     disp(isequal(object.step([NaN Inf -Inf]), [y(2) y(2) y(2)]))
     disp([object.fault(), twin.fault()])
@@ -175,34 +175,34 @@ def test_an_estimator(tmp_path: Path) -> None:
 
 
 BAD = {
-    "inverse([1 NaN 3])": ("hyst:input", "sample 2 is not finite"),
-    "inverse([1; 2; -Inf])": ("hyst:input", "sample 3 is not finite"),
-    "inverse(1 + 2i)": ("hyst:input", "u is complex"),
-    "inverse([])": ("hyst:input", "u is empty"),
-    "inverse(zeros(1, 0))": ("hyst:input", "u is empty"),
-    "inverse(single(1))": ("hyst:input", "u is not of class double"),
-    "inverse(int32(1))": ("hyst:input", "u is not of class double"),
-    "inverse('text')": ("hyst:input", "u is not of class double"),
-    "inverse({1})": ("hyst:input", "u is not of class double"),
-    "inverse(true)": ("hyst:input", "u is not of class double"),
-    "inverse(sparse(1))": ("hyst:input", "u is sparse"),
-    "inverse(ones(2))": ("hyst:input", "u is a matrix"),
-    "inverse(ones(1, 1, 2))": ("hyst:input", "u is a matrix"),
-    "inverse(1, 5)": ("hyst:state", "the state is damaged"),
-    "inverse(1, uint8(1:20))": ("hyst:state", "the state is damaged"),
-    "inverse(1, damaged)": ("hyst:state", "the state is damaged"),
-    "inverse_mex()": ("hyst:call", "not one it knows"),
-    "inverse_mex(1)": ("hyst:call", "not one it knows"),
-    "inverse_mex('strange', state)": ("hyst:call", "not one it knows"),
-    "inverse_mex('run', state)": ("hyst:call", "not one it knows"),
-    "inverse_mex('start', state)": ("hyst:call", "not one it knows"),
-    "inverse_mex('a command far too long', state)": ("hyst:call", "not one it knows"),
+    "lens([1 NaN 3])": ("hyst:input", "sample 2 is not finite"),
+    "lens([1; 2; -Inf])": ("hyst:input", "sample 3 is not finite"),
+    "lens(1 + 2i)": ("hyst:input", "u is complex"),
+    "lens([])": ("hyst:input", "u is empty"),
+    "lens(zeros(1, 0))": ("hyst:input", "u is empty"),
+    "lens(single(1))": ("hyst:input", "u is not of class double"),
+    "lens(int32(1))": ("hyst:input", "u is not of class double"),
+    "lens('text')": ("hyst:input", "u is not of class double"),
+    "lens({1})": ("hyst:input", "u is not of class double"),
+    "lens(true)": ("hyst:input", "u is not of class double"),
+    "lens(sparse(1))": ("hyst:input", "u is sparse"),
+    "lens(ones(2))": ("hyst:input", "u is a matrix"),
+    "lens(ones(1, 1, 2))": ("hyst:input", "u is a matrix"),
+    "lens(1, 5)": ("hyst:state", "the state is damaged"),
+    "lens(1, uint8(1:20))": ("hyst:state", "the state is damaged"),
+    "lens(1, damaged)": ("hyst:state", "the state is damaged"),
+    "lens_mex()": ("hyst:call", "not one it knows"),
+    "lens_mex(1)": ("hyst:call", "not one it knows"),
+    "lens_mex('strange', state)": ("hyst:call", "not one it knows"),
+    "lens_mex('run', state)": ("hyst:call", "not one it knows"),
+    "lens_mex('start', state)": ("hyst:call", "not one it knows"),
+    "lens_mex('a command far too long', state)": ("hyst:call", "not one it knows"),
 }
 
 
 @needs_octave
 def test_calls_that_are_wrong(run: Callable[[str], str]) -> None:
-    program = "[~, state] = inverse(1); damaged = state; damaged(30) = bitxor(damaged(30), 1);\n"
+    program = "[~, state] = lens(1); damaged = state; damaged(30) = bitxor(damaged(30), 1);\n"
     for call in BAD:
         program += (
             f"try, {call}; disp('nothing'), catch e, disp([e.identifier ' ' e.message]), end\n"
@@ -294,7 +294,8 @@ def test_the_same_model_gives_the_same_bytes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["end", "function", "mex", "pi", "classdef", "while", "1st", "a b"]
+    "name",
+    ["end", "function", "mex", "pi", "classdef", "while", "1st", "a b", "nargin", "error", "inv"],
 )
 def test_names_that_cannot_be(name: str, tmp_path: Path) -> None:
     with pytest.raises(hyst.InputError, match="the name is"):

@@ -134,7 +134,7 @@ def test_envelope_and_output_map(place: str, estimated: bool) -> None:
 def test_a_million_random_steps_never_leave_what_can_be_inverted() -> None:
     u, y = random_signals(np.random.default_rng(5), 1_000_000)
     estimator = JointEstimator(FIVE_PLAYS, memory=2.0, dt=DT, most_radius=50.0)
-    core, at = estimator._core, estimator._at
+    core, at = estimator.core, estimator._at
     least, most = estimator.settings["least_slope"], estimator.settings["most_slope"]
     block = 50_000
     theta, variance, error = np.empty((block, 12)), np.empty((block, 12)), np.empty(block)

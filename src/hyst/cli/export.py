@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -52,7 +53,7 @@ def _c(order: _Order) -> _Done:
     )
     zipped = order.out.suffix.lower() == ".zip"
     folder = order.name if zipped else str(order.out)
-    unpack = f"unzip {order.out} && " if zipped else ""
+    unpack = f"unzip {_quoted(order.out)} && " if zipped else ""
     rows = (
         ("files", ", ".join(each for each in project.files if "/" not in each)),
         ("files of the core", str(sum(each.startswith("core/") for each in project.files))),
@@ -62,7 +63,7 @@ def _c(order: _Order) -> _Done:
     )
     return _Done(
         rows,
-        f"{unpack}cd {folder} && cmake -S . -B build && cmake --build build && "
+        f"{unpack}cd {_quoted(folder)} && cmake -S . -B build && cmake --build build && "
         f"ctest --test-dir build; {folder}/README.md says the rest",
     )
 
@@ -102,13 +103,18 @@ def _mex(order: _Order) -> _Done:
         ("state", f"{written.saved_bytes} bytes, {written.state_length} numbers of memory"),
     )
     zipped = order.out.suffix.lower() == ".zip"
-    unpack = f"unzip {order.out} && " if zipped else ""
+    unpack = f"unzip {_quoted(order.out)} && " if zipped else ""
     return _Done(
         rows,
-        f"{unpack}cd {order.name if zipped else order.out} && mkoctfile --mex {order.name}_mex.c, "
-        f"or in MATLAB mex {order.name}_mex.c; then {written.output} = "
-        f"{order.name}({', '.join(written.inputs)})",
+        f"{unpack}cd {_quoted(order.name if zipped else order.out)} && "
+        f"mkoctfile --mex {order.name}_mex.c, or in MATLAB mex {order.name}_mex.c; "
+        f"then {written.output} = {order.name}({', '.join(written.inputs)})",
     )
+
+
+def _quoted(path: str | Path) -> str:
+    """Give a path as a shell takes it."""
+    return shlex.quote(str(path))
 
 
 def _shortened(names: tuple[str, ...], most: int = 6) -> str:
@@ -175,4 +181,6 @@ def export(
     what = "inverse of " if inverse or explicit else ""
     title = f"{what}{model_file.name} as {target}: {out}"
     show_table(hyst.report.Table(title, ("", ""), done.rows))
+    if about.delay:
+        print("\n" + hyst.report.delay_sentence(about.delay, about.dt))
     print(f"\nnext: {done.next_step}")

@@ -146,8 +146,8 @@ def block_of(model: Model, precision: Precision) -> Block:
         )
     if not isinstance(model, Operator):
         raise InputError(
-            f"{type(model).__name__} cannot be exported here; give an operator or a tracking "
-            "controller; a joint estimator is exported as C"
+            f"{type(model).__name__} cannot be exported; give an operator, a tracking controller "
+            "or a joint estimator"
         )
     code = StageCode(record_stages(model), precision)
     return Block(

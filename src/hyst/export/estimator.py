@@ -38,8 +38,8 @@ def estimator_block(estimator: JointEstimator, precision: Precision) -> Block:
         If a constant cannot be written in that precision.
     """
     parts = take_apart(operator_from_dict(estimator.settings["model"]))
-    constants = estimator._core.constants()
-    places = estimator._core.places()
+    constants = estimator.core.constants()
+    places = estimator.core.places()
     settings, state = estimator.saved()
     start = state.tolist()
 

@@ -44,7 +44,7 @@ def find_compiler(compiler: str | None = None) -> list[str]:
     """
     named = compiler or os.environ.get("CC")
     if named:
-        command = shlex.split(named)
+        command = _words(named)
         if command and shutil.which(command[0]):
             return command
         raise InputError(
@@ -57,6 +57,13 @@ def find_compiler(compiler: str | None = None) -> list[str]:
         "no C compiler was found (cc, gcc, clang); install one, name one in the variable CC, or "
         "leave the binary out: its user can then compile the sources in the FMU"
     )
+
+
+def _words(command: str) -> list[str]:
+    try:
+        return shlex.split(command)
+    except ValueError:
+        return []  # a quotation mark without its partner
 
 
 def binary_path(identifier: str, version: str) -> str:

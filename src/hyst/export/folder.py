@@ -42,17 +42,25 @@ def write_export(path: str | os.PathLike[str], files: Files, top: str, *, force:
     ------
     InputError
         If it exists and ``force`` is not given, or it is not an earlier export, or the folder it is
-        in does not exist.
+        in does not exist or cannot be written to.
     """
     target = Path(path)
+    if top and target.suffix.lower() == ".fmu":
+        raise InputError(f"{target} is the name of an FMU; name a folder or a zip, or write an FMU")
     if not target.absolute().parent.is_dir():
         raise InputError(f"{target}: the folder {target.parent} does not exist; create it first")
     _refuse_existing(target, force)
-    if target.suffix.lower() in (".zip", ".fmu"):
-        with replacing(target) as temporary:
-            temporary.write_bytes(zipped(files, top))
-    else:
-        _write_folder(target, files)
+    try:
+        if target.suffix.lower() in (".zip", ".fmu"):
+            with replacing(target) as temporary:
+                temporary.write_bytes(zipped(files, top))
+        else:
+            _write_folder(target, files)
+    except OSError as error:
+        # Its own words name a temporary file that nobody asked for.
+        raise InputError(
+            f"{target} cannot be written: {error.strerror or error}; choose a folder that can"
+        ) from error
     return target
 
 

@@ -42,8 +42,8 @@ def load_exportable(
         estimator, about = load_described_estimator(path)
         if not isinstance(estimator, JointEstimator):
             raise InputError(
-                f"{path} holds a {type(estimator).__name__}, which runs in Python only; export a "
-                "joint estimator, or the model it has found"
+                f"{path} is of kind {type(estimator).__name__}, which runs in Python only; export "
+                "a joint estimator, or the model it has found"
             )
         return estimator, about
     model, about = read_model(path)

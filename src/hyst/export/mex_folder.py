@@ -18,6 +18,7 @@ from hyst.export.core_sources import core_files
 from hyst.export.folder import FORMAT, MANIFEST, write_export
 from hyst.export.names import as_c_name, plain_text
 from hyst.export.one_file import in_one_file
+from hyst.export.readme import lag_row
 from hyst.export.templating import filled
 from hyst.export.tool_block import ToolBlock, tool_block
 from hyst.operators import ModelDescription
@@ -28,6 +29,9 @@ _LICENSE = Path(__file__).resolve().parent / "templates" / "LICENSE"
 _WORDS = """
     ans catch classdef elseif end endfor endfunction endif endswitch endwhile eps function global i
     inf j mex mexext nan otherwise parfor persistent pi spmd until unwind_protect
+    abs any cell clear close cos disp eig error eval exist exp feval figure filter find handle hold
+    inv inverse isempty isnan length linspace load log max mean min nargin nargout norm numel ones
+    path plot rand round save sin size sort sqrt strcmp sum uint8 zeros
 """
 _TAKEN = frozenset(_WORDS.split())
 
@@ -100,9 +104,9 @@ def mex(
     >>> from hyst import PrandtlIshlinskii
     >>> model = PrandtlIshlinskii(p=[0.5, 0.2], r=[0.1, 0.3], p0=1.0)
     >>> with tempfile.TemporaryDirectory() as parent:
-    ...     written = mex(model.inverse(), f"{parent}/inverse", name="inverse")
+    ...     written = mex(model.inverse(), f"{parent}/lens", name="lens")
     >>> written.files
-    ('README.md', 'inverse.m', 'inverse_mex.c', 'inverse_stepper.m', 'manifest.json')
+    ('README.md', 'lens.m', 'lens_mex.c', 'lens_stepper.m', 'manifest.json')
     """
     _as_function_name(name)
     about = description or ModelDescription()
@@ -154,7 +158,7 @@ def mex_files(tool: ToolBlock, name: str, about: ModelDescription) -> dict[str, 
         **(_estimates(tool, name) if tool.estimates else _NO_ESTIMATES),
         "license": _commented(_LICENSE.read_text(encoding="utf-8"), " *"),
         "meaning": _meaning(common["signals"]),
-        "rows": _rows(block, common["signals"]),
+        "rows": _rows(block, common["signals"], about),
     }
     texts = {
         f"{name}_mex.c": _c_file(block, common, about),
@@ -218,13 +222,14 @@ def _meaning(signals: str) -> str:
     return "".join(f"\n%     {line}" for line in lines) + ("\n%" if lines else "")
 
 
-def _rows(block: Block, signals: str) -> str:
+def _rows(block: Block, signals: str, about: ModelDescription) -> str:
     rows = {
         "model": plain_text(block.kind),
         "state": f"{len(block.start)} numbers of memory",
         "sample time": "any" if block.dt is None else f"{block.dt!r} s, and no other",
     }
     rows |= dict(line.split(": ", 1) for line in _signal_lines(signals))
+    rows |= lag_row(about)
     return "\n".join(f"| {key} | {value} |" for key, value in rows.items())
 
 

@@ -50,6 +50,7 @@ def readme(
             f"from {test.drive.low * test.drive.unit:.6g} to {test.drive.high:.6g}"
         )
     rows |= {signal: _signal(*meant) for signal, meant in signals(block, about).items()}
+    rows |= lag_row(about)
     more = {
         "rows": "\n".join(f"| {key} | {value} |" for key, value in rows.items()),
         "usage": _ESTIMATOR_USAGE if block.is_estimator else _USAGE,
@@ -72,6 +73,14 @@ def signals(block: Block, about: ModelDescription) -> dict[str, tuple[str, str]]
     if len(block.inputs) == 1:
         return dict(zip((block.inputs[0], block.output), named, strict=True))
     return {}
+
+
+def lag_row(about: ModelDescription) -> dict[str, str]:
+    """Give the row of a table that says what lag ``about`` tells of, which no code contains."""
+    if about.delay == 0:
+        return {}
+    time = "" if about.dt is None else f" of {about.dt!r} s"
+    return {"lag": f"the recorded output lagged {about.delay} sample(s){time}; this code does not"}
 
 
 def _signal(name: str, unit: str) -> str:

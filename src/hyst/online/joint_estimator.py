@@ -155,8 +155,9 @@ class JointEstimator:
         prior = prior_of(self._parts, self._theta_at_start, self.settings)
         limit = np.diag(prior)
         self._cells = search_cells(self._parts, self._theta_at_start, limit, self.settings)
-        self._core = new_core(self._parts, limit, self._cells, self.settings)
-        self._at = self._core.places()
+        # Public, for exports take its constants and the places in its state.
+        self.core = new_core(self._parts, limit, self._cells, self.settings)
+        self._at = self.core.places()
         self.state = np.zeros(self._at["length"])
         self._begin(prior)
 
@@ -228,7 +229,7 @@ class JointEstimator:
         gain = abs(self._parts.after.gain)
         return Innovation(
             rms=gain * math.sqrt(float(scalars[_SQUARE])),
-            correlation=self._core.correlation(self.state),
+            correlation=self.core.correlation(self.state),
             loop_height=2.0 * gain * float(np.abs(theta[1 : n + 1]) @ theta[n + 1 : 2 * n + 1]),
             rivals=int(scalars[_TRIALS]),
             replacements=int(scalars[_REPLACEMENTS]),
@@ -248,7 +249,7 @@ class JointEstimator:
             Whether the sample was used.
         """
         u, y = sample(u, y)
-        return self._core.step(self.state, self._plays_input(u), y / self._parts.after.gain) == 0
+        return self.core.step(self.state, self._plays_input(u), y / self._parts.after.gain) == 0
 
     def run(self, record: Record, every: int = 1) -> Trajectory:
         """Take in a whole record.
@@ -272,7 +273,7 @@ class JointEstimator:
         u, y, time = samples_of(record, self.dt, every)
         gain, shape = self._parts.after.gain, (time.size, self._at["m"])
         theta, variance, error = np.empty(shape), np.empty(shape), np.empty(u.size)
-        self._core.run(self.state, self._plays_input(u), y / gain, every, theta, variance, error)
+        self.core.run(self.state, self._plays_input(u), y / gain, every, theta, variance, error)
         errors = np.sqrt(np.maximum(variance, 0.0))
         return Trajectory(time, self.names, theta, errors, error * gain)
 
@@ -290,7 +291,7 @@ class JointEstimator:
             If it is not a finite vector.
         """
         for v in self._plays_input(finite_vector(u, "u")).tolist():
-            self._core.follow(self.state, v)
+            self.core.follow(self.state, v)
 
     def command(self, y_ref: float) -> float:
         """Give the input for which the present estimate predicts a wanted output; learns nothing.
@@ -305,7 +306,7 @@ class JointEstimator:
         float
         """
         before, after = self._parts.before, self._parts.after
-        v = self._core.command(self.state, number(y_ref, "y_ref") / after.gain)
+        v = self.core.command(self.state, number(y_ref, "y_ref") / after.gain)
         return v if before is None else (v - before.offset) / before.gain
 
     def restart(self, model: Operator | None = None) -> None:
@@ -325,7 +326,7 @@ class JointEstimator:
         cells = (at["cell_memory"], at["points"])
         for first, last in (_KEPT, (at["side"], at["psi"]), cells):
             self.state[first:last] = kept[first:last]
-        self._core.remember(self.state)
+        self.core.remember(self.state)
 
     def save(
         self, path: str | os.PathLike[str], description: ModelDescription | None = None
@@ -387,7 +388,7 @@ class JointEstimator:
         at = self._at
         self.state[at["theta"] : at["d"]] = self._theta_at_start
         self.state[at["z"] : at["side"]] = self._parts.pi.z0
-        self._core.start(self.state, self.settings["noise"] ** 2)
+        self.core.start(self.state, self.settings["noise"] ** 2)
         if self._cells is not None:
             memory = self._cells.memory_from(self._parts.pi.r, self._parts.pi.z0)
             self.state[at["cell_memory"] : at["points"]] = memory
