@@ -23,8 +23,8 @@ Array = NDArray[np.float64]
 _SETTLED = 1e-4
 _LONG = 100
 _KEPT, _AGAIN = 3, 3
-_SMALL = 4  # order up to which few starts find the best
-_HOPS, _HOP = 12, 0.7  # from the best so far, and how far in logarithms
+_RANDOM = 8  # starts at least
+_HOPS, _HOP = 8, 0.7  # from the best so far, and how far in logarithms
 
 
 def norm_and_slope(gain: StackedGain, parameters: Array) -> tuple[float, Array]:
@@ -60,7 +60,7 @@ def descend_from_many(
     """Give the best of descents from given, from usual and from random parameters.
 
     Descents on a smoothed norm from all, on the exact one from the best of them; then hops from
-    the best to its neighbourhood, where orders are high and minima many.
+    the best to its neighbourhood, for minima are many.
 
     Parameters
     ----------
@@ -75,9 +75,9 @@ def descend_from_many(
     progress
         Called with the number of descents done and the best norm.
     """
-    large = gain.order > _SMALL
-    usual = usual_parameters(gain, 2 if large else 1)
-    random_starts = 2 * gain.order if random_starts is None and large else random_starts or 6
+    usual = usual_parameters(gain)
+    if random_starts is None:
+        random_starts = max(_RANDOM, 2 * gain.order)
     found: list[Descent] = []
 
     def note(each: Descent) -> Descent:
@@ -92,10 +92,10 @@ def descend_from_many(
         smooth.append(note(Descent(x, norm_and_slope(gain, x)[0], 1)))
     for each in sorted(smooth, key=lambda descent: descent.norm)[:_KEPT]:
         note(finish(gain, each))
-    for start in given + usual if large else given:
+    for start in given + usual:
         note(finish(gain, Descent(start, norm_and_slope(gain, start)[0], 1)))
     rng = np.random.default_rng(seed)
-    for _ in range(_HOPS if large else 0):
+    for _ in range(_HOPS):
         best = min(found, key=lambda descent: descent.norm)
         x = best.parameters + rng.normal(0.0, _HOP, gain.order)
         x = np.clip(x, gain.lowest, gain.highest)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from threadpoolctl import threadpool_limits
 
 from hyst.control.disturbance_observer.assumptions import check_assumptions
 from hyst.control.disturbance_observer.certificate import certify, weighted_loop
@@ -102,6 +103,19 @@ def design_disturbance_observer(
         raise InputError(f"method is {method!r}; give one of {', '.join(METHODS)}")
     problem = observer_problem(plant, controller, Wu, Wp, internal_model)
     perturbed = _perturbed(perturbed_plant)
+    # Matrices of ten rows: more threads would only wait for one another.
+    with threadpool_limits(1, user_api="blas"):
+        return _search(problem, perturbed, method, starts, seed, progress)
+
+
+def _search(
+    problem: ObserverProblem,
+    perturbed: LinearSystem | None,
+    method: str,
+    starts: int | None,
+    seed: int,
+    progress: Callable[[str, int, float], None] | None,
+) -> DisturbanceObserver:
     gain = StackedGain(problem)
     steps: list[str] = []
     given: list[Array] = []
@@ -194,9 +208,11 @@ def evaluate_gain(
             f"{problem.plant.order} states of the plant and {problem.internal_model.order} of the "
             "internal model"
         )
-    certificate = certify(problem, L, _perturbed(perturbed_plant))
-    reached = certificate.stacked_norm
-    bound = lower_bound(StackedGain(problem), reached if np.isfinite(reached) else 1e3)
+    perturbed = _perturbed(perturbed_plant)
+    with threadpool_limits(1, user_api="blas"):
+        certificate = certify(problem, L, perturbed)
+        reached = certificate.stacked_norm
+        bound = lower_bound(StackedGain(problem), reached if np.isfinite(reached) else 1e3)
     return DisturbanceObserver(problem, L, certificate, bound, "given")
 
 

@@ -152,7 +152,7 @@ class StackedGain:
         """Square of the stacked gain at each frequency, for parameters of the poles of Q."""
         E, _ = self._one_minus_q(self.polynomial(parameters)[0], at)
         value = at.Wu2 * np.abs(1.0 - at.S0 * E) ** 2 + at.Wp2 * np.abs(E) ** 2
-        return np.asarray(np.where(np.isfinite(value), value, np.inf))
+        return np.asarray(value)
 
     def values_and_slopes(self, parameters: Array, at: Frequencies) -> tuple[Array, Array]:
         """Square of the stacked gain at each frequency, and its derivatives by the parameters."""
@@ -172,8 +172,8 @@ class StackedGain:
         k = (self._solution @ x)[: self.problem.plant.order + 1]
         below = at.powers @ x
         # A pole of Q all but on the axis may meet a frequency of the grid.
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return at.model * (at.powers[:, -k.size :] @ k) / below, below
+        below = np.where(np.abs(below) > 1e-60, below, 1e-60)
+        return at.model * (at.powers[:, -k.size :] @ k) / below, below
 
     def peaks(self, parameters: Array, share: float = 0.9, rounds: int = 4) -> Array:
         """Frequencies of the local maxima that reach a share of the largest, highest first.
