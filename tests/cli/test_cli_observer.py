@@ -89,6 +89,18 @@ def test_the_printed_example_is_refused_in_words(answered: Callable[[str, str], 
     assert told["tracking"]["exact"]["without"]["rms"] is None
 
 
+def test_a_true_plant_beyond_wu_is_told(answered: Callable[[str, str], Path]) -> None:
+    told = json.loads((answered("repaired", QUICK) / "certificate.json").read_text("utf-8"))
+    # Wu of the template is P / Pn - 1 of its true plant.
+    assert abs(told["uncertainty_used"][0] - 1.0) < 1e-6
+    assert "BUT" not in told["verdict"]
+    # A tenth more gain is 0.1 off at rest, where Wu is 0.
+    stronger = QUICK.replace("num = [1841905051748.9004]", "num = [2026095556923.79]")
+    told = json.loads((answered("stronger", stronger) / "certificate.json").read_text("utf-8"))
+    assert told["uncertainty_used"][0] > 2.0
+    assert "the true plant is not within Wu: widen Wu" in told["verdict"]
+
+
 def test_bounded_is_not_safe(answered: Callable[[str, str], Path]) -> None:
     """Without an inverse the loop stays bounded, but its plays are too steep for it."""
     text = QUICK.replace('kind = "scaled"\nfactor = 0.7', 'kind = "none"')

@@ -23,7 +23,7 @@ from hyst.control import (
     simulate_closed_loop,
     slope_margin,
 )
-from hyst.control.frequency_responses import loop_responses
+from hyst.control.frequency_responses import loop_responses, uncertainty_used
 from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
 from hyst.operators import Operator
 
@@ -166,6 +166,9 @@ def _tried(spec: ObserverSpec, design: DisturbanceObserver) -> ObserverAnswer:
         seen_slopes=seen,
         unstable_slope=first_unstable_slope(plant, spec.controller, design, seen),
         identified=_identified(spec),
+        uncertainty_used=(
+            None if spec.true_plant is None else uncertainty_used(design, spec.true_plant)
+        ),
     )
 
 

@@ -85,6 +85,40 @@ def loop_responses(
         )
 
 
+def uncertainty_used(design: DisturbanceObserver, plant: LinearSystem) -> tuple[float, float]:
+    """Compare a plant with what Wu allows: the largest ``|P / Pn - 1| / |Wu|``, and where.
+
+    Parameters
+    ----------
+    design
+        Observer with its nominal plant and weights.
+    plant
+        The plant P.
+
+    Returns
+    -------
+    ratio : float
+        At most 1, and a little rounding, if the plant is within Wu; on a grid around all poles.
+    frequency : float
+        rad/s.
+
+    Notes
+    -----
+    S1 eq. 22: stability for every plant within Wu says nothing of one that is not.
+    """
+    problem = design.problem
+    # A resonance that is narrower than the grid peaks near its poles.
+    own = np.abs(plant.poles())
+    w = np.union1d(_grid(design), own[own > 0.0])
+    s = np.asarray(1j * w, dtype=np.complex128)
+    P, Pn, Wu = (each.response(s)[:, 0, 0] for each in (plant, problem.plant, problem.Wu))
+    off = np.abs(P / Pn - 1.0)
+    # What both round to zero is no deviation.
+    ratio = np.where(off > 1e-9, off / np.maximum(np.abs(Wu), 1e-300), 0.0)
+    worst = int(ratio.argmax())
+    return float(ratio[worst]), float(w[worst])
+
+
 def _grid(design: DisturbanceObserver) -> Array:
     """From a decade below the slowest pole of interest to a decade above the fastest."""
     problem = design.problem

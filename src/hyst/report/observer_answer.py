@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from hyst.compensation import ErrorBound
 from hyst.control import ClosedLoop, DisturbanceObserver, TrackingController
 from hyst.control.inverse_comparison import EXACT, InverseComparison
+from hyst.report.observer_words import ended, errors, finite, rightmost, told
 from hyst.report.page import Page
 from hyst.report.tables import Table, number
 
@@ -51,6 +52,8 @@ class ObserverAnswer:
         loop stable; None if not known.
     identified
         Least and largest drive the model was identified from; None if not known.
+    uncertainty_used
+        Largest |P / Pn - 1| / |Wu| of the true plant and its frequency, rad/s; None without one.
     """
 
     design: DisturbanceObserver
@@ -65,11 +68,12 @@ class ObserverAnswer:
     seen_slopes: tuple[float, float]
     unstable_slope: float | None
     identified: tuple[float, float] | None = None
+    uncertainty_used: tuple[float, float] | None = None
 
     def checks(self) -> tuple[tuple[str, bool, str], ...]:
         """Give each condition of safety: what, whether it holds, and the number behind it."""
         c = self.design.certificate
-        nominal = _rightmost(c.nominal_poles)
+        nominal = rightmost(c.nominal_poles)
         radius = float(np.abs(self.sampled_poles).max(initial=0.0))
         loop = self.comparison.observed[self.inverse_name]
         rows = [
@@ -81,7 +85,7 @@ class ObserverAnswer:
             ),
         ]
         if c.perturbed_poles is not None:
-            worst = f"pole {_rightmost(c.perturbed_poles)} 1/s"
+            worst = f"pole {rightmost(c.perturbed_poles)} 1/s"
             rows.append(("loop around the true plant is stable", c.perturbed_stable is True, worst))
         low, high = self.seen_slopes
         limit = self.unstable_slope
@@ -99,14 +103,14 @@ class ObserverAnswer:
             (
                 f"simulation with the inverse ({self.inverse_name}) stays finite",
                 loop.diverged_at is None and self.sampled.diverged_at is None,
-                _ended(loop) if loop.diverged_at is not None else self._driven(),
+                ended(loop) if loop.diverged_at is not None else self._driven(),
             ),
         ]
         return tuple(rows)
 
     def _driven(self) -> str:
         if self.sampled.diverged_at is not None:
-            return _ended(self.sampled)
+            return ended(self.sampled)
         return "drive {} to {}".format(*map(number, self.drive_range))
 
     @property
@@ -151,6 +155,7 @@ class ObserverAnswer:
         return (
             f"SAFE: the loop is stable for every plant within Wu, which may grow {margin:.3g} "
             f"times; with the inverse ({self.inverse_name}) it {inverse}; the observer {demand}."
+            + ("" if self.within_uncertainty else " BUT the true plant is not within Wu: widen Wu.")
             + self._extrapolation()
         )
 
@@ -180,7 +185,7 @@ class ObserverAnswer:
         recovered = c.recovered(name)
         if EXACT not in c.without:
             return f"{said}."
-        exact = _told(c.without[EXACT].rms_error)
+        exact = told(c.without[EXACT].rms_error)
         if math.isnan(recovered):
             return f"{said}; with the exact inverse and no observer: {exact}."
         return (
@@ -208,7 +213,7 @@ class ObserverAnswer:
             "yes" if self.meets_demand else "NO",
             f"norm of Wp (1 - Q) {c.performance_norm:.4f} at {c.performance_frequency:.4g} rad/s",
         )
-        more = (*self._proof(), *self._within(), demand)
+        more = (*self._true_plant(), *self._proof(), *self._within(), demand)
         return Table("Is the loop safe?", ("condition", "holds", "by"), (*rows, *more))
 
     @property
@@ -228,6 +233,19 @@ class ObserverAnswer:
         what = f"proven with this inverse: slopes {low:.3g} to {high:.3g} (circle criterion)"
         return ((what, "yes" if self.proven_with_inverse else "open", said),)
 
+    @property
+    def within_uncertainty(self) -> bool:
+        """Whether the true plant, if there is one, is among those that Wu stands for."""
+        # A Wu that is drawn from the true plant is met up to rounding.
+        return self.uncertainty_used is None or self.uncertainty_used[0] <= 1.0 + 1e-6
+
+    def _true_plant(self) -> tuple[tuple[str, str, str], ...]:
+        if self.uncertainty_used is None:
+            return ()
+        ratio, at = self.uncertainty_used
+        said = f"|P / Pn - 1| up to {ratio:.4g} |Wu|, at {at:.4g} rad/s"
+        return (("true plant is within Wu", "yes" if self.within_uncertainty else "NO", said),)
+
     def _within(self) -> tuple[tuple[str, str, str], ...]:
         if self.identified is None:
             return ()
@@ -243,10 +261,10 @@ class ObserverAnswer:
         rows = [
             (
                 name,
-                _told(c.without[name].rms_error),
-                _told(c.without[name].max_error),
-                _told(c.observed[name].rms_error),
-                _told(c.observed[name].max_error),
+                told(c.without[name].rms_error),
+                told(c.without[name].max_error),
+                told(c.observed[name].rms_error),
+                told(c.observed[name].max_error),
             )
             for name in c.without
         ]
@@ -255,8 +273,8 @@ class ObserverAnswer:
                 f"{self.inverse_name}, sampled at {self.block.dt:g} s",
                 "-",
                 "-",
-                _told(self.sampled.rms_error),
-                _told(self.sampled.max_error),
+                told(self.sampled.rms_error),
+                told(self.sampled.max_error),
             )
         )
         names = [row[0] for row in rows]
@@ -277,7 +295,7 @@ class ObserverAnswer:
             (
                 "bandwidth of rejection",
                 f"{c.performance_norm:.3g} of 1/Wp; slowest pole of Q "
-                f"{_rightmost(c.observer_poles)} 1/s",
+                f"{rightmost(c.observer_poles)} 1/s",
             ),
         ]
         if self.bound is not None:
@@ -310,17 +328,20 @@ class ObserverAnswer:
             "slopes": None if self.slopes is None else list(self.slopes),
             "seen_slopes": list(self.seen_slopes),
             "unstable_slope": self.unstable_slope,
-            "slope_margin": _finite(self.slope_margin),
+            "slope_margin": finite(self.slope_margin),
+            "uncertainty_used": None
+            if self.uncertainty_used is None
+            else list(self.uncertainty_used),
             "drive_range": list(self.drive_range),
             "identified": None if self.identified is None else list(self.identified),
             "tracking": {
                 name: {
-                    "without": _errors(self.comparison.without[name]),
-                    "with_observer": _errors(self.comparison.observed[name]),
+                    "without": errors(self.comparison.without[name]),
+                    "with_observer": errors(self.comparison.observed[name]),
                 }
                 for name in self.comparison.without
             },
-            "tracking_sampled": _errors(self.sampled),
+            "tracking_sampled": errors(self.sampled),
         }
 
     def to_html(self, bode: bytes, loops: bytes) -> str:
@@ -361,34 +382,3 @@ class ObserverAnswer:
                 f"u = step(y_ref, y)   # every {self.block.dt:g} s"
             )
         return page.to_html()
-
-
-def _told(error: float) -> str:
-    return "diverges" if math.isinf(error) else number(error)
-
-
-def _finite(value: float | None) -> float | str | None:
-    return "inf" if value is not None and math.isinf(value) else value
-
-
-def _errors(loop: ClosedLoop) -> dict[str, Any]:
-    diverged = loop.diverged_at is not None
-    return {
-        "rms": None if diverged else loop.rms_error,
-        "max": None if diverged else loop.max_error,
-        "max_drive": None if diverged else loop.max_drive,
-        "diverged_at": loop.diverged_at,
-    }
-
-
-def _ended(loop: ClosedLoop) -> str:
-    return f"diverges at {loop.diverged_at:.4g} s"
-
-
-def _rightmost(poles: ComplexArray) -> str:
-    if poles.size == 0:
-        return "none"
-    worst = complex(poles[int(np.argmax(poles.real))])
-    if abs(worst.imag) < 1e-9 * abs(worst):
-        return f"{worst.real:+.4g}"
-    return f"{worst.real:+.4g} +- {abs(worst.imag):.4g}j"
