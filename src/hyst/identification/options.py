@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -103,11 +103,32 @@ def as_sizes(plays: int | str, radii: Array | None) -> tuple[int, ...]:
         return (radii.size,)
     if plays == "auto":
         return SIZES
-    if isinstance(plays, bool) or not isinstance(plays, int | np.integer):
-        raise InputError(f"plays is {plays!r}; give a number or 'auto'")
-    if not 1 <= plays <= MOST_PLAYS:
-        raise InputError(f"plays is {plays}; give 1 to {MOST_PLAYS}, or 'auto'")
-    return (int(plays),)
+    return (whole_number(plays, "plays", 1, MOST_PLAYS, ", or 'auto'"),)
+
+
+def whole_number(value: Any, name: str, least: int, most: int, more: str = "") -> int:
+    """Check a number that counts something.
+
+    Parameters
+    ----------
+    value
+        A whole number from ``least`` to ``most``.
+    name
+        What messages call it.
+    least, most
+        Ends of the range.
+    more
+        What messages add after the range: a unit, or a word that is taken in its place.
+
+    Raises
+    ------
+    InputError
+        If it is something else.
+    """
+    is_whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    if not is_whole or not least <= value <= most:
+        raise InputError(f"{name} is {value!r}; give {least} to {most}{more}")
+    return int(value)
 
 
 def as_radii(radii: ArrayLike) -> Array:
@@ -142,9 +163,7 @@ def as_knots(knots: int) -> int:
     InputError
         If it is no number from 1 to 50.
     """
-    if isinstance(knots, bool) or not isinstance(knots, int | np.integer) or not 1 <= knots <= 50:
-        raise InputError(f"knots is {knots!r}; give 1 to 50")
-    return int(knots)
+    return whole_number(knots, "knots", 1, 50)
 
 
 def as_rule(weights: str) -> str:
@@ -183,11 +202,7 @@ def as_delay(delay: int | str, data: Data) -> int:
     if delay == "auto":
         return estimate_delay(data)
     shortest = min(len(r) - s for r, s in zip(data.records, data.starts, strict=True))
-    if isinstance(delay, bool) or not isinstance(delay, int | np.integer):
-        raise InputError(f"delay is {delay!r}; give a number of samples or 'auto'")
-    if not 0 <= delay < shortest:
-        raise InputError(f"delay is {delay}; give 0 to {shortest - 1} samples, or 'auto'")
-    return int(delay)
+    return whole_number(delay, "delay", 0, shortest - 1, " samples, or 'auto'")
 
 
 def within_reach(radii: Array | None, data: Data) -> tuple[Array | None, tuple[str, ...]]:

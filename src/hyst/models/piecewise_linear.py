@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 from hyst.errors import InputError
 from hyst.models.loading_curve import LoadingCurve, ReversalMemory, refuse_flat, register_curve
 from hyst.operators.checks import (
-    as_ascending_thresholds,
     as_constants,
     as_number,
+    as_weights_and_thresholds,
     refuse_overflow,
 )
-from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
+from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
 from hyst.operators.registry import entries
 from hyst.operators.stage_sink import StageSink
 
@@ -59,11 +59,7 @@ class PiecewiseLinear(LoadingCurve):
     kind = "piecewise-linear"
 
     def __init__(self, p: ArrayLike, r: ArrayLike, p0: float = 0.0) -> None:
-        weights, thresholds = as_constants(p, "p"), as_ascending_thresholds(r)
-        if weights.size != thresholds.size:
-            raise InputError(
-                f"p has {weights.size} entries but r has {thresholds.size}; give one p for each r"
-            )
+        weights, thresholds = as_weights_and_thresholds(p, r)
         object.__setattr__(self, "p", weights)
         object.__setattr__(self, "r", thresholds)
         object.__setattr__(self, "p0", as_number(p0, "p0"))
@@ -159,14 +155,7 @@ class PiecewiseLinear(LoadingCurve):
 
     def parameters(self) -> Parameters:
         """Give p0, p, then r."""
-        n = self.p.size
-        free = np.full(n + 1, np.inf)
-        return Parameters(
-            values=np.concatenate([[self.p0], self.p, self.r]),
-            names=("p0", *numbered("p", n), *numbered("r", n)),
-            lower=np.concatenate([-free, np.zeros(n)]),
-            upper=np.concatenate([free, free[1:]]),
-        )
+        return parameters_of_plays(self.p0, self.p, self.r)
 
     def with_parameters(self, theta: Sequence[float] | Array) -> PiecewiseLinear:
         """Give a curve with other slopes."""

@@ -12,13 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from hyst.errors import InputError, NotInvertibleError
 from hyst.operators.base import Operator
 from hyst.operators.checks import (
-    as_ascending_thresholds,
     as_constants,
     as_number,
+    as_weights_and_thresholds,
     refuse_overflow,
 )
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
-from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
+from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
 from hyst.operators.registry import entries, register
 from hyst.operators.stage_sink import StageSink
 from hyst.operators.traits import Traits
@@ -71,11 +71,7 @@ class PrandtlIshlinskii(Operator):
     def __init__(
         self, p: ArrayLike, r: ArrayLike, p0: float = 0.0, z0: ArrayLike | None = None
     ) -> None:
-        weights, thresholds = as_constants(p, "p"), as_ascending_thresholds(r)
-        if weights.size != thresholds.size:
-            raise InputError(
-                f"p has {weights.size} entries but r has {thresholds.size}; give one p for each r"
-            )
+        weights, thresholds = as_weights_and_thresholds(p, r)
         memory = as_constants(np.zeros(weights.size) if z0 is None else z0, "z0")
         if memory.size != weights.size:
             raise InputError(
@@ -151,14 +147,7 @@ class PrandtlIshlinskii(Operator):
 
     def parameters(self) -> Parameters:
         """Give p0, the weights, then the thresholds."""
-        n = self.p.size
-        free = np.full(n + 1, np.inf)
-        return Parameters(
-            values=np.concatenate([[self.p0], self.p, self.r]),
-            names=("p0", *numbered("p", n), *numbered("r", n)),
-            lower=np.concatenate([-free, np.zeros(n)]),
-            upper=np.concatenate([free, free[1:]]),
-        )
+        return parameters_of_plays(self.p0, self.p, self.r)
 
     def with_parameters(self, theta: Sequence[float] | Array) -> PrandtlIshlinskii:
         """Give a model with other weights and thresholds and the same initial memory."""

@@ -14,14 +14,14 @@ from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii
 from hyst.models.rate_curve import RateCurve
 from hyst.operators.base import Operator
 from hyst.operators.checks import (
-    as_ascending_thresholds,
     as_constants,
     as_number,
     as_signal,
+    as_weights_and_thresholds,
     refuse_overflow,
 )
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
-from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
+from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
 from hyst.operators.registry import entries, register
 from hyst.operators.stage_sink import StageSink
 from hyst.operators.traits import Traits
@@ -95,11 +95,7 @@ class RateDependentPrandtlIshlinskii(Operator):
         p0: float = 0.0,
         z0: ArrayLike | None = None,
     ) -> None:
-        weights, thresholds = as_constants(p, "p"), as_ascending_thresholds(r)
-        if weights.size != thresholds.size:
-            raise InputError(
-                f"p has {weights.size} entries but r has {thresholds.size}; give one p for each r"
-            )
+        weights, thresholds = as_weights_and_thresholds(p, r)
         curve = beta if isinstance(beta, RateCurve) else RateCurve(beta)
         sample_time = as_number(dt, "dt")
         if sample_time <= 0.0:
@@ -252,14 +248,13 @@ class RateDependentPrandtlIshlinskii(Operator):
 
     def parameters(self) -> Parameters:
         """Give p0, the weights, the thresholds, then beta and what else the rate curve has."""
-        n = self.p.size
-        free = np.full(n + 1, np.inf)
+        plays = parameters_of_plays(self.p0, self.p, self.r)
         rate = self.rate_curve.parameters()
         return Parameters(
-            values=np.concatenate([[self.p0], self.p, self.r, rate.values]),
-            names=("p0", *numbered("p", n), *numbered("r", n), *rate.names),
-            lower=np.concatenate([-free, np.zeros(n), rate.lower]),
-            upper=np.concatenate([free, free[1:], rate.upper]),
+            values=np.concatenate([plays.values, rate.values]),
+            names=plays.names + rate.names,
+            lower=np.concatenate([plays.lower, rate.lower]),
+            upper=np.concatenate([plays.upper, rate.upper]),
         )
 
     def with_parameters(self, theta: Sequence[float] | Array) -> RateDependentPrandtlIshlinskii:

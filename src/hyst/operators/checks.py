@@ -270,6 +270,34 @@ def as_ascending_thresholds(values: ArrayLike, name: str = "r") -> Array:
     return thresholds
 
 
+def as_weights_and_thresholds(p: ArrayLike, r: ArrayLike) -> tuple[Array, Array]:
+    """Check the weights and thresholds of a bank of plays.
+
+    Parameters
+    ----------
+    p
+        Shape (n,), weights.
+    r
+        Shape (n,), thresholds, as of ``as_ascending_thresholds``.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        Both float64, read-only.
+
+    Raises
+    ------
+    InputError
+        If the lengths differ, thresholds are negative or unsorted, or a constant is not finite.
+    """
+    weights, thresholds = as_constants(p, "p"), as_ascending_thresholds(r)
+    if weights.size != thresholds.size:
+        raise InputError(
+            f"p has {weights.size} entries but r has {thresholds.size}; give one p for each r"
+        )
+    return weights, thresholds
+
+
 def refuse_overflow(*constants: Array | float) -> None:
     """Check that the constants of an inverse are numbers a double can hold.
 

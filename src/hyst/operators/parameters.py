@@ -52,6 +52,26 @@ def numbered(name: str, count: int, first: int = 1) -> tuple[str, ...]:
     return tuple(f"{name}[{first + i}]" for i in range(count))
 
 
+def parameters_of_plays(p0: float, p: NDArray[np.float64], r: NDArray[np.float64]) -> Parameters:
+    """Give p0, the weights, then the thresholds, which stay zero or more.
+
+    Parameters
+    ----------
+    p0
+        Weight of the input.
+    p, r
+        Shape (n,), weights and thresholds of the plays.
+    """
+    n = p.size
+    free = np.full(n + 1, np.inf)
+    return Parameters(
+        values=np.concatenate([[p0], p, r]),
+        names=("p0", *numbered("p", n), *numbered("r", n)),
+        lower=np.concatenate([-free, np.zeros(n)]),
+        upper=np.concatenate([free, free[1:]]),
+    )
+
+
 def as_parameter_vector(
     theta: Sequence[float] | NDArray[np.float64], count: int
 ) -> NDArray[np.float64]:

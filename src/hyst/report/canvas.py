@@ -132,6 +132,11 @@ def with_unit(name: str, unit: str) -> str:
 def ratio_unit(numerator: str, denominator: str) -> str:
     """Give the unit of a ratio: empty for a pure number, or where a unit is not known.
 
+    Parameters
+    ----------
+    numerator, denominator
+        Units of both; empty where not known.
+
     Examples
     --------
     >>> ratio_unit("um", "V"), ratio_unit("um", "um"), ratio_unit("", "V")

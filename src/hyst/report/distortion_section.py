@@ -119,7 +119,18 @@ def draw_levels(
     input_unit: str,
     output_unit: str,
 ) -> Figure:
-    """Draw gain, noise and distortion over frequency, and the output at silent lines, as PNG."""
+    """Draw gain, noise and distortion over frequency, and the output at silent lines.
+
+    Parameters
+    ----------
+    levels, is_even, input_unit, output_unit
+        As of ``levels_table``.
+
+    Returns
+    -------
+    bytes
+        PNG.
+    """
     has_silent = levels.silent_frequency.size > 0
     figure, panels = blank(1 + has_silent, 1, 10.0 if has_silent else 6.0, 3.9)
     gain = {

@@ -13,11 +13,13 @@ from hyst.identification.hammerstein.distortion_levels import average_periods
 from hyst.identification.hammerstein.front import FRONTS, FrontOptions
 from hyst.identification.hammerstein.identification import HammersteinOptions, identify_hammerstein
 from hyst.identification.hammerstein.identified_hammerstein import IdentifiedHammerstein
+from hyst.identification.options import whole_number
 from hyst.signals import Record
 
 HAMMERSTEIN = "hammerstein"
 AUTOMATIC_PLAYS = 4
 _MOST_PLAYS = 50
+_OR_AUTO = ", or 'auto'"
 
 
 def identify_with_dynamics(
@@ -58,7 +60,11 @@ def identify_with_dynamics(
     """
     if period is not None:
         records, start = averaged(records, period, start)
-    count = AUTOMATIC_PLAYS if plays == "auto" else _whole(plays, "plays", 1, _MOST_PLAYS)
+    count = (
+        AUTOMATIC_PLAYS
+        if plays == "auto"
+        else whole_number(plays, "plays", 1, _MOST_PLAYS, _OR_AUTO)
+    )
     front = FrontOptions(
         family=hysteresis,
         plays=count if radii is None else int(radii.size),
@@ -69,7 +75,7 @@ def identify_with_dynamics(
     options = HammersteinOptions(
         fir_order=orders[0],
         state_order=orders[1],
-        delay=delay if delay == "auto" else _whole(delay, "delay", 0, 10_000),
+        delay=delay if delay == "auto" else whole_number(delay, "delay", 0, 10_000, _OR_AUTO),
         front=front,
         start=start,
         max_iterations=limits[0],
@@ -135,15 +141,8 @@ def require_usable(family: str, hysteresis: str, period: int | None) -> None:
 
 def _as_knots(knots: Any) -> int | NDArray[np.float64]:
     if isinstance(knots, int | np.integer):
-        return _whole(knots, "knots", 1, 50)
+        return whole_number(knots, "knots", 1, 50)
     places = np.asarray(knots, dtype=np.float64)
     if places.ndim != 1 or places.size == 0 or not np.isfinite(places).all():
         raise InputError("knots must be a number of knots or a list of finite places")
     return places
-
-
-def _whole(value: Any, name: str, least: int, most: int) -> int:
-    is_whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-    if not is_whole or not least <= value <= most:
-        raise InputError(f"{name} is {value!r}; give {least} to {most}, or 'auto'")
-    return int(value)

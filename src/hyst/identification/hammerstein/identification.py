@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import NotIdentifiableError, NotInvertibleError, SolverError
+from hyst.identification.assembly import describe, metrics_by_record
 from hyst.identification.bounded_least_squares import CONVERGED, Solution
 from hyst.identification.data import Data, prepare
 from hyst.identification.families import RAMBERG_OSGOOD, at_limit_of_power
@@ -30,7 +31,7 @@ from hyst.identification.hammerstein.joint import (
 from hyst.identification.hammerstein.markov import MarkovParameters, choose_markov
 from hyst.identification.hammerstein.realization import Realization, as_state_order, realize
 from hyst.identification.hammerstein.record_checks import check_records, check_sample_time
-from hyst.identification.hammerstein.results import described, metrics_of, parameter_table
+from hyst.identification.hammerstein.results import parameter_table
 from hyst.identification.hammerstein.uncertainty import (
     Uncertainty,
     poles_as_numbers,
@@ -286,12 +287,12 @@ def _result(
         parameter_values=values,
         standard_errors=errors,
         undetermined=notes + undetermined,
-        metrics=metrics_of(data, model, validation),
+        metrics=metrics_by_record(data, model, validation),
         candidates=(),
         status=solution.status,
         iterations=solution.iterations,
         used=data.used(),
-        description=described(data),
+        description=describe(data, "hammerstein"),
         hysteresis=hysteresis,
         dynamics=dynamics,
         first_dynamics=realized.dynamics,

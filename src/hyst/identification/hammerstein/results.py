@@ -1,18 +1,12 @@
-"""Tables of a Hammerstein identification: parameters with standard errors, metrics, description."""
+"""Parameters of a Hammerstein identification with their standard errors, as a table."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.data import Data, prepare
-from hyst.identification.fitting import model_output
 from hyst.identification.hammerstein.joint import Joint
 from hyst.identification.hammerstein.uncertainty import Uncertainty, coefficients, spread_of
-from hyst.operators import ModelDescription, Operator
-from hyst.signals import Metrics, Record, error_metrics
 
 Array = NDArray[np.float64]
 
@@ -62,41 +56,4 @@ def _not_known(joint: Joint, theta: Array, sure: Uncertainty) -> tuple[str, ...]
     return (
         f"the records do not determine {count} of {theta.size} parameters of the hysteresis; their "
         "values are one choice of many and have no standard error",
-    )
-
-
-def metrics_of(data: Data, model: Operator, validation: Sequence[Record]) -> dict[str, Metrics]:
-    """Compare the output of a model with the measured one, for data and for validation."""
-    metrics = _pair("training", data, model)
-    for number, record in enumerate(validation, 1):
-        name = "validation" if len(validation) == 1 else f"validation {number}"
-        metrics |= _pair(name, prepare(record, "auto", data.delay), model)
-    return metrics
-
-
-def _pair(name: str, data: Data, model: Operator) -> dict[str, Metrics]:
-    measured, modelled = data.measured(), model_output(data, model)
-    span = max(r.y.max() for r in data.records) - min(r.y.min() for r in data.records)
-    both = {name: False, f"{name}, free offset": True}
-    return {
-        each: error_metrics(measured, modelled, free_offset=free, output_range=float(span))
-        for each, free in both.items()
-    }
-
-
-def described(data: Data) -> ModelDescription:
-    """Give names, units and ranges for the model file."""
-    first = data.records[0]
-    return ModelDescription(
-        input_name=first.input_name,
-        output_name=first.output_name,
-        input_unit=first.input_unit,
-        output_unit=first.output_unit,
-        input_low=float(min(r.u.min() for r in data.records)),
-        input_high=float(max(r.u.max() for r in data.records)),
-        output_low=float(min(r.y.min() for r in data.records)),
-        output_high=float(max(r.y.max() for r in data.records)),
-        dt=first.dt,
-        delay=0,
-        family="hammerstein",
     )
