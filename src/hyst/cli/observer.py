@@ -149,7 +149,6 @@ def _tried(spec: ObserverSpec, design: DisturbanceObserver) -> ObserverAnswer:
         seed=spec.seed,
         settle=spec.settle,
     )
-    poles = closed_loop_poles(plant, block)
     bound, slopes = _of_inverse(spec, comparison)
     margin = None if slopes is None else slope_margin(plant, spec.controller, design, slopes)
     seen = _slopes_seen(comparison.observed[spec.inverse_name])
@@ -159,16 +158,14 @@ def _tried(spec: ObserverSpec, design: DisturbanceObserver) -> ObserverAnswer:
         inverse_name=spec.inverse_name,
         block=block,
         sampled=sampled,
-        sampled_poles=poles,
+        sampled_poles=closed_loop_poles(plant, block),
         bound=bound,
         slopes=slopes,
         slope_margin=margin,
         seen_slopes=seen,
         unstable_slope=first_unstable_slope(plant, spec.controller, design, seen),
         identified=_identified(spec),
-        uncertainty_used=(
-            None if spec.true_plant is None else uncertainty_used(design, spec.true_plant)
-        ),
+        uncertainty_used=uncertainty_used(design, plant) if spec.true_plant else None,
     )
 
 
