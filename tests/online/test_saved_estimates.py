@@ -127,6 +127,23 @@ def test_restarted_saved_and_restored_it_restarts_from_the_same(tmp_path: Path) 
     assert restored.state.tobytes() == estimator.state.tobytes()
 
 
+@pytest.mark.parametrize(
+    "other",
+    [
+        hyst.PrandtlIshlinskii([0.5, 0.1], [1.0, 2.0], 1.0),
+        hyst.Affine(2.0, 0.0) @ FIVE_PLAYS,
+        FIVE_PLAYS @ hyst.Affine(2.0, 0.0),
+        FIVE_PLAYS @ hyst.DeadZone([1.0, 0.2], [0.0, 5.0]),
+    ],
+)
+def test_it_does_not_restart_from_a_model_of_another_kind(other: hyst.operators.Operator) -> None:
+    estimator = JointEstimator(FIVE_PLAYS, dt=DT)
+    before = estimator.state.copy()
+    with pytest.raises(hyst.InputError, match="other plays, thresholds or gains"):
+        estimator.restart(other)
+    assert estimator.state.tobytes() == before.tobytes()
+
+
 def test_no_estimate_on_its_bounds_is_taken_for_tampered(tmp_path: Path) -> None:
     # Outputs that fit no model of plays push weights and radii to their bounds again and again.
     rng = np.random.default_rng(7)

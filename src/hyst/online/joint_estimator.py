@@ -221,11 +221,8 @@ class JointEstimator:
     @property
     def innovation(self) -> Innovation:
         """What the estimate leaves unexplained, and whether that can be noise."""
-        n, theta, scalars = (
-            self._parts.pi.p.size,
-            self.parameters,
-            self.state[self._at["scalars"] :],
-        )
+        n, theta = self._parts.pi.p.size, self.parameters
+        scalars = self.state[self._at["scalars"] :]
         gain = abs(self._parts.after.gain)
         return Innovation(
             rms=gain * math.sqrt(float(scalars[_SQUARE])),
@@ -316,11 +313,16 @@ class JointEstimator:
         ----------
         model
             Parameters to go on from, of a model like the one at the start; those if left out.
+
+        Raises
+        ------
+        InputError
+            If it has other stages, thresholds or gains, or starts out of bounds.
         """
         at = self._at
         kept = self.state.copy()
         if model is not None:
-            theta = take_apart(model).theta()
+            theta = take_apart(model).theta_for(self._parts)
             self._theta_at_start = checked_start(self._parts, theta, self.settings)
         self._begin(prior_of(self._parts, self._theta_at_start, self.settings))
         cells = (at["cell_memory"], at["points"])

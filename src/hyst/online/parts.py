@@ -59,6 +59,37 @@ class Parts:
         offset = [self.after.offset / self.after.gain]
         return np.concatenate([[self.pi.p0], self.pi.p, self.pi.r, offset, *maps])
 
+    def theta_for(self, other: Parts) -> Array:
+        """Give the parameters to someone who has other parts.
+
+        Parameters
+        ----------
+        other
+            Parts whose parameters mean the same.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (m,).
+
+        Raises
+        ------
+        InputError
+            If numbers of plays, thresholds or gains differ.
+        """
+        if self._fixed() != other._fixed():
+            raise InputError(
+                "the model has other plays, thresholds or gains than the one at the start; give "
+                "one that differs in weights, radii and offset alone"
+            )
+        return self.theta()
+
+    def _fixed(self) -> tuple[object, ...]:
+        """Give what is never estimated."""
+        maps = (None if m is None else m.thresholds.tolist() for m in (self.front, self.back))
+        before = None if self.before is None else (self.before.gain, self.before.offset)
+        return self.pi.p.size, before, self.after.gain, *maps
+
     def names(self) -> tuple[str, ...]:
         """Name the parameters in that order."""
         n = self.pi.p.size
