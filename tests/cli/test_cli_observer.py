@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -237,9 +236,8 @@ def test_a_model_file_other_forms_of_systems_and_a_reduced_inverse(run: Run, fol
 def test_without_the_solvers_the_descent_alone_designs(
     run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    verb = importlib.import_module("hyst.cli.observer")
     asked: list[str] = []
-    design = verb.design_disturbance_observer
+    design = hyst.control.design_disturbance_observer
 
     def without_solvers(*given: Any, method: str, **options: Any) -> Any:
         asked.append(method)
@@ -247,7 +245,7 @@ def test_without_the_solvers_the_descent_alone_designs(
             raise hyst.MissingExtraError("cvxpy is not installed; pip install hyst[control]")
         return design(*given, method=method, **options)
 
-    monkeypatch.setattr(verb, "design_disturbance_observer", without_solvers)
+    monkeypatch.setattr(hyst.control, "design_disturbance_observer", without_solvers)
     (folder / "spec.toml").write_text(QUICK, encoding="utf-8")
     ended = run("observer", "spec.toml", "-o", "out")
     assert ended.code == 0

@@ -46,3 +46,8 @@ def test_import_of_hyst_loads_no(heavy: str, after_import: set[str]) -> None:
 def test_help_loads_no(heavy: str, after_help: set[str]) -> None:
     assert "hyst.cli" in after_help
     assert heavy not in after_help
+
+
+def test_verbs_load_no_numerics_before_they_run(after_help: set[str]) -> None:
+    heavy = {"hyst.identification", "hyst.online", "hyst.control", "hyst.compensation", "scipy"}
+    assert not heavy & after_help

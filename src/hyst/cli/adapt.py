@@ -15,8 +15,6 @@ import hyst
 from hyst.cli.arguments import InputColumn
 from hyst.cli.console import at_work, note, show_files, show_table
 from hyst.cli.identify import OutputColumn, Rate, Repair, TimeColumn, TimeUnit
-from hyst.online.parts import units_of_plays
-from hyst.report.tables import Table, number
 
 Files = Annotated[
     list[Path],
@@ -152,7 +150,7 @@ def _picture(
     trajectory: hyst.online.Trajectory,
     heading: str,
 ) -> bytes:
-    units = units_of_plays(model, about.input_unit, about.output_unit)
+    units = hyst.online.parts.units_of_plays(model, about.input_unit, about.output_unit)
     return hyst.report.draw_estimates({"": trajectory}, {}, heading, units)
 
 
@@ -217,7 +215,7 @@ def _write_parameters(path: Path, trajectory: hyst.online.Trajectory) -> None:
 
 def _tell(estimator: hyst.online.JointEstimator, before: list[float]) -> None:
     rows = tuple(
-        (name, number(start), number(value), number(error))
+        (name, hyst.report.number(start), hyst.report.number(value), hyst.report.number(error))
         for name, start, value, error in zip(
             estimator.names,
             before,
@@ -226,9 +224,12 @@ def _tell(estimator: hyst.online.JointEstimator, before: list[float]) -> None:
             strict=True,
         )
     )
-    show_table(Table("Estimates", ("constant", "before", "after", "standard error"), rows))
+    show_table(
+        hyst.report.Table("Estimates", ("constant", "before", "after", "standard error"), rows)
+    )
     counts = estimator.counts
-    print(f"\nnoise of the output: {number(estimator.noise)}; {counts['used']} samples used")
+    noise = hyst.report.number(estimator.noise)
+    print(f"\nnoise of the output: {noise}; {counts['used']} samples used")
     if counts["skipped"] or counts["refused"]:
         note(f"{counts['skipped']} samples were not finite, {counts['refused']} led to an overflow")
     print(f"excitation: {estimator.excitation}")

@@ -12,7 +12,6 @@ import hyst
 from hyst.cli.arguments import InputColumn, numbers, whole_or_auto
 from hyst.cli.console import at_work, show_files, show_table
 from hyst.cli.relevant_options import refuse_irrelevant
-from hyst.identification.hammerstein import average_periods
 
 Data = Annotated[
     list[Path], typer.Argument(metavar="DATA", show_default=False, help="Measured records.")
@@ -175,7 +174,8 @@ def identify(
         say("reading")
         records = measured = [_read(path, how_to_read, labels) for path in data]
         if period is not None:  # averaging once more, as identify does, changes nothing
-            records = [average_periods(record, period) for record in measured]
+            averaged = hyst.identification.hammerstein.average_periods
+            records = [averaged(record, period) for record in measured]
         validation = [_read_validation(path, how_to_validate, labels) for path in validate or []]
         found = hyst.identify(
             records, family=family, validation=validation, progress=say, **options

@@ -11,23 +11,13 @@ import typer
 
 import hyst
 from hyst.cli.console import at_work, note, progress_bar, show_files, show_table
-from hyst.cli.observer_spec import ObserverSpec, read_spec
+from hyst.cli.observer_spec import read_spec
 from hyst.cli.observer_template import TEMPLATE
-from hyst.compensation import ErrorBound, error_bound, slope_range
-from hyst.control import (
-    DisturbanceObserver,
-    TrackingController,
-    closed_loop_poles,
-    design_disturbance_observer,
-    first_unstable_slope,
-    simulate_closed_loop,
-    slope_margin,
-)
-from hyst.control.frequency_responses import loop_responses, uncertainty_used
-from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
-from hyst.operators import Operator
 
 if TYPE_CHECKING:
+    from hyst.cli.observer_spec import ObserverSpec
+    from hyst.compensation import ErrorBound
+    from hyst.control import DisturbanceObserver, InverseComparison
     from hyst.report import ObserverAnswer
 
 SpecFile = Annotated[
@@ -61,7 +51,7 @@ def observer(spec_file: SpecFile = None, folder: Folder = None, template: Templa
     answer = _tried(spec, design)
     with at_work("drawing"):
         bode = hyst.report.draw_observer_bode(
-            loop_responses(design, spec.true_plant), "Disturbance observer"
+            hyst.control.loop_responses(design, spec.true_plant), "Disturbance observer"
         )
         loops = hyst.report.draw_closed_loops(
             _shown(answer), "Closed loop with the true hysteresis"
@@ -97,7 +87,7 @@ def _design(spec: ObserverSpec) -> DisturbanceObserver:
 
 def _designed(spec: ObserverSpec, method: str) -> DisturbanceObserver:
     with at_work("designing the observer") as say:
-        return design_disturbance_observer(
+        return hyst.control.design_disturbance_observer(
             spec.plant,
             spec.controller,
             spec.Wu,
@@ -110,12 +100,12 @@ def _designed(spec: ObserverSpec, method: str) -> DisturbanceObserver:
 
 
 def _tried(spec: ObserverSpec, design: DisturbanceObserver) -> ObserverAnswer:
-    inverses: dict[str, Operator | None] = {spec.inverse_name: spec.inverse, NONE: None}
+    inverses: dict[str, hyst.Operator | None] = {spec.inverse_name: spec.inverse, NONE: None}
     if spec.hysteresis.is_invertible():
-        inverses[EXACT] = spec.hysteresis.inverse()
+        inverses[hyst.control.EXACT] = spec.hysteresis.inverse()
     plant = spec.plant if spec.true_plant is None else spec.true_plant
     with progress_bar("simulating the loop") as progress:
-        comparison = compare_inverses(
+        comparison = hyst.control.compare_inverses(
             spec.reference,
             spec.dt,
             inverses,
@@ -129,7 +119,7 @@ def _tried(spec: ObserverSpec, design: DisturbanceObserver) -> ObserverAnswer:
             seed=spec.seed,
             settle=spec.settle,
         )
-    block = TrackingController.from_continuous(
+    block = hyst.control.TrackingController.from_continuous(
         spec.controller,
         spec.filter_dt,
         observer=design,
@@ -138,7 +128,7 @@ def _tried(spec: ObserverSpec, design: DisturbanceObserver) -> ObserverAnswer:
     )
     end = (spec.reference.size - 1) * spec.dt
     at = np.arange(0.0, end + 0.5 * spec.filter_dt, spec.filter_dt)
-    sampled = simulate_closed_loop(
+    sampled = hyst.control.simulate_closed_loop(
         np.interp(at, np.arange(spec.reference.size) * spec.dt, spec.reference),
         spec.filter_dt,
         plant=plant,
@@ -150,7 +140,11 @@ def _tried(spec: ObserverSpec, design: DisturbanceObserver) -> ObserverAnswer:
         settle=spec.settle,
     )
     bound, slopes = _of_inverse(spec, comparison)
-    margin = None if slopes is None else slope_margin(plant, spec.controller, design, slopes)
+    margin = (
+        None
+        if slopes is None
+        else hyst.control.slope_margin(plant, spec.controller, design, slopes)
+    )
     seen = _slopes_seen(comparison.observed[spec.inverse_name])
     return hyst.report.ObserverAnswer(
         design=design,
@@ -158,14 +152,14 @@ def _tried(spec: ObserverSpec, design: DisturbanceObserver) -> ObserverAnswer:
         inverse_name=spec.inverse_name,
         block=block,
         sampled=sampled,
-        sampled_poles=closed_loop_poles(plant, block),
+        sampled_poles=hyst.control.closed_loop_poles(plant, block),
         bound=bound,
         slopes=slopes,
         slope_margin=margin,
         seen_slopes=seen,
-        unstable_slope=first_unstable_slope(plant, spec.controller, design, seen),
+        unstable_slope=hyst.control.first_unstable_slope(plant, spec.controller, design, seen),
         identified=_identified(spec),
-        uncertainty_used=uncertainty_used(design, plant) if spec.true_plant else None,
+        uncertainty_used=hyst.control.uncertainty_used(design, plant) if spec.true_plant else None,
     )
 
 
@@ -199,11 +193,11 @@ def _of_inverse(
     reach = float(np.abs(loop.v).max())
     # Both are for plays between maps; other models have none.
     try:
-        slopes = slope_range(spec.hysteresis, inverse, reach)
+        slopes = hyst.compensation.slope_range(spec.hysteresis, inverse, reach)
     except hyst.InputError:
         return None, None
     try:
-        return error_bound(spec.hysteresis, inverse, reach), slopes
+        return hyst.compensation.error_bound(spec.hysteresis, inverse, reach), slopes
     except hyst.NotInvertibleError:
         return None, slopes
 
@@ -211,8 +205,8 @@ def _of_inverse(
 def _shown(answer: ObserverAnswer) -> dict[str, hyst.control.ClosedLoop]:
     name, found = answer.inverse_name, answer.comparison
     loops = {f"{name}, without": found.without[name], f"{name}, observer": found.observed[name]}
-    if EXACT in found.without and name != EXACT:
-        loops["exact, without"] = found.without[EXACT]
+    if hyst.control.EXACT in found.without and name != hyst.control.EXACT:
+        loops["exact, without"] = found.without[hyst.control.EXACT]
     return loops
 
 

@@ -5,19 +5,18 @@ from __future__ import annotations
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import get_args
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 import hyst
 from hyst.cli.spec_section import Section
-from hyst.compensation import reduce_inverse
-from hyst.control.discretization import Method
-from hyst.control.disturbance_observer import InternalModel
-from hyst.control.linear_system import LinearSystem
-from hyst.models import GeneralizedPrandtlIshlinskii
-from hyst.operators import ModelDescription, Operator
+
+if TYPE_CHECKING:
+    from hyst.control import InternalModel, LinearSystem
+    from hyst.control.discretization import Method
+    from hyst.operators import ModelDescription, Operator
 
 Array = NDArray[np.float64]
 
@@ -93,7 +92,7 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     noise = simulation.number("noise", 0.0)
     if noise < 0.0:
         raise hyst.InputError(f"[simulation] noise is {noise:g}; give a standard deviation >= 0")
-    method = implemented.text("method", "tustin", get_args(Method))
+    method = implemented.text("method", "tustin", get_args(hyst.control.discretization.Method))
     filter_dt = implemented.number("dt", positive=True)
     if filter_dt >= reference.size * dt - settle:
         raise hyst.InputError(
@@ -128,17 +127,21 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
 def _internal_model(given: Section) -> InternalModel:
     sinusoids = given.numbers("sinusoids", ())
     if given.has("A") or given.has("C"):
-        model = InternalModel(given.matrix("A"), given.matrix("C"))
+        model = hyst.control.InternalModel(given.matrix("A"), given.matrix("C"))
     else:
         kind = given.text("kind", choices=("integrator", "ramp"))
-        model = InternalModel.integrator() if kind == "integrator" else InternalModel.ramp()
+        model = (
+            hyst.control.InternalModel.integrator()
+            if kind == "integrator"
+            else hyst.control.InternalModel.ramp()
+        )
     given.done()
     for frequency in sinusoids:
         if frequency <= 0.0:
             raise hyst.InputError(
                 f"[internal_model] sinusoids has {frequency:g}; give frequencies in Hz, above 0"
             )
-        model = model + InternalModel.sinusoid(2.0 * np.pi * float(frequency))
+        model = model + hyst.control.InternalModel.sinusoid(2.0 * np.pi * float(frequency))
     return model
 
 
@@ -156,7 +159,7 @@ def _hysteresis(given: Section, folder: Path) -> tuple[Operator, ModelDescriptio
     weights, thresholds = envelope.numbers("weights"), envelope.numbers("thresholds")
     envelope.done()
     given.done()
-    return GeneralizedPrandtlIshlinskii(hyst.DeadZone.odd(weights, thresholds), plays), None
+    return hyst.GeneralizedPrandtlIshlinskii(hyst.DeadZone.odd(weights, thresholds), plays), None
 
 
 def _inverse(given: Section, hysteresis: Operator, folder: Path) -> tuple[Operator | None, str]:
@@ -171,7 +174,7 @@ def _inverse(given: Section, hysteresis: Operator, folder: Path) -> tuple[Operat
     elif kind == "reduced":
         plays, reach = given.count("plays"), given.number("reach", positive=True)
         inverse, name = (
-            reduce_inverse(hysteresis, plays, reach),
+            hyst.compensation.reduce_inverse(hysteresis, plays, reach),
             f"{plays} play{'s' * (plays != 1)}",
         )
     elif kind == "file":

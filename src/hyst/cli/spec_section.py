@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 import hyst
-from hyst.control.linear_system import LinearSystem, as_linear_system
+
+if TYPE_CHECKING:
+    from hyst.control import LinearSystem
 
 Array = NDArray[np.float64]
 
@@ -220,14 +222,18 @@ class Section:
             )
         self.done()
         if "num" in given[0]:
-            return as_linear_system((self.numbers("num"), self.numbers("den")), self._name)
+            return hyst.control.as_linear_system(
+                (self.numbers("num"), self.numbers("den")), self._name
+            )
         if "zeros" in given[0]:
             zeros, poles = self._roots("zeros"), self._roots("poles")
             num, den = self.number("gain") * np.poly(zeros), np.poly(poles)
-            return as_linear_system((np.atleast_1d(num), np.atleast_1d(den)), self._name)
+            return hyst.control.as_linear_system(
+                (np.atleast_1d(num), np.atleast_1d(den)), self._name
+            )
         A, C, D = self.matrix("A"), self.matrix("C"), self.matrix("D")
         B = self.matrix("B").reshape(-1, 1)
-        return as_linear_system((A, B, C, D), self._name)
+        return hyst.control.as_linear_system((A, B, C, D), self._name)
 
     def _roots(self, key: str) -> NDArray[np.complex128]:
         """Real numbers, or pairs of real and imaginary part, each with its conjugate."""

@@ -14,15 +14,16 @@ from hyst.control.disturbance_observer import (
     evaluate_gain,
     observer_problem,
 )
-from hyst.control.frequency_responses import LoopResponses, loop_responses
+from hyst.control.frequency_responses import LoopResponses, loop_responses, uncertainty_used
 from hyst.control.inexact_inverse import first_unstable_slope, slope_margin
 from hyst.control.infinity_norm import hinf_norm
-from hyst.control.inverse_comparison import InverseComparison, compare_inverses
-from hyst.control.linear_system import LinearSystem
+from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
+from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.loop_system import closed_loop_poles
 from hyst.control.tracking_controller import TrackingController
 
 __all__ = [
+    "EXACT",
     "Certificate",
     "ClosedLoop",
     "DisturbanceObserver",
@@ -32,6 +33,7 @@ __all__ = [
     "LoopResponses",
     "ObserverProblem",
     "TrackingController",
+    "as_linear_system",
     "closed_loop_poles",
     "compare_inverses",
     "design_disturbance_observer",
@@ -44,4 +46,5 @@ __all__ = [
     "observer_problem",
     "simulate_closed_loop",
     "slope_margin",
+    "uncertainty_used",
 ]

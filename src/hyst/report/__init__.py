@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         constants_table,
         description_table,
         metrics_table,
+        number,
         parameters_table,
         traits_table,
     )
@@ -51,6 +52,7 @@ _HOME = {
     "in_short": "words",
     "invertible_sentence": "words",
     "metrics_table": "tables",
+    "number": "tables",
     "parameters_table": "tables",
     "traits_table": "tables",
     "write_report": "identification_report",
@@ -76,6 +78,7 @@ __all__ = [
     "in_short",
     "invertible_sentence",
     "metrics_table",
+    "number",
     "parameters_table",
     "traits_table",
     "write_report",

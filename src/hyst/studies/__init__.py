@@ -11,9 +11,12 @@ import pkgutil
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from hyst.errors import InputError
-from hyst.report.tables import Table
+
+if TYPE_CHECKING:
+    from hyst.report import Table
 
 _NAME = re.compile(r"(s\d+)_\w+")
 
