@@ -74,6 +74,11 @@ def drawn(draw: Callable[Parameters, Figure]) -> Callable[Parameters, bytes]:
             figure = draw(*args, **kwargs)
             _number_logarithmic_axes(figure)
             FigureCanvasAgg(figure)
+            # Laid out here, once: savefig would draw everything a second time for it.
+            layout = figure.get_layout_engine()
+            if layout is not None:
+                layout.execute(figure)
+            figure.set_layout_engine("none")
             figure.savefig(content, format="png", metadata={"Software": None})
         return content.getvalue()
 
