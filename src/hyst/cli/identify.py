@@ -172,10 +172,8 @@ def identify(
     options["allow_unconverged"] = allow_unconverged
     with at_work("identifying") as say:
         say("reading")
-        records = measured = [_read(path, how_to_read, labels) for path in data]
-        if period is not None:  # averaging once more, as identify does, changes nothing
-            averaged = hyst.identification.hammerstein.average_periods
-            records = [averaged(record, period) for record in measured]
+        measured = [_read(path, how_to_read, labels) for path in data]
+        records = _averaged(measured, period)
         validation = [_read_validation(path, how_to_validate, labels) for path in validate or []]
         found = hyst.identify(
             records, family=family, validation=validation, progress=say, **options
@@ -231,6 +229,13 @@ def _read_validation(
             f"{error}; columns of validation records are called as those of DATA unless "
             "--validate-input, --validate-output or --validate-time say otherwise"
         ) from error
+
+
+def _averaged(records: list[hyst.Record], period: int | None) -> list[hyst.Record]:
+    """Give what is identified from; averaging once more, as identify does, changes nothing."""
+    if period is None:
+        return records
+    return [hyst.identification.hammerstein.average_periods(each, period) for each in records]
 
 
 def _write(
