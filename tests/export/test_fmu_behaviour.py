@@ -7,10 +7,12 @@ import math
 from collections.abc import Iterator
 from types import SimpleNamespace
 
+import fmpy
 import numpy as np
 import pytest
+from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import fmi2LastSuccessfulTime, fmi2Terminated
-from fmu_runs import DISCARD, ERROR, VERSIONS, WARNING, FmuRun, has_compiler, rough_signal
+from fmu_runs import ERROR, VERSIONS, WARNING, FmuRun, has_compiler, rough_signal
 
 import hyst
 from hyst import PrandtlIshlinskii, RateDependentPrandtlIshlinskii
@@ -49,7 +51,7 @@ def test_a_step_that_is_no_multiple_of_the_sample_time(start) -> None:
     run = start("sampled").initialize()
     before = run.run(np.array([3.0, -2.0]), 0.01)
     for size in (0.015, 0.004, 0.0100001, 1e300):
-        with run.refusal(DISCARD) as said:
+        with run.refusal(ERROR) as said:
             run.step(0.02, size)
         assert f"{size:.9g} s" in said[0]
         assert "0.01 s" in said[0]
@@ -79,7 +81,7 @@ def test_steps_that_rounding_has_touched_are_taken(start) -> None:
 
 def test_a_clock_too_coarse_for_the_sample_time(start) -> None:
     run = start("sampled").initialize(time=1e15)
-    with run.refusal(DISCARD):
+    with run.refusal(ERROR):
         run.step(1e15, 0.125)
 
 
@@ -100,17 +102,17 @@ def test_any_step_will_do_without_a_sample_time(start) -> None:
 @pytest.mark.parametrize("name", ["pi", "sampled"])
 def test_a_step_without_length(start, name: str, size: float) -> None:
     run = start(name).initialize()
-    with run.refusal(DISCARD) as said:
+    with run.refusal(ERROR) as said:
         run.step(0.0, size)
     assert "longer than 0" in said[0]
 
 
-def test_what_fmi_2_asks_after_a_discarded_step(start) -> None:
+def test_what_fmi_2_asks_after_a_refused_step(start) -> None:
     run = start("sampled").initialize()
     if not run.is_2:
         return  # FMI 3.0 has no such question: it gives the time with every step
     run.run(np.array([3.0, -2.0]), 0.01)
-    with run.refusal(DISCARD):
+    with run.refusal(ERROR):
         run.step(0.02, 0.005)
     time, ended = ctypes.c_double(), ctypes.c_int(1)
     run.fmu.fmi2GetRealStatus(run.fmu.component, fmi2LastSuccessfulTime, ctypes.byref(time))
@@ -248,3 +250,9 @@ def test_a_token_of_another_fmu_is_refused(written) -> None:
     other = written["sampled"].token
     with pytest.raises(Exception, match="instantiate"):
         FmuRun(written["pi"], written["pi"].path.parent, token=other)
+
+
+def test_an_importer_with_a_wrong_step_is_stopped(written) -> None:
+    path, steps = str(written["sampled"].path), {"step_size": 0.004, "output_interval": 0.004}
+    with pytest.raises(FMICallException):  # FMPy would repeat a discarded step for ever
+        fmpy.simulate_fmu(path, stop_time=0.1, logger=lambda *told: None, **steps)

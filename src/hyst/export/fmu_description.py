@@ -17,7 +17,6 @@ Element = ElementTree.Element
 
 _CATEGORIES = {
     "logStatusWarning": "A sample was not finite",
-    "logStatusDiscard": "A communication step was refused",
     "logStatusError": "A call was wrong",
 }
 _SOURCE = "hyst_all.c"

@@ -277,7 +277,7 @@ fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind s, fmi2Status *va
     return hyst_fmi2_none(c, 1, "steps are not asynchronous; their status is what they return");
 }
 
-/* After a discarded step nothing has moved: the last successful time is the present one. */
+/* After a refused step nothing has moved: the last successful time is the present one. */
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real *value)
 {
     if (c != NULL && value != NULL && s == fmi2LastSuccessfulTime) {

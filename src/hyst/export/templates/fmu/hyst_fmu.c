@@ -147,7 +147,8 @@ static hyst_fmu_status hyst_fmu_set_real(hyst_fmu_instance *fmu, uint32_t refere
                                 "one from modelDescription.xml");
 }
 
-/* Samples in a communication step, or 0 and a message. */
+/* Samples in a communication step, or 0 and a message. A wrong step is an error, not a discarded
+ * step: what importers do after that is to try the same step again. */
 static uint32_t hyst_fmu_samples(const hyst_fmu_instance *fmu, double time, double step)
 {
     char message[HYST_FMU_MESSAGE];
@@ -178,7 +179,7 @@ static uint32_t hyst_fmu_samples(const hyst_fmu_instance *fmu, double time, doub
         return 1;
 #endif
     }
-    hyst_fmu_tell(fmu, HYST_FMU_DISCARD, message);
+    (void)hyst_fmu_refuse(fmu, message);
     return 0;
 }
 
@@ -192,7 +193,7 @@ static hyst_fmu_status hyst_fmu_step(hyst_fmu_instance *fmu, double time, double
     }
     samples = hyst_fmu_samples(fmu, time, step);
     if (samples == 0) {
-        return HYST_FMU_DISCARD;
+        return HYST_FMU_ERROR;
     }
     for (uint32_t k = 0; k < samples; ++k) {
         fmu->now.output = hyst_fmu_evaluate(&fmu->now.stage, &fmu->now.constant, fmu->now.input);

@@ -39,6 +39,7 @@ enum {
 };
 
 /* The same numbers in FMI 2.0 and 3.0. */
+/* The numbers of both standards; nothing is ever discarded. */
 typedef enum { HYST_FMU_OK, HYST_FMU_WARNING, HYST_FMU_DISCARD, HYST_FMU_ERROR } hyst_fmu_status;
 
 typedef enum {
