@@ -226,6 +226,12 @@ def test_what_is_no_number_is_refused() -> None:
     for every in (0, 1.5, True):
         with pytest.raises(hyst.InputError, match="every is"):
             estimator.run(record(np.zeros(3), np.zeros(3)), every=every)  # type: ignore[arg-type]
+    with pytest.raises(hyst.InputError, match="record is a list; give a hyst.Record"):
+        estimator.run([1, 2])  # type: ignore[arg-type]
+    with pytest.raises(hyst.InputError, match="swing is 'a'; give a finite number"):
+        estimator.excitation(1.0, "a")  # type: ignore[arg-type]
+    with pytest.raises(hyst.InputError, match="patience is 'a'; give seconds"):
+        estimator.excitation("a", 1.0)  # type: ignore[arg-type]
 
 
 def test_another_sample_time_is_refused() -> None:

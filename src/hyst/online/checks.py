@@ -223,13 +223,18 @@ def samples_of(record: Record, dt: float, every: int) -> tuple[Array, Array, Arr
     Raises
     ------
     InputError
-        If it has another sample time, or ``every`` is not a whole number above 0.
+        If it is no record or has another sample time, or ``every`` is not a whole number above 0.
 
     Examples
     --------
     >>> samples_of(Record([1.0, 2.0], [0.0, 0.0], 0.1), 0.1, 2)[2]
     array([0.1])
     """
+    if not isinstance(record, Record):
+        raise InputError(
+            f"record is a {type(record).__name__}; give a hyst.Record(u, y, dt), or one sample at "
+            "a time to update"
+        )
     if not math.isclose(record.dt, dt, rel_tol=1e-9):
         raise InputError(
             f"the record has dt = {record.dt:.9g} s but the estimator was made for {dt:.9g} s; "

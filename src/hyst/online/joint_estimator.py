@@ -265,7 +265,8 @@ class JointEstimator:
         Raises
         ------
         InputError
-            If the sample time is another one, or ``every`` is not a whole number above 0.
+            If it is no record or its sample time is another one, or ``every`` is not a whole number
+            above 0.
         """
         u, y, time = samples_of(record, self.dt, every)
         gain, shape = self._parts.after.gain, (time.size, self._at["m"])

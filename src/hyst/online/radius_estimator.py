@@ -217,7 +217,14 @@ class RadiusEstimator:
         Returns
         -------
         Excitation
+
+        Raises
+        ------
+        InputError
+            If ``patience`` is not a number above 0, or ``swing`` not one of at least 0.
         """
+        patience = positive(patience, "patience", "seconds, or infinity", True)
+        swing = not_negative(swing, "swing")
         age = self.state[self._at["age"] : self._at["d"]]
         return watch(self._p0, self._p, self.radii, age, patience / self.dt, swing)
 
@@ -254,7 +261,8 @@ class RadiusEstimator:
         Raises
         ------
         InputError
-            If the sample time is another one, or ``every`` is not a whole number above 0.
+            If it is no record or its sample time is another one, or ``every`` is not a whole number
+            above 0.
         """
         u, y, time = samples_of(record, self.dt, every)
         n = self._p.size
