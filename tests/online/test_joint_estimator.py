@@ -237,7 +237,7 @@ def test_what_is_no_number_is_refused() -> None:
         estimator.command([])  # type: ignore[arg-type]
     with pytest.raises(hyst.InputError, match=r"dt = 0\.002 s"):
         estimator.run(record(np.zeros(3), np.zeros(3), dt=2e-3))
-    with pytest.raises(hyst.InputError, match="record is a list; give a hyst.Record"):
+    with pytest.raises(hyst.InputError, match=r"record is a list; give a hyst\.Record"):
         estimator.run([1, 2])  # type: ignore[arg-type]
 
 

@@ -226,7 +226,7 @@ def test_what_is_no_number_is_refused() -> None:
     for every in (0, 1.5, True):
         with pytest.raises(hyst.InputError, match="every is"):
             estimator.run(record(np.zeros(3), np.zeros(3)), every=every)  # type: ignore[arg-type]
-    with pytest.raises(hyst.InputError, match="record is a list; give a hyst.Record"):
+    with pytest.raises(hyst.InputError, match=r"record is a list; give a hyst\.Record"):
         estimator.run([1, 2])  # type: ignore[arg-type]
     with pytest.raises(hyst.InputError, match="swing is 'a'; give a finite number"):
         estimator.excitation(1.0, "a")  # type: ignore[arg-type]
