@@ -126,9 +126,35 @@ def _tried(spec: ObserverSpec, design: DisturbanceObserver) -> ObserverAnswer:
         inverse=spec.inverse,
         method=spec.filter_method,
     )
+    bound, slopes = _of_inverse(spec, comparison)
+    margin = None
+    if slopes is not None:
+        margin = hyst.control.slope_margin(plant, spec.controller, design, slopes)
+    seen = _slopes_seen(comparison.observed[spec.inverse_name])
+    return hyst.report.ObserverAnswer(
+        design=design,
+        comparison=comparison,
+        inverse_name=spec.inverse_name,
+        block=block,
+        sampled=_sampled(spec, plant, block),
+        sampled_poles=hyst.control.closed_loop_poles(plant, block),
+        bound=bound,
+        slopes=slopes,
+        slope_margin=margin,
+        seen_slopes=seen,
+        unstable_slope=hyst.control.first_unstable_slope(plant, spec.controller, design, seen),
+        identified=_identified(spec),
+        uncertainty_used=hyst.control.uncertainty_used(design, plant) if spec.true_plant else None,
+    )
+
+
+def _sampled(
+    spec: ObserverSpec, plant: hyst.control.LinearSystem, block: hyst.control.TrackingController
+) -> hyst.control.ClosedLoop:
+    """Simulate the loop as the target runs it, at the sample time of the filter."""
     end = (spec.reference.size - 1) * spec.dt
     at = np.arange(0.0, end + 0.5 * spec.filter_dt, spec.filter_dt)
-    sampled = hyst.control.simulate_closed_loop(
+    return hyst.control.simulate_closed_loop(
         np.interp(at, np.arange(spec.reference.size) * spec.dt, spec.reference),
         spec.filter_dt,
         plant=plant,
@@ -138,28 +164,6 @@ def _tried(spec: ObserverSpec, design: DisturbanceObserver) -> ObserverAnswer:
         disturbance=spec.disturbance,
         seed=spec.seed,
         settle=spec.settle,
-    )
-    bound, slopes = _of_inverse(spec, comparison)
-    margin = (
-        None
-        if slopes is None
-        else hyst.control.slope_margin(plant, spec.controller, design, slopes)
-    )
-    seen = _slopes_seen(comparison.observed[spec.inverse_name])
-    return hyst.report.ObserverAnswer(
-        design=design,
-        comparison=comparison,
-        inverse_name=spec.inverse_name,
-        block=block,
-        sampled=sampled,
-        sampled_poles=hyst.control.closed_loop_poles(plant, block),
-        bound=bound,
-        slopes=slopes,
-        slope_margin=margin,
-        seen_slopes=seen,
-        unstable_slope=hyst.control.first_unstable_slope(plant, spec.controller, design, seen),
-        identified=_identified(spec),
-        uncertainty_used=hyst.control.uncertainty_used(design, plant) if spec.true_plant else None,
     )
 
 

@@ -42,7 +42,19 @@ class Table:
 
 
 def number(value: float, digits: int = 4) -> str:
-    """Write a value for reading, with ``digits`` significant digits.
+    """Write a value for reading.
+
+    Parameters
+    ----------
+    value
+        To write; NaN stands for none.
+    digits
+        Significant digits, at least 1.
+
+    Returns
+    -------
+    str
+        A dash for NaN.
 
     Examples
     --------
