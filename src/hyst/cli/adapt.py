@@ -234,7 +234,12 @@ def _tell(estimator: hyst.online.JointEstimator, before: list[float]) -> None:
         note(f"{counts['skipped']} samples were not finite, {counts['refused']} led to an overflow")
     print(f"excitation: {estimator.excitation}")
     innovation = estimator.innovation
-    tell = print if innovation.consistent else note
-    tell(f"innovation: {innovation}")
+    if innovation.consistent:
+        print(f"innovation: {innovation}")
+    else:
+        note(
+            f"innovation: {innovation}; the bands are then too narrow, since they take errors for "
+            "noise"
+        )
     if innovation.replacements:
         print(f"search: another start did better, {innovation.replacements} of {innovation.rivals}")
