@@ -77,14 +77,17 @@ def _check_plant(plant: LinearSystem) -> None:
             f"assumption 2: the plant is not stable, pole at {_text(unstable[0])} 1/s; "
             "stabilize it first and give the stable loop as the plant"
         )
+    # First, for a realization of nothing has no modes to see.
+    if zeros_and_poles(plant).gain == 0.0:
+        raise InputError(
+            "the plant's gain is zero: its input does not reach its output; check B and C"
+        )
     seen = _least_seen(plant.A, plant.C, plant.poles())
     if seen is not None:
         raise InputError(
             f"assumption 3: the plant is not observable, its mode {_text(seen)} 1/s does not reach "
             "the output; give a minimal realization (control.minreal)"
         )
-    if zeros_and_poles(plant).gain == 0.0:
-        raise InputError("the plant is zero: its input does not reach its output; check B and C")
 
 
 def _check_internal_model(model: InternalModel) -> None:
