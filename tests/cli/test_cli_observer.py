@@ -58,6 +58,7 @@ def test_the_template_gives_a_safe_loop(answered: Callable[[str, str], Path]) ->
         scaled["without"]["rms"] - exact
     )
     assert recovered > 0.95
+    assert "Hz, where |1 - Q| first is 0.707" in (out / "report.html").read_text(encoding="utf-8")
     assert told["verdict"] in (out / "report.html").read_text(encoding="utf-8").replace(
         "&#x27;", "'"
     )

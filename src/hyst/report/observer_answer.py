@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from hyst.compensation import ErrorBound
 from hyst.control import ClosedLoop, DisturbanceObserver, TrackingController
 from hyst.control.inverse_comparison import EXACT, InverseComparison
-from hyst.report.observer_words import ended, errors, finite, rightmost, told
+from hyst.report.observer_words import bandwidth_told, ended, errors, finite, rightmost, told
 from hyst.report.page import Page
 from hyst.report.tables import Table, number
 
@@ -292,8 +292,9 @@ class ObserverAnswer:
             ("gain L", ", ".join(number(each, 8) for each in self.design.gain)),
             ("Q(s) numerator", ", ".join(number(each, 8) for each in c.Q_numerator)),
             ("Q(s) denominator", ", ".join(number(each, 8) for each in c.Q_denominator)),
+            ("bandwidth of rejection", bandwidth_told(c.Q_numerator, c.Q_denominator)),
             (
-                "bandwidth of rejection",
+                "rejection against what was asked",
                 f"{c.performance_norm:.3g} of 1/Wp; slowest pole of Q "
                 f"{rightmost(c.observer_poles)} 1/s",
             ),

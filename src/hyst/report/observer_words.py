@@ -11,7 +11,10 @@ from numpy.typing import NDArray
 from hyst.control import ClosedLoop
 from hyst.report.tables import number
 
+Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+
+_LEFT = math.sqrt(0.5)
 
 
 def told(error: float) -> str:
@@ -98,3 +101,63 @@ def rightmost(poles: ComplexArray) -> str:
     if abs(worst.imag) < 1e-9 * abs(worst):
         return f"{worst.real:+.4g}"
     return f"{worst.real:+.4g} +- {abs(worst.imag):.4g}j"
+
+
+def rejection_bandwidth(numerator: Array, denominator: Array) -> float:
+    """Give the frequency below which an observer rejects: where ``|1 - Q|`` first is 0.707.
+
+    Parameters
+    ----------
+    numerator, denominator
+        Of Q(s), highest power first, s in 1/s.
+
+    Returns
+    -------
+    float
+        Hz; infinite where all frequencies are below 0.707.
+
+    Examples
+    --------
+    >>> Q = np.array([10.0]), np.array([1.0, 10.0])  # 1 - Q = s / (s + 10)
+    >>> round(2.0 * math.pi * rejection_bandwidth(*Q), 6)
+    10.0
+    """
+    poles = np.abs(np.roots(denominator))
+    poles = poles[poles > 0.0]
+    if poles.size == 0:
+        return math.inf
+    w = np.geomspace(1e-4 * poles.min(), 1e4 * poles.max(), 20_000)
+    reached = np.flatnonzero(_left(numerator, denominator, w) >= _LEFT)
+    if reached.size == 0:
+        return math.inf
+    high = float(w[reached[0]])
+    low = float(w[max(reached[0] - 1, 0)])
+    for _ in range(50):
+        middle = math.sqrt(low * high)
+        is_left = _left(numerator, denominator, np.array([middle]))[0] >= _LEFT
+        low, high = (low, middle) if is_left else (middle, high)
+    return high / (2.0 * math.pi)
+
+
+def bandwidth_told(numerator: Array, denominator: Array) -> str:
+    """Write the bandwidth of rejection.
+
+    Parameters
+    ----------
+    numerator, denominator
+        Of Q(s), highest power first.
+
+    Returns
+    -------
+    str
+    """
+    bandwidth = rejection_bandwidth(numerator, denominator)
+    if math.isinf(bandwidth):
+        return "|1 - Q| stays below 0.707 at all frequencies"
+    return f"{number(bandwidth)} Hz, where |1 - Q| first is 0.707"
+
+
+def _left(numerator: Array, denominator: Array, w: Array) -> Array:
+    s = 1j * w
+    of = np.polyval(denominator, s)
+    return np.asarray(np.abs((of - np.polyval(numerator, s)) / of))
