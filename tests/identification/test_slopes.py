@@ -63,3 +63,38 @@ def test_an_output_that_rests_has_no_slopes() -> None:
     u = 5.0 * np.sin(np.arange(2000) / 50.0)
     with pytest.raises(hyst.NotIdentifiableError, match="the output rests"):
         identify_weights_from_slopes(hyst.Record(u, np.ones(2000), 1.0))
+
+
+def test_it_says_when_noise_hides_plays() -> None:
+    # The five plays of S2 sec. IV at 20 dB: all knots are within the first eighth of a stroke.
+    truth = hyst.PrandtlIshlinskii([0.3, 0.5, 0.8, 0.3, 0.2], [0.4, 1.0, 1.5, 2.0, 3.6])
+    u = 30.0 * np.sin(2 * np.pi * np.arange(4000) / 1000.0)
+    y = truth(u)
+    noise = 0.1 * float(np.std(y)) * np.random.default_rng(0).standard_normal(u.size)
+    found = identify_weights_from_slopes(hyst.Record(u, y + noise, 1e-3))
+    assert found.knots.size < 5
+    assert found.noise_hides_plays
+    assert found.least_steps.shape == found.slopes.shape
+    assert "The noise hides plays: between radii 0 and" in found.summary()
+    clean = identify_weights_from_slopes(hyst.Record(u, y, 1e-3))
+    assert clean.knots.size == 5
+    assert not clean.noise_hides_plays
+    assert clean.summary().startswith("5 plays from 7 strokes")
+    assert "hides" not in clean.summary()
+
+
+def test_what_is_said_to_be_seen_is_seen() -> None:
+    # One play in the middle of the strokes of a line, heavier and lighter than the limit.
+    u = 15.0 * np.sin(2 * np.pi * np.arange(4000) / 1000.0)
+    scatter = 0.3 * np.random.default_rng(2).standard_normal(u.size)
+    line = identify_weights_from_slopes(hyst.Record(u, 2.0 * u + scatter, 1e-3))
+    assert line.knots.size == 0
+    (limit,) = line.least_steps
+    for factor, plays in ((0.3, 0), (3.0, 1)):
+        bent = hyst.PrandtlIshlinskii([factor * limit], [7.5], 2.0)(u)
+        found = identify_weights_from_slopes(hyst.Record(u, bent + scatter, 1e-3))
+        assert found.knots.size == plays
+    assert not line.noise_hides_plays
+    loud = identify_weights_from_slopes(hyst.Record(u, 2.0 * u + 100.0 * scatter, 1e-3))
+    assert loud.noise_hides_plays
+    assert "between radii 0 and the widest" in loud.summary()

@@ -39,17 +39,56 @@ class Slopes:
         Root mean square error of the segmented line, output units.
     strokes
         Number of strokes it was fitted to.
+    least_steps
+        Shape (n + 1,), for each slope the smallest weight a further play must have to be seen
+        through the noise, with its knot in the middle of where that slope holds; output units per
+        input unit.
     """
 
     slopes: Array
     knots: Array
     rms: float
     strokes: int
+    least_steps: Array
 
     @property
     def model(self) -> PrandtlIshlinskii:
         """The plays: weights from the slopes, radii from where they change."""
         return PrandtlIshlinskii(np.diff(self.slopes), self.knots / 2.0, float(self.slopes[0]))
+
+    @property
+    def noise_hides_plays(self) -> bool:
+        """Whether a play as heavy as the lightest one found could be there and not be seen.
+
+        Where none was found: one of a tenth of the slope.
+        """
+        return bool((self.least_steps > self._lightest()).any())
+
+    def summary(self) -> str:
+        """Give number and constants of the plays, and what the noise may hide, in sentences."""
+        plays = "; ".join(
+            f"p[{i}] = {p:.4g} at r[{i}] = {r:.4g}"
+            for i, (p, r) in enumerate(zip(np.diff(self.slopes), self.knots / 2.0, strict=True), 1)
+        )
+        said = (
+            f"{self.knots.size} plays from {self.strokes} strokes, rms error {self.rms:.4g}: "
+            f"p0 = {self.slopes[0]:.4g}" + (f"; {plays}" if plays else "")
+        )
+        if not self.noise_hides_plays:
+            return f"{said}."
+        worst = int(np.argmax(self.least_steps))
+        radii = [0.0, *(self.knots / 2.0)]
+        upper = f"and {radii[worst + 1]:.4g}" if worst + 1 < len(radii) else "and the widest"
+        return (
+            f"{said}. The noise hides plays: between radii {radii[worst]:.4g} {upper} one of a "
+            f"weight below {self.least_steps[worst]:.4g} is not seen, so there may be more plays, "
+            "and one found may stand for several; average more strokes, or give plays."
+        )
+
+    def _lightest(self) -> float:
+        if self.knots.size == 0:
+            return 0.1 * abs(float(self.slopes[0]))
+        return float(np.abs(np.diff(self.slopes)).min())
 
 
 def identify_weights_from_slopes(
@@ -100,6 +139,8 @@ def identify_weights_from_slopes(
     >>> found = identify_weights_from_slopes(Record(u, truth(u), 1.0)).model
     >>> found.p.round(2), found.r.round(2)
     (array([0.5 , 0.25]), array([0.5, 1.5]))
+
+    ``summary()`` says where noise may hide plays.
     """
     if plays != "auto" and (not isinstance(plays, int) or plays < 0):
         raise InputError(f"plays is {plays!r}; give a whole number of at least 0, or 'auto'")
@@ -130,11 +171,24 @@ def _best_line(
         score = x.size * np.log(max(error, floor)) + (2 * knots.size + 2) * np.log(x.size)
         if score < best_score:
             slopes, rms = np.cumsum(solution[1:]), float(np.sqrt(error / x.size))
-            best, best_score = Slopes(slopes, knots, rms, strokes), score
+            least = _least_steps(x, knots, max(error, floor))
+            best, best_score = Slopes(slopes, knots, rms, strokes, least), score
         if error <= floor:
             break
     assert best is not None
     return best
+
+
+def _least_steps(x: Array, knots: Array, error: float) -> Array:
+    """Give the weights at which a play in the middle of each piece lowers the criterion."""
+    # N log(1 - p^2 h / error) = -2 log(N), h the square of what the other columns leave of a hinge.
+    share = -np.expm1(-2.0 * np.log(x.size) / x.size)
+    ends = np.concatenate([x[:1], knots, x[-1:]])
+    hinges = np.maximum(x[:, None] - (ends[1:] + ends[:-1]) / 2.0, 0.0)
+    matrix = np.column_stack([np.ones(x.size), x, np.maximum(x[:, None] - knots, 0.0)])
+    left = hinges - matrix @ np.linalg.lstsq(matrix, hinges, rcond=None)[0]
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.sqrt(share * error / np.sum(left**2, axis=0)))
 
 
 def _overlaid_strokes(u: Array, y: Array) -> tuple[Array, Array, int]:
