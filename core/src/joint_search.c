@@ -18,6 +18,10 @@
 /* Standard errors by which a rival must be better, and at which a worse one is given up. */
 #define BETTER HYST_REAL(3.0)
 #define WORSE HYST_REAL(-2.0)
+/* Correlation of a rival's successive errors from which on they are no noise, so that standard
+ * errors mean nothing; it then must leave less than this share of the estimate's squares. */
+#define NO_NOISE HYST_REAL(0.5)
+#define CLEAR_SHARE HYST_REAL(0.25)
 /* How far off a rival is believed to be, as shares of the gaps between its radii and of its weights:
  * merging finds radii better than weights. */
 #define RIVAL_SPREAD HYST_REAL(0.15)
@@ -220,6 +224,9 @@ static void put_on_trial(const hyst_search *search, const hyst_search_layout *at
     remember(search, at, state, u);
     scalar[HYST_SEARCH_GAIN] = ZERO;
     scalar[HYST_SEARCH_GAIN_SQUARED] = ZERO;
+    scalar[HYST_SEARCH_RIVAL_SQUARE] = ZERO;
+    scalar[HYST_SEARCH_RIVAL_PRODUCT] = ZERO;
+    scalar[HYST_SEARCH_RIVAL_ERROR] = ZERO;
     scalar[HYST_SEARCH_TRIALS] += ONE;
     enter(scalar, ON_TRIAL);
 }
@@ -246,12 +253,36 @@ static hyst_real square_over(hyst_real error, hyst_real noise)
     return square < most ? square : most;
 }
 
+/* Whether the rival's errors can be noise, or else are so much smaller that it does not matter. */
+static int can_be_believed(const hyst_real *scalar)
+{
+    const hyst_real left = scalar[HYST_SEARCH_RIVAL_SQUARE];
+    const hyst_real before = left + scalar[HYST_SEARCH_GAIN];
+    return scalar[HYST_SEARCH_RIVAL_PRODUCT] < NO_NOISE * left || left < CLEAR_SHARE * before;
+}
+
+/* What the trial learns from one sample; noise is what the estimate takes for it. */
+static void compare(const hyst_real *state, const hyst_real *rival, hyst_real *scalar)
+{
+    const hyst_real noise = state[HYST_JOINT_NOISE];
+    const hyst_real error = rival[HYST_JOINT_ERROR];
+    const hyst_real left = square_over(error, noise);
+    const hyst_real gain = square_over(state[HYST_JOINT_ERROR], noise) - left;
+    scalar[HYST_SEARCH_GAIN] += gain;
+    scalar[HYST_SEARCH_GAIN_SQUARED] += gain * gain;
+    scalar[HYST_SEARCH_RIVAL_SQUARE] += left;
+    if (left < HYST_JOINT_OUTLIER) {
+        scalar[HYST_SEARCH_RIVAL_PRODUCT] += error * (scalar[HYST_SEARCH_RIVAL_ERROR] / noise);
+        scalar[HYST_SEARCH_RIVAL_ERROR] = error;
+    }
+}
+
 static void judge(const hyst_search_layout *at, hyst_real *state)
 {
     hyst_real *scalar = state + at->scalars;
     const hyst_real gain = scalar[HYST_SEARCH_GAIN];
     const hyst_real square = scalar[HYST_SEARCH_GAIN_SQUARED];
-    if (gain > ZERO && gain * gain > BETTER * BETTER * square) {
+    if (gain > ZERO && gain * gain > BETTER * BETTER * square && can_be_believed(scalar)) {
         replace(at, state);
         enter(scalar, GATHERING);
     } else if ((gain < ZERO && gain * gain > WORSE * WORSE * square) ||
@@ -271,11 +302,7 @@ static void try_rival(const hyst_search *search, const hyst_search_layout *at, h
     }
     /* Up to the first turn it finds its place. */
     if (scalar[HYST_SEARCH_TURNS] >= ONE) {
-        const hyst_real noise = state[HYST_JOINT_NOISE];
-        const hyst_real gain = square_over(state[HYST_JOINT_ERROR], noise) -
-                               square_over(rival[HYST_JOINT_ERROR], noise);
-        scalar[HYST_SEARCH_GAIN] += gain;
-        scalar[HYST_SEARCH_GAIN_SQUARED] += gain * gain;
+        compare(state, rival, scalar);
     }
     if (turned && scalar[HYST_SEARCH_TURNS] >= HYST_REAL(2.0)) {
         judge(at, state);

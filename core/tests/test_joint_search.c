@@ -119,6 +119,37 @@ static void does_not_disturb_what_is_right(void)
     CHECK(correlation < R(0.25) && correlation > R(-0.25));
 }
 
+/* A plant no two plays make: eight of them and a parabola. Errors then follow each other, and a
+ * rival that is better by a little is so by luck: the bits of the estimate stay. */
+static void does_not_trust_errors_that_follow_each_other(void)
+{
+    static const hyst_real p[] = {R(0.12), R(0.12), R(0.12), R(0.12),
+                                  R(0.12), R(0.12), R(0.12), R(0.12)};
+    static const hyst_real r[] = {R(0.3), R(0.76), R(1.2), R(1.7), R(2.1), R(2.6), R(3.0), R(3.5)};
+    const hyst_pi truth = {8, R(1.0), p, r};
+    const hyst_real theta[] = {R(1.0), R(0.4), R(0.5), R(0.6), R(2.4), R(0.0)};
+    hyst_joint joint = two_plays();
+    joint.forgetting = R(1e-3);
+    const hyst_search with = search_of(&joint, CELLS);
+    const hyst_search without = search_of(&joint, 0);
+    const hyst_search_layout at = hyst_search_places(&with);
+    hyst_real searched[STATE_ROOM];
+    hyst_real alone[STATE_ROOM];
+    hyst_real z[8] = {R(0.0)};
+    start(&with, searched, theta);
+    start(&without, alone, theta);
+    for (size_t k = 0; k < 12000; ++k) {
+        const hyst_real u = triangle(2 * k);
+        const hyst_real y = hyst_pi_step(&truth, z, u) + R(0.02) * u * u;
+        hyst_search_step(&with, searched, u, y);
+        hyst_search_step(&without, alone, u, y);
+    }
+    CHECK(hyst_search_correlation(&with, searched) > R(0.5));
+    CHECK(searched[at.scalars + HYST_SEARCH_TRIALS] >= R(2.0));
+    CHECK_EQUAL(searched[at.scalars + HYST_SEARCH_REPLACEMENTS], R(0.0));
+    CHECK_SAME_BITS(searched, alone, at.joint.psi);
+}
+
 /* Two neighbours become one of their weight and mean radius, the cheapest union first. */
 static void merges_the_cheapest_neighbours(void)
 {
@@ -202,6 +233,7 @@ int main(void)
 {
     leaves_a_false_minimum();
     does_not_disturb_what_is_right();
+    does_not_trust_errors_that_follow_each_other();
     merges_the_cheapest_neighbours();
     stays_finite();
     return check_result();

@@ -10,7 +10,10 @@
  *   on trial:  a rival estimate started from those plays. It replaces the estimate once the squares
  *              of its errors are smaller beyond doubt:
  *                sum(e^2 - e_rival^2) > 3 sqrt(sum (e^2 - e_rival^2)^2)   (Vuong 1989),
- *              and is given up if they are larger, or if nothing is decided in many strokes.
+ *              and is given up if they are larger, or if nothing is decided in many strokes. That
+ *              test takes errors for independent. Those of a rival that follow each other (with a
+ *              correlation of 0.5 or more) are no noise but those of a wrong model; then it replaces
+ *              the estimate only if it also leaves less than a quarter of the estimate's squares.
  * Then it begins again. The input turns when it goes back by an eighth of its recent range.
  *
  * Besides, the correlation of successive errors is watched. Noise has none; errors of a model that
@@ -18,7 +21,7 @@
  *
  * The step costs one of hyst_joint_step and at most one of: another one, or 2 c^2 + 12 c operations
  * for c = cells + 2 (as much again at a turn where the past is forgotten). The state holds
- * hyst_search_places().length numbers: with 32 cells 1385 at n = 5 and 2235 at n = 10. */
+ * hyst_search_places().length numbers: with 32 cells 1388 at n = 5 and 2238 at n = 10. */
 #ifndef HYST_JOINT_SEARCH_H
 #define HYST_JOINT_SEARCH_H
 
@@ -57,6 +60,9 @@ enum {
     HYST_SEARCH_SQUARE,      /* mean of its square, and of the product with the one before */
     HYST_SEARCH_PRODUCT,
     HYST_SEARCH_SEEN,        /* samples in these means */
+    HYST_SEARCH_RIVAL_SQUARE, /* sum of e_rival^2, and of the product with the one before */
+    HYST_SEARCH_RIVAL_PRODUCT,
+    HYST_SEARCH_RIVAL_ERROR, /* of the last sample */
     HYST_SEARCH_SCALARS
 };
 
