@@ -101,7 +101,7 @@ def test_no_rival_disturbs_the_estimate_on_a_measured_piezo(measured_data: Path)
         estimator.follow(whole.u[:400])
         runs[search] = estimator.run(record)
         assert not estimator.innovation.consistent
-    # A piezo is not made of three plays. Rivals did better for some strokes, and worse by 8 % after.
+    # A piezo is not made of three plays. Rivals did better for some strokes and worse after.
     assert (runs[True].values == runs[False].values).all()
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -289,3 +291,29 @@ def test_what_is_held_keeps_its_bits() -> None:
     assert estimator.parameters[1:6].tobytes() == P.tobytes()
     assert estimator.parameters[10] == 1.2 * R[4]
     assert estimator.standard_errors[10] == 0.0
+
+
+def test_bytes_of_the_state_are_those_that_are_documented() -> None:
+    root = Path(__file__).resolve().parents[2]
+    page = (root / "docs" / "online.md").read_text(encoding="utf-8")
+    header = (root / "core" / "include" / "hyst" / "joint_estimator.h").read_text(encoding="utf-8")
+    alone, searching = (
+        [
+            JointEstimator(
+                hyst.PrandtlIshlinskii(np.full(n, 0.2), np.linspace(0.4, 3.6, n), 0.1),
+                search=search,
+            )
+            for n in (5, 10)
+        ]
+        for search in (False, True)
+    )
+    sizes = [each.state.nbytes for each in alone]
+    # What hyst_joint_step alone needs ends where the scalars of the search begin.
+    core = [8 * each.core.places()["scalars"] for each in alone]
+    assert (
+        "state {} and {} bytes, of which {} are scalars".format(*sizes, sizes[0] - core[0]) in page
+    )
+    assert "`hyst_joint_step` alone: {} and {}".format(*core) in page
+    assert "state {:,} and {:,} bytes".format(*(each.state.nbytes for each in searching)) in page
+    assert "which is {} and {} bytes".format(*core) in header
+    assert "{} and {} bytes. */".format(*sizes) in header
