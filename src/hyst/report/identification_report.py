@@ -28,9 +28,10 @@ from hyst.report.tables import (
     with_unit,
 )
 from hyst.report.words import (
-    equations,
+    command_method,
+    equations_of,
     error_sentence,
-    explanations,
+    explanations_of,
     family_name,
     in_short,
     memory_sentence,
@@ -202,9 +203,9 @@ def _how_good(page: Page, findings: _Findings, figures: dict[str, bytes]) -> Non
 def _the_model(page: Page, findings: _Findings, figures: dict[str, bytes]) -> None:
     identified = findings.identified
     page.heading(f"The model: {family_name(identified.family)}")
-    for each in equations(identified.family, identified.model):
+    for each in equations_of(identified):
         page.equation(each)
-    for each in explanations(identified.family):
+    for each in explanations_of(identified):
         page.text(each)
     page.picture(figures[PARTS], "What the model is made of.")
     page.table(parameters_table(identified))
@@ -264,7 +265,8 @@ def _the_data(page: Page, findings: _Findings) -> None:
         ]
         + [f"{fit.label}: {note}" for fit in fits for note in fit.record.notes]
     )
-    page.faint(f"The fit ended: {identified.status} after {identified.iterations} iterations.")
+    count = identified.iterations
+    page.faint(f"The fit ended: {identified.status} after {count} iteration{'s' * (count != 1)}.")
 
 
 def _further(page: Page, section: Section) -> None:
@@ -282,16 +284,18 @@ def _range(signal: np.ndarray[tuple[int], np.dtype[np.float64]], unit: str) -> s
 def _what_next(page: Page, findings: _Findings) -> None:
     page.heading("What next")
     model = shlex.quote(str(findings.folder / MODEL))
-    if not findings.identified.model.is_invertible():
+    method = command_method(findings.identified)
+    if not method:
         page.text("The output for another input:")
         page.code(f"hyst simulate {model} drive.csv --input 0 -o output.csv")
         return
     page.text("The command that makes the output follow a trajectory of yours:")
-    page.code(f"hyst compensate {model} trajectory.csv --column 0 -o command.csv")
+    option, argument = ("", "") if method == "exact" else (f" --method {method}", f', "{method}"')
+    page.code(f"hyst compensate {model} trajectory.csv --column 0{option} -o command.csv")
     page.text("The same in Python:")
     page.code(
         "import hyst\n\n"
         f"model = hyst.load({str(findings.folder / MODEL)!r})\n"
-        "command = hyst.compensation.invert_trajectory(model, y_ref).u"
+        f"command = hyst.compensation.invert_trajectory(model, y_ref{argument}).u"
     )
     page.text(memory_sentence(findings.records[0]))

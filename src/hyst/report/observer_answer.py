@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from hyst.compensation import ErrorBound
 from hyst.control import ClosedLoop, DisturbanceObserver, TrackingController
 from hyst.control.inverse_comparison import EXACT, InverseComparison
-from hyst.report.observer_words import bandwidth_told, ended, errors, finite, rightmost, told
+from hyst.report.observer_words import SIGNS, bandwidth_told, ended, errors, finite, rightmost, told
 from hyst.report.page import Page
 from hyst.report.tables import Table, number
 
@@ -364,6 +364,7 @@ class ObserverAnswer:
         page.text(f"To implement: {self.implement_sentence()}")
         page.table(self.checks_table())
         page.table(self.tracking_table())
+        page.faint(SIGNS)
         page.picture(loops, "Reference and output, errors and drives of the loops.")
         page.picture(
             bode,
@@ -374,9 +375,10 @@ class ObserverAnswer:
         if self.safe:
             page.heading("On the target")
             page.text(
-                "One call a sample, with the same numbers in C. Each sample it takes reference and "
-                "measured output, and gives the drive:"
+                "Each sample it takes reference and measured output, and gives the drive. In C:"
             )
+            page.code("hyst export controller.json --target c -o firmware")
+            page.text("In Python:")
             page.code(
                 "from hyst.control import TrackingController\n"
                 'step = TrackingController.load("controller.json").stepper()\n'

@@ -16,6 +16,15 @@ ComplexArray = NDArray[np.complex128]
 
 _LEFT = math.sqrt(0.5)
 
+SIGNS = (
+    "Pn is the nominal plant, v what controller and observer ask of it. Wu says how far the true "
+    "plant P may be off: |P / Pn - 1| <= |Wu|. T leads from a disturbance at the plant's input to "
+    "v. Q filters the observer's estimate: of a disturbance 1 - Q is left, and Wp asks for "
+    "|1 - Q| < 1 / |Wp|. The slope of hysteresis after inverse is 1 where the inverse is exact. "
+    "Errors are without and with the observer, and count from the spec's settle on."
+)
+"""What the letters on the page mean."""
+
 
 def told(error: float) -> str:
     """Write an error; one of a loop that diverged is infinite.

@@ -19,6 +19,8 @@ FAMILY_NAMES = {
     "pi": "Prandtl-Ishlinskii model",
     "gpi": "generalized Prandtl-Ishlinskii model",
     "mpi": "modified Prandtl-Ishlinskii model",
+    "rdpi": "rate-dependent Prandtl-Ishlinskii model",
+    "hammerstein": "Hammerstein model (hysteresis, then linear dynamics)",
 }
 
 _PLAYS = "P[w](t) = p0 w(t) + \u03a3 p\u1d62 F\u1d63\u1d62[w](t)"
@@ -31,7 +33,12 @@ _EQUATIONS = {
     "pi": ("y(t) = {sign}P[u](t) + offset", _PLAYS),
     "gpi": ("y(t) = {sign}P[\u03b3(u)](t) + offset", _PLAYS),
     "mpi": ("y(t) = {sign}\u039b(P[u](t)) + offset", _PLAYS),
+    "rdpi": (
+        "y(t) = {sign}P[u](t) + offset",
+        "P[u](t) = p0 u(t) + \u03a3 p\u1d62 F\u1d68[u](t),  \u03c1 = r\u1d62 + \u03b2 |du/dt|",
+    ),
 }
+_DYNAMICS = "y(t) = G[v](t)"
 _PLAY_TEXT = (
     "F with radius r is a play (backlash of half-width r): its output rests until its input has "
     "come r away from it, and then follows at that distance. The sum of plays gives the loop and "
@@ -42,7 +49,18 @@ _MAP_TEXT = {
     "the input, so that it may be asymmetric and saturate.",
     "mpi": "\u039b is a piecewise linear map after the plays; it bends the loop over the output, "
     "so that it may be asymmetric.",
+    "rdpi": "The faster the input moves, the wider the plays: \u03b2 (beta) is the growth of their "
+    "radii with the rate of the input.",
 }
+_SLOPES_TEXT = (
+    "In the table below this map is called dead_zone: each of its weights is the change of slope "
+    "at a threshold; the thresholds are in the model file."
+)
+_DYNAMICS_TEXT = (
+    "v is the output of the hysteresis, which nobody measured. G is linear dynamics of gain 1 at "
+    "rest, in the table y_k = b[0] v_k + b[1] v_(k-1) + .. - a[1] y_(k-1) - ..; a delay comes on "
+    "top."
+)
 _LINEAR_TEXT = "This model has no hysteresis: the output depends on the present input alone."
 
 _POWER_LAW_TEXT = (
@@ -77,7 +95,43 @@ def explanations(family: str) -> tuple[str, ...]:
         return (_LINEAR_TEXT,)
     if family == "ramberg-osgood":
         return (_POWER_LAW_TEXT,)
-    return tuple(text for text in (_PLAY_TEXT, _MAP_TEXT.get(family, "")) if text)
+    slopes = _SLOPES_TEXT if family in ("gpi", "mpi") else ""
+    return tuple(text for text in (_PLAY_TEXT, _MAP_TEXT.get(family, ""), slopes) if text)
+
+
+def equations_of(identified: Identified) -> tuple[str, ...]:
+    """Give the equations of what was identified, those of the dynamics included."""
+    if not isinstance(identified, IdentifiedHammerstein):
+        return equations(identified.family, identified.model)
+    front = equations(identified.hysteresis_family, identified.hysteresis)
+    return (*(each.replace("y(t)", "v(t)", 1) for each in front), _DYNAMICS)
+
+
+def explanations_of(identified: Identified) -> tuple[str, ...]:
+    """Say what the signs in the equations of what was identified mean."""
+    if not isinstance(identified, IdentifiedHammerstein):
+        return explanations(identified.family)
+    return (*explanations(identified.hysteresis_family), _DYNAMICS_TEXT)
+
+
+def command_method(identified: Identified) -> str:
+    """Name the method that turns a whole reference into a command; empty where there is none.
+
+    Parameters
+    ----------
+    identified
+        The result.
+
+    Returns
+    -------
+    str
+        ``"exact"`` where there is an exact inverse.
+    """
+    if identified.model.is_invertible():
+        return "exact"
+    if isinstance(identified, IdentifiedHammerstein):
+        return "noncausal" if identified.inverse_of_dynamics is not None else ""
+    return "trajectory" if identified.family == "rdpi" else ""
 
 
 def straight_line_rms(record: Record, start: int) -> float:
