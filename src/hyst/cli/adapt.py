@@ -214,8 +214,9 @@ def _write_parameters(path: Path, trajectory: hyst.online.Trajectory) -> None:
 
 
 def _tell(estimator: hyst.online.JointEstimator, before: list[float]) -> None:
+    number = hyst.report.number
     rows = tuple(
-        (name, hyst.report.number(start), hyst.report.number(value), hyst.report.number(error))
+        (name, number(start), number(value), number(error) if error > 0.0 else "held")
         for name, start, value, error in zip(
             estimator.names,
             before,
@@ -227,8 +228,10 @@ def _tell(estimator: hyst.online.JointEstimator, before: list[float]) -> None:
     show_table(
         hyst.report.Table("Estimates", ("constant", "before", "after", "standard error"), rows)
     )
+    if any(name.startswith(("front", "back")) for name in estimator.names):
+        print("front, back: weights of the maps before and after the plays")
     counts = estimator.counts
-    noise = hyst.report.number(estimator.noise)
+    noise = number(estimator.noise)
     print(f"\nnoise of the output: {noise}; {counts['used']} samples used")
     if counts["skipped"] or counts["refused"]:
         note(f"{counts['skipped']} samples were not finite, {counts['refused']} led to an overflow")
