@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hyst.compensation import error_bound
-from hyst.control import compare_inverses
+from hyst.control import closed_loop_poles, compare_inverses
 from hyst.operators import Affine
 from hyst.report.tables import Table
 from hyst.studies import keys
@@ -94,6 +94,17 @@ def test_tracking_errors_of_the_repaired_example(short: dict[str, float]) -> Non
     assert short["0.7, printed"] == pytest.approx(4.76, abs=0.006)
     assert short["recovered, printed"] > 0.95
     assert short["recovered, best"] > 0.95
+
+
+def test_a_loop_that_is_not_proven_safe_says_so() -> None:
+    # Without an inverse the largest slope is p0 + sum(p); with it the loop around the true plant is
+    # unstable; its smaller errors are no recovery. Scaled inverses have slopes from 0 to 1.
+    steepest = float(s1.PLAYS.p0 + s1.PLAYS.p.sum())
+    unstable = closed_loop_poles(s1.TRUE_PLANT, ([4.0 * steepest, 8.0 * steepest], [1.0, 0.0]))
+    assert unstable.real.max() > 0.0
+    told = {row[0]: row[-1] for row in s1.tracking_table(generalized=False).rows}
+    assert told.pop("none") == "NOT proven safe"
+    assert set(told.values()) == {"proven stable"}
 
 
 def test_bounds_of_scaled_inverses_by_hand() -> None:

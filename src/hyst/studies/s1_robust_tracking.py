@@ -298,15 +298,21 @@ def tracking_table(generalized: bool) -> Table:
     Table
     """
     best, printed = tracked(generalized), tracked(generalized, printed=True)
+    model: Operator = GENERALIZED if generalized else PLAYS
+    approximations = inverses(model)
     rows = []
     for name in ("exact", *(f"{each:g}" for each in FACTORS), "4 plays", "none"):
         loops = best.without[name], best.observed[name], printed.observed[name]
         recovered = best.recovered(name)
+        reach = float(np.abs(loops[1].v).max())
+        slopes = slope_range(model, approximations[name] or Affine(1.0), reach)
+        margin = slope_margin(TRUE_PLANT, CONTROLLER, designs(repaired=True).best, slopes)
         rows.append(
             (
                 name,
                 *(f"{value:.3f}" for each in loops for value in (each.rms_error, each.max_error)),
                 "-" if np.isnan(recovered) else f"{100.0 * recovered:.1f}",
+                "proven stable" if margin > 1.0 else "NOT proven safe",
             )
         )
     what = "GPI model, sec. 5.3" if generalized else "PI model, sec. 5.2"
@@ -317,6 +323,7 @@ def tracking_table(generalized: bool) -> Table:
             "inverse",
             *("rms without", "max", "rms with best L", "max", "rms with printed L", "max"),
             "recovered [%]",
+            "loop with best L",
         ),
         tuple(rows),
     )
