@@ -15,6 +15,8 @@ from hyst import (
     ModifiedPrandtlIshlinskii,
     Operator,
     PrandtlIshlinskii,
+    RambergOsgood,
+    RateDependentPrandtlIshlinskii,
 )
 from hyst.report.model_figure import Labels, draw_model
 
@@ -63,3 +65,27 @@ def test_a_unit_that_a_gain_has_changed_is_not_made_up(monkeypatch: pytest.Monke
     (_, bend), *plays = labels_of(GeneralizedPrandtlIshlinskii(steep, PLAYS), monkeypatch)
     assert bend.endswith("times its input")
     assert plays == [("radius r", "weight p"), ("rise of their input from rest", RISE)]
+
+
+def test_plays_whose_radii_grow_are_drawn_at_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = RateDependentPrandtlIshlinskii([0.5, 0.2], [1.0, 2.0], 0.01, 1e-3, p0=0.5)
+    assert labels_of(Affine(1.0, 3.0) @ model, monkeypatch) == [
+        ("radius r [V]", WEIGHT),
+        ("rise of their input from rest [V]", RISE),
+    ]
+
+
+def test_a_power_law_is_drawn_as_its_loading_curve(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[tuple[str, float]] = []
+    save = matplotlib.figure.Figure.savefig
+
+    def watched(figure: matplotlib.figure.Figure, *args: Any, **kwargs: Any) -> None:
+        axes = figure.axes[0]
+        drawn.append((axes.get_title(loc="left"), float(axes.lines[0].get_ydata()[-1])))
+        save(figure, *args, **kwargs)
+
+    monkeypatch.setattr(matplotlib.figure.Figure, "savefig", watched)
+    u = np.array([-2.0, 2.0])
+    draw_model(RambergOsgood(1.0, 3.0, 1.0), u, Labels("u", "", "y", ""), {}, "")
+    # From rest to 2 the curve is c1 p + 2 c2 p^2 / 2 = 2 + 12, as the coefficient is 2^c3 c2.
+    assert drawn == [("Loading curve", pytest.approx(14.0, rel=1e-12))]

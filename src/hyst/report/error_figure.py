@@ -50,6 +50,7 @@ def draw_error(fits: tuple[FittedRecord, ...], heading: str) -> Figure:
         axes.axhline(0.0, color=FAINT, zorder=0)
     _draw_distribution(spread, np.concatenate([fit.error for fit in fits]))
     spread.set(title="Distribution", xlabel=error_label, ylabel="share of samples per unit")
+    spread.locator_params(axis="x", nbins=6)  # labels such as -0.015 ran into each other
     longest = max(fits, key=lambda fit: fit.error.size)
     _draw_autocorrelation(memory, longest)
     memory.set(title="Autocorrelation", xlabel="lag [s]", ylabel="correlation")

@@ -12,7 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from hyst.models import LinearDynamics, PrandtlIshlinskii
+from hyst.models import (
+    LinearDynamics,
+    MasingOperator,
+    PrandtlIshlinskii,
+    RambergOsgood,
+    RateDependentPrandtlIshlinskii,
+)
 from hyst.operators import Affine, Chained, DeadZone, Operator
 from hyst.report.canvas import (
     FAINT,
@@ -76,7 +82,10 @@ def draw_model(
     """
     stages = list(stages_with_signals(model, u))
     units = _units([stage for stage, _, _ in stages], labels.input_unit, labels.output_unit)
-    parts = [(*part, *pair) for part, pair in zip(stages, pairwise(units), strict=True)]
+    parts = [
+        (_at_rest(stage), before, after, *pair)
+        for (stage, before, after), pair in zip(stages, pairwise(units), strict=True)
+    ]
     parts = [part for part in parts if _is_drawn(part[0])]
     count = sum(2 if isinstance(part[0], PrandtlIshlinskii) else 1 for part in parts)
     figure, axes = blank(max(count, 1), 1, 10.0 if count > 1 else 5.0, 3.9)
@@ -85,6 +94,8 @@ def draw_model(
         if isinstance(stage, PrandtlIshlinskii):
             _draw_weights(next(free), stage, standard_errors, unit_before, unit_after)
             _draw_loading_curve(next(free), stage, before, unit_before, unit_after)
+        elif isinstance(stage, RambergOsgood | MasingOperator):
+            _draw_curve(next(free), stage, before, unit_before, unit_after)
         else:
             axes_of_map = next(free)
             axes_of_map.set_title("Envelope map" if before is u else "Output map")
@@ -92,7 +103,7 @@ def draw_model(
             axes_of_map.set_xlabel(with_unit(name, unit_before))
             _draw_map(axes_of_map, before, after, unit_after)
     if not parts:
-        _draw_line(axes[0], u, model(u), labels)
+        _draw_line(axes[0], u, model, labels)
     if heading:
         figure.suptitle(heading)
     return figure
@@ -148,8 +159,13 @@ def _keeps_unit(stage: Operator) -> bool:
     return isinstance(stage, LinearDynamics) and bool(np.isclose(stage.dc_gain(), 1.0, rtol=1e-6))
 
 
+def _at_rest(stage: Operator) -> Operator:
+    """Take the plays that a rate-dependent bank becomes at low rates; others as they are."""
+    return stage.at_rest() if isinstance(stage, RateDependentPrandtlIshlinskii) else stage
+
+
 def _is_drawn(stage: Operator) -> bool:
-    return isinstance(stage, PrandtlIshlinskii | DeadZone)
+    return isinstance(stage, PrandtlIshlinskii | DeadZone | RambergOsgood | MasingOperator)
 
 
 def _draw_weights(
@@ -199,6 +215,20 @@ def _draw_loading_curve(
     axes.legend(loc="upper left")
 
 
+def _draw_curve(
+    axes: Axes,
+    stage: RambergOsgood | MasingOperator,
+    signal: Array,
+    unit_before: str,
+    unit_after: str,
+) -> None:
+    rising = np.linspace(0.0, 0.5 * float(np.ptp(signal)), 200)
+    axes.plot(rising, stage.curve(rising), color=MODELLED)
+    axes.set_title("Loading curve")
+    axes.set_xlabel(with_unit("rise of the input from rest", unit_before))
+    axes.set_ylabel(with_unit("rise of the output", unit_after))
+
+
 def _draw_map(axes: Axes, before: Array, after: Array, unit_after: str) -> None:
     order = np.argsort(before)
     x, y = before[order], after[order]
@@ -208,9 +238,12 @@ def _draw_map(axes: Axes, before: Array, after: Array, unit_after: str) -> None:
     axes.set_ylabel(with_unit(f"its output minus {slope:.3g} times its input", unit_after))
 
 
-def _draw_line(axes: Axes, u: Array, y: Array, labels: Labels) -> None:
-    order = np.argsort(u)
+def _draw_line(axes: Axes, u: Array, model: Operator, labels: Labels) -> None:
+    y = model(u)
+    # Sorted by its input, the output of a model with memory would jump from branch to branch.
+    memoryless = model.traits().memoryless
+    order = np.argsort(u) if memoryless else np.arange(u.size)
     axes.plot(u[order], y[order], color=MODELLED)
-    axes.set_title("The straight line")
+    axes.set_title("The straight line" if memoryless else "Output over input")
     axes.set_xlabel(with_unit(labels.input_name, labels.input_unit))
     axes.set_ylabel(with_unit(labels.output_name, labels.output_unit))

@@ -50,7 +50,7 @@ _MAP_TEXT = {
     "mpi": "\u039b is a piecewise linear map after the plays; it bends the loop over the output, "
     "so that it may be asymmetric.",
     "rdpi": "The faster the input moves, the wider the plays: \u03b2 (beta) is the growth of their "
-    "radii with the rate of the input.",
+    "radii with the rate of the input; the figure shows them at rest.",
 }
 _SLOPES_TEXT = (
     "In the table below this map is called dead_zone: each of its weights is the change of slope "
