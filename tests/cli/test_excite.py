@@ -69,7 +69,7 @@ def test_limits_hold_in_the_file(tmp_path: Path) -> None:
         (["--kind", "prbs", "--rate", "100", "--band", "1,9"], "--band is for --kind multisine, "),
         (["--kind", "prbs", "--rate", "100", "--duration", "9"], "--duration is for --kind"),
         (["--kind", "forc", "--rate", "100", "--rms", "1"], "not for forc; leave it out"),
-        (["--kind", "triangle", "--rate", "100", "--decay", "0.5"], "--kind decaying-triangle"),
+        (["--kind", "triangle", "--rate", "100", "--decay", "0.5"], "--kind reversals"),
         (["--kind", "multisine", "--rate", "100", "--clock", "2"], "--clock is for --kind prbs"),
         (["--kind", "schroeder", "--rate", "100", "--seed", "2"], "--seed is for --kind"),
         (["--kind", "multisine", "--rate", "100", "--rms", "1", "--amplitude", "2"], "one of them"),

@@ -20,7 +20,7 @@ KINDS = (
     "prbs",
     "swept-sine",
     "triangle",
-    "decaying-triangle",
+    "reversals",
     "forc",
     "staircase",
 )
@@ -30,7 +30,7 @@ _BY_KIND = {
     "rms": _MULTISINES,
     "duration": (*_MULTISINES, "swept-sine", "staircase"),
     "band": (*_MULTISINES, "swept-sine"),
-    "decay": ("decaying-triangle",),
+    "decay": ("reversals",),
     "clock": ("prbs",),
     "register": ("prbs",),
     "seed": _RANDOM,
@@ -60,7 +60,7 @@ MaxAcceleration = Annotated[
     float | None,
     typer.Option(help="Largest acceleration, input units per second squared.", show_default=False),
 ]
-Decay = Annotated[float, typer.Option(help="Of decaying-triangle: factor from cycle to cycle.")]
+Decay = Annotated[float, typer.Option(help="Of reversals, a decaying triangle: factor from cycle to cycle.")]
 Clock = Annotated[int, typer.Option(help="Of prbs: samples of one bit.")]
 Register = Annotated[int, typer.Option(help="Of prbs: the period has 2^N - 1 bits.")]
 FirOrder = Annotated[int, typer.Option(help="Impulse response the drive is to determine.")]

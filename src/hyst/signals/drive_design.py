@@ -16,7 +16,7 @@ _MULTISINES: dict[str, dict[str, str]] = {
     "odd-multisine": {"lines": "odd"},
     "schroeder": {"phases": "schroeder"},
 }
-_PATHS = ("triangle", "decaying-triangle", "forc", "staircase")
+_PATHS = ("triangle", "reversals", "forc", "staircase")
 KINDS = (*_MULTISINES, "prbs", "swept-sine", *_PATHS)
 
 
@@ -136,7 +136,7 @@ def _path(
     if kind == "staircase":
         hold = samples * dt
         return staircase(dt, low, high, rate, steps=periods, hold=hold, max_acceleration=bend)
-    factor = decay if kind == "decaying-triangle" else 1.0
+    factor = decay if kind == "reversals" else 1.0
     return triangle(
         dt,
         amplitude,

@@ -73,7 +73,7 @@ def triangle(
     points = np.concatenate([[0.0], np.column_stack([peaks, -peaks]).ravel(), [0.0]]) + offset
     limits = Limits(as_positive(rate, "rate"), max_acceleration)
     u = path(points, time, limits)
-    return Drive(u, time, "triangle" if decay == 1.0 else "decaying-triangle")
+    return Drive(u, time, "triangle" if decay == 1.0 else "reversals")
 
 
 def decaying_triangle(
