@@ -60,7 +60,7 @@ MaxAcceleration = Annotated[
     float | None,
     typer.Option(help="Largest acceleration, input units per second squared.", show_default=False),
 ]
-Decay = Annotated[float, typer.Option(help="Of reversals, a decaying triangle: factor from cycle to cycle.")]
+Decay = Annotated[float, typer.Option(help="Of reversals (a decaying triangle): factor a cycle.")]
 Clock = Annotated[int, typer.Option(help="Of prbs: samples of one bit.")]
 Register = Annotated[int, typer.Option(help="Of prbs: the period has 2^N - 1 bits.")]
 FirOrder = Annotated[int, typer.Option(help="Impulse response the drive is to determine.")]
