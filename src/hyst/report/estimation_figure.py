@@ -63,7 +63,7 @@ def _groups(trajectory: Trajectory) -> dict[str, list[str]]:
     radii = [name for name in names if name.startswith("r[")]
     weights = [name for name in names if name == "p0" or name.startswith("p[")]
     offset = [name for name in names if name == "offset"]
-    moving = dict(zip(names, trajectory.standard_errors.any(axis=0).tolist(), strict=True))
+    moving = {name: bool(trajectory.standard_errors[:, i].any()) for i, name in enumerate(names)}
     # Maps are held unless asked for, and what is held says nothing.
     maps = [name for name in names if name not in (*radii, *weights, *offset) and moving[name]]
     # An offset of hundreds of units would flatten the maps' weights, which are about 1.
