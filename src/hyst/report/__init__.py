@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from hyst.report.closed_loop_figure import draw_closed_loops
     from hyst.report.distortion_section import distortion_sections
     from hyst.report.drive_figure import draw_drive
-    from hyst.report.drive_table import drive_table
+    from hyst.report.drive_summary import drive_table
     from hyst.report.dynamics_figures import dynamics_sections
     from hyst.report.estimation_figure import draw_estimates
     from hyst.report.identification_report import Section, write_report
@@ -47,7 +47,7 @@ _HOME = {
     "draw_estimates": "estimation_figure",
     "draw_observer_bode": "observer_figures",
     "draw_tracking": "tracking_figure",
-    "drive_table": "drive_table",
+    "drive_table": "drive_summary",
     "dynamics_sections": "dynamics_figures",
     "in_short": "words",
     "invertible_sentence": "words",
