@@ -164,7 +164,9 @@ class StackedGain:
         n_l = l_slopes.shape[0]
         Q_slopes = (at.powers[:, -n_l:] @ l_slopes) * at.numerator[:, None]
         Q_slopes -= (at.powers @ slopes.T) * (1.0 - E)[:, None]
-        derivatives = -2.0 * np.real((outer / below)[:, None] * Q_slopes)
+        # Next to a pole of Q on the axis slopes overflow; a descent turns back there anyway.
+        with np.errstate(over="ignore", invalid="ignore"):
+            derivatives = -2.0 * np.real((outer / below)[:, None] * Q_slopes)
         value = at.Wu2 * np.abs(T) ** 2 + at.Wp2 * np.abs(E) ** 2
         return np.asarray(value), np.asarray(derivatives)
 
