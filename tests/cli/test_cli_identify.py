@@ -214,9 +214,10 @@ def test_bad_validation_data_are_refused(
     refused: Callable[..., str], record_file: Path, folder: Path
 ) -> None:
     bad = broken_rows(folder, 7, "0.05,nan,1.0")
-    refused(
+    message = refused(
         "identify", record_file, *COLUMNS, "--time", "t", *QUICK, "--validate", bad, "-o", "out"
     )
+    assert Path(bad).name in message
 
 
 @pytest.mark.parametrize(

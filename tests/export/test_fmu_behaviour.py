@@ -81,8 +81,9 @@ def test_steps_that_rounding_has_touched_are_taken(start) -> None:
 
 def test_a_clock_too_coarse_for_the_sample_time(start) -> None:
     run = start("sampled").initialize(time=1e15)
-    with run.refusal(ERROR):
+    with run.refusal(ERROR) as said:
         run.step(1e15, 0.125)
+    assert "0.125 s" in said[0]
 
 
 def test_any_step_will_do_without_a_sample_time(start) -> None:
