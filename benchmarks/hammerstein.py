@@ -11,7 +11,7 @@ import scipy.signal
 
 import hyst
 from benchmarks.timing import interleaved, ratio
-from hyst.identification.hammerstein import fit_markov
+from hyst.identification.families.hammerstein import fit_markov
 from hyst.models import LinearDynamics, StableInverse
 from hyst.signals import Record, multisine
 from hyst.studies import s0_hammerstein as s0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares, lsq_linear
 
-from hyst.identification.bounded_least_squares import (
+from hyst.identification.fit.bounded_least_squares import (
     CONVERGED,
     ITERATION_LIMIT,
     Problem,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from hyst.identification.covariance import (
+from hyst.identification.result.covariance import (
     _bartlett_sum,
     robust_covariance,
     undetermined_combination,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyst.identification.hammerstein import fit_markov
+from hyst.identification.families.hammerstein import fit_markov
 from hyst.signals import persistence
 from hyst.studies import s0_hammerstein as s0
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from hyst.identification.from_records import identify
-from hyst.identification.identified import Candidate, Identified, UsedSamples
+from hyst.identification.identify_records import identify
+from hyst.identification.record_use.used_samples import UsedSamples
+from hyst.identification.result.identified import Candidate, Identified
 from hyst.identification.slopes import Slopes, identify_weights_from_slopes
 
 __all__ = [

@@ -281,6 +281,24 @@ class LinearDynamics(Operator):
         A, B, C, D = np.split(vector, [n * n, n * n + n, n * n + 2 * n])
         return LinearDynamics(A.reshape(n, n), B, C, D, dt=self.dt, delay=self.delay, x0=self.x0)
 
+    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
+        """Give the factors of A, B, C and D; the states have the unit of the input."""
+        n, ratio = self.order, output_scale / input_scale
+        return np.repeat([1.0, ratio], [n * n + n, n + 1])
+
+    def in_units(self, input_scale: float, output_scale: float) -> LinearDynamics:
+        """Give the system in other units, its initial state too."""
+        ratio = output_scale / input_scale
+        return LinearDynamics(
+            self.A,
+            self.B,
+            self.C * ratio,
+            self.D * ratio,
+            self.dt,
+            self.delay,
+            self.x0 * input_scale,
+        )
+
     def lipschitz_constant(self) -> float:
         """Give the sum of the absolute impulse response; infinity if G is not stable."""
         if not self.is_stable():

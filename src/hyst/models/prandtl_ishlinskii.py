@@ -155,6 +155,18 @@ class PrandtlIshlinskii(Operator):
         vector = as_parameter_vector(theta, 1 + 2 * n)
         return PrandtlIshlinskii(vector[1 : n + 1], vector[n + 1 :], float(vector[0]), self.z0)
 
+    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
+        """Give the factors of p0, p and r."""
+        n = self.p.size
+        return np.repeat([output_scale / input_scale, input_scale], [n + 1, n])
+
+    def in_units(self, input_scale: float, output_scale: float) -> PrandtlIshlinskii:
+        """Give the model in other units, its memory too."""
+        ratio = output_scale / input_scale
+        return PrandtlIshlinskii(
+            self.p * ratio, self.r * input_scale, self.p0 * ratio, self.z0 * input_scale
+        )
+
     def lipschitz_constant(self) -> float:
         """Give the sum of the absolute weights."""
         return float(cumulative(abs(self.p0), np.abs(self.p))[-1])

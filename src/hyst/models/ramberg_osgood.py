@@ -256,6 +256,17 @@ class RambergOsgood(Operator):
         c1, c2, c3 = as_parameter_vector(theta, 3).tolist()
         return RambergOsgood(c1, c2, c3, self.memory, self.depth, self.dead_band)
 
+    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
+        """Give the factors of c1, c2 and c3; that of c2 depends on c3."""
+        ratio = output_scale / input_scale
+        return np.array([ratio, ratio * input_scale**-self.c3, 1.0])
+
+    def in_units(self, input_scale: float, output_scale: float) -> RambergOsgood:
+        """Give the model in other units, its dead band too."""
+        c1, c2, c3 = self.parameter_scales(input_scale, output_scale) * [self.c1, self.c2, self.c3]
+        dead_band = self.dead_band * input_scale
+        return RambergOsgood(c1, c2, c3, self.memory, self.depth, dead_band)
+
     def lipschitz_constant(self) -> float:
         """Give infinity, for the slope grows without bound; c1 where c2 is 0."""
         return self._as_masing().lipschitz_constant()

@@ -265,6 +265,31 @@ class RateDependentPrandtlIshlinskii(Operator):
         p, r = vector[1 : n + 1], vector[n + 1 : 2 * n + 1]
         return RateDependentPrandtlIshlinskii(p, r, curve, self.dt, float(vector[0]), self.z0)
 
+    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
+        """Give the factors of p0, p, r and the rate curve's coefficients."""
+        n, curve = self.p.size, self.rate_curve
+        plays = np.repeat([output_scale / input_scale, input_scale], [n + 1, n])
+        powers = input_scale ** -np.arange(1.0, curve.powers.size + 1.0)
+        return np.concatenate([plays, [1.0], powers, np.ones(curve.slopes.size)])
+
+    def in_units(
+        self, input_scale: float, output_scale: float
+    ) -> RateDependentPrandtlIshlinskii:
+        """Give the model in other units, knees and memory too."""
+        n, curve = self.p.size, self.rate_curve
+        scales = self.parameter_scales(input_scale, output_scale)
+        plays = scales[: 2 * n + 1] * self.parameters().values[: 2 * n + 1]
+        powers = scales[2 * n + 2 : 2 * n + 2 + curve.powers.size] * curve.powers
+        widened = RateCurve(curve.beta, powers, curve.slopes, curve.knees * input_scale)
+        return RateDependentPrandtlIshlinskii(
+            plays[1 : n + 1],
+            plays[n + 1 :],
+            widened,
+            self.dt,
+            float(plays[0]),
+            self.z0 * input_scale,
+        )
+
     def lipschitz_constant(self) -> float:
         """Give ``|p0| + sum |p_i| (1 + 2 g'/dt)``, g' the steepest slope of the rate curve."""
         size = float(np.abs(self.p).sum())

@@ -46,6 +46,7 @@ class Affine(Operator):
     offset: float = 0.0
 
     kind = "affine"
+    is_map = True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "gain", as_number(self.gain, "gain"))
@@ -94,6 +95,12 @@ class Affine(Operator):
         """Give another line."""
         gain, offset = as_parameter_vector(theta, 2)
         return Affine(float(gain), float(offset))
+
+    def parameter_scales(
+        self, input_scale: float, output_scale: float
+    ) -> NDArray[np.float64]:
+        """Give the factors of gain and offset."""
+        return np.array([output_scale / input_scale, output_scale])
 
     def lipschitz_constant(self) -> float:
         """Give the absolute gain."""

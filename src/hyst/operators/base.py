@@ -33,6 +33,8 @@ class Operator(ABC):
     """
 
     kind: ClassVar[str]
+    is_map: ClassVar[bool] = False
+    """Whether it is a memoryless map, which may keep the unit of its signal."""
 
     @abstractmethod
     def traits(self) -> Traits:
@@ -98,6 +100,52 @@ class Operator(ABC):
         InputError
             If the length is wrong or a value is not allowed.
         """
+
+    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
+        """Give the factors of the parameters in units in which signals have larger numbers.
+
+        The operator of these parameters, ``in_units``, gives ``output_scale f(u / input_scale)``.
+
+        Parameters
+        ----------
+        input_scale, output_scale
+            By which the numbers of input and output grow; powers of two keep all bits.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (m,).
+
+        Raises
+        ------
+        InputError
+            If this kind of operator has no constants that could take the change.
+        """
+        raise InputError(
+            f"a {self.kind} cannot be brought to other units by its constants; compose it with "
+            "Affine operators that do"
+        )
+
+    def in_units(self, input_scale: float, output_scale: float) -> Operator:
+        """Give the same operator in units in which signals have larger numbers.
+
+        Parameters
+        ----------
+        input_scale, output_scale
+            By which the numbers of input and output grow.
+
+        Returns
+        -------
+        Operator
+            ``output_scale f(u / input_scale)``, of the same kind.
+
+        Raises
+        ------
+        InputError
+            As ``parameter_scales``.
+        """
+        scales = self.parameter_scales(input_scale, output_scale)
+        return self.with_parameters(scales * self.parameters().values)
 
     @abstractmethod
     def lipschitz_constant(self) -> float:

@@ -103,6 +103,22 @@ class Chained(Operator):
             tuple(s.with_parameters(piece) for s, piece in zip(self.stages, pieces, strict=True))
         )
 
+    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
+        """Give the factors of the stages' parameters, one after the other."""
+        shares = _scales_of_stages(self.stages, input_scale, output_scale)
+        pairs = zip(self.stages, shares, strict=True)
+        return np.concatenate([stage.parameter_scales(*share) for stage, share in pairs])
+
+    def in_units(self, input_scale: float, output_scale: float) -> Operator:
+        """Give the same composition in other units.
+
+        Maps keep the unit of their signal; the first stage that is none turns the unit of the
+        input into that of the output.
+        """
+        shares = _scales_of_stages(self.stages, input_scale, output_scale)
+        pairs = zip(self.stages, shares, strict=True)
+        return self._with_stages(tuple(stage.in_units(*share) for stage, share in pairs))
+
     def lipschitz_constant(self) -> float:
         """Give the product of the stages' constants."""
         constant = 1.0
@@ -209,6 +225,17 @@ def leaves_of(operator: Operator) -> tuple[Operator, ...]:
     if not isinstance(operator, Chained):
         return (operator,)
     return tuple(leaf for stage in operator.stages for leaf in leaves_of(stage))
+
+
+def _scales_of_stages(
+    stages: tuple[Operator, ...], input_scale: float, output_scale: float
+) -> list[tuple[float, float]]:
+    """Give input and output scale of every stage: one of them takes the change of the unit."""
+    turning = [not all(leaf.is_map for leaf in leaves_of(stage)) for stage in stages]
+    at = turning.index(True) if any(turning) else len(stages) - 1
+    before, after = (input_scale, input_scale), (output_scale, output_scale)
+    count = len(stages)
+    return [before] * at + [(input_scale, output_scale)] + [after] * (count - at - 1)
 
 
 def _prefixes(leaves: tuple[Operator, ...]) -> list[str]:

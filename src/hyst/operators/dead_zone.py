@@ -63,6 +63,7 @@ class DeadZone(Operator):
     variant: Variant
 
     kind = "dead-zone"
+    is_map = True
 
     def __init__(
         self, weights: ArrayLike, thresholds: ArrayLike, variant: Variant = "two-sided"
@@ -188,6 +189,10 @@ class DeadZone(Operator):
         count = self.weights.size
         vector = as_parameter_vector(theta, 2 * count)
         return DeadZone(vector[:count], vector[count:], self.variant)
+
+    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
+        """Give the factors of weights and thresholds."""
+        return np.repeat([output_scale / input_scale, input_scale], self.weights.size)
 
     def lipschitz_constant(self) -> float:
         """Give the steepest slope; infinity for the form by direction, which jumps."""

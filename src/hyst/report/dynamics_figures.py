@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from hyst.identification import Identified
-from hyst.identification.hammerstein.identified_hammerstein import IdentifiedHammerstein
+from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
 from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn, with_unit
 from hyst.report.identification_report import Section
 from hyst.report.tables import Table, number

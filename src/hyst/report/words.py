@@ -8,7 +8,7 @@ import numpy as np
 
 from hyst.errors import NotInvertibleError
 from hyst.identification import Identified
-from hyst.identification.hammerstein import IdentifiedHammerstein
+from hyst.identification.families.hammerstein import IdentifiedHammerstein
 from hyst.operators import Operator
 from hyst.report.tables import number, with_unit
 from hyst.signals import Record

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification import identify
-from hyst.identification.hammerstein import IdentifiedHammerstein, fit_markov
+from hyst.identification.families.hammerstein import IdentifiedHammerstein, fit_markov
 from hyst.models import (
     GeneralizedPrandtlIshlinskii,
     LinearDynamics,

@@ -11,7 +11,7 @@ import pytest
 
 import hyst
 from hyst.errors import InputError, NotIdentifiableError
-from hyst.identification.hammerstein import IdentifiedHammerstein
+from hyst.identification.families.hammerstein import IdentifiedHammerstein
 from hyst.models import LinearDynamics
 from hyst.report.words import in_short
 from hyst.signals import Record, multisine

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from hyst.errors import InputError, NotIdentifiableError
-from hyst.identification.hammerstein import (
+from hyst.identification.families.hammerstein import (
     average_periods,
     best_linear_approximation,
     fit_markov,
     realize,
 )
-from hyst.identification.hammerstein.markov import choose_markov
+from hyst.identification.families.hammerstein.markov import choose_markov
 from hyst.models import LinearDynamics
 from hyst.signals import Record, multisine
 from hyst.signals.lagged import lagged_factor, lagged_gram

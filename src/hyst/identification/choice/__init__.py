@@ -1,0 +1,1 @@
+"""Choose delay, family and size."""

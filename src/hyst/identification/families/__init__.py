@@ -1,0 +1,1 @@
+"""The families of models, one a file; ``hyst.families`` lists them."""

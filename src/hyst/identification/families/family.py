@@ -1,0 +1,312 @@
+"""What a family of models is: its name and words, its options, and how it is fitted.
+
+A family is a frozen dataclass whose fields are its options. Identification, report, command line
+and documentation ask it and the registry; none of them knows a family by name.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.errors import InputError
+from hyst.identification.families.option import AUTO, Option
+from hyst.identification.fit.bounded_least_squares import Problem, Solution, minimize
+from hyst.identification.fit.parametrization import Parametrization
+from hyst.identification.fit.problem import problem_of
+from hyst.identification.record_use.overview import Overview
+from hyst.identification.record_use.used_samples import Data, prepare
+from hyst.operators import Operator
+from hyst.signals import Record
+
+if TYPE_CHECKING:
+    from hyst.identification.result.identified import Identified
+
+Array = NDArray[np.float64]
+Start = tuple[Parametrization, Array]
+"""Free parameters and the theta to start from."""
+
+
+@dataclass(frozen=True)
+class Words:
+    """What people are told of a family.
+
+    Parameters
+    ----------
+    full_name
+        As it stands in a sentence.
+    equations
+        In plain characters; ``{sign}`` stands for the sign of a falling output.
+    explanations
+        What the letters in the equations mean, in sentences.
+    """
+
+    full_name: str
+    equations: tuple[str, ...]
+    explanations: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Family(ABC):
+    """A family of models; its fields are the options its user may give.
+
+    Concrete families are final dataclasses that say what they are (name, words, options) and where
+    a fit starts; how delay and size are chosen, how the constants are fitted and how sure they are
+    is done once, for all.
+    """
+
+    name: ClassVar[str]
+    words: ClassVar[Words]
+    methods: ClassVar[tuple[str, ...]] = ("exact",)
+    """Of compensation, the one that suits best first."""
+    compared: ClassVar[bool] = False
+    """Whether ``family="auto"`` compares it."""
+    has_memory: ClassVar[bool] = True
+    """Whether its delay is worth judging by the family itself."""
+    answers_late: ClassVar[bool] = False
+    """Whether the delay of the output is part of the model, so that none is looked for before."""
+    depends_on_rate: ClassVar[bool] = False
+    """Whether samples left out of a record would change the model."""
+
+    def __post_init__(self) -> None:
+        for name, what in self.options().items():
+            object.__setattr__(self, name, what.check(getattr(self, name), name))
+
+    @final
+    @classmethod
+    def options(cls) -> dict[str, Option]:
+        """Give the options of the family by name."""
+        return {each.name: each.metadata["option"] for each in fields(cls)}
+
+    def records_to_use(
+        self, records: tuple[Record, ...], start: Literal["auto"] | int
+    ) -> tuple[Data, tuple[str, ...]]:
+        """Choose what of the records is used, and say what was left out.
+
+        Parameters
+        ----------
+        records
+            As they were given.
+        start
+            First sample to use, or ``"auto"``.
+
+        Returns
+        -------
+        Data
+        tuple of str
+            Sentences for the user.
+        """
+        return prepare(records, start, 0), ()
+
+    def suited(self, data: Data) -> tuple[Self, tuple[str, ...]]:
+        """Fit the options to the records: refuse, or leave out with a sentence, what cannot be.
+
+        Parameters
+        ----------
+        data
+            The records in the user's units.
+
+        Returns
+        -------
+        Family
+            With options that these records can serve.
+        tuple of str
+            Sentences for the user.
+        """
+        return self, ()
+
+    def in_units(self, input_scale: float, output_scale: float) -> Self:
+        """Give the family with options in units smaller by these factors.
+
+        Parameters
+        ----------
+        input_scale, output_scale
+            By which numbers of signals grow.
+        """
+        return self
+
+    def sizes(self) -> tuple[int, ...]:
+        """Give the sizes to compare, ascending; (0,) where there is nothing to choose."""
+        return (0,)
+
+    @abstractmethod
+    def least_parameters(self, size: int) -> int:
+        """Give the number of free parameters of a size, the offset included."""
+
+    @abstractmethod
+    def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
+        """Give where to start, the best guess first.
+
+        Parameters
+        ----------
+        overview
+            The records.
+        size
+            One of ``sizes()``.
+        most
+            How many starts are worth trying; the same ones in every run.
+
+        Returns
+        -------
+        sequence
+            Parametrization and theta of each.
+
+        Raises
+        ------
+        NotIdentifiableError
+            If the records do not show this family.
+        """
+
+    def root_weights(self, data: Data) -> Array | None:
+        """Give the square root of every sample's weight, or None where all count the same."""
+        return None
+
+    def solve(
+        self, problem: Problem, theta: Array, max_iterations: int, tolerance: float = 1e-3
+    ) -> Solution:
+        """Minimise the squared error from a start."""
+        return minimize(problem, theta, max_iterations, tolerance)
+
+    def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Improve a fit by what only the family knows, as moving radii across kinks.
+
+        Parameters
+        ----------
+        fit
+            The best of all starts.
+        overview
+            The records.
+        max_iterations
+            Of each further fit.
+        """
+        return fit
+
+    def simplified(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Fit again without the parts that came out idle, until none is.
+
+        Parameters
+        ----------
+        fit
+            A fit.
+        overview
+            The records.
+        max_iterations
+            Of each further fit.
+        """
+        return fit
+
+    def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
+        """Say what makes constants of a final fit no estimates.
+
+        Parameters
+        ----------
+        fit
+            The final fit, in the user's units.
+        data
+            Its records.
+        """
+        return ()
+
+    @property
+    def estimates_noise(self) -> bool:
+        """Whether the fit's residual tells how sure its constants are."""
+        return True
+
+    def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
+        """Add what only this family can say to the result.
+
+        Parameters
+        ----------
+        identified
+            The result as every family has it.
+        fit
+            The final fit, in the user's units.
+        overview
+            The records it was found on.
+        """
+        return identified
+
+    @final
+    def named_size(self, size: int) -> str:
+        """Say a size in words."""
+        return f"{self.name} with {size} plays" if size else self.name
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """One family fitted: its free parameters, where the iteration ended, and how well.
+
+    Parameters
+    ----------
+    family
+        The family.
+    size
+        As it was asked for or chosen; the fit may have fewer parts.
+    parametrization, solution
+        Free parameters and their best values.
+    """
+
+    family: Family
+    size: int
+    parametrization: Parametrization
+    solution: Solution
+
+    @property
+    def operator(self) -> Operator:
+        """The fitted operator."""
+        return self.parametrization.operator(self.solution.theta)
+
+    def problem(self, data: Data, chosen: NDArray[np.bool_] | None = None) -> Problem:
+        """Pose the problem of this fit over other records or some samples."""
+        return problem_of(data, self.parametrization, chosen, self.family.root_weights(data))
+
+
+def require_this_version(family: Family) -> None:
+    """Refuse a family object that was made by another version of hyst.
+
+    Parameters
+    ----------
+    family
+        As it was given.
+
+    Raises
+    ------
+    InputError
+        If an option is missing or unknown, as in an object saved by another version.
+    """
+    known, held = set(type(family).options()), set(vars(family))
+    if known != held:
+        which = ", ".join(sorted(known ^ held))
+        raise InputError(
+            f"the family object {type(family).__name__} was made by another version of hyst (its "
+            f"options differ in {which}); make it anew with hyst.families.{type(family).__name__}"
+        )
+
+
+def require_choice(value: Any, choices: tuple[str, ...], name: str) -> None:
+    """Refuse a word that is none of the choices.
+
+    Parameters
+    ----------
+    value
+        What was given.
+    choices
+        What may be.
+    name
+        What the message calls it.
+
+    Raises
+    ------
+    InputError
+        If it is another one.
+    """
+    if value not in choices:
+        raise InputError(f"{name} is {value!r}; choose one of {', '.join(choices)}")
+
+
+__all__ = ["AUTO", "Family", "Fit", "Start", "Words", "require_choice", "require_this_version"]

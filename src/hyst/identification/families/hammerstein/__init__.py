@@ -1,0 +1,27 @@
+"""Hammerstein identification: hysteresis followed by linear dynamics.
+
+``hyst.identify(record, family="hammerstein")`` takes all steps; here are the single ones.
+"""
+
+from __future__ import annotations
+
+from hyst.identification.families.hammerstein.distortion_levels import (
+    BestLinearApproximation,
+    average_periods,
+    best_linear_approximation,
+)
+from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein, Loop
+from hyst.identification.families.hammerstein.markov import MarkovParameters, fit_markov
+from hyst.identification.families.hammerstein.realization import Realization, realize
+
+__all__ = [
+    "BestLinearApproximation",
+    "IdentifiedHammerstein",
+    "Loop",
+    "MarkovParameters",
+    "Realization",
+    "average_periods",
+    "best_linear_approximation",
+    "fit_markov",
+    "realize",
+]

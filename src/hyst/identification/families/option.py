@@ -1,0 +1,122 @@
+"""An option of a family: its default, what it may be, and how it is said on the command line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from hyst.errors import InputError
+
+AUTO = "auto"
+
+
+@dataclass(frozen=True)
+class Option:
+    """What a family lets its user choose.
+
+    Parameters
+    ----------
+    check
+        Takes a value and the option's name; gives it in its final form or raises InputError.
+    help
+        One sentence for the command line, without the names of the families.
+    read
+        Takes the text of the command line and the option's name; gives the value to check. What it
+        cannot read it gives as it is, to be refused with the rest.
+    metavar
+        What stands for the value in the help.
+    """
+
+    check: Callable[[Any, str], Any]
+    help: str
+    read: Callable[[str, str], Any]
+    metavar: str
+
+
+def option(default: Any, what: Option) -> Any:
+    """Give the field of a family for an option."""
+    return field(default=default, metadata={"option": what})
+
+
+def whole_number_or_auto(least: int, most: int, help: str) -> Option:
+    """Give an option that is a count or ``"auto"``."""
+
+    def check(value: Any, name: str) -> Any:
+        if isinstance(value, str) and value == AUTO:
+            return AUTO
+        return as_whole_number(value, name, least, most, ", or 'auto'")
+
+    return Option(check, help, _read_whole, "N|auto")
+
+
+def whole_number(least: int, most: int, help: str) -> Option:
+    """Give an option that is a count."""
+
+    def check(value: Any, name: str) -> int:
+        return as_whole_number(value, name, least, most)
+
+    return Option(check, help, _read_whole, "N")
+
+
+def choice(choices: tuple[str, ...], help: str) -> Option:
+    """Give an option that is one of a few words."""
+
+    def check(value: Any, name: str) -> str:
+        if not isinstance(value, str) or value not in choices:
+            raise InputError(f"{name} is {value!r}; choose one of {', '.join(choices)}")
+        return value
+
+    return Option(check, help, lambda text, _: text, "|".join(choices))
+
+
+def as_whole_number(value: Any, name: str, least: int, most: int, more: str = "") -> int:
+    """Check a number that counts something.
+
+    Parameters
+    ----------
+    value
+        A whole number from ``least`` to ``most``.
+    name
+        What messages call it.
+    least, most
+        Ends of the range.
+    more
+        What messages add after the range: a unit, or a word that is taken in its place.
+
+    Raises
+    ------
+    InputError
+        If it is something else.
+    """
+    is_whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    if not is_whole or not least <= value <= most:
+        raise InputError(f"{name} is {value!r}; give {least} to {most}{more}")
+    return int(value)
+
+
+def read_numbers(text: str, name: str) -> Any:
+    """Read numbers with commas between them."""
+    try:
+        return [float(each) for each in text.split(",")]
+    except ValueError:
+        raise InputError(
+            f"{name} is {text!r}; give numbers with commas between them, as 0,3.6"
+        ) from None
+
+
+def read_number(text: str, name: str) -> float:
+    """Read one number."""
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f"{name} is {text!r}; give a number") from None
+
+
+def _read_whole(text: str, _: str) -> int | str:
+    try:
+        return int(text)
+    except ValueError:
+        return text

@@ -1,0 +1,225 @@
+"""Free parameters of models made of plays and a piecewise linear map.
+
+theta = (a_0 .. a_n, r_1 .. r_n, slopes of the map, offset), with ``(p0, p) = basis @ a``. The slopes
+of a map are those of its pieces, counted outwards from slope 1 around 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.identification.fit.parametrization import SMALLEST_SLOPE, Parametrization
+from hyst.identification.fit.weight_rules import NON_NEGATIVE, basis
+from hyst.models import PrandtlIshlinskii
+from hyst.operators import DeadZone, Operator
+from hyst.operators.composition import leaves_of
+from hyst.signals import reversals
+
+Array = NDArray[np.float64]
+
+SMALLEST_MAP_SLOPE = 0.02
+"""Of an envelope or output map, whose slope around 0 is 1."""
+
+
+@dataclass(frozen=True, eq=False)
+class FirstGuess:
+    """Plays and offset of a PI model, and the knots of a map that starts as the identity.
+
+    Parameters
+    ----------
+    p0, p, r, offset
+        Of ``y = sign (p0 u + sum_i p_i z_i) + offset``.
+    sign
+        +1, or -1 where the output falls as the input rises.
+    knots
+        Thresholds of the map, none of them 0: of an envelope in input units, of an output map in
+        output units without the offset.
+    largest_radius
+        Upper bound of the radii, input units.
+    mean_slope
+        Output range over input range of the records.
+    rule
+        What the weights may be: ``non-negative`` or ``invertible``.
+    fixed_radii
+        Whether the radii are to stay as they are.
+    """
+
+    p0: float
+    p: Array
+    r: Array
+    offset: float
+    sign: float
+    knots: Array
+    largest_radius: float
+    mean_slope: float
+    rule: str = NON_NEGATIVE
+    fixed_radii: bool = False
+
+    @property
+    def plays(self) -> PrandtlIshlinskii:
+        """The plays."""
+        return PrandtlIshlinskii(self.p, self.r, self.p0)
+
+    @property
+    def map(self) -> DeadZone:
+        """The identity, with a place for a change of slope at every knot."""
+        knots = self.knots
+        weights = np.concatenate([[1.0], np.zeros(knots.size)])
+        return DeadZone(weights, np.concatenate([[0.0], knots]))
+
+
+@dataclass(frozen=True, eq=False)
+class PlayLayout:
+    """Where the plays stand in theta.
+
+    Parameters
+    ----------
+    basis
+        Shape (n + 1, n + 1): theta starts with a_0 .. a_n, r_1 .. r_n, and ``(p0, p) = basis @ a``.
+    lower, upper
+        Shape (m,), bounds of theta.
+    """
+
+    basis: Array
+    lower: Array
+    upper: Array
+
+    @property
+    def plays(self) -> int:
+        """Number of plays n."""
+        return int(self.basis.shape[0] - 1)
+
+    def weights(self, theta: Array) -> Array:
+        """Give p0, p_1 .. p_n."""
+        return np.asarray(self.basis @ theta[: self.plays + 1])
+
+    def radii(self, theta: Array) -> Array:
+        """Give r_1 .. r_n."""
+        return np.asarray(theta[self.plays + 1 : 2 * self.plays + 1])
+
+    def canonical(self, theta: Array) -> Array:
+        """Sort the plays by radius, each with its weight: their order means nothing."""
+        n, r = self.plays, self.radii(theta)
+        order = np.argsort(r, kind="stable")
+        if (order[1:] > order[:-1]).all():
+            return theta
+        weights = self.weights(theta)
+        sorted_theta = theta.copy()
+        in_order = np.concatenate([weights[:1], weights[1:][order]])
+        sorted_theta[: n + 1] = np.linalg.solve(self.basis, in_order)
+        sorted_theta[n + 1 : 2 * n + 1] = r[order]
+        return np.clip(sorted_theta, self.lower, self.upper)
+
+
+@dataclass(frozen=True, eq=False)
+class PlayParametrization(Parametrization):
+    """A parametrization that knows its plays.
+
+    Parameters
+    ----------
+    layout
+        Where they stand in theta.
+    """
+
+    layout: PlayLayout = None  # type: ignore[assignment]  # the fields before it have defaults
+
+
+def parametrize_plays(
+    template: Operator, guess: FirstGuess, map_at: int | None
+) -> tuple[PlayParametrization, Array]:
+    """Lay out theta over the constants of an operator made of plays and perhaps a map.
+
+    Parameters
+    ----------
+    template
+        The operator of the first guess; its last constants are gain and offset.
+    guess
+        The first guess.
+    map_at
+        Where the constants of the map begin: 0 before the plays, behind them after; None if there
+        is no map.
+
+    Returns
+    -------
+    PlayParametrization
+    theta : numpy.ndarray
+    """
+    n, knots = guess.p.size, guess.knots if map_at is not None else np.empty(0)
+    fixed = template.parameters().values.copy()
+    size = 2 * n + 2 + knots.size
+    transform = np.zeros((fixed.size, size))
+    pi_at = 2 * (knots.size + 1) if map_at == 0 else 0
+    weights_of = basis(guess.rule, n)
+    transform[pi_at : pi_at + n + 1, : n + 1] = weights_of
+    transform[pi_at + n + 1 : pi_at + 2 * n + 1, n + 1 : 2 * n + 1] = np.eye(n)
+    fixed[pi_at : pi_at + 2 * n + 1] = 0.0
+    if map_at is not None:
+        weights = slice(map_at + 1, map_at + 1 + knots.size)
+        transform[weights, 2 * n + 1 : -1], fixed[weights] = _slopes_to_weights(knots)
+    transform[-1, -1], fixed[-1] = 1.0, 0.0
+    free = np.linalg.solve(weights_of, np.concatenate([[guess.p0], guess.p]))
+    theta = np.concatenate([free, guess.r, np.ones(knots.size), [guess.offset]])
+    lower, upper = _bounds(guess, size)
+    layout = PlayLayout(weights_of, lower, upper)
+    return (
+        PlayParametrization(
+            template, transform, fixed, lower, upper, layout.canonical, layout=layout
+        ),
+        theta,
+    )
+
+
+def _bounds(guess: FirstGuess, size: int) -> tuple[Array, Array]:
+    n = guess.p.size
+    radii, slopes = slice(n + 1, 2 * n + 1), slice(2 * n + 1, size - 1)
+    lower, upper = np.zeros(size), np.full(size, np.inf)
+    lower[: 1 if guess.rule == NON_NEGATIVE else n + 1] = SMALLEST_SLOPE * guess.mean_slope
+    lower[radii] = 1e-3 * guess.largest_radius
+    lower[slopes] = SMALLEST_MAP_SLOPE
+    lower[-1] = -np.inf
+    upper[radii] = guess.largest_radius
+    if guess.fixed_radii:
+        lower[radii] = upper[radii] = guess.r
+    return lower, upper
+
+
+def half_swings(operator: Operator, u: Array) -> Array:
+    """Give half the swings of the signal the plays of a model are driven by.
+
+    Parameters
+    ----------
+    operator
+        A model with plays.
+    u
+        Its input.
+
+    Returns
+    -------
+    numpy.ndarray
+        In the units of the plays' input.
+    """
+    signal = u
+    for leaf in leaves_of(operator):
+        if isinstance(leaf, PrandtlIshlinskii):
+            break
+        signal = leaf(signal)
+    return np.abs(np.diff(signal[reversals(signal)])) / 2.0
+
+
+def _slopes_to_weights(knots: Array) -> tuple[Array, Array]:
+    """Weights at the knots from the slopes beyond them, counted outwards from slope 1 around 0."""
+    count = knots.size
+    transform, fixed = np.zeros((count, count)), np.zeros(count)
+    for side in (1.0, -1.0):
+        before = None
+        for i in sorted(np.flatnonzero(side * knots > 0.0), key=lambda i: abs(knots[i])):
+            transform[i, i] = 1.0
+            if before is None:
+                fixed[i] = -1.0
+            else:
+                transform[i, before] = -1.0
+            before = i
+    return transform, fixed

@@ -1,0 +1,447 @@
+"""Prandtl-Ishlinskii models: plays alone, behind an envelope, or in front of an output map.
+
+Scales that only shift a factor from one stage to the next are fixed: the slope of a map around 0
+is 1. Cumulative weights and slopes of maps are bounded from below, so every iterate is invertible.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Self, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst import models
+from hyst.errors import InputError, NotIdentifiableError
+from hyst.identification.families.family import Family, Fit, Start, Words
+from hyst.identification.families.option import (
+    AUTO,
+    Option,
+    choice,
+    option,
+    read_numbers,
+    whole_number,
+    whole_number_or_auto,
+)
+from hyst.identification.families.play_layout import (
+    FirstGuess,
+    PlayLayout,
+    PlayParametrization,
+    half_swings,
+    parametrize_plays,
+)
+from hyst.identification.fit.radius_search import search_radii
+from hyst.identification.fit.weight_rules import INVERTIBLE, NON_NEGATIVE, RULES
+from hyst.identification.fit.weights import Weights, fit_weights
+from hyst.identification.record_use.overview import Overview
+from hyst.identification.record_use.used_samples import Data
+from hyst.operators import Affine
+
+Array = NDArray[np.float64]
+
+SIZES = (1, 2, 3, 4, 6, 8, 10)
+"""Numbers of plays that ``"auto"`` compares."""
+
+MOST_PLAYS, MOST_KNOTS = 200, 50
+FINE_BANK = 60
+"""Plays of a bank finer than any model."""
+
+NEGATIVE_WEIGHTS_PAY = 0.9
+"""Negative weights are allowed where they lower the residual of a fine bank below this share."""
+
+PLAYS = "P[w](t) = p0 w(t) + \u03a3 p\u1d62 F\u1d63\u1d62[w](t)"
+PLAY_TEXT = (
+    "F with radius r is a play (backlash of half-width r): its output rests until its input has "
+    "come r away from it, and then follows at that distance. The sum of plays gives the loop and "
+    "its minor loops; p0 is the part without hysteresis."
+)
+_SLOPES_TEXT = (
+    "In the table below this map is called dead_zone: each of its weights is the change of slope "
+    "at a threshold; the thresholds are in the model file."
+)
+
+
+def radii_option(*, zero_too: bool = False) -> Option:
+    """Give the option of radii to keep: ascending, each once, positive, or zero where it moves.
+
+    Parameters
+    ----------
+    zero_too
+        Whether a play of radius 0 is one, as where the rate widens it.
+    """
+
+    def check(radii: Any, name: str) -> tuple[float, ...] | None:
+        if radii is None:
+            return None
+        try:
+            values = np.unique(np.asarray(radii, dtype=np.float64))
+        except (TypeError, ValueError):
+            values = np.empty(0)
+        least = values.min(initial=np.inf)
+        if values.size == 0 or not np.isfinite(values).all() or least < 0.0 or (
+            least == 0.0 and not zero_too
+        ):
+            raise InputError(f"{name} must be one or more positive, finite numbers")
+        return tuple(values.tolist())
+
+    return Option(check, "Radii to keep, input units, as 0.5,1,2.", read_numbers, "R1,R2,..")
+
+
+PLAYS_OPTION = whole_number_or_auto(1, MOST_PLAYS, "Number of plays.")
+KNOTS_OPTION = whole_number(1, MOST_KNOTS, "Knots of the map.")
+WEIGHTS_OPTION = choice(
+    (AUTO, *RULES), "What weights may be; invertible: negative where the inverse allows."
+)
+
+
+@dataclass(frozen=True)
+class Plays(Family):
+    """What all models of rate-independent plays have in common.
+
+    Parameters
+    ----------
+    plays
+        Number of plays, 1 to 200, or ``"auto"``: chosen by cross-validation. Plays whose weight
+        comes out zero are left out of the model.
+    radii
+        Shape (n,), input units: keep these radii instead of finding them.
+    weights
+        ``"non-negative"``; ``"invertible"``: single weights may be negative as long as the
+        cumulative ones are positive, for loops that flatten after a reversal, as friction's do; or
+        ``"auto"``: the latter where it lowers the residual by more than a tenth.
+    """
+
+    plays: Any = option(AUTO, PLAYS_OPTION)
+    radii: Any = option(None, radii_option())
+    weights: Any = option(AUTO, WEIGHTS_OPTION)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.radii is not None and self.plays not in (AUTO, len(self.radii)):
+            raise InputError(
+                f"plays is {self.plays} but {len(self.radii)} radii are given; leave out plays"
+            )
+
+    @abstractmethod
+    def parametrize(self, guess: FirstGuess) -> tuple[PlayParametrization, Array]:
+        """Give the free parameters, and theta of a first guess with an identity map.
+
+        Parameters
+        ----------
+        guess
+            The first guess.
+        """
+
+    @abstractmethod
+    def knots_over(self, overview: Overview, weights: Weights) -> Array:
+        """Give the knots of the map over the signal it acts on, none at 0.
+
+        Parameters
+        ----------
+        overview
+            The records.
+        weights
+            Plays of the first guess.
+        """
+
+    @final
+    def suited(self, data: Data) -> tuple[Self, tuple[str, ...]]:
+        """Leave out radii the input never passes."""
+        if self.radii is None:
+            return self, ()
+        reached = [r for r in self.radii if r < data.half_range]
+        if not reached:
+            raise NotIdentifiableError(
+                f"no radius is below {data.half_range:.6g}, half the input range; a play that "
+                "never moves cannot be identified"
+            )
+        notes = tuple(
+            f"the play of radius {r:.6g} never moves: half the input range is "
+            f"{data.half_range:.6g}; it was left out"
+            for r in self.radii[len(reached) :]
+        )
+        return replace(self, plays=AUTO, radii=reached), notes
+
+    @final
+    def in_units(self, input_scale: float, output_scale: float) -> Self:
+        """Give the family with scaled radii."""
+        if self.radii is None:
+            return self
+        return replace(self, radii=[r * input_scale for r in self.radii])
+
+    @final
+    def sizes(self) -> tuple[int, ...]:
+        """Give the numbers of plays to compare."""
+        if self.radii is not None:
+            return (len(self.radii),)
+        return SIZES if self.plays == AUTO else (self.plays,)
+
+    @final
+    def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
+        """Start from radii of equal shares of the curvature, evenly spaced, and denser near 0."""
+        return [self._start_from(overview, r) for r in self._first_radii(overview, size)[:most]]
+
+    @final
+    def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Move the radii across the kinks of the cost."""
+        records = overview.data.records
+        kinks = np.unique(np.concatenate([half_swings(fit.operator, each.u) for each in records]))
+        problem = fit.problem(overview.data)
+        plays = layout_of(fit).plays
+        found = search_radii(problem, fit.solution, plays, kinks, max_iterations)
+        return replace(fit, solution=found)
+
+    @final
+    def simplified(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Fit again without the plays that came out idle, until none is."""
+        while self.radii is None:
+            working = _working_plays(fit, overview.data)
+            if working.all():
+                break
+            fit = self._refit(fit, overview, working, max_iterations)
+        return fit
+
+    @final
+    def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
+        """Say how many plays came out idle."""
+        kept = layout_of(fit).plays
+        if kept >= fit.size:
+            return ()
+        return (
+            f"{fit.size - kept} of {fit.size} plays came out with no weight or no radius of their "
+            "own; they were left out",
+        )
+
+    def _first_radii(self, overview: Overview, size: int) -> list[Array]:
+        if self.radii is not None:
+            return [np.array(self.radii)]
+        largest = overview.data.largest_radius
+        curvature = np.abs(fine_weights(overview, self.rule(overview)).p)
+        # A floor keeps the radii apart where the bank puts all weight on a few plays.
+        share = np.cumsum(curvature + 0.5 * max(curvature.mean(), np.finfo(float).tiny))
+        levels = share[-1] * (np.arange(size) + 0.5) / size
+        even = largest * np.arange(1, size + 1) / (size + 1)
+        return [np.interp(levels, share, _fine_radii(overview)), even, even**2 / largest]
+
+    def rule(self, overview: Overview) -> str:
+        """Give what the weights may be; ``auto`` allows negative ones where they help a lot.
+
+        Parameters
+        ----------
+        overview
+            The records.
+        """
+        if self.weights != AUTO:
+            return str(self.weights)
+        plain, free = (fine_weights(overview, rule).rms for rule in (NON_NEGATIVE, INVERTIBLE))
+        return INVERTIBLE if free < NEGATIVE_WEIGHTS_PAY * plain else NON_NEGATIVE
+
+    def _start_from(self, overview: Overview, r: Array) -> Start:
+        guess = self._guess(overview, r)
+        parametrization, theta = self.parametrize(guess)
+        # A coefficient that starts on its bound would give its radius no derivative.
+        coefficients = theta[: r.size + 1]
+        theta[: r.size + 1] = np.maximum(coefficients, 0.01 * guess.mean_slope)
+        return parametrization, theta
+
+    def _guess(self, overview: Overview, r: Array) -> FirstGuess:
+        rule = self.rule(overview)
+        weights = fit_weights(overview.data, r, overview.sign, rule)
+        return FirstGuess(
+            p0=weights.p0,
+            p=weights.p,
+            r=r,
+            offset=weights.offset,
+            sign=overview.sign,
+            knots=self.knots_over(overview, weights),
+            largest_radius=overview.data.largest_radius,
+            mean_slope=overview.mean_slope,
+            rule=rule,
+            fixed_radii=self.radii is not None,
+        )
+
+    def _refit(
+        self, fit: Fit, overview: Overview, working: NDArray[np.bool_], max_iterations: int
+    ) -> Fit:
+        layout, theta = layout_of(fit), fit.solution.theta
+        weights, r = layout.weights(theta), layout.radii(theta)
+        guess = replace(
+            self._guess(overview, r), p0=float(weights[0]), p=weights[1:][working], r=r[working]
+        )
+        parametrization, refitted = self.parametrize(guess)
+        rest = theta.size - 2 * layout.plays - 1
+        refitted[-rest:] = theta[-rest:]
+        fit = replace(fit, parametrization=parametrization)
+        solution = self.solve(fit.problem(overview.data), refitted, max_iterations)
+        return replace(fit, solution=solution)
+
+
+@final
+@dataclass(frozen=True)
+class PrandtlIshlinskii(Plays):
+    """``y = sign (p0 u + sum_i p_i z_i) + offset``."""
+
+    name = "pi"
+    words = Words(
+        full_name="Prandtl-Ishlinskii model",
+        equations=("y(t) = {sign}P[u](t) + offset", PLAYS),
+        explanations=(PLAY_TEXT,),
+    )
+    compared = True
+
+    def least_parameters(self, size: int) -> int:
+        """Give the number of weights, radii and the offset."""
+        return 2 * size + 2
+
+    def parametrize(self, guess: FirstGuess) -> tuple[PlayParametrization, Array]:
+        """Give weights, radii and offset."""
+        template = Affine(guess.sign, guess.offset) @ guess.plays
+        return parametrize_plays(template, guess, map_at=None)
+
+    def knots_over(self, overview: Overview, weights: Weights) -> Array:
+        """Give none: there is no map."""
+        return np.empty(0)
+
+
+@dataclass(frozen=True)
+class MappedPlays(Plays):
+    """Plays and a piecewise linear map.
+
+    Parameters
+    ----------
+    knots
+        Number of knots of the map, 1 to 50, evenly spaced over the signal it acts on.
+    """
+
+    knots: Any = option(6, KNOTS_OPTION)
+
+    @final
+    def least_parameters(self, size: int) -> int:
+        """Give the number of weights, radii, slopes and the offset."""
+        return 2 * size + 2 + int(self.knots)
+
+    @final
+    def knots_over(self, overview: Overview, weights: Weights) -> Array:
+        """Spread the knots evenly, none at 0."""
+        low, high = self.range_of_map(overview, weights)
+        knots = np.linspace(low, high, self.knots + 2)[1:-1]
+        return np.asarray(knots[np.abs(knots) > 1e-6 * (high - low)])
+
+    @abstractmethod
+    def range_of_map(self, overview: Overview, weights: Weights) -> tuple[float, float]:
+        """Give the range of the signal the map acts on.
+
+        Parameters
+        ----------
+        overview
+            The records.
+        weights
+            Plays of the first guess.
+        """
+
+
+@final
+@dataclass(frozen=True)
+class GeneralizedPrandtlIshlinskii(MappedPlays):
+    """``y = sign P[gamma(u)] + offset`` with an envelope gamma before the plays (S1 sec. 2.1)."""
+
+    name = "gpi"
+    words = Words(
+        full_name="generalized Prandtl-Ishlinskii model",
+        equations=("y(t) = {sign}P[\u03b3(u)](t) + offset", PLAYS),
+        explanations=(
+            PLAY_TEXT,
+            "\u03b3 is a piecewise linear map of the input before the plays; it bends the loop over "
+            "the input, so that it may be asymmetric and saturate.",
+            _SLOPES_TEXT,
+        ),
+    )
+    compared = True
+
+    def parametrize(self, guess: FirstGuess) -> tuple[PlayParametrization, Array]:
+        """Give weights, radii, slopes of the envelope and offset."""
+        model = models.GeneralizedPrandtlIshlinskii(guess.map, guess.plays)
+        return parametrize_plays(Affine(guess.sign, guess.offset) @ model, guess, map_at=0)
+
+    def range_of_map(self, overview: Overview, weights: Weights) -> tuple[float, float]:
+        """Give the range of the whole input."""
+        records = overview.data.records
+        return min(float(r.u.min()) for r in records), max(float(r.u.max()) for r in records)
+
+
+@final
+@dataclass(frozen=True)
+class ModifiedPrandtlIshlinskii(MappedPlays):
+    """``y = sign Lambda(P[u]) + offset`` with a map Lambda after the plays (S4 sec. III-D)."""
+
+    name = "mpi"
+    words = Words(
+        full_name="modified Prandtl-Ishlinskii model",
+        equations=("y(t) = {sign}\u039b(P[u](t)) + offset", PLAYS),
+        explanations=(
+            PLAY_TEXT,
+            "\u039b is a piecewise linear map after the plays; it bends the loop over the output, "
+            "so that it may be asymmetric.",
+            _SLOPES_TEXT,
+        ),
+    )
+    compared = True
+
+    def parametrize(self, guess: FirstGuess) -> tuple[PlayParametrization, Array]:
+        """Give weights, radii, slopes of the output map and offset."""
+        model = models.ModifiedPrandtlIshlinskii(guess.plays, guess.map)
+        template = Affine(guess.sign, guess.offset) @ model
+        return parametrize_plays(template, guess, map_at=1 + 2 * guess.p.size)
+
+    def range_of_map(self, overview: Overview, weights: Weights) -> tuple[float, float]:
+        """Give the range of the output without sign and offset."""
+        signal = overview.sign * (overview.data.measured() - weights.offset)
+        return float(signal.min()), float(signal.max())
+
+
+def fine_weights(overview: Overview, rule: str) -> Weights:
+    """Give the weights of a bank finer than any model.
+
+    Parameters
+    ----------
+    overview
+        The records.
+    rule
+        What they may be.
+
+    Returns
+    -------
+    Weights
+    """
+    return overview.once(
+        ("fine weights", rule),
+        lambda: fit_weights(overview.data, _fine_radii(overview), overview.sign, rule),
+    )
+
+
+def layout_of(fit: Fit) -> PlayLayout:
+    """Give where the plays of a fit stand in its theta.
+
+    Parameters
+    ----------
+    fit
+        A fit of a model of plays.
+    """
+    parametrization = fit.parametrization
+    assert isinstance(parametrization, PlayParametrization), "a family of plays made it"
+    return parametrization.layout
+
+
+def _fine_radii(overview: Overview) -> Array:
+    return overview.data.largest_radius * np.arange(1, FINE_BANK + 1) / (FINE_BANK + 1)
+
+
+def _working_plays(fit: Fit, data: Data) -> NDArray[np.bool_]:
+    """Tell which plays have a weight, and a radius of their own."""
+    layout, theta = layout_of(fit), fit.solution.theta
+    weights, r = layout.weights(theta), layout.radii(theta)
+    apart = np.diff(r, prepend=-np.inf) > 1e-4 * data.half_range
+    return np.asarray((np.abs(weights[1:]) > 1e-6 * np.abs(weights).max()) & apart)

@@ -1,0 +1,278 @@
+"""Identification of a power law by variable projection over its exponent alone.
+
+The output of the model is ``c1 u + c2 g(u; c3) + offset`` with g the operator of c1 = 0, c2 = 1:
+for each c3 the other constants follow by linear least squares, and what is left is a function of c3
+alone. It is evaluated over a grid that covers every shape a record can tell apart, and refined
+around each of its minima, so that the global one is found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.optimize
+from numpy.typing import NDArray
+
+from hyst.errors import NotIdentifiableError
+from hyst.identification.record_use.used_samples import Data
+from hyst.models import MasingOperator, PowerLaw
+from hyst.models.masing import as_mode
+from hyst.signals import Record, estimate_noise, reversals, suggest_dead_band
+
+Array = NDArray[np.float64]
+
+SMALLEST_POWER, LARGEST_POWER = 0.02, 30.0
+"""Of c3: below, a line and c2 p^c3 are one; beyond, the curve is a line with a jump at its end.
+Coarse records tell even less; see ``largest_power``."""
+
+GRID = 48
+
+SMALLEST_SHARE = 1e-9
+"""Of c2 p^c3 at the end of the largest branch in c1: below, there is no hysteresis but rounding."""
+SMALLEST_GAIN = 15.0
+"""Squared residual a power law must save against a line, in residual variances."""
+
+FEWEST_SLOPES = 10
+
+
+@dataclass(frozen=True)
+class PowerLawFit:
+    """Constants of ``y = sign (c1 u + c2 g(u; c3)) + offset``.
+
+    Parameters
+    ----------
+    c1, c2, c3
+        As in ``RambergOsgood``.
+    offset
+        Output units.
+    dead_band
+        Of the memory, input units.
+    evaluations
+        How many exponents were tried.
+    largest_power
+        The largest c3 the records could tell.
+    """
+
+    c1: float
+    c2: float
+    c3: float
+    offset: float
+    dead_band: float
+    evaluations: int
+    largest_power: float = LARGEST_POWER
+
+
+def largest_power(data: Data) -> float:
+    """Give the largest c3 that records tell from a line with a jump at its end.
+
+    The curve bends within about ``1/(c3 + 1)`` of the end of a branch; a step of the input, the
+    median of those that are one, must be shorter than that.
+
+    Parameters
+    ----------
+    data
+        The records.
+    """
+    windows = zip(data.records, data.windows(), strict=True)
+    steps = np.abs(np.concatenate([np.diff(record.u[window]) for record, window in windows]))
+    share = float(np.median(steps[steps > 0.0])) / (2.0 * data.half_range)
+    return float(np.clip(1.0 / share - 1.0, 2.0, LARGEST_POWER))
+
+
+def fit_power_law(
+    data: Data,
+    sign: float = 1.0,
+    *,
+    memory: str = "masing",
+    regression: str = "output",
+    signal_to_noise: float = 3.0,
+) -> PowerLawFit:
+    """Find the constants of a power law by variable projection over c3.
+
+    Parameters
+    ----------
+    data
+        The records.
+    sign
+        +1, or -1 for an actuator whose output falls as its input rises.
+    memory
+        ``"masing"`` or ``"last-reversal"``.
+    regression
+        ``"output"``: y itself, with the integrated regressor. ``"slope"``: dy/du, as S3 has it.
+    signal_to_noise
+        Of the differences of y that take part in a regression of slopes.
+
+    Returns
+    -------
+    PowerLawFit
+
+    Raises
+    ------
+    NotIdentifiableError
+        If the slope does not grow with the way since a reversal, or not beyond the noise, or too
+        few differences of y stand out of the noise.
+
+    Notes
+    -----
+    S3 theorem 5, whose eq. 12 means ``(I - Phi Phi^+) z``; Golub and Pereyra, Inverse Problems 19
+    (2003), R1.
+    """
+    band = _dead_band(data.records, memory)
+    regressor = _Regressor(data, memory, band)
+    if regression == "slope":
+        table = _slope_table(data, regressor, sign, signal_to_noise)
+    else:
+        table = _output_table(data, regressor, sign)
+    largest = largest_power(data)
+    c3, evaluations = _least(lambda power: _solve(*table(power))[1], largest)
+    (c1, c2), left = _solve(*table(c3))
+    # In these units a full branch of the largest loop is p = 2.
+    if not (c1 > 0.0 and c2 * 2.0**c3 > SMALLEST_SHARE * c1):
+        raise NotIdentifiableError(
+            "the slope of the loop does not grow with the way since a reversal, so that no power "
+            "law with c1, c2 > 0 fits; use family 'pi' or 'linear'"
+        )
+    if regression == "output":
+        _require_a_loop(*table(c3), left)
+    c2 *= regressor.unit**-c3
+    modelled = sign * (c1 * regressor.input() + c2 * regressor(c3) * regressor.unit**c3)
+    offset = float(np.mean(data.measured() - modelled))
+    return PowerLawFit(float(c1), float(c2), c3, offset, band, evaluations, largest)
+
+
+def _require_a_loop(matrix: Array, target: Array, left: float) -> None:
+    """Refuse a power law that describes the records no better than a line, but for noise.
+
+    Two constants more, and the best of many exponents, always save some multiples of the residual
+    variance; of white noise less than ``SMALLEST_GAIN`` in all but one of some thousand records.
+    """
+    line = matrix[:, 0]
+    by_line = float(target @ target) - float(line @ target) ** 2 / float(line @ line)
+    variance = left / max(target.size - 4, 1)
+    if by_line - left < SMALLEST_GAIN * variance:
+        raise NotIdentifiableError(
+            "a power law describes the records no better than a straight line, but for noise; use "
+            "family 'linear'"
+        )
+
+
+class _Regressor:
+    """g(u; c3) over the samples used, in units in which half the input range is 1."""
+
+    def __init__(self, data: Data, memory: str, dead_band: float) -> None:
+        self._data, self._memory, self._dead_band = data, memory, dead_band
+        self.unit = data.half_range
+
+    def __call__(self, c3: float) -> Array:
+        return np.concatenate(self.by_record(c3))
+
+    def by_record(self, c3: float) -> list[Array]:
+        curve = PowerLaw(0.0, self.unit**-c3, c3)
+        operator = MasingOperator(curve, as_mode(self._memory), dead_band=self._dead_band)
+        windows = zip(self._data.records, self._data.windows(), strict=True)
+        return [operator(record.u[: window.stop])[window] for record, window in windows]
+
+    def inputs(self) -> list[Array]:
+        windows = zip(self._data.records, self._data.windows(), strict=True)
+        return [record.u[window] for record, window in windows]
+
+    def input(self) -> Array:
+        return np.concatenate(self.inputs())
+
+
+Table = Callable[[float], tuple[Array, Array]]
+"""c3 -> regressors (N, 2), target (N,)"""
+
+
+def _output_table(data: Data, regressor: _Regressor, sign: float) -> Table:
+    """Regress y on u and g, the offset taken out by their means."""
+    y = sign * data.measured()
+    u, target = regressor.input(), y - y.mean()
+    centred = u - u.mean()
+
+    def table(c3: float) -> tuple[Array, Array]:
+        g = regressor(c3)
+        return np.column_stack([centred, g - g.mean()]), target
+
+    return table
+
+
+def _slope_table(data: Data, regressor: _Regressor, sign: float, signal_to_noise: float) -> Table:
+    """Regress dy/du on 1 and dg/du where the difference of y stands out of its noise (S3 III-D).
+
+    The secant of g takes the place of p^c3 in the middle, which it is up to second order, and is
+    right in both memories.
+    """
+    outputs = [
+        sign * record.y[window.start + data.delay : window.stop + data.delay]
+        for record, window in zip(data.records, data.windows(), strict=True)
+    ]
+    inputs = regressor.inputs()
+    du = np.concatenate([np.diff(each) for each in inputs])
+    dy = np.concatenate([np.diff(each) for each in outputs])
+    noise = np.sqrt(2.0) * max(estimate_noise(each) for each in outputs)
+    mean_slope = np.ptp(np.concatenate(outputs)) / (2.0 * data.half_range)
+    used = (np.abs(du) > 0.0) & (np.abs(du) * mean_slope > signal_to_noise * noise)
+    if used.sum() < FEWEST_SLOPES:
+        raise NotIdentifiableError(
+            f"only {int(used.sum())} differences of the output are {signal_to_noise:g} times their "
+            "noise; lower the option signal-to-noise, sample less often, or fit the output itself"
+        )
+    target = dy[used] / du[used]
+
+    def table(c3: float) -> tuple[Array, Array]:
+        dg = np.concatenate([np.diff(each) for each in regressor.by_record(c3)])
+        return np.column_stack([np.ones(target.size), dg[used] / du[used]]), target
+
+    return table
+
+
+def _solve(matrix: Array, target: Array) -> tuple[Array, float]:
+    """Give both coefficients, none negative, and the sum of squared residuals.
+
+    One column is scaled to the other; a pair of columns needs no more than its QR factors.
+    """
+    scale = np.linalg.norm(matrix, axis=0)
+    if not scale.all():
+        return np.zeros(2), float(target @ target)
+    q, r = np.linalg.qr(matrix / scale)
+    moment = q.T @ target
+    beyond = float(target @ target - moment @ moment)
+    coefficients, residual = scipy.optimize.nnls(r, moment)
+    return coefficients / scale, max(beyond, 0.0) + float(residual) ** 2
+
+
+def _least(cost: Callable[[float], float], largest: float) -> tuple[float, int]:
+    """Find the global minimum over c3: a grid over log c3, then Brent's method in every dip."""
+    grid = np.geomspace(SMALLEST_POWER, largest, GRID)
+    costs = np.array([cost(float(power)) for power in grid])
+    evaluations = GRID
+    best, least = float(grid[np.argmin(costs)]), float(costs.min())
+    padded = np.concatenate([[np.inf], costs, [np.inf]])
+    dips = np.flatnonzero((costs <= padded[:-2]) & (costs <= padded[2:]))
+    for dip in dips[np.argsort(costs[dips])][:4]:
+        low, high = grid[max(dip - 1, 0)], grid[min(dip + 1, GRID - 1)]
+        found = scipy.optimize.minimize_scalar(
+            lambda log_power: cost(float(np.exp(log_power))),
+            bounds=(float(np.log(low)), float(np.log(high))),
+            method="bounded",
+            options={"xatol": 1e-10},
+        )
+        evaluations += int(found.nfev)
+        if found.fun < least:
+            best, least = float(np.exp(found.x)), float(found.fun)
+    return best, evaluations
+
+
+def _dead_band(records: Sequence[Record], memory: str) -> float:
+    """Give the dead band that keeps small turns of a measured input from resetting the memory."""
+    if memory == "masing":
+        return 0.0
+    bands = [suggest_dead_band(record.u) for record in records]
+    has_small_turns = any(
+        reversals(record.u, 0.0).size != reversals(record.u, band).size
+        for record, band in zip(records, bands, strict=True)
+    )
+    return max(bands) if has_small_turns else 0.0

@@ -1,0 +1,209 @@
+"""All families, from the simplest to the richest. A new one is one line here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from hyst.errors import InputError
+from hyst.identification.families.family import Family, require_this_version
+from hyst.identification.families.linear import Linear
+from hyst.identification.families.plays import (
+    GeneralizedPrandtlIshlinskii,
+    ModifiedPrandtlIshlinskii,
+    PrandtlIshlinskii,
+)
+from hyst.identification.families.ramberg_osgood import RambergOsgood
+from hyst.identification.families.rate_dependent import RateDependent
+
+_CLASSES: tuple[type[Family], ...] = (
+    Linear,
+    RambergOsgood,
+    PrandtlIshlinskii,
+    GeneralizedPrandtlIshlinskii,
+    ModifiedPrandtlIshlinskii,
+    RateDependent,
+)
+
+AUTO = "auto"
+
+
+class Families(Mapping[str, Family]):
+    """The families by name, each with the default options; their classes are attributes.
+
+    Examples
+    --------
+    >>> import hyst
+    >>> "mpi" in hyst.families, hyst.families["mpi"].words.full_name
+    (True, 'modified Prandtl-Ishlinskii model')
+    >>> hyst.families.RateDependent(spacing="free").spacing
+    'free'
+    """
+
+    def __init__(self, classes: tuple[type[Family], ...]) -> None:
+        self._by_name = {each.name: each for each in classes}
+        self._by_class = {each.__name__: each for each in classes}
+
+    def __getitem__(self, name: str) -> Family:
+        return self._by_name[name]()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._by_name)
+
+    def __len__(self) -> int:
+        return len(self._by_name)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._by_name
+
+    def __getattr__(self, name: str) -> type[Family]:
+        try:
+            return self.__dict__["_by_class"][name]  # type: ignore[no-any-return]
+        except KeyError:
+            raise AttributeError(
+                f"hyst.families has no {name!r}; its classes are "
+                f"{', '.join(self.__dict__.get('_by_class', ()))}"
+            ) from None
+
+    def __dir__(self) -> list[str]:
+        return sorted([*self._by_class, "get", "items", "keys", "values"])
+
+    def __repr__(self) -> str:
+        return f"<families {', '.join(self)}>"
+
+    def compared(self) -> tuple[str, ...]:
+        """Give the names that ``family="auto"`` compares."""
+        return tuple(name for name, each in self._by_name.items() if each.compared)
+
+    def takers(self, option: str) -> tuple[str, ...]:
+        """Give the names of the families that have an option.
+
+        Parameters
+        ----------
+        option
+            Its name.
+        """
+        return tuple(name for name, each in self._by_name.items() if option in each.options())
+
+    def make(self, name: str, options: Mapping[str, Any]) -> Family:
+        """Give a family with those of the options that it has.
+
+        Parameters
+        ----------
+        name
+            Of the family.
+        options
+            Values by name; those of other families are passed over.
+        """
+        its_own = self._by_name[name].options()
+        return self._by_name[name](**{key: options[key] for key in options if key in its_own})
+
+
+families = Families(_CLASSES)
+"""``hyst.families``."""
+
+
+def names_of(family: str) -> tuple[str, ...]:
+    """Give the names of the families that a text names, from the simplest to the richest.
+
+    Parameters
+    ----------
+    family
+        ``"auto"``, a name, or names with commas between them.
+
+    Raises
+    ------
+    InputError
+        If one is unknown; all there are, are named.
+    """
+    asked = [each.strip() for each in family.split(",")]
+    for each in asked:
+        if each != AUTO and each not in families:
+            known = ", ".join((AUTO, *families))
+            raise InputError(f"unknown family {each!r}; choose one of {known}")
+    names = {name for each in asked for name in (families.compared() if each == AUTO else (each,))}
+    return tuple(name for name in families if name in names)
+
+
+def chosen_families(family: str | Family, options: Mapping[str, Any]) -> tuple[Family, ...]:
+    """Give the families to compare, each with its options.
+
+    Parameters
+    ----------
+    family
+        As of ``identify``.
+    options
+        Values by name.
+
+    Returns
+    -------
+    tuple of Family
+
+    Raises
+    ------
+    InputError
+        If a family is unknown or of another version, or an option is of none of them.
+    """
+    if isinstance(family, Family):
+        return (_family_object(family, options),)
+    if not isinstance(family, str):
+        raise InputError(
+            f"family is of type {type(family).__name__}; give a name, as one of "
+            f"{', '.join(families)}, or a family of hyst.families with its options"
+        )
+    names = names_of(family)
+    for option in options:
+        require_taken(option, names)
+    return tuple(families.make(name, options) for name in names)
+
+
+def require_taken(option: str, names: tuple[str, ...], said: str = "", of: str = "family") -> None:
+    """Refuse an option that no family of those named has.
+
+    Parameters
+    ----------
+    option
+        Its name in Python.
+    names
+        Of the families.
+    said
+        How the option was typed, if not by its name.
+    of
+        What chose the families, as it was typed.
+
+    Raises
+    ------
+    InputError
+        If it is of other families, which are named, or of none.
+    """
+    takers = families.takers(option)
+    if not takers:
+        known = dict.fromkeys(each for name in names for each in families[name].options())
+        has = f"has {', '.join(known)}" if known else "has none"
+        raise InputError(
+            f"{said or option!r} is no option of family {_listed(names)}, which {has}"
+        )
+    if not set(takers) & set(names):
+        raise InputError(
+            f"{said or option} is for {of} {_listed(takers)}, not for {_listed(names)}; leave it "
+            f"out, or choose another {of}"
+        )
+
+
+def _family_object(family: Family, options: Mapping[str, Any]) -> Family:
+    if options:
+        raise InputError(
+            f"{next(iter(options))} is given beside a family object; give its options to "
+            f"hyst.families.{type(family).__name__}"
+        )
+    if type(family) not in _CLASSES:
+        raise InputError(
+            f"the family object {type(family).__name__} is none of this hyst; choose one of "
+            f"hyst.families: {', '.join(each.__name__ for each in _CLASSES)}"
+        )
+    require_this_version(family)
+    return family
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} or {names[-1]}"

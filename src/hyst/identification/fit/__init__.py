@@ -1,0 +1,1 @@
+"""Fit free parameters to records: the problem, its solution, and linear steps."""

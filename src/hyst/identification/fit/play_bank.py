@@ -1,0 +1,66 @@
+"""Play outputs and normal equations of a bank of plays over several records."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst import _engine
+from hyst.identification.record_use.used_samples import Data
+
+Array = NDArray[np.float64]
+
+
+def bank_matrix(data: Data, r: Array) -> Array:
+    """Give the regressors of the weights.
+
+    Parameters
+    ----------
+    data
+        The records.
+    r
+        Shape (n,), radii, input units.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (samples used, 1 + n): the input, then the play outputs, of all records one after the
+        other.
+    """
+    blocks = []
+    for record, window in zip(data.records, data.windows(), strict=True):
+        z = np.empty((len(record), r.size))
+        _engine.play_outputs(r.tolist(), np.zeros(r.size), record.u, z)
+        blocks.append(np.column_stack([record.u[window], z[window]]))
+    return np.concatenate(blocks)
+
+
+def bank_gram(data: Data, r: Array, u_origin: float = 0.0, y_origin: float = 0.0) -> Array:
+    """Sum the inner products of the columns [u, z_1 .. z_n, 1, y] while the records stream by.
+
+    Play outputs move with their input, so input and play outputs share one origin.
+
+    Parameters
+    ----------
+    data
+        The records.
+    r
+        Shape (n,), radii, input units.
+    u_origin, y_origin
+        Subtracted from the columns u and z, and from y: near their means no digits cancel later.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (n + 3, n + 3), symmetric.
+    """
+    width = r.size + 3
+    total = np.zeros((width, width))
+    for record, window in zip(data.records, data.windows(), strict=True):
+        gram = np.zeros((1, width, width))
+        u = record.u[: window.stop] - u_origin
+        y = record.y[data.delay :] - y_origin
+        edges = [window.start, window.stop]
+        _engine.play_gram(r.tolist(), np.full(r.size, -u_origin), u, y, edges, gram)
+        total += gram[0]
+    return total

@@ -1,0 +1,151 @@
+"""The least squares problem of a parametrization over records."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.identification.fit.bounded_least_squares import Problem
+from hyst.identification.fit.parametrization import Parametrization
+from hyst.identification.record_use.used_samples import Data
+from hyst.operators import Operator
+
+Array = NDArray[np.float64]
+
+ROUNDING = 1e-12
+"""A residual of this share of the output range is rounding."""
+
+HOLDS_A_GAUGE = 10.0
+"""Weight of a gauge beside the norm of the centred output: a scale must not drift."""
+
+NO_STEP_TO = 1e3
+"""Residual, over the norm of the centred output, of a theta that makes no operator."""
+
+
+def model_output(data: Data, operator: Operator) -> Array:
+    """Give the model's output over the samples used, all records one after the other.
+
+    Parameters
+    ----------
+    data
+        The records.
+    operator
+        The model.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (samples used,).
+    """
+    return np.concatenate(
+        [operator(r.u[: w.stop])[w] for r, w in zip(data.records, data.windows(), strict=True)]
+    )
+
+
+def model_jacobian(data: Data, operator: Operator) -> Array:
+    """Give the derivative of ``model_output`` by the operator's constants.
+
+    Parameters
+    ----------
+    data
+        The records.
+    operator
+        The model.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (samples used, constants).
+    """
+    return np.concatenate(
+        [
+            operator.jacobian(r.u[: w.stop])[w]
+            for r, w in zip(data.records, data.windows(), strict=True)
+        ]
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """Model outputs and their derivatives by theta over the samples used.
+
+    Parameters
+    ----------
+    data
+        The records.
+    parametrization
+        Free parameters of a model.
+    """
+
+    data: Data
+    parametrization: Parametrization
+
+    def output(self, theta: Array) -> Array:
+        """Give the output of the model of canonical theta, shape (samples used,)."""
+        return model_output(self.data, self.parametrization.operator(theta))
+
+    def jacobian(self, theta: Array) -> Array:
+        """Give its derivative by theta, shape (samples used, m)."""
+        by_constants = model_jacobian(self.data, self.parametrization.operator(theta))
+        return by_constants @ self.parametrization.transform
+
+
+def problem_of(
+    data: Data,
+    parametrization: Parametrization,
+    chosen: NDArray[np.bool_] | None = None,
+    root_weights: Array | None = None,
+) -> Problem:
+    """Pose the least squares problem of a parametrization over all or some samples.
+
+    Parameters
+    ----------
+    data
+        The records.
+    parametrization
+        Free parameters of a family.
+    chosen
+        Shape (samples used,): which samples count; all if left out.
+    root_weights
+        Shape (samples used,): square root of every sample's weight; 1 if left out.
+
+    Returns
+    -------
+    Problem
+    """
+    y = data.measured()
+    rows: NDArray[np.bool_] | slice = slice(None) if chosen is None else chosen
+    root = None if root_weights is None else root_weights[rows]
+    target = y[rows]
+    evaluation = Evaluation(data, parametrization)
+    spread = float(np.linalg.norm(y - y.mean()))
+    gauges, is_allowed = parametrization.gauges, parametrization.is_allowed
+
+    def residual(theta: Array) -> Array:
+        if is_allowed is not None and not is_allowed(theta):
+            count = 0 if gauges is None else gauges(theta)[0].size
+            return np.full(target.size + count, NO_STEP_TO * spread)
+        errors = evaluation.output(theta)[rows] - target
+        errors = errors if root is None else root * errors
+        if gauges is None:
+            return errors
+        return np.concatenate([errors, HOLDS_A_GAUGE * spread * gauges(theta)[0]])
+
+    def linearize(theta: Array) -> tuple[Array, Array]:
+        jacobian = evaluation.jacobian(theta)[rows]
+        jacobian = jacobian if root is None else root[:, None] * jacobian
+        if gauges is not None:
+            held = HOLDS_A_GAUGE * spread * gauges(theta)[1]
+            jacobian = np.concatenate([jacobian, held])
+        return residual(theta), jacobian
+
+    return Problem(
+        linearize,
+        residual,
+        parametrization.lower,
+        parametrization.upper,
+        parametrization.canonical,
+        negligible=float(target.size * (ROUNDING * np.ptp(y)) ** 2),
+    )

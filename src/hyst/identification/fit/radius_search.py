@@ -1,0 +1,89 @@
+"""Leave the local minima that kinks make.
+
+The output bends where a radius passes half a swing of the input, so the cost has a kink at every
+half swing, some of them local minima that a derivative cannot leave. Each radius in turn is moved
+across the next kinks, and some way towards its neighbours, and a short fit is tried from there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.identification.fit.bounded_least_squares import Problem, Solution, minimize
+
+Array = NDArray[np.float64]
+
+SHARES = (-0.5, -0.25, -0.1, -0.03, 0.03, 0.1, 0.25, 0.5)
+"""How far towards the neighbouring radius below (negative) or above each radius is moved."""
+
+NEXT_INTERVALS = 2
+"""How many intervals between kinks are tried on either side of a radius."""
+
+TRIAL_ITERATIONS = 2
+MOST_ROUNDS = 5
+
+
+def search_radii(
+    problem: Problem, solution: Solution, plays: int, kinks: Array, max_iterations: int
+) -> Solution:
+    """Improve a fit by moving its radii across kinks, until no move helps.
+
+    Parameters
+    ----------
+    problem
+        The least squares problem; theta starts with p0, p_1 .. p_n, r_1 .. r_n.
+    solution
+        A converged fit.
+    plays
+        Number of plays n.
+    kinks
+        Half swings of the input of the plays, ascending, in its units.
+    max_iterations
+        Of the fit after a move that helped.
+
+    Returns
+    -------
+    Solution
+        At least as good as ``solution``.
+    """
+    for _ in range(MOST_ROUNDS):
+        trials = [
+            minimize(problem, theta, TRIAL_ITERATIONS)
+            for theta in _moves(problem, solution.theta, plays, kinks)
+        ]
+        if not trials:
+            return solution
+        best = min(trials, key=lambda trial: trial.cost)
+        # A lower cost by one residual variance is worth it; less is within the noise.
+        noise = solution.cost / problem.residual(solution.theta).size
+        if best.cost > solution.cost - noise:
+            return solution
+        improved = minimize(problem, best.theta, max_iterations)
+        solution = min(improved, best, key=lambda each: each.cost)
+    return solution
+
+
+def _moves(problem: Problem, theta: Array, plays: int, kinks: Array) -> Iterator[Array]:
+    at = slice(plays + 1, 2 * plays + 1)
+    r, lower, upper = theta[at], problem.lower[at], problem.upper[at]
+    for i in np.flatnonzero(lower < upper):
+        below = r[i - 1] if i > 0 else lower[i]
+        above = r[i + 1] if i + 1 < plays else upper[i]
+        shares = np.array(SHARES)
+        places = r[i] + shares * np.where(shares > 0.0, above - r[i], r[i] - below)
+        for place in np.concatenate([places, _next_intervals(float(r[i]), kinks)]):
+            moved = theta.copy()
+            moved[plays + 1 + i] = place
+            yield moved
+
+
+def _next_intervals(r: float, kinks: Array) -> Array:
+    """Give the middles of the next intervals between kinks, the one r lies in left out."""
+    middles = (kinks[1:] + kinks[:-1]) / 2.0
+    inside = int(np.searchsorted(kinks, r)) - 1
+    near = np.arange(inside - NEXT_INTERVALS, inside + NEXT_INTERVALS + 1)
+    near = near[(near >= 0) & (near < middles.size) & (near != inside)]
+    return np.asarray(middles[near])

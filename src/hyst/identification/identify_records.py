@@ -1,0 +1,102 @@
+"""The main job of hyst: from records to a model that can be inverted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Literal
+
+from threadpoolctl import threadpool_limits
+
+from hyst.identification.families.family import Family
+from hyst.identification.families.registry import chosen_families
+from hyst.identification.options import Options, listed, require_sample_time, silent
+from hyst.identification.record_use.overview import Overview
+from hyst.identification.record_use.used_samples import require_same_units
+from hyst.identification.result.identified import Identified
+from hyst.identification.result.identified_from_fit import identified_from_fit
+from hyst.identification.search import find
+from hyst.signals import Record
+
+
+def identify(
+    records: Record | Sequence[Record],
+    *,
+    family: str | Family = "auto",
+    delay: int | Literal["auto"] = "auto",
+    start: int | Literal["auto"] = "auto",
+    validation: Record | Sequence[Record] = (),
+    max_iterations: int = 200,
+    allow_unconverged: bool = False,
+    progress: Callable[[str], None] | None = None,
+    **options: Any,
+) -> Identified:
+    """Identify a model of a family, or choose among families, from records.
+
+    Families are in ``hyst.families``, each with its words and options: ``linear``, ``pi``, ``gpi``,
+    ``mpi``, ``ramberg-osgood``, ``rdpi``, ``hammerstein`` and more.
+
+    Parameters
+    ----------
+    records
+        One or more records of one actuator with one sample time. They are not joined: each has its
+        own memory.
+    family
+        A name; several with commas between them, which are compared by blocked cross-validation,
+        the simplest within one standard error of the best being taken; ``"auto"``: those that
+        suit most actuators; or a family with its options, as
+        ``hyst.families.RateDependent(spacing="free")``.
+    delay
+        Whole samples by which the output lags the input, or ``"auto"``. The model is identified
+        without it; ``Identified.predict`` adds it. With dynamics it is part of the model.
+    start
+        First sample to use. ``"auto"``: the first at which the memory is known whatever was before,
+        because the input has passed its range; all samples with no memory before them if that would
+        leave less than half of the record.
+    validation
+        Records to judge the model by; they do not take part in the fit.
+    max_iterations
+        Of the final fit, for each of its starts.
+    allow_unconverged
+        Give the result with its status instead of raising if the fit did not converge.
+    progress
+        Called with a line of text before each step.
+    **options
+        Options of the families that are named, as ``plays=4`` or ``memory="last-reversal"``; each
+        goes to those that have it. ``help(hyst.families.RambergOsgood)`` explains them.
+
+    Returns
+    -------
+    Identified
+
+    Raises
+    ------
+    InputError
+        If an argument or a record cannot be used, a family is not known, or an option is of none of
+        the families that are named.
+    NotIdentifiableError
+        If the input is constant or turns less than twice, or there are fewer samples than
+        parameters.
+    SolverError
+        If the fit did not converge and ``allow_unconverged`` is false.
+
+    Examples
+    --------
+    >>> import numpy as np, hyst
+    >>> u = np.sin(np.linspace(0.0, 20.0, 2000)) * np.linspace(1.0, 0.5, 2000)
+    >>> true = hyst.PrandtlIshlinskii(p=[0.5, 0.3], r=[0.1, 0.3], p0=1.0)
+    >>> found = hyst.identify(hyst.Record(u, true(u), dt=1e-3), family="pi", plays=2)
+    >>> bool(np.abs(found.model(u) - true(u))[500:].max() < 1e-6)
+    True
+    """
+    given, judged = listed(records), listed(validation)
+    require_same_units((*given, *judged))
+    wanted = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
+    families = chosen_families(family, options)
+    with threadpool_limits(1, user_api="blas"):
+        # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
+        found = find(given, families, wanted)
+        require_sample_time(judged, found.data)
+        identified = identified_from_fit(
+            found.data, found.fit, found.candidates, judged, found.notes
+        )
+        return found.fit.family.result(identified, found.fit, Overview(found.data, delay))

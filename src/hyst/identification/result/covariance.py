@@ -1,0 +1,73 @@
+"""Standard errors that take the autocorrelation of the residual into account."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+def robust_covariance(jacobian: Array, residual: Array, lengths: Sequence[int]) -> Array:
+    """Estimate the covariance of least squares estimates with autocorrelated residuals.
+
+    ``(J'J)^-1 S (J'J)^-1 N / (N - m)`` with S the Bartlett-weighted sum of the autocovariances of
+    the scores ``J_k e_k``. White residuals give the usual covariance.
+
+    Parameters
+    ----------
+    jacobian
+        Shape (N, m), full rank.
+    residual
+        Shape (N,).
+    lengths
+        Samples of each record, in order; correlation does not reach across records.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (m, m).
+
+    Notes
+    -----
+    Newey and West, Econometrica 55 (1987), 703-708; bandwidth from a first-order autoregression of
+    the residual, Andrews, Econometrica 59 (1991), 817-858, eq. 6.2.
+    """
+    scale = np.linalg.norm(jacobian, axis=0)
+    scaled = jacobian / scale
+    bandwidth = _bandwidth(residual, lengths)
+    middle = np.zeros((scale.size, scale.size))
+    start = 0
+    for length in lengths:
+        rows = slice(start, start + length)
+        middle += _bartlett_sum(scaled[rows] * residual[rows, None], bandwidth)
+        start += length
+    inverse = np.linalg.inv(scaled.T @ scaled)
+    correction = residual.size / max(residual.size - scale.size, 1)
+    covariance = inverse @ middle @ inverse * correction
+    return np.asarray(covariance / np.outer(scale, scale))
+
+
+def _bandwidth(residual: Array, lengths: Sequence[int]) -> int:
+    """Choose the number of lags, at most a quarter of the shortest record."""
+    before = np.ones(residual.size, dtype=bool)
+    before[np.cumsum(lengths) - 1] = False
+    now, after = residual[:-1][before[:-1]], residual[1:][before[:-1]]
+    power = float(residual @ residual)
+    rho = float(np.clip(now @ after / power, -0.99, 0.99)) if power > 0.0 else 0.0
+    alpha = 4.0 * rho**2 / ((1.0 - rho) ** 2 * (1.0 + rho) ** 2)
+    lags = 1.1447 * (alpha * residual.size) ** (1.0 / 3.0)
+    return int(np.clip(np.ceil(lags), 1, max(min(lengths) // 4, 1)))
+
+
+def _bartlett_sum(scores: Array, bandwidth: int) -> Array:
+    """Sum the autocovariances with weights 1 - |lag| / bandwidth.
+
+    The sum over all windows of ``bandwidth`` samples of (window sum)(window sum)' is exactly that,
+    times the bandwidth, and needs one matrix product instead of one for each lag.
+    """
+    padding = np.zeros((bandwidth, scores.shape[1]))
+    total = np.cumsum(np.concatenate([padding, scores, padding]), axis=0)
+    windows = total[bandwidth:] - total[:-bandwidth]
+    return np.asarray(windows.T @ windows / bandwidth)

@@ -1,0 +1,128 @@
+"""How sure the free parameters of a fit are, and which of them the records do not determine.
+
+The normal matrix, its columns scaled to one size, is split into the directions the records
+determine and those they do not. The covariance lives in the former; a quantity that the latter
+could move by more than its own standard error has none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.identification.result.covariance import robust_covariance
+
+Array = NDArray[np.float64]
+
+SMALLEST_EIGENVALUE = 1e-11
+"""Of the scaled normal matrix: below it, rounding alone decides."""
+
+ROUNDING_OF_DIRECTIONS = 1e-6
+"""Share of a quantity in a direction that is nothing but the rounding of both."""
+
+NOT_DISTURBED = 0.3
+"""Standard errors by which what is not determined may move a quantity that is."""
+
+INVOLVED = 0.1
+"""Share of the largest part from which on a parameter is named."""
+
+
+@dataclass(frozen=True, eq=False)
+class Spread:
+    """Covariance of free parameters, and the directions in which they are not determined.
+
+    Parameters
+    ----------
+    covariance
+        Shape (m, m), of the part that is determined.
+    open_directions
+        Shape (m, k): changes of theta the records say nothing about, each as large as the whole
+        model.
+    shares
+        Shape (m, k): how much each parameter takes part in them.
+    """
+
+    covariance: Array
+    open_directions: Array
+    shares: Array
+
+    def of(self, rows: Array) -> Array:
+        """Give the standard errors of linear functions of theta.
+
+        Parameters
+        ----------
+        rows
+            Shape (q, m), the functions.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (q,), NaN where a function is not determined.
+        """
+        variance = np.einsum("ij,jk,ik->i", rows, self.covariance, rows)
+        errors = np.sqrt(np.maximum(variance, 0.0))
+        if self.open_directions.size:
+            parts = np.abs(rows) @ np.abs(self.open_directions)
+            moved = np.abs(rows @ self.open_directions)
+            moved[moved <= ROUNDING_OF_DIRECTIONS * parts] = 0.0
+            errors[moved.max(axis=1) > NOT_DISTURBED * errors] = np.nan
+        return errors
+
+    def involved(self, direction: int) -> NDArray[np.intp]:
+        """Give the parameters that take part in a direction that is not determined.
+
+        Parameters
+        ----------
+        direction
+            Its column in ``open_directions``, counted from 0.
+        """
+        share = self.shares[:, direction]
+        return np.flatnonzero(share > INVOLVED * share.max())
+
+
+def spread_of_estimates(
+    jacobian: Array, residual: Array, lengths: Sequence[int], theta: Array
+) -> Spread:
+    """Estimate how sure least squares estimates are.
+
+    Parameters
+    ----------
+    jacobian
+        Shape (N, m): derivative of the residual by the parameters that are free to move.
+    residual
+        Shape (N,).
+    lengths
+        Samples of each record, in order; noise does not correlate across records.
+    theta
+        Shape (m,), the estimates: a direction whose standard error is as large as all of them is
+        not determined.
+
+    Returns
+    -------
+    Spread
+    """
+    count = theta.size
+    scale = np.linalg.norm(jacobian, axis=0)
+    shown = scale > 0.0
+    unit = np.where(shown, scale, 1.0)
+    scaled = jacobian / unit
+    eigenvalues, vectors = np.linalg.eigh(scaled.T @ scaled)
+    size = float(np.abs(theta * scale).max(initial=0.0)) or 1.0
+    known = eigenvalues >= SMALLEST_EIGENVALUE
+    inner = np.zeros((count, count))
+    while known.any():
+        basis = vectors[:, known]
+        inner = robust_covariance(scaled @ basis, residual, lengths)
+        lost = np.sqrt(np.diag(inner)) > size
+        if not lost.any():
+            inner = basis @ inner @ basis.T
+            break
+        known[np.flatnonzero(known)[lost]] = False
+        inner = np.zeros((count, count))
+    open_ones = vectors[:, ~known]
+    return Spread(
+        inner / np.outer(unit, unit), open_ones * (size / unit)[:, None], np.abs(open_ones)
+    )

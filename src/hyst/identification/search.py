@@ -1,0 +1,239 @@
+"""From records and families to one final fit: units, delay, choice, fit.
+
+Everything between first sight of the records and the final fit is done on records in units of
+powers of two in which the ranges of both signals lie between 1 and 2. So results do not depend on
+the units of the records: scaling a record by powers of two scales the result, bit for bit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hyst.errors import NotIdentifiableError
+from hyst.identification.choice.delay import estimate_delay, refine_delay
+from hyst.identification.choice.selection import (
+    Contender,
+    best_of_starts,
+    compare,
+    settled,
+    simplest_good,
+)
+from hyst.identification.families.family import Family, Fit
+from hyst.identification.families.option import AUTO
+from hyst.identification.fit.bounded_least_squares import CONVERGED
+from hyst.identification.fit.parametrization import Parametrization
+from hyst.identification.options import Options, as_delay
+from hyst.identification.record_use.overview import Overview
+from hyst.identification.record_use.thinning import thinned
+from hyst.identification.record_use.used_samples import Data
+from hyst.identification.result.identified import Candidate
+from hyst.signals import Record
+
+MOST_STARTS = 3
+"""Of the final fit."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A final fit, the records it was made on, and what it was chosen from.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    data
+        Its records, with their delay.
+    candidates
+        What was compared; empty if there was nothing to choose.
+    notes
+        Sentences about what was left out before the fit.
+    """
+
+    fit: Fit
+    data: Data
+    candidates: tuple[Candidate, ...]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Task:
+    """A family, the records it uses, in powers of two of the user's units, and their scales."""
+
+    family: Family
+    given: Data
+    data: Data
+    scales: tuple[float, float]
+    notes: tuple[str, ...]
+
+    def delayed(self, delay: int) -> _Task:
+        return replace(self, given=self.given.delayed(delay), data=self.data.delayed(delay))
+
+    def searched(self) -> Data:
+        """Give fewer samples of long records, where that does not change the model."""
+        return self.data if self.family.depends_on_rate else thinned(self.data)
+
+
+def find(records: tuple[Record, ...], families: Sequence[Family], options: Options) -> Found:
+    """Choose delay, family and size, and fit it.
+
+    Long records are searched in thinned form; the last fit takes every sample. An automatic delay
+    is estimated before the family is known, and judged again by the family.
+
+    Parameters
+    ----------
+    records
+        The training records.
+    families
+        From the simplest to the richest.
+    options
+        What the user wants.
+
+    Returns
+    -------
+    Found
+        In the user's units.
+
+    Raises
+    ------
+    InputError, NotIdentifiableError, SolverError
+        As ``identify``.
+    """
+    tasks = [_task(family, records, options) for family in families]
+    _require_samples(tasks)
+    if any(not task.family.answers_late for task in tasks):
+        options.say("delay")
+    tasks = _with_delay(tasks, options)
+    fit, task, candidates = _search(tasks, options)
+    if options.delay == AUTO and fit.family.has_memory and not fit.family.answers_late:
+        delay = refine_delay(task.data, fit)
+        if delay != task.data.delay:
+            options.say("delay, judged by the family")
+            shifted = [t if t.family.answers_late else t.delayed(delay) for t in tasks]
+            fit, task, candidates = _search(shifted, options)
+    if task.searched() is not task.data:
+        fit = _polished(fit, task, options)
+    fit = replace(fit, parametrization=_in_given_units(fit, task))
+    return Found(fit, task.given, candidates, task.notes)
+
+
+def _task(family: Family, records: tuple[Record, ...], options: Options) -> _Task:
+    given, left_out = family.records_to_use(records, options.start)
+    suited, notes = family.suited(given)
+    scales = (
+        _power_of_two(2.0 * given.half_range),
+        _power_of_two(max(float(np.ptp(each.y)) for each in given.records)),
+    )
+    data = given.in_units(1.0 / scales[0], 1.0 / scales[1])
+    return _Task(
+        suited.in_units(1.0 / scales[0], 1.0 / scales[1]), given, data, scales, left_out + notes
+    )
+
+
+def _power_of_two(span: float) -> float:
+    """Give the power of two whose ratio to a range lies between 1 and 2."""
+    return math.ldexp(1.0, math.frexp(span)[1] - 1)
+
+
+def _require_samples(tasks: Sequence[_Task]) -> None:
+    """Refuse records with no more samples than the smallest model has parameters."""
+    needed = min(each.family.least_parameters(each.family.sizes()[0]) for each in tasks)
+    samples = tasks[0].data.measured().size
+    if samples <= needed:
+        raise NotIdentifiableError(
+            f"{samples} samples can be used but the model has {needed} parameters; give a longer "
+            "record or fewer plays"
+        )
+
+
+def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
+    """Give every task its delay; a family that answers late by itself takes it as an option."""
+    found: dict[int, int] = {}
+    result = []
+    for task in tasks:
+        if task.family.answers_late:
+            result.append(task)
+            continue
+        if options.delay != AUTO:
+            delay = as_delay(options.delay, task.given)
+        else:
+            key = min(task.given.starts)
+            delay = found.setdefault(key, -1)
+            if delay < 0:
+                delay = found[key] = estimate_delay(task.data)
+        result.append(task.delayed(delay))
+    return result
+
+
+def _search(
+    tasks: Sequence[_Task], options: Options
+) -> tuple[Fit, _Task, tuple[Candidate, ...]]:
+    """Choose family and size and fit it; the next best one if that fit does not converge."""
+    if len(tasks) == 1 and len(tasks[0].family.sizes()) == 1:
+        task = tasks[0]
+        overview = Overview(task.searched(), options.delay)
+        size = task.family.sizes()[0]
+        fit = _final_fit(task.family, overview, size, options)
+        return options.converged(fit), task, ()
+    contenders = compare(_with_overviews(tasks, options), options.say)
+    remaining = list(contenders)
+    while True:
+        chosen = simplest_good(remaining, contenders[0].overview.output_range)
+        fit = _final_fit(chosen.family, chosen.overview, chosen.candidate.plays, options)
+        if fit.solution.status == CONVERGED or len(remaining) == 1:
+            break
+        remaining.remove(chosen)
+    task = next(each for each in tasks if each.family is chosen.family)
+    scale = task.scales[1]
+    return options.converged(fit), task, tuple(_told(each, chosen, scale) for each in contenders)
+
+
+def _with_overviews(
+    tasks: Sequence[_Task], options: Options
+) -> list[tuple[Family, Overview]]:
+    """Give every family its records; those that use the same share what is found out."""
+    shared: dict[tuple[bool, tuple[int, ...], int], Overview] = {}
+    result = []
+    for task in tasks:
+        key = (task.family.depends_on_rate, task.data.starts, task.data.delay)
+        if key not in shared:
+            shared[key] = Overview(task.searched(), options.delay)
+        result.append((task.family, shared[key]))
+    return result
+
+
+def _told(contender: Contender, chosen: Contender, scale: float) -> Candidate:
+    """Give a candidate in the user's units, and say whether it was chosen."""
+    candidate = contender.candidate
+    return replace(
+        candidate,
+        score=candidate.score * scale,
+        standard_error=candidate.standard_error * scale,
+        chosen=contender is chosen,
+    )
+
+
+def _final_fit(family: Family, overview: Overview, size: int, options: Options) -> Fit:
+    """Fit from all starts, improve it as the family knows, and without idle parts."""
+    options.say(f"final fit: {family.named_size(size)}")
+    most = options.max_iterations
+    fit = best_of_starts(family, overview, size, MOST_STARTS, most)
+    fit = family.finish(fit, overview, most)
+    return settled(family.simplified(fit, overview, most), overview, most)
+
+
+def _polished(fit: Fit, task: _Task, options: Options) -> Fit:
+    """Go on with all samples."""
+    options.say("final fit: all samples")
+    problem = fit.problem(task.data)
+    found = fit.family.solve(problem, fit.solution.theta, options.max_iterations)
+    overview = Overview(task.data)
+    polished = settled(replace(fit, solution=found), overview, options.max_iterations)
+    return options.converged(fit.family.simplified(polished, overview, options.max_iterations))
+
+
+def _in_given_units(fit: Fit, task: _Task) -> Parametrization:
+    return fit.parametrization.in_units(fit.solution.theta, *task.scales)
