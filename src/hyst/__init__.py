@@ -35,7 +35,8 @@ if TYPE_CHECKING:
         NotInvertibleError,
         SolverError,
     )
-    from hyst.identification import Identified, identify
+    from hyst.identification import Identified, fit, identify
+    from hyst.identification.families.registry import families
     from hyst.io import read_record
     from hyst.models import (
         GeneralizedPrandtlIshlinskii,
@@ -59,6 +60,8 @@ _HOME = {
     "NotInvertibleError": "hyst.errors",
     "SolverError": "hyst.errors",
     "Identified": "hyst.identification",
+    "families": "hyst.identification.families.registry",
+    "fit": "hyst.identification.fit_model",
     "identify": "hyst.identification",
     "read_record": "hyst.io",
     "GeneralizedPrandtlIshlinskii": "hyst.models",
@@ -124,7 +127,9 @@ __all__ = [
     "demo",
     "errors",
     "export",
+    "families",
     "files",
+    "fit",
     "identification",
     "identify",
     "io",

@@ -6,11 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from hyst.identification.result.covariance import (
-    _bartlett_sum,
-    robust_covariance,
-    undetermined_combination,
-)
+from hyst.identification.result.covariance import _bartlett_sum, robust_covariance
 
 
 def test_white_residuals_give_the_textbook_covariance() -> None:
@@ -61,14 +57,3 @@ def test_the_order_of_records_does_not_matter() -> None:
     swapped = np.r_[30:90, 0:30]
     other = robust_covariance(jacobian[swapped], residual[swapped], [60, 30])
     np.testing.assert_allclose(ours, other, rtol=1e-9)
-
-
-def test_names_what_is_not_determined() -> None:
-    rng = np.random.default_rng(5)
-    a, b = rng.normal(size=(2, 100))
-    assert undetermined_combination(np.column_stack([a, b])) is None
-    share = undetermined_combination(np.column_stack([a, b, 2.0 * a]))
-    assert share is not None
-    np.testing.assert_allclose(share, [np.sqrt(0.5), 0.0, np.sqrt(0.5)], atol=1e-6)
-    idle = undetermined_combination(np.column_stack([a, np.zeros(100)]))
-    np.testing.assert_array_equal(idle, [0.0, 1.0])

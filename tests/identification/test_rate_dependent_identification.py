@@ -144,9 +144,10 @@ def test_validation_and_prediction() -> None:
         ({"spacing": "odd"}, "spacing is 'odd'"),
         ({"record_weights": "loud"}, "record_weights is 'loud'"),
         ({"record_weights": [1.0, 2.0]}, "give 3 positive numbers"),
-        ({"record_weights": [1.0, 2.0, -1.0]}, "give 3 positive numbers"),
+        ({"record_weights": [1.0, 2.0, -1.0]}, "give positive numbers, one a record"),
         ({"plays": 0}, "plays is 0"),
-        ({"radii": [50.0]}, "half the input range"),
+        ({"plays": "auto", "radii": [50.0]}, "half the input range"),
+        ({"radii": [5.0]}, "1 radii are given"),
         ({"delay": -1}, "delay is -1"),
     ],
 )

@@ -149,6 +149,13 @@ class PrandtlIshlinskii(Operator):
         """Give p0, the weights, then the thresholds."""
         return parameters_of_plays(self.p0, self.p, self.r)
 
+    def nearest_parameters(self, theta: Array) -> Array:
+        """Give the vector with radii that do not fall."""
+        n = self.p.size
+        nearest = theta.copy()
+        nearest[n + 1 : 2 * n + 1] = np.maximum.accumulate(theta[n + 1 : 2 * n + 1])
+        return nearest
+
     def with_parameters(self, theta: Sequence[float] | Array) -> PrandtlIshlinskii:
         """Give a model with other weights and thresholds and the same initial memory."""
         n = self.p.size

@@ -257,6 +257,13 @@ class RateDependentPrandtlIshlinskii(Operator):
             upper=np.concatenate([plays.upper, rate.upper]),
         )
 
+    def nearest_parameters(self, theta: Array) -> Array:
+        """Give the vector with radii that do not fall."""
+        n = self.p.size
+        nearest = theta.copy()
+        nearest[n + 1 : 2 * n + 1] = np.maximum.accumulate(theta[n + 1 : 2 * n + 1])
+        return nearest
+
     def with_parameters(self, theta: Sequence[float] | Array) -> RateDependentPrandtlIshlinskii:
         """Give a model with other constants and the same sample time, knees and initial memory."""
         n = self.p.size

@@ -86,6 +86,21 @@ class Operator(ABC):
     def parameters(self) -> Parameters:
         """Give the constants as one flat vector with names and bounds."""
 
+    def nearest_parameters(self, theta: Array) -> Array:
+        """Give the nearest parameter vector that keeps an order the constructor demands.
+
+        Parameters
+        ----------
+        theta
+            Shape (m,), within the bounds of ``parameters()``.
+
+        Returns
+        -------
+        numpy.ndarray
+            ``theta`` itself where the order of the constants is free.
+        """
+        return theta
+
     @abstractmethod
     def with_parameters(self, theta: Sequence[float] | Array) -> Operator:
         """Give the same operator with other constants.

@@ -94,6 +94,13 @@ class Chained(Operator):
             upper=np.concatenate([part.upper for part in parts]),
         )
 
+    def nearest_parameters(self, theta: Array) -> Array:
+        """Give the nearest vectors of the stages, one after the other."""
+        counts = [len(stage.parameters()) for stage in self.stages]
+        pieces = np.split(theta, np.cumsum(counts)[:-1])
+        pairs = zip(self.stages, pieces, strict=True)
+        return np.concatenate([stage.nearest_parameters(piece) for stage, piece in pairs])
+
     def with_parameters(self, theta: Sequence[float] | Array) -> Operator:
         """Give the same composition with other constants."""
         counts = [len(stage.parameters()) for stage in self.stages]

@@ -234,7 +234,8 @@ class Family(ABC):
     @final
     def named_size(self, size: int) -> str:
         """Say a size in words."""
-        return f"{self.name} with {size} plays" if size else self.name
+        name = self.name or "the model"
+        return f"{name} with {size} plays" if size else name
 
 
 @dataclass(frozen=True, eq=False)

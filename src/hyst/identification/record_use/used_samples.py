@@ -106,7 +106,12 @@ class Data:
         return replace(self, records=records, half_range=self.half_range * input_scale)
 
 
-def prepare(records: Record | Sequence[Record], start: Literal["auto"] | int, delay: int) -> Data:
+def prepare(
+    records: Record | Sequence[Record],
+    start: Literal["auto"] | int,
+    delay: int,
+    fewest_turns: int = 2,
+) -> Data:
     """Check the records and decide which samples can be used.
 
     With ``start="auto"`` a record is used from where its input has passed ``LARGEST_RADIUS`` of the
@@ -122,6 +127,8 @@ def prepare(records: Record | Sequence[Record], start: Literal["auto"] | int, de
         ``"auto"`` or the first sample to use.
     delay
         Whole samples by which the output lags.
+    fewest_turns
+        How often every input must turn: hysteresis shows only after it has turned twice.
 
     Returns
     -------
@@ -132,10 +139,10 @@ def prepare(records: Record | Sequence[Record], start: Literal["auto"] | int, de
     InputError
         If there is no record, their sample times differ, or ``start`` is no sample of every record.
     NotIdentifiableError
-        If input or output of a record is constant, or the input does not turn twice.
+        If input or output of a record is constant, or the input does not turn often enough.
     """
     given = (records,) if isinstance(records, Record) else tuple(records)
-    _check(given)
+    _check(given, fewest_turns)
     low = min(float(record.u.min()) for record in given)
     high = max(float(record.u.max()) for record in given)
     half_range = (high - low) / 2.0
@@ -175,7 +182,7 @@ def require_same_units(records: Sequence[Record]) -> None:
             known = known or unit
 
 
-def _check(records: tuple[Record, ...]) -> None:
+def _check(records: tuple[Record, ...], fewest_turns: int) -> None:
     if not records:
         raise InputError("there is no record; give at least one")
     for number, record in enumerate(records, 1):
@@ -195,7 +202,7 @@ def _check(records: tuple[Record, ...]) -> None:
                 f"the output of record {number} is constant ({record.y[0]:.6g}); check the sensor"
             )
         turns = reversals(record.u, 0.05 * float(np.ptp(record.u))).size
-        if turns < 2:
+        if turns < fewest_turns:
             raise NotIdentifiableError(
                 f"the input of record {number} turns {turns} times; hysteresis shows only after "
                 "the input has turned at least twice"

@@ -142,7 +142,8 @@ class Identified:
         str
         """
         unit = f" {self.description.output_unit}" if self.description.output_unit else ""
-        lines = [f"family {self.family}, delay {self.delay} samples, {self.status}", ""]
+        what = f"family {self.family}" if self.family else self.model.kind
+        lines = [f"{what}, delay {self.delay} samples, {self.status}", ""]
         for name, each in self.metrics.items():
             lines.append(
                 f"{name:28s} rms {each.rms:.4g}{unit} ({each.rms_percent:.3f} % of range)   "

@@ -1,0 +1,268 @@
+"""Fit any composition of operators to records, from its own constants."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal, final
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from hyst.errors import InputError, NotIdentifiableError
+from hyst.identification.choice.selection import settled
+from hyst.identification.families.family import Family, Fit, Start, Words
+from hyst.identification.fit.bounded_least_squares import Solution
+from hyst.identification.fit.parametrization import Parametrization, selection
+from hyst.identification.options import Options, as_delay, listed, require_sample_time, silent
+from hyst.identification.record_use.overview import Overview
+from hyst.identification.record_use.used_samples import Data, prepare, require_same_units
+from hyst.identification.result.identified import Identified
+from hyst.identification.result.identified_from_fit import identified_from_fit
+from hyst.operators import Operator
+from hyst.operators.parameters import Parameters
+from hyst.signals import Record
+
+Array = NDArray[np.float64]
+Bound = tuple[float, float]
+
+MOST_NAMES = 12
+"""In a message; beyond, the first ones are named."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class OwnModel(Family):
+    """A model with the free parameters its user chose; it is in no registry.
+
+    Parameters
+    ----------
+    parametrization, theta
+        What is free, and the model's own values.
+    """
+
+    name = ""
+    words = Words(full_name="model of your own", equations=(), explanations=())
+    depends_on_rate = True  # nothing is known of it
+
+    parametrization: Parametrization
+    theta: Array
+
+    def __post_init__(self) -> None:
+        """Check nothing: it has no options."""
+
+    def least_parameters(self, size: int) -> int:
+        """Give the number of free parameters."""
+        return self.parametrization.free_count
+
+    def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
+        """Start from the model's own constants."""
+        return [(self.parametrization, self.theta)]
+
+
+def fit(
+    model: Operator,
+    records: Record | Sequence[Record],
+    *,
+    free: Iterable[str] | None = None,
+    bounds: Mapping[str, Bound] | None = None,
+    delay: int = 0,
+    start: int | Literal["auto"] = "auto",
+    validation: Record | Sequence[Record] = (),
+    max_iterations: int = 200,
+    allow_unconverged: bool = False,
+    progress: Callable[[str], None] | None = None,
+) -> Identified:
+    """Fit the constants of any operator, from its own values, by the error of its output.
+
+        min  sum_k (model[u](k) - y(k + delay))^2    over the constants that are free
+
+    with analytic derivatives and bounds. The minimum is the one next to the start: ``identify``
+    finds starts, this function does not.
+
+    Parameters
+    ----------
+    model
+        Any operator or composition; its constants are where the search starts, its initial state is
+        kept.
+    records
+        One or more records of one actuator with one sample time, that of the model if it has one.
+    free
+        Names of the constants that may move, as in ``model.parameters().names``; a name without its
+        index, as ``"prandtl_ishlinskii.p"``, stands for all entries, that of a stage for all its
+        constants. All if left out; the others keep their values.
+    bounds
+        By name, as for ``free``: lowest and highest value, in the constant's unit. A constant stays
+        within its own bounds (``model.parameters()``) too.
+    delay
+        Whole samples by which the output lags the input.
+    start, validation, max_iterations, allow_unconverged, progress
+        As in ``hyst.identify``.
+
+    Returns
+    -------
+    Identified
+        Its model is of the same kind as ``model``; constants that the records do not tell apart, as
+        the gains of two stages in a row, have no standard error and are named.
+
+    Raises
+    ------
+    InputError
+        If the model is no operator, a name is unknown, nothing is free, bounds are upside down or
+        exclude the model's own value, a record has another sample time, or another argument cannot
+        be used.
+    NotIdentifiableError
+        If a signal is constant, or there are no more samples than free constants.
+    SolverError
+        If it did not converge and ``allow_unconverged`` is false.
+
+    Examples
+    --------
+    >>> import numpy as np, hyst
+    >>> u = np.sin(np.linspace(0.0, 20.0, 500))
+    >>> plays = hyst.PrandtlIshlinskii([0.4], [0.3], p0=1.0)
+    >>> dynamics = hyst.LinearDynamics.from_transfer_function([0.2], [1.0, -0.8], dt=1e-3)
+    >>> record = hyst.Record(u, (dynamics @ plays)(u), dt=1e-3)
+    >>> guess = dynamics @ hyst.PrandtlIshlinskii([0.2], [0.5], p0=0.8)
+    >>> found = hyst.fit(guess, record, free=["prandtl_ishlinskii"])
+    >>> found.model.parameters().values[:3].round(6)
+    array([1. , 0.4, 0.3])
+    """
+    if not isinstance(model, Operator):
+        raise InputError(f"the model is of type {type(model).__name__}; give an operator")
+    given, judged = listed(records), listed(validation)
+    require_same_units((*given, *judged))
+    parametrization, theta = parametrize_own(model, free, bounds or {})
+    options = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
+    data = prepare(given, start, 0, fewest_turns=0)
+    data = data.delayed(as_delay(delay, data))
+    for record in (*given, *judged):
+        model.require_sample_time(record.dt)
+    with threadpool_limits(1, user_api="blas"):
+        found = _fitted(OwnModel(parametrization, theta), data, options)
+        require_sample_time(judged, data)
+        return identified_from_fit(data, found, (), judged, ())
+
+
+def parametrize_own(
+    model: Operator, free: Iterable[str] | None, bounds: Mapping[str, Bound]
+) -> Start:
+    """Give the free constants of a model and their values.
+
+    Parameters
+    ----------
+    model
+        Any operator.
+    free, bounds
+        As of ``fit``.
+
+    Returns
+    -------
+    Parametrization
+    theta : numpy.ndarray
+
+    Raises
+    ------
+    InputError
+        As ``fit``.
+    """
+    own = model.parameters()
+    places = _free_places(own, free)
+    lower, upper = own.lower.copy(), own.upper.copy()
+    for name, bound in bounds.items():
+        low, high = _as_bound(name, bound)
+        at = _places_of(own, name)
+        lower[at], upper[at] = np.maximum(lower[at], low), np.minimum(upper[at], high)
+    _require_start_within(own, lower, upper)
+    fixed = own.values.copy()
+    fixed[places] = 0.0
+    transform = selection(own.values.size, places)
+
+    def is_allowed(theta: Array) -> bool:
+        try:
+            model.with_parameters(fixed + transform @ theta)
+        except InputError:
+            return False
+        return True
+
+    def canonical(theta: Array) -> Array:
+        nearest = model.nearest_parameters(fixed + transform @ theta)[places]
+        return np.clip(nearest, lower[places], upper[places])
+
+    return (
+        Parametrization(
+            model,
+            transform,
+            fixed,
+            lower[places],
+            upper[places],
+            canonical,
+            is_allowed=is_allowed,
+        ),
+        own.values[places],
+    )
+
+
+def _fitted(family: OwnModel, data: Data, options: Options) -> Fit:
+    samples, count = data.measured().size, family.least_parameters(0)
+    if samples <= count:
+        raise NotIdentifiableError(
+            f"{samples} samples can be used but {count} constants are free; give a longer record "
+            "or let fewer move"
+        )
+    options.say("fit")
+    unsolved = Fit(family, 0, family.parametrization, Solution(family.theta, np.inf, 0, ""))
+    most = options.max_iterations
+    solution = family.solve(unsolved.problem(data), family.theta, most)
+    found = Fit(family, 0, family.parametrization, solution)
+    return options.converged(settled(found, Overview(data), most))
+
+
+def _free_places(own: Parameters, free: Iterable[str] | None) -> list[int]:
+    if free is None:
+        places = list(range(len(own)))
+    else:
+        names = [free] if isinstance(free, str) else list(free)
+        places = sorted({int(place) for name in names for place in _places_of(own, name)})
+    if not places:
+        raise InputError("no constant is free; name at least one, or leave out free for all")
+    return places
+
+
+def _places_of(own: Parameters, name: str) -> NDArray[np.intp]:
+    """Give the places of one constant, of all entries of an array, or of a stage."""
+    found = [
+        place
+        for place, each in enumerate(own.names)
+        if each == name or each.startswith((f"{name}[", f"{name}."))
+    ]
+    if not found:
+        shown = ", ".join(own.names[:MOST_NAMES])
+        more = f" and {len(own) - MOST_NAMES} more" if len(own) > MOST_NAMES else ""
+        raise InputError(f"the model has no constant {name!r}; it has {shown}{more}")
+    return np.array(found, dtype=np.intp)
+
+
+def _as_bound(name: str, bound: Bound) -> Bound:
+    try:
+        low, high = (float(each) for each in bound)
+    except (TypeError, ValueError):
+        raise InputError(f"the bounds of {name} are {bound!r}; give two numbers") from None
+    if not low < high:
+        raise InputError(
+            f"the bounds of {name} are {low:.6g} and {high:.6g}; give the lower one first, and "
+            "leave a constant that is not to move out of free"
+        )
+    return low, high
+
+
+def _require_start_within(own: Parameters, lower: Array, upper: Array) -> None:
+    outside = np.flatnonzero((own.values < lower) | (own.values > upper))
+    if outside.size:
+        i = int(outside[0])
+        raise InputError(
+            f"{own.names[i]} is {own.values[i]:.6g} in the model, outside its bounds "
+            f"{lower[i]:.6g} to {upper[i]:.6g}; the search starts from the model's own values, so "
+            "widen the bounds or give a model within them"
+        )

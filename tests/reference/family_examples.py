@@ -1,0 +1,112 @@
+"""An actuator of every family, and how it is driven: a new family is one entry here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+import hyst
+from hyst import Record
+from hyst.operators import Affine, Operator
+
+DT = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class FamilyExample:
+    """An actuator of a family.
+
+    Parameters
+    ----------
+    model
+        The true operator.
+    drives
+        Inputs that show all its constants, one a record.
+    options
+        Of the family: what the actuator is known to be.
+    noise
+        Standard deviation of the noise that scatter is judged with, over the output's range.
+    exactly
+        Relative error to which the constants come back without noise.
+    """
+
+    model: Operator
+    drives: tuple[np.ndarray, ...]
+    options: dict[str, Any] = field(default_factory=dict)
+    noise: float = 0.005
+    exactly: float = 1e-6
+
+    def records(self, noise: float = 0.0, seed: int = 0) -> list[Record]:
+        """Give the records of the actuator with noise of a share of the output's range."""
+        rng = np.random.default_rng(seed)
+        records = []
+        for u in self.drives:
+            y = self.model(u)
+            records.append(Record(u, y + noise * np.ptp(y) * rng.normal(size=u.size), DT))
+        return records
+
+
+def decaying(samples: int = 1500, turns: float = 6.25) -> np.ndarray:
+    """Give a sine that decays from 1 after two full strokes."""
+    t = np.arange(samples) / samples
+    size = np.where(t < 0.3, 1.0, np.exp(-1.5 * (t - 0.3)))
+    return size * np.sin(2.0 * np.pi * turns * t)
+
+
+def sine(frequency: float, samples: int) -> np.ndarray:
+    """Give a sine of amplitude 1."""
+    return np.sin(2.0 * np.pi * frequency * np.arange(samples) * DT)
+
+
+def _plays(p0: float = 1.0) -> hyst.PrandtlIshlinskii:
+    return hyst.PrandtlIshlinskii([0.5, 0.3], [0.12, 0.41], p0)
+
+
+def _map(knots: list[float]) -> hyst.DeadZone:
+    return hyst.DeadZone([1.0, 0.2, -0.15], [0.0, *knots])
+
+
+def _rate_dependent() -> Operator:
+    plays = hyst.RateDependentPrandtlIshlinskii([0.5, 0.3], [0.15, 0.3], 4e-3, DT, p0=1.0)
+    return Affine(1.0, 0.3) @ plays
+
+
+_MAKE: dict[str, Callable[[], FamilyExample]] = {
+    "linear": lambda: FamilyExample(Affine(-1.3, 0.4), (decaying(),)),
+    "ramberg-osgood": lambda: FamilyExample(
+        Affine(1.0, 0.3) @ hyst.RambergOsgood(1.0, 0.6, 0.8), (decaying(),)
+    ),
+    "pi": lambda: FamilyExample(Affine(-1.0, 0.3) @ _plays(), (decaying(),), {"plays": 2}),
+    # Knots where the family puts them: evenly over the signal the map acts on.
+    "gpi": lambda: FamilyExample(
+        Affine(1.0, 0.3)
+        @ hyst.GeneralizedPrandtlIshlinskii(_map(_thirds(decaying())), _plays()),
+        (decaying(),),
+        {"plays": 2, "knots": 2},
+    ),
+    "mpi": lambda: FamilyExample(_modified(), (decaying(),), {"plays": 2, "knots": 2}),
+    "rdpi": lambda: FamilyExample(
+        _rate_dependent(), (sine(1.0, 1700), sine(20.0, 300), sine(60.0, 300)), {"plays": 2}
+    ),
+}
+
+
+def _thirds(signal: np.ndarray) -> list[float]:
+    return list(np.linspace(signal.min(), signal.max(), 4)[1:-1])
+
+
+def _modified() -> Operator:
+    return Affine(1.0, 0.3) @ hyst.ModifiedPrandtlIshlinskii(_plays(), _map([0.5, -0.5]))
+
+
+def family_example(name: str) -> FamilyExample:
+    """Give the actuator of a family."""
+    return _MAKE[name]()
+
+
+def names_with_an_example() -> set[str]:
+    """Give the families that have one."""
+    return set(_MAKE)
