@@ -7,8 +7,8 @@ import pytest
 from simulated_records import TRUE_PI, drive, record
 
 import hyst
-from hyst.identification.record_use.used_samples import prepare
 from hyst.identification.choice.delay import estimate_delay
+from hyst.identification.record_use.used_samples import prepare
 
 ASYMMETRIC = hyst.ModifiedPrandtlIshlinskii(
     TRUE_PI, hyst.DeadZone([1.0, -0.4, 0.5], [0, 0.3, -0.5])

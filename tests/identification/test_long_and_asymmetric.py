@@ -7,8 +7,8 @@ import pytest
 from simulated_records import TRUE_PI, drive, plays_by_definition, record
 
 import hyst
-from hyst.identification.record_use.used_samples import prepare
 from hyst.identification.record_use.thinning import thinned
+from hyst.identification.record_use.used_samples import prepare
 
 
 def test_thinning_keeps_the_memory_of_a_smooth_input() -> None:

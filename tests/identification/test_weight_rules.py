@@ -10,9 +10,9 @@ from scipy.optimize import lsq_linear
 from simulated_records import TRUE_PI, drive, plays_by_definition, record
 
 import hyst
-from hyst.identification.record_use.used_samples import prepare
 from hyst.identification.fit.weight_rules import INVERTIBLE
 from hyst.identification.fit.weights import fit_weights
+from hyst.identification.record_use.used_samples import prepare
 
 FRICTION = hyst.PrandtlIshlinskii(p=[-0.5, -0.3], r=[0.05, 0.2], p0=1.0)
 

@@ -8,9 +8,9 @@ from scipy.optimize import nnls
 from simulated_records import TRUE_PI, plays_by_definition, record
 
 from hyst import Affine
-from hyst.identification.record_use.used_samples import prepare
 from hyst.identification.fit.play_bank import bank_matrix
 from hyst.identification.fit.weights import LARGEST_CONDITION, fit_weights
+from hyst.identification.record_use.used_samples import prepare
 
 
 def test_recovers_the_weights_of_a_noise_free_record() -> None:

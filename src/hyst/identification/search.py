@@ -168,9 +168,7 @@ def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
     return result
 
 
-def _search(
-    tasks: Sequence[_Task], options: Options
-) -> tuple[Fit, _Task, tuple[Candidate, ...]]:
+def _search(tasks: Sequence[_Task], options: Options) -> tuple[Fit, _Task, tuple[Candidate, ...]]:
     """Choose family and size and fit it; the next best one if that fit does not converge."""
     if len(tasks) == 1 and len(tasks[0].family.sizes()) == 1:
         task = tasks[0]
@@ -191,9 +189,7 @@ def _search(
     return options.converged(fit), task, tuple(_told(each, chosen, scale) for each in contenders)
 
 
-def _with_overviews(
-    tasks: Sequence[_Task], options: Options
-) -> list[tuple[Family, Overview]]:
+def _with_overviews(tasks: Sequence[_Task], options: Options) -> list[tuple[Family, Overview]]:
     """Give every family its records; those that use the same share what is found out."""
     shared: dict[tuple[bool, tuple[int, ...], int], Overview] = {}
     result = []

@@ -279,9 +279,7 @@ class RateDependentPrandtlIshlinskii(Operator):
         powers = input_scale ** -np.arange(1.0, curve.powers.size + 1.0)
         return np.concatenate([plays, [1.0], powers, np.ones(curve.slopes.size)])
 
-    def in_units(
-        self, input_scale: float, output_scale: float
-    ) -> RateDependentPrandtlIshlinskii:
+    def in_units(self, input_scale: float, output_scale: float) -> RateDependentPrandtlIshlinskii:
         """Give the model in other units, knees and memory too."""
         n, curve = self.p.size, self.rate_curve
         scales = self.parameter_scales(input_scale, output_scale)

@@ -96,9 +96,7 @@ class Affine(Operator):
         gain, offset = as_parameter_vector(theta, 2)
         return Affine(float(gain), float(offset))
 
-    def parameter_scales(
-        self, input_scale: float, output_scale: float
-    ) -> NDArray[np.float64]:
+    def parameter_scales(self, input_scale: float, output_scale: float) -> NDArray[np.float64]:
         """Give the factors of gain and offset."""
         return np.array([output_scale / input_scale, output_scale])
 

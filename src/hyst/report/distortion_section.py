@@ -10,7 +10,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from hyst.errors import NotIdentifiableError
-from hyst.identification.families.hammerstein import BestLinearApproximation, best_linear_approximation
+from hyst.identification.families.hammerstein import (
+    BestLinearApproximation,
+    best_linear_approximation,
+)
 from hyst.report.canvas import MEASURED, MODELLED, SECOND, blank, drawn, ratio_unit, with_unit
 from hyst.report.identification_report import Section
 from hyst.report.tables import Table, number

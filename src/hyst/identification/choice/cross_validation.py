@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.fit.bounded_least_squares import minimize
-from hyst.identification.record_use.used_samples import Data
 from hyst.identification.families.family import Fit
+from hyst.identification.fit.bounded_least_squares import minimize
 from hyst.identification.fit.problem import Evaluation
+from hyst.identification.record_use.used_samples import Data
 
 Array = NDArray[np.float64]
 

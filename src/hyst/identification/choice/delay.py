@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.record_use.used_samples import Data
 from hyst.identification.families.family import Fit
 from hyst.identification.fit.play_bank import bank_matrix
 from hyst.identification.record_use.thinning import thinned
+from hyst.identification.record_use.used_samples import Data
 from hyst.signals import reversals
 
 Array = NDArray[np.float64]

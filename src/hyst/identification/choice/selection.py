@@ -173,9 +173,7 @@ def simplest_good(contenders: Sequence[Contender], output_range: float) -> Conte
     return min(good, key=lambda each: each.candidate.parameters)
 
 
-def _grow(
-    family: Family, overview: Overview, progress: Callable[[str], None]
-) -> list[Contender]:
+def _grow(family: Family, overview: Overview, progress: Callable[[str], None]) -> list[Contender]:
     found: list[Contender] = []
     best, idle = float("inf"), 0
     for size in family.sizes():

@@ -81,8 +81,11 @@ def radii_option(*, zero_too: bool = False) -> Option:
         except (TypeError, ValueError):
             values = np.empty(0)
         least = values.min(initial=np.inf)
-        if values.size == 0 or not np.isfinite(values).all() or least < 0.0 or (
-            least == 0.0 and not zero_too
+        if (
+            values.size == 0
+            or not np.isfinite(values).all()
+            or least < 0.0
+            or (least == 0.0 and not zero_too)
         ):
             raise InputError(f"{name} must be one or more positive, finite numbers")
         return tuple(values.tolist())

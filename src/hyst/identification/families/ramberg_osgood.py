@@ -164,5 +164,3 @@ def at_limit_of_power(parametrization: Parametrization, theta: Array) -> tuple[s
         f"c3 came out at its {which} limit {c3:.4g}: {shape} than a power law that this record can "
         "tell, so c3 and c2 are no estimates; compare family 'pi', or sample more often",
     )
-
-

@@ -107,7 +107,9 @@ class RateDependent(Family):
 
     plays: Any = option(AUTO, whole_number_or_auto(1, MOST_PLAYS, "Number of plays."))
     radii: Any = option(None, radii_option(zero_too=True))
-    spacing: Any = option(EVEN, choice((EVEN, FREE), "Radii even (multiples of the first) or free."))
+    spacing: Any = option(
+        EVEN, choice((EVEN, FREE), "Radii even (multiples of the first) or free.")
+    )
     record_weights: Any = option(
         EQUAL,
         Option(

@@ -180,9 +180,7 @@ def require_taken(option: str, names: tuple[str, ...], said: str = "", of: str =
     if not takers:
         known = dict.fromkeys(each for name in names for each in families[name].options())
         has = f"has {', '.join(known)}" if known else "has none"
-        raise InputError(
-            f"{said or option!r} is no option of family {_listed(names)}, which {has}"
-        )
+        raise InputError(f"{said or option!r} is no option of family {_listed(names)}, which {has}")
     if not set(takers) & set(names):
         raise InputError(
             f"{said or option} is for {of} {_listed(takers)}, not for {_listed(names)}; leave it "

@@ -10,9 +10,9 @@ import scipy.optimize
 from numpy.typing import NDArray
 
 from hyst.errors import SolverError
-from hyst.identification.record_use.used_samples import Data
 from hyst.identification.fit.play_bank import bank_gram, bank_matrix
 from hyst.identification.fit.weight_rules import NON_NEGATIVE, basis
+from hyst.identification.record_use.used_samples import Data
 
 Array = NDArray[np.float64]
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+
 def robust_covariance(jacobian: Array, residual: Array, lengths: Sequence[int]) -> Array:
     """Estimate the covariance of least squares estimates with autocorrelated residuals.
 

@@ -36,8 +36,12 @@ class Spread:
 
     Parameters
     ----------
+    unit
+        Shape (m,), sizes that bring the parameters to one scale.
+    noise
+        Size of the residual, a power of two.
     covariance
-        Shape (m, m), of the part that is determined.
+        Shape (m, m), of what is determined, in those units: it neither over- nor underflows.
     open_directions
         Shape (m, k): changes of theta the records say nothing about, each as large as the whole
         model.
@@ -45,6 +49,8 @@ class Spread:
         Shape (m, k): how much each parameter takes part in them.
     """
 
+    unit: Array
+    noise: float
     covariance: Array
     open_directions: Array
     shares: Array
@@ -62,8 +68,12 @@ class Spread:
         numpy.ndarray
             Shape (q,), NaN where a function is not determined.
         """
-        variance = np.einsum("ij,jk,ik->i", rows, self.covariance, rows)
-        errors = np.sqrt(np.maximum(variance, 0.0))
+        plain = rows / self.unit
+        size = np.abs(plain).max(axis=1, initial=0.0)
+        size = np.ldexp(1.0, np.frexp(size)[1])
+        plain = plain / size[:, None]
+        variance = np.einsum("ij,jk,ik->i", plain, self.covariance, plain)
+        errors = np.sqrt(np.maximum(variance, 0.0)) * self.noise * size
         if self.open_directions.size:
             parts = np.abs(rows) @ np.abs(self.open_directions)
             moved = np.abs(rows @ self.open_directions)
@@ -109,20 +119,20 @@ def spread_of_estimates(
     shown = scale > 0.0
     unit = np.where(shown, scale, 1.0)
     scaled = jacobian / unit
+    noise = float(np.ldexp(1.0, np.frexp(np.abs(residual).max(initial=0.0))[1]))
+    errors = residual / noise
     eigenvalues, vectors = np.linalg.eigh(scaled.T @ scaled)
     size = float(np.abs(theta * scale).max(initial=0.0)) or 1.0
     known = eigenvalues >= SMALLEST_EIGENVALUE
     inner = np.zeros((count, count))
     while known.any():
         basis = vectors[:, known]
-        inner = robust_covariance(scaled @ basis, residual, lengths)
-        lost = np.sqrt(np.diag(inner)) > size
+        inner = robust_covariance(scaled @ basis, errors, lengths)
+        lost = np.sqrt(np.diag(inner)) * noise > size
         if not lost.any():
             inner = basis @ inner @ basis.T
             break
         known[np.flatnonzero(known)[lost]] = False
         inner = np.zeros((count, count))
     open_ones = vectors[:, ~known]
-    return Spread(
-        inner / np.outer(unit, unit), open_ones * (size / unit)[:, None], np.abs(open_ones)
-    )
+    return Spread(unit, noise, inner, open_ones * (size / unit)[:, None], np.abs(open_ones))

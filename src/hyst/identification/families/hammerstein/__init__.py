@@ -10,7 +10,10 @@ from hyst.identification.families.hammerstein.distortion_levels import (
     average_periods,
     best_linear_approximation,
 )
-from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein, Loop
+from hyst.identification.families.hammerstein.identified_hammerstein import (
+    IdentifiedHammerstein,
+    Loop,
+)
 from hyst.identification.families.hammerstein.markov import MarkovParameters, fit_markov
 from hyst.identification.families.hammerstein.realization import Realization, realize
 

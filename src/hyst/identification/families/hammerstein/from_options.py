@@ -11,7 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from hyst.errors import InputError
 from hyst.identification.families.hammerstein.distortion_levels import average_periods
 from hyst.identification.families.hammerstein.front import FRONTS, FrontOptions
-from hyst.identification.families.hammerstein.identification import HammersteinOptions, identify_hammerstein
+from hyst.identification.families.hammerstein.identification import (
+    HammersteinOptions,
+    identify_hammerstein,
+)
 from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
 from hyst.identification.options import whole_number
 from hyst.signals import Record

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
-from hyst.identification.fit.bounded_least_squares import minimize
-from hyst.identification.record_use.used_samples import LARGEST_RADIUS, prepare
 from hyst.identification.families import GPI, LINEAR, MPI, PI, Parametrization
-from hyst.identification.fit.problem import Fitter, problem_of
 from hyst.identification.families.ramberg_osgood import SMALLEST_POWER, largest_power
+from hyst.identification.fit.bounded_least_squares import minimize
+from hyst.identification.fit.problem import Fitter, problem_of
+from hyst.identification.record_use.used_samples import LARGEST_RADIUS, prepare
 from hyst.models import GeneralizedPrandtlIshlinskii, PrandtlIshlinskii, RambergOsgood
 from hyst.operators import Affine, DeadZone, Operator
 from hyst.signals import Record

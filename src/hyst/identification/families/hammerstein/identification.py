@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import NotIdentifiableError, NotInvertibleError, SolverError
-from hyst.identification.result.identified_from_fit import describe, metrics_by_record
-from hyst.identification.fit.bounded_least_squares import CONVERGED, Solution
-from hyst.identification.record_use.used_samples import Data, prepare
 from hyst.identification.families import RAMBERG_OSGOOD, at_limit_of_power
 from hyst.identification.families.hammerstein.front import FrontOptions, first_front
-from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein, Loop
+from hyst.identification.families.hammerstein.identified_hammerstein import (
+    IdentifiedHammerstein,
+    Loop,
+)
 from hyst.identification.families.hammerstein.joint import (
     MOST_SAMPLES,
     Joint,
@@ -29,7 +29,11 @@ from hyst.identification.families.hammerstein.joint import (
     shortened,
 )
 from hyst.identification.families.hammerstein.markov import MarkovParameters, choose_markov
-from hyst.identification.families.hammerstein.realization import Realization, as_state_order, realize
+from hyst.identification.families.hammerstein.realization import (
+    Realization,
+    as_state_order,
+    realize,
+)
 from hyst.identification.families.hammerstein.record_checks import check_records, check_sample_time
 from hyst.identification.families.hammerstein.results import parameter_table
 from hyst.identification.families.hammerstein.uncertainty import (
@@ -39,6 +43,9 @@ from hyst.identification.families.hammerstein.uncertainty import (
     uncertainty,
 )
 from hyst.identification.families.hammerstein.without_dynamics import dynamics_doubts
+from hyst.identification.fit.bounded_least_squares import CONVERGED, Solution
+from hyst.identification.record_use.used_samples import Data, prepare
+from hyst.identification.result.identified_from_fit import describe, metrics_by_record
 from hyst.models import LinearDynamics, StableInverse
 from hyst.signals import Record
 

@@ -14,15 +14,15 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
+from hyst.identification.families.hammerstein.front import Front
 from hyst.identification.fit.bounded_least_squares import (
     CONVERGED,
     Problem,
     Solution,
     minimize,
 )
-from hyst.identification.record_use.used_samples import Data
 from hyst.identification.fit.problem import model_output
-from hyst.identification.families.hammerstein.front import Front
+from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics
 from hyst.operators import Operator
 

@@ -6,7 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.families.hammerstein.joint import Joint
-from hyst.identification.families.hammerstein.uncertainty import Uncertainty, coefficients, spread_of
+from hyst.identification.families.hammerstein.uncertainty import (
+    Uncertainty,
+    coefficients,
+    spread_of,
+)
 
 Array = NDArray[np.float64]
 

@@ -8,9 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.result.covariance import robust_covariance, undetermined_combination
+from hyst.identification.families.hammerstein.joint import (
+    Joint,
+    derivative,
+    simulated,
+    within_gauges,
+)
 from hyst.identification.record_use.used_samples import Data
-from hyst.identification.families.hammerstein.joint import Joint, derivative, simulated, within_gauges
+from hyst.identification.result.covariance import robust_covariance, undetermined_combination
 from hyst.models import LinearDynamics
 
 Array = NDArray[np.float64]

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.fit.bounded_least_squares import minimize
-from hyst.identification.record_use.used_samples import Data
-from hyst.identification.fit.problem import problem_of
 from hyst.identification.families.hammerstein.front import FrontOptions, first_front
 from hyst.identification.families.hammerstein.joint import Joint, shortened, simulated
+from hyst.identification.fit.bounded_least_squares import minimize
+from hyst.identification.fit.problem import problem_of
+from hyst.identification.record_use.used_samples import Data
 
 Array = NDArray[np.float64]
 
