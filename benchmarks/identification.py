@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 import hyst
-from hyst.identification.record_use.used_samples import prepare
 from hyst.identification.fit.play_bank import bank_matrix
 from hyst.identification.fit.weights import fit_weights
+from hyst.identification.record_use.used_samples import prepare
 
 RUNS = 200
 SAMPLES = 4000

@@ -162,11 +162,11 @@ def test_something_else_than_an_operator() -> None:
 
 def test_another_sample_time_is_refused() -> None:
     true, guess = PAIRS["plays behind dynamics"]
-    with pytest.raises(InputError, match="the model 0.001 s"):
+    with pytest.raises(InputError, match=r"the model 0\.001 s"):
         hyst.fit(guess, hyst.Record(U, true(U), 2e-3))
-    with pytest.raises(InputError, match="sample times of 0.001 s and 0.002 s"):
-        slow = hyst.LinearDynamics.from_transfer_function([0.2], [1.0, -0.8], dt=2e-3)
-        hyst.fit(slow @ DYNAMICS, record(true))
+    slow = hyst.LinearDynamics.from_transfer_function([0.2], [1.0, -0.8], dt=2e-3)
+    with pytest.raises(InputError, match=r"sample times of 0\.001 s and 0\.002 s"):
+        slow @ DYNAMICS
 
 
 def test_too_few_samples_and_constant_signals() -> None:
@@ -182,7 +182,7 @@ def test_not_converged_raises_unless_allowed() -> None:
     true, guess = PAIRS["plays behind dynamics"]
     given = record(true, noise=0.01)
     options = {"free": ["prandtl_ishlinskii"], "max_iterations": 1, "start": 0}
-    with pytest.raises(SolverError, match="the fit of the model .*did not converge"):
+    with pytest.raises(SolverError, match=r"the fit of the model .*did not converge"):
         hyst.fit(guess, given, **options)
     found = hyst.fit(guess, given, allow_unconverged=True, **options)
     assert found.status == "iteration limit"
@@ -193,7 +193,7 @@ def test_an_input_that_never_turns_will_do_for_dynamics() -> None:
     u = np.concatenate([np.zeros(10), np.ones(200)])
     guess = hyst.LinearDynamics(DYNAMICS.A * 0.9, DYNAMICS.B, DYNAMICS.C * 1.2, DYNAMICS.D, DT)
     free = ["linear_dynamics.A", "linear_dynamics.C", "linear_dynamics.D"]
-    with pytest.raises(InputError, match="linear_dynamics.A"):
+    with pytest.raises(InputError, match=r"linear_dynamics\.A"):
         hyst.fit(guess, hyst.Record(u, DYNAMICS(u), DT), free=free)
     names = ["A", "C", "D"]
     found = hyst.fit(guess, hyst.Record(u, DYNAMICS(u), DT), free=names, start=0)

@@ -69,7 +69,7 @@ def test_units_change_nothing_but_the_unit() -> None:
 
 
 def test_plays_that_cannot_be_told_apart_leave_p0_its_scatter() -> None:
-    """Pairs of nearly equal radii: 0.1.0 stated an error of p0 that its scatter passed 6.7 times."""
+    """Pairs of nearly equal radii: 0.1.0 stated an error of p0 6.7 times too small."""
     radii = [0.2, 0.200001, 0.4, 0.400001]
     true = hyst.PrandtlIshlinskii([0.3, 0.2, 0.2, 0.1], radii, p0=1.0)
     u = drive(2000)

@@ -235,7 +235,9 @@ def _averaged(records: list[hyst.Record], period: int | None) -> list[hyst.Recor
     """Give what is identified from; averaging once more, as identify does, changes nothing."""
     if period is None:
         return records
-    return [hyst.identification.families.hammerstein.average_periods(each, period) for each in records]
+    return [
+        hyst.identification.families.hammerstein.average_periods(each, period) for each in records
+    ]
 
 
 def _write(

@@ -1,7 +1,7 @@
 """Free parameters of models made of plays and a piecewise linear map.
 
-theta = (a_0 .. a_n, r_1 .. r_n, slopes of the map, offset), with ``(p0, p) = basis @ a``. The slopes
-of a map are those of its pieces, counted outwards from slope 1 around 0.
+theta = (a_0 .. a_n, r_1 .. r_n, slopes of the map, offset), with ``(p0, p) = basis @ a``. The
+slopes of a map are those of its pieces, counted outwards from slope 1 around 0.
 """
 
 from __future__ import annotations

@@ -357,8 +357,8 @@ class GeneralizedPrandtlIshlinskii(MappedPlays):
         equations=("y(t) = {sign}P[\u03b3(u)](t) + offset", PLAYS),
         explanations=(
             PLAY_TEXT,
-            "\u03b3 is a piecewise linear map of the input before the plays; it bends the loop over "
-            "the input, so that it may be asymmetric and saturate.",
+            "\u03b3 is a piecewise linear map of the input before the plays; it bends the loop "
+            "over the input, so that it may be asymmetric and saturate.",
             _SLOPES_TEXT,
         ),
     )

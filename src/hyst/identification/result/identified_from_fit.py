@@ -82,7 +82,7 @@ def constant_errors(data: Data, fit: Fit) -> tuple[Array, tuple[str, ...]]:
     tuple of str
         One sentence for each combination that is not determined.
     """
-    parametrization, theta = fit.parametrization, fit.solution.theta
+    parametrization = fit.parametrization
     if not fit.family.estimates_noise:
         return np.full(parametrization.transform.shape[0], np.nan), ()
     spread, inside = spread_of_fit(data, fit)
