@@ -25,7 +25,7 @@ from hyst.operators.base import Operator
 from hyst.operators.checks import as_constants, as_number, as_whole_number
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries, register
-from hyst.operators.stage_sink import StageSink
+from hyst.operators.stage import Stage
 from hyst.operators.traits import Traits
 
 Array = NDArray[np.float64]
@@ -307,10 +307,12 @@ class LinearDynamics(Operator):
         """
         return cls(**entries(data, ("dt", "A", "B", "C", "D"), ("delay", "x0")))
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
-        columns = self.A.T.ravel().tolist()
-        chain.add_state_space(self.delay, columns, self.B.tolist(), self.C.tolist(), self.D)
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        rows = self.A.ravel().tolist()
+        constants = (*rows, *self.B.tolist(), *self.C.tolist(), self.D)
+        choices = {"order": self.order, "delay": self.delay}
+        return (Stage("state_space", constants, choices=choices),)
 
     @property
     def order(self) -> int:

@@ -20,7 +20,7 @@ from hyst.operators.base import Operator
 from hyst.operators.checks import as_number
 from hyst.operators.parameters import Parameters
 from hyst.operators.registry import entries, register
-from hyst.operators.stage_sink import StageSink
+from hyst.operators.stage import Stage
 from hyst.operators.traits import Traits
 
 Array = NDArray[np.float64]
@@ -240,9 +240,9 @@ class MasingOperator(Operator):
         given = entries(data, ("curve", "memory"), ("depth", "dead_band"))
         return cls(curve=curve_from_dict(given.pop("curve")), **given)
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
-        self.curve.append_to(chain, self._memory(), inverse=False)
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        return (self.curve.stage(self._memory(), inverse=False),)
 
     def _memory(self) -> ReversalMemory:
         return as_memory(self.memory, self.depth, self.dead_band)

@@ -16,7 +16,7 @@ from hyst.operators.base import Operator
 from hyst.operators.checks import as_number
 from hyst.operators.parameters import Parameters
 from hyst.operators.registry import entries, register
-from hyst.operators.stage_sink import StageSink
+from hyst.operators.stage import Stage
 from hyst.operators.traits import Traits
 
 Array = NDArray[np.float64]
@@ -110,17 +110,24 @@ class _Element(Operator):
     def _is_inverse(self) -> bool:
         """Tell whether the output is u."""
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
-        chain.add_memory_element(
-            self.function.form,
-            self.function.knots.tolist(),
-            self.function.values.tolist(),
-            self._is_inverse(),
-            self.momentum == "absolute",
-            self.reset == "sign-change",
-            self.reset_to,
-            self.sample_time,
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        return (
+            Stage(
+                "memory_element",
+                tuple(self.function.values.tolist()),
+                fixed={
+                    "knots": tuple(self.function.knots.tolist()),
+                    "reset_to": (self.reset_to,),
+                },
+                choices={
+                    "inverse": int(self._is_inverse()),
+                    "absolute": int(self.momentum == "absolute"),
+                    "is_reset": int(self.reset == "sign-change"),
+                },
+                form=self.function.form,
+                dt=self.sample_time,
+            ),
         )
 
 

@@ -23,7 +23,7 @@ from hyst.operators.checks import (
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
 from hyst.operators.registry import entries, register
-from hyst.operators.stage_sink import StageSink
+from hyst.operators.stage import Stage
 from hyst.operators.traits import Traits
 
 Array = NDArray[np.float64]
@@ -298,18 +298,19 @@ class RateDependentPrandtlIshlinskii(Operator):
         curve = RateCurve(given.pop("beta"), **{key: given.pop(key, ()) for key in further})
         return cls(beta=curve, **given)
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
         curve = self.rate_curve
-        chain.add_rate_dependent_pi(
-            self.p0,
-            self.p.tolist(),
-            self.r.tolist(),
-            curve.beta,
-            curve.powers.tolist(),
-            curve.slopes.tolist(),
-            curve.knees.tolist(),
-            self.dt,
+        plays = (self.p0, *self.p.tolist(), *self.r.tolist())
+        growth = (curve.beta, *curve.powers.tolist(), *curve.slopes.tolist())
+        return (
+            Stage(
+                "rate_dependent_pi",
+                plays + growth,
+                fixed={"knees": tuple(curve.knees.tolist())},
+                choices={"plays": self.p.size, "powers": curve.powers.size},
+                dt=self.dt,
+            ),
         )
 
 

@@ -14,7 +14,7 @@ from hyst.operators.base import Operator
 from hyst.operators.checks import as_number, refuse_overflow
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries, register
-from hyst.operators.stage_sink import StageSink
+from hyst.operators.stage import Stage
 from hyst.operators.traits import Traits
 
 
@@ -114,6 +114,6 @@ class Affine(Operator):
         """
         return cls(**entries(data, required=("gain", "offset")))
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
-        chain.add_affine(self.gain, self.offset)
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        return (Stage("affine", (self.gain, self.offset)),)
