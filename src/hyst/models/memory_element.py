@@ -17,7 +17,7 @@ from hyst.operators.checks import as_number
 from hyst.operators.parameters import Parameters
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
-from hyst.operators.traits import Traits
+from hyst.operators.traits import Degree, Traits
 
 Array = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ class _Element(Operator):
         """Give the traits: an exact inverse, and none of those of hysteresis over its input."""
         return Traits(
             memoryless=False,
-            rate_independent=False,
+            rate_independent=Degree.NO,
             return_point_memory=False,
             congruent_loops=False,
             monotone=False,

@@ -21,7 +21,7 @@ from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
-from hyst.operators.traits import Traits
+from hyst.operators.traits import Degree, Traits
 
 Array = NDArray[np.float64]
 
@@ -87,11 +87,11 @@ class PrandtlIshlinskii(Operator):
         """Give the traits of a superposition of plays."""
         return Traits(
             memoryless=self.p.size == 0,
-            rate_independent=True,
+            rate_independent=Degree.EXACTLY,
             return_point_memory=True,
             congruent_loops=True,
-            monotone=self._is_monotone(),
-            invertible=self.is_invertible(),
+            monotone=self._is_monotone,
+            invertible=self.is_invertible,
         )
 
     def initial_state(self) -> Array:

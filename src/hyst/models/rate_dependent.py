@@ -24,7 +24,7 @@ from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
-from hyst.operators.traits import Traits
+from hyst.operators.traits import Degree, Traits
 
 Array = NDArray[np.float64]
 
@@ -172,15 +172,14 @@ class RateDependentPrandtlIshlinskii(Operator):
 
     def traits(self) -> Traits:
         """Give the traits; with a rate that counts none of those of plays is left."""
-        rest = self.at_rest()
         plain = self.rate_curve.is_zero or self.p.size == 0
         return Traits(
-            memoryless=self.p.size == 0 and rest.traits().memoryless,
-            rate_independent=plain,
+            memoryless=self.p.size == 0,
+            rate_independent=Degree.EXACTLY if plain else Degree.NO,
             return_point_memory=plain,
             congruent_loops=plain,
-            monotone=plain and rest.traits().monotone,
-            invertible=self.is_invertible(),
+            monotone=lambda: plain and self.at_rest().traits().monotone,
+            invertible=self.is_invertible,
         )
 
     def initial_state(self) -> Array:

@@ -17,7 +17,7 @@ from hyst.operators.checks import as_constants, as_number, refuse_overflow
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
-from hyst.operators.traits import Traits
+from hyst.operators.traits import Degree, Traits
 
 Array = NDArray[np.float64]
 
@@ -118,11 +118,11 @@ class SecondOrderSections(Operator):
         """Give the traits of a linear system with memory."""
         return Traits(
             memoryless=False,
-            rate_independent=False,
+            rate_independent=Degree.NO,
             return_point_memory=False,
             congruent_loops=False,
             monotone=False,
-            invertible=self.is_invertible(),
+            invertible=self.is_invertible,
         )
 
     def initial_state(self) -> Array:

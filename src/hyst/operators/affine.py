@@ -15,7 +15,7 @@ from hyst.operators.checks import as_number, refuse_overflow
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
-from hyst.operators.traits import Traits
+from hyst.operators.traits import Degree, Traits
 
 
 @register
@@ -55,11 +55,11 @@ class Affine(Operator):
         """Give the traits of a straight line."""
         return Traits(
             memoryless=True,
-            rate_independent=True,
+            rate_independent=Degree.EXACTLY,
             return_point_memory=True,
             congruent_loops=True,
             monotone=self.gain >= 0.0,
-            invertible=self.is_invertible(),
+            invertible=self.is_invertible,
         )
 
     def initial_state(self) -> NDArray[np.float64]:

@@ -43,20 +43,16 @@ class Chained(Operator):
         """
         leaves = leaves_of(self)
         traits = [leaf.traits() for leaf in leaves]
-        remembers = False
-        congruent = all(each.congruent_loops for each in traits)
-        for leaf, each in zip(leaves, traits, strict=True):
-            curved = each.memoryless and leaf.kind != "affine"
-            congruent = congruent and not (remembers and curved)
-            remembers = remembers or not each.memoryless
         return Traits(
-            memoryless=not remembers,
-            rate_independent=all(each.rate_independent for each in traits),
-            return_point_memory=all(each.return_point_memory for each in traits)
-            and all(each.monotone for each in traits[:-1]),
-            congruent_loops=congruent,
-            monotone=all(each.monotone for each in traits),
-            invertible=all(each.invertible for each in traits),
+            memoryless=lambda: all(each.memoryless for each in traits),
+            rate_independent=min(each.rate_independent for each in traits),
+            return_point_memory=lambda: (
+                all(each.return_point_memory for each in traits)
+                and all(each.monotone for each in traits[:-1])
+            ),
+            congruent_loops=lambda: _keep_loops_congruent(leaves),
+            monotone=lambda: all(each.monotone for each in traits),
+            invertible=lambda: all(each.invertible for each in traits),
         )
 
     @property
@@ -208,6 +204,17 @@ def leaves_of(operator: Operator) -> tuple[Operator, ...]:
     if not isinstance(operator, Chained):
         return (operator,)
     return tuple(leaf for part in operator.parts for leaf in leaves_of(part))
+
+
+def _keep_loops_congruent(leaves: tuple[Operator, ...]) -> bool:
+    remembers = False
+    for leaf in leaves:
+        traits = leaf.traits()
+        curved = traits.memoryless and leaf.kind != "affine"
+        if not traits.congruent_loops or (remembers and curved):
+            return False
+        remembers = remembers or not traits.memoryless
+    return True
 
 
 def _prefixes(leaves: tuple[Operator, ...]) -> list[str]:

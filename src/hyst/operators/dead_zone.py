@@ -16,7 +16,7 @@ from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
-from hyst.operators.traits import Traits
+from hyst.operators.traits import Degree, Traits
 
 Array = NDArray[np.float64]
 Variant = Literal["two-sided", "by-direction"]
@@ -121,11 +121,11 @@ class DeadZone(Operator):
         plain = self.variant == "two-sided"
         return Traits(
             memoryless=plain,
-            rate_independent=plain,
+            rate_independent=Degree.EXACTLY if plain else Degree.NO,
             return_point_memory=plain,
             congruent_loops=plain,
-            monotone=plain and bool(self._slopes().min() >= 0.0),
-            invertible=self.is_invertible(),
+            monotone=lambda: plain and bool(self._slopes().min() >= 0.0),
+            invertible=self.is_invertible,
         )
 
     def initial_state(self) -> Array:

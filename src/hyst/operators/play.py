@@ -9,7 +9,7 @@ from hyst.errors import NotInvertibleError
 from hyst.operators.registry import register
 from hyst.operators.stage import Stage
 from hyst.operators.threshold import ThresholdOperator
-from hyst.operators.traits import Traits
+from hyst.operators.traits import Degree, Traits
 
 
 @register
@@ -46,7 +46,7 @@ class Play(ThresholdOperator):
         """Give the traits of a play."""
         return Traits(
             memoryless=False,
-            rate_independent=True,
+            rate_independent=Degree.EXACTLY,
             return_point_memory=True,
             congruent_loops=True,
             monotone=True,

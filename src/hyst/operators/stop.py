@@ -9,7 +9,7 @@ from hyst.errors import NotInvertibleError
 from hyst.operators.registry import register
 from hyst.operators.stage import Stage
 from hyst.operators.threshold import ThresholdOperator
-from hyst.operators.traits import Traits
+from hyst.operators.traits import Degree, Traits
 
 
 @register
@@ -47,7 +47,7 @@ class Stop(ThresholdOperator):
         """Give the traits of a stop."""
         return Traits(
             memoryless=False,
-            rate_independent=True,
+            rate_independent=Degree.EXACTLY,
             return_point_memory=True,
             congruent_loops=True,
             monotone=True,
