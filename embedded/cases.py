@@ -61,7 +61,7 @@ class Case:
     def bound(self) -> float:
         """Give the bound of single precision's error."""
         if isinstance(self.model, JointEstimator):
-            raise NoBoundError  # an estimate feeds on its own rounding
+            raise NoBoundError("an estimate feeds on its own rounding")
         finite = self.inputs[np.isfinite(self.inputs).all(axis=1)]
         if isinstance(self.model, TrackingController):
             return controller_bound(self.model, finite)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst import _engine
+from hyst.operators.stage import Stage
 
 Array = NDArray[np.float64]
 
@@ -16,10 +17,12 @@ _GRID = 2000
 
 
 class Passed(Protocol):
-    """What the bounds need of a stage: its constants, record, state and the error that enters."""
+    """What the bounds need: a stage, its record and state, and the error that enters."""
 
     @property
-    def constants(self) -> tuple[Any, ...]: ...
+    def stage(self) -> Stage: ...
+    @property
+    def constants(self) -> Array: ...
     @property
     def u(self) -> Array: ...
     @property
@@ -59,11 +62,9 @@ def _loading(curve: str, constants: Array, x: Array) -> tuple[Array, Array, Arra
     return powers @ constants, slope, error
 
 
-def deepest(passage: Passed, inverse: bool) -> int:
+def deepest(passage: Passed) -> int:
     """Give the largest number of reversals on the stack."""
-    curve, constants, least, _, last_reversal, depth, band = passage.constants
-    chain = _engine.Chain()
-    chain.add_masing(curve, constants, least, inverse, last_reversal, depth, band)
+    chain = _engine.Chain([passage.stage])
     step = _engine.stepper(chain, passage.state.copy(), 0.0)
     most = 0.0
     for u in passage.u.tolist():
@@ -79,19 +80,19 @@ def turning_points(u: Array) -> int:
     return int((directions[1:] != directions[:-1]).sum())
 
 
-def curve_bound(passage: Passed, *, inverse: bool, last_reversal: bool) -> float:
+def curve_bound(passage: Passed) -> float:
     """Bound the error of a loading curve with memory of reversals."""
-    curve, constants = passage.constants[0], np.asarray(passage.constants[1])
+    inverse, last_reversal = (passage.stage.choices[key] for key in ("inverse", "last_reversal"))
     u, y = float(np.abs(passage.u).max()) + passage.error, float(np.abs(passage.y).max())
     x = np.linspace(0.0, y if inverse else u, _GRID)
-    value, slope, error = _loading(curve, constants, x)
+    value, slope, error = _loading(passage.stage.form, passage.constants, x)
     if inverse:
         slope, error, value = 1.0 / slope, error / slope + 4.0 * UNIT * x, x
     variation = float(slope[0] + np.abs(np.diff(slope)).sum())
     # The difference of two inputs is rounded, then the curve, then twice it is added to the start.
     branch = 2.0 * (float(slope.max()) * 2.0 * UNIT * u + float(error.max()))
     branch += 2.0 * UNIT * (y + 2.0 * float(value.max()))
-    starts = 2 * turning_points(passage.u) if last_reversal else deepest(passage, inverse) + 1
+    starts = 2 * turning_points(passage.u) if last_reversal else deepest(passage) + 1
     return variation * passage.error + (starts + 1) * branch
 
 
@@ -117,9 +118,13 @@ def _memory(form: str, knots: Array, values: Array, p: Array) -> tuple[Array, Ar
 
 def memory_element_bound(passage: Passed) -> float:
     """Bound the error of a memory element along its trajectory."""
-    form, knots, values, inverse, absolute, is_reset, reset_to, dt = passage.constants
-    chain = _engine.Chain()
-    chain.add_memory_element(*passage.constants)
+    stage, dt = passage.stage, passage.stage.dt or 1.0
+    inverse, absolute, is_reset = (
+        stage.choices[key] for key in ("inverse", "absolute", "is_reset")
+    )
+    (reset_to,) = stage.fixed["reset_to"]
+    knots, values = np.array(stage.fixed["knots"]), passage.constants
+    chain = _engine.Chain([stage])
     step = _engine.stepper(chain, passage.state.copy(), 0.0)
     drive = passage.y if inverse else passage.u
     rate = np.abs(drive) if absolute else drive
@@ -128,7 +133,7 @@ def memory_element_bound(passage: Passed) -> float:
         step(input_)
         after[k] = step.state[0]
     before = after - dt * rate
-    memory, slope, error = _memory(form, np.asarray(knots), np.asarray(values), before)
+    memory, slope, error = _memory(stage.form, knots, values, before)
     # Of the drive: its own error, and its error for an error of p in this step.
     if inverse:
         own = passage.error / memory + np.abs(drive) * (error / memory + UNIT)

@@ -24,7 +24,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +32,7 @@ from embedded.curve_rounding import curve_bound, memory_element_bound
 from hyst import _engine
 from hyst.control import TrackingController
 from hyst.operators import Operator
+from hyst.operators.stage import Stage
 
 Array = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ SECOND_ORDER = 1.01
 
 
 class NoBoundError(Exception):
-    """A decision hangs on the sign of a rounded number, so the outputs may part for good."""
+    """No bound is known; the message says why."""
 
 
 def g(roundings: int) -> float:
@@ -49,32 +49,20 @@ def g(roundings: int) -> float:
     return roundings * UNIT / (1.0 - roundings * UNIT)
 
 
-class Calls:
-    """Stands in for the engine's chain and writes down what is added to it."""
-
-    def __init__(self) -> None:
-        self.made: list[tuple[str, tuple[Any, ...]]] = []
-
-    def __getattr__(self, name: str) -> Callable[..., None]:
-        if not name.startswith("add_"):
-            raise AttributeError(name)
-
-        def add(*constants: Any, **named: Any) -> None:
-            # Names, where a caller uses them, are in the order of the parameters.
-            self.made.append((name.removeprefix("add_"), (*constants, *named.values())))
-
-        return add
-
-
 @dataclass(frozen=True)
 class Passage:
     """One stage, what enters it (finite samples), its state before, and what leaves it."""
 
-    constants: tuple[Any, ...]
+    stage: Stage
     u: Array
     state: Array
     y: Array
     error: float
+
+    @property
+    def constants(self) -> Array:
+        """The stage's own, in the order of its operator's parameters."""
+        return np.array(self.stage.constants)
 
     @property
     def most(self) -> float:
@@ -83,21 +71,20 @@ class Passage:
 
     def demand_exact_input(self) -> None:
         if self.error > 0.0:
-            raise NoBoundError
+            raise NoBoundError("a decision hangs on the sign of a rounded number")
 
 
 def single_precision_bound(model: Operator, u: Array, error: float = 0.0) -> float:
     """Bound the output error of a record of finite samples, given that of its input."""
-    calls = Calls()
-    model.append_to(calls)
     states = model.initial_state()
-    for name, constants in calls.made:
-        chain = _engine.Chain()
-        getattr(chain, f"add_{name}")(*constants)
+    for stage in model.stages():
+        if stage.kind not in BOUNDS:
+            raise NoBoundError(f"nobody has derived one for stages of kind {stage.kind!r}")
+        chain = _engine.Chain([stage])
         state, states = states[: chain.state_length], states[chain.state_length :]
         y = np.empty((1, u.size))
         chain.run(state.reshape(1, -1).copy(), u.reshape(1, -1), y, "loop")
-        error = BOUNDS[name](Passage(constants, u, state, y[0], error))
+        error = BOUNDS[stage.kind](Passage(stage, u, state, y[0], error))
         u = y[0]
     return SECOND_ORDER * error
 
@@ -124,7 +111,7 @@ def controller_bound(controller: TrackingController, inputs: Array) -> float:
 
 
 def _affine(passage: Passage) -> float:
-    gain, offset = map(abs, passage.constants)
+    gain, offset = np.abs(passage.constants)
     return float(gain * passage.error + g(3) * gain * passage.most + g(2) * offset)
 
 
@@ -134,8 +121,7 @@ def _play_errors(passage: Passage, r: Array, z0: Array) -> Array:
 
 
 def _play(passage: Passage) -> float:
-    r = np.array(passage.constants)
-    return float(_play_errors(passage, r, passage.state)[0])
+    return float(_play_errors(passage, passage.constants, passage.state)[0])
 
 
 def _stop(passage: Passage) -> float:
@@ -160,11 +146,13 @@ def _terms(passage: Passage, weights: Array, thresholds: Array) -> float:
 
 
 def _dead_zone(passage: Passage) -> float:
-    weights, thresholds, by_direction = passage.constants
-    weights, thresholds = np.asarray(weights), np.asarray(thresholds)
-    if by_direction:
-        passage.demand_exact_input()
+    weights, thresholds = np.split(passage.constants, 2)
     return _steepest(weights, thresholds) * passage.error + _terms(passage, weights, thresholds)
+
+
+def _direction_dead_zone(passage: Passage) -> float:
+    passage.demand_exact_input()
+    return _dead_zone(passage)
 
 
 def _sum_of_plays(passage: Passage, p0: float, p: Array, z: Array, errors: Array) -> float:
@@ -174,24 +162,26 @@ def _sum_of_plays(passage: Passage, p0: float, p: Array, z: Array, errors: Array
 
 
 def _pi(passage: Passage) -> float:
-    p0, p, r = passage.constants
-    p, r, z0 = np.asarray(p), np.asarray(r), passage.state
+    p0, (p, r), z0 = passage.constants[0], np.split(passage.constants[1:], 2), passage.state
     z = np.maximum(np.maximum(passage.most - r, 0.0), np.abs(z0))
     return _sum_of_plays(passage, p0, p, z, _play_errors(passage, r, z0))
 
 
 def _rate_dependent_pi(passage: Passage) -> float:
-    p0, p, r, beta, powers, slopes, knees, dt = passage.constants
-    p, r, z0 = np.asarray(p), np.asarray(r), passage.state[: len(p)]
+    stage, dt = passage.stage, passage.stage.dt or 1.0
+    n, m = stage.choices["plays"], stage.choices["powers"]
+    knees = np.abs(stage.fixed["knees"])
+    first, p, r, growth, powers, slopes = np.split(passage.constants, np.cumsum([1, n, n, 1, m]))
+    p0, beta, z0 = float(first[0]), float(growth[0]), passage.state[:n]
     change = float(np.abs(np.diff(passage.u)).max(initial=0.0)) + 2.0 * passage.error
     rate = change / dt
     degrees = np.arange(2, 2 + len(powers))
-    coefficients, kinks = np.abs(np.asarray(powers)), np.abs(np.asarray(slopes))
+    coefficients, kinks = np.abs(powers), np.abs(slopes)
     slope = beta + float(degrees * coefficients @ rate ** (degrees - 1)) + float(kinks.sum())
     size = beta * rate + float(coefficients @ rate**degrees) + float(kinks.sum()) * rate
     terms = 2 * len(powers) + len(slopes) + 4
     widening = slope / dt * (2.0 * passage.error + g(1) * change) + g(terms) * (
-        size + float(kinks @ np.abs(np.asarray(knees)))
+        size + float(kinks @ knees)
     )
     errors = np.maximum(
         passage.error + widening + g(3) * (passage.most + size + r), g(1) * np.abs(z0)
@@ -210,10 +200,9 @@ def carried(A: Array, c: Array, disturbance: Array, steps: int) -> float:
 
 
 def _state_space(passage: Passage) -> float:
-    _, a, b, c, d = passage.constants
-    n = len(b)
-    A = np.asarray(a).reshape(n, n).T
-    b, c = np.asarray(b), np.asarray(c)
+    n = passage.stage.choices["order"]
+    a, b, c, (d,) = np.split(passage.constants, np.cumsum([n * n, n, n]))
+    A = a.reshape(n, n)
     w = np.concatenate([passage.state[n:], passage.u])[: passage.u.size]
     x, most = passage.state[:n].copy(), np.abs(passage.state[:n])
     for w_k in w:
@@ -226,7 +215,7 @@ def _state_space(passage: Passage) -> float:
 
 def _sections(passage: Passage) -> float:
     u, error, states = passage.u, passage.error, passage.state.copy()
-    for i, (b0, b1, b2, a1, a2) in enumerate(np.asarray(passage.constants[0]).reshape(-1, 5)):
+    for i, (b0, b1, b2, a1, a2) in enumerate(passage.constants.reshape(-1, 5)):
         state, most = states[2 * i : 2 * i + 2], np.zeros(2)
         y = np.empty_like(u)
         for k, u_k in enumerate(u):
@@ -250,14 +239,13 @@ def _sections(passage: Passage) -> float:
 
 
 def _masing(passage: Passage) -> float:
-    inverse, last_reversal = passage.constants[3:5]
-    if last_reversal:
+    if passage.stage.choices["last_reversal"]:
         passage.demand_exact_input()
-    return curve_bound(passage, inverse=inverse, last_reversal=last_reversal)
+    return curve_bound(passage)
 
 
 def _memory_element(passage: Passage) -> float:
-    if passage.constants[5]:
+    if passage.stage.choices["is_reset"]:
         passage.demand_exact_input()  # memory is set back where the input changes its sign
     return memory_element_bound(passage)
 
@@ -267,6 +255,7 @@ BOUNDS: dict[str, Callable[[Passage], float]] = {
     "play": _play,
     "stop": _stop,
     "dead_zone": _dead_zone,
+    "direction_dead_zone": _direction_dead_zone,
     "pi": _pi,
     "rate_dependent_pi": _rate_dependent_pi,
     "state_space": _state_space,

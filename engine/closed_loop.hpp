@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "chain.hpp"
+#include "hyst/tracking_controller.h"
 
 namespace hyst {
 

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "hyst/guard.h"
 #include "lanes.hpp"
-#include "linear_run.hpp"
-#include "masing_run.hpp"
 #include "memory_curve.hpp"
 #include "parallel.hpp"
 #include "simd/kernels.hpp"
@@ -21,23 +20,21 @@ constexpr double kNot = std::numeric_limits<double>::quiet_NaN();
 constexpr double kWorthwhileShare = 0.6;
 constexpr double kWorthwhileSaving = 1e5;  // nanoseconds
 
-bool memory_curve_can_take(const hyst_stage &stage, const double *state) {
-    return stage.kind == HYST_PI && Lanes::can_take(stage) && is_admissible(stage.as.pi, state);
+// The bank of plays that the memory curve can take, or null.
+const hyst_pi *curved_bank(const Stage &stage, const double *state) {
+    if (!Lanes::can_take(stage)) return nullptr;
+    const hyst_pi *bank = stage.kind->plays->bank(stage.model);
+    return bank != nullptr && is_admissible(*bank, state) ? bank : nullptr;
 }
 
-std::size_t play_count(const hyst_stage &stage) {
-    if (stage.kind == HYST_PI) return stage.as.pi.count;
-    return stage.kind == HYST_RATE_DEPENDENT_PI ? stage.as.rate_dependent_pi.pi.count : 1;
-}
-
-Choice estimate(const hyst_stage &stage, const double *state, const double *u,
+Choice estimate(const Stage &stage, const double *state, const double *u,
                 std::size_t samples) {
-    const std::size_t plays = play_count(stage);
+    const std::size_t plays = stage.kind->plays->count(stage.model);
     const double each = 1.0 / static_cast<double>(samples);
-    Choice choice{stage.kind, Engine::loop, "", cost_of_loop(plays, samples) * each,
+    Choice choice{Engine::loop, "", cost_of_loop(plays, samples) * each,
                   cost_of_lanes(plays, samples) * each, kNot, {}};
-    if (memory_curve_can_take(stage, state)) {
-        choice.rough = roughness(stage.as.pi, u, samples);
+    if (const hyst_pi *bank = curved_bank(stage, state)) {
+        choice.rough = roughness(*bank, u, samples);
         choice.memory_curve = cost_of_memory_curve(plays, samples, choice.rough) * each;
     }
     return choice;
@@ -76,24 +73,18 @@ bool along_curve(const hyst_pi &pi, const double *state, const double *u, double
     });
 }
 
-bool in_loop(const hyst_stage &stage, double *state, const double *u, double *y,
+bool in_loop(const Stage &stage, double *state, const double *u, double *y,
              std::size_t samples) {
     const bool finite = all_finite(u, samples);  // before y, which may be u, is written
-    if (stage.kind == HYST_AFFINE) {
-        kernels().affine(stage.as.affine.gain, stage.as.affine.offset, u, y, samples);
-    } else if (stage.kind == HYST_DEAD_ZONE) {
-        kernels().dead_zone(stage.as.dead_zone, u, y, samples);
-    } else if (stage.kind == HYST_STATE_SPACE) {
-        run_state_space(stage.as.state_space, state, u, y, samples);
-    } else if (stage.kind == HYST_MASING) {
-        run_masing(stage.as.masing, state, u, y, samples);
+    if (stage.kind->run != nullptr) {
+        stage.kind->run(stage.model, state, u, y, samples);
     } else {
-        hyst_stage_run(&stage, state, u, y, samples);
+        stage.step_through(state, u, y, samples);
     }
     return finite && all_finite(y, samples);
 }
 
-bool run_part(const hyst_stage &stage, Engine engine, double *state, const double *u, double *y,
+bool run_part(const Stage &stage, Engine engine, double *state, const double *u, double *y,
               std::size_t samples) {
     if (engine == Engine::lanes) return Lanes(stage).run(state, u, y, samples);
     if (engine == Engine::loop) {
@@ -101,21 +92,22 @@ bool run_part(const hyst_stage &stage, Engine engine, double *state, const doubl
             return in_loop(stage, state, u + first, y + first, count);
         });
     }
-    std::vector<double> end(state, state + stage.as.pi.count);
+    const hyst_pi &bank = *stage.kind->plays->bank(stage.model);
+    std::vector<double> end(state, state + bank.count);
     Lanes(stage).jump(end.data(), u, samples);
-    const bool finite = along_curve(stage.as.pi, state, u, y, samples);
+    const bool finite = along_curve(bank, state, u, y, samples);
     std::copy(end.begin(), end.end(), state);
     return finite;
 }
 
 // Parts of the record on threads, each from the exact state that the parts before it leave.
-bool run_parts(const hyst_stage &stage, Engine engine, double *state, const double *u, double *y,
+bool run_parts(const Stage &stage, Engine engine, double *state, const double *u, double *y,
                std::size_t samples, std::size_t threads) {
     const std::size_t parts = std::min(threads, samples / kSmallestPart);
     if (parts <= 1 || engine == Engine::loop) {
         return run_part(stage, engine, state, u, y, samples);
     }
-    const std::size_t values = hyst_stage_state_length(&stage), length = samples / parts;
+    const std::size_t values = stage.state_length(), length = samples / parts;
     std::vector<double> states, end(state, state + values);
     for (std::size_t part = 0; part < parts; ++part) {
         states.insert(states.end(), end.begin(), end.end());
@@ -138,11 +130,11 @@ bool run_chain(const Chain &chain, double *state, const double *u, double *y, st
         return all_finite(u, samples);
     }
     const double *in = u;
-    for (const hyst_stage &stage : chain.stages()) {
+    for (const Stage &stage : chain.stages()) {
         const Choice choice = choose(stage, state, in, samples, options.engine);
         if (choices != nullptr) choices->push_back(choice);
         if (!run_parts(stage, choice.engine, state, in, y, samples, options.threads)) return false;
-        state += hyst_stage_state_length(&stage);
+        state += stage.state_length();
         in = y;
     }
     return true;
@@ -172,18 +164,18 @@ bool runs_rows_in_lanes(const Chain &chain, const Options &options, std::size_t 
 
 }  // namespace
 
-Choice choose(const hyst_stage &stage, const double *state, const double *u, std::size_t samples,
+Choice choose(const Stage &stage, const double *state, const double *u, std::size_t samples,
               Engine wanted) {
     if (!Lanes::can_take(stage)) {
-        const bool plays = stage.kind == HYST_PI || stage.kind == HYST_RATE_DEPENDENT_PI;
-        return {stage.kind, Engine::loop, plays ? "its thresholds do not ascend from zero or more"
-                                                : "it has no plays",
+        const bool plays = stage.kind->plays != nullptr;
+        return {Engine::loop, plays ? "its thresholds do not ascend from zero or more"
+                                    : "it has no plays",
                 kNot, kNot, kNot, {}};
     }
     Choice choice = estimate(stage, state, u, samples);
     if (wanted == Engine::automatic) {
         take_cheapest(choice, samples);
-    } else if (wanted == Engine::memory_curve && !memory_curve_can_take(stage, state)) {
+    } else if (wanted == Engine::memory_curve && curved_bank(stage, state) == nullptr) {
         choice.engine = Engine::lanes;
         choice.reason = "the memory curve cannot take this stage or this state";
     } else {
@@ -193,7 +185,7 @@ Choice choose(const hyst_stage &stage, const double *state, const double *u, std
     return choice;
 }
 
-bool evaluate_stage(const hyst_stage &stage, double *state, const double *u, double *y,
+bool evaluate_stage(const Stage &stage, double *state, const double *u, double *y,
                     std::size_t samples, const Options &options) {
     if (samples == 0) return true;
     const Choice choice = choose(stage, state, u, samples, options.engine);

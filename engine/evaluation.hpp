@@ -20,7 +20,6 @@ struct Options {
 // What was chosen for one stage, and why. Costs are expected nanoseconds a sample; NaN where the
 // engine cannot take the stage.
 struct Choice {
-    hyst_kind kind;
     Engine engine;
     const char *reason;
     double loop, lanes, memory_curve;
@@ -28,7 +27,7 @@ struct Choice {
 };
 
 // What a stage is evaluated by if `wanted` is wanted; u is its input.
-Choice choose(const hyst_stage &stage, const double *state, const double *u, std::size_t samples,
+Choice choose(const Stage &stage, const double *state, const double *u, std::size_t samples,
               Engine wanted);
 
 // `rows` records of `samples` each, one after the other in memory; states likewise. Returns the flat
@@ -42,7 +41,7 @@ std::size_t evaluate(const Chain &chain, double *states, const double *u, double
 
 // One stage, one record; u and y may be the same. Returns whether u and y were finite; if not, state
 // and y are meaningless.
-bool evaluate_stage(const hyst_stage &stage, double *state, const double *u, double *y,
+bool evaluate_stage(const Stage &stage, double *state, const double *u, double *y,
                     std::size_t samples, const Options &options);
 
 }  // namespace hyst

@@ -95,10 +95,7 @@ void in_lanes(const hyst_pi &pi, const Memory &start, const double *u, const dou
 // The choice that evaluation makes of the same record.
 bool takes_curve(const hyst_pi &pi, const double *z, const double *u, std::size_t samples,
                  Engine wanted) {
-    hyst_stage stage{};
-    stage.kind = HYST_PI;
-    stage.as.pi = pi;
-    return choose(stage, z, u, samples, wanted).engine == Engine::memory_curve;
+    return choose(stage_of(pi), z, u, samples, wanted).engine == Engine::memory_curve;
 }
 
 // A part of the record along the memory curve.
@@ -158,9 +155,9 @@ double pi_loss_gradient(const hyst_pi &pi, double *z, const double *u, const dou
 
 double loss_gradient(const Chain &chain, double *state, const double *u, const double *target,
                      std::size_t samples, const Options &options, double *gradient) {
-    const hyst_stage *stage = chain.stages().data();
-    if (chain.stages().size() == 1 && stage->kind == HYST_PI && Lanes::can_take(*stage)) {
-        return pi_loss_gradient(stage->as.pi, state, u, target, samples, options, gradient);
+    const Stage *stage = chain.stages().data();
+    if (chain.stages().size() == 1 && stage->kind == &kinds::pi && Lanes::can_take(*stage)) {
+        return pi_loss_gradient(*static_cast<const hyst_pi *>(stage->model), state, u, target, samples, options, gradient);
     }
     const std::size_t width = chain.parameter_count();
     std::vector<double> y(samples), rows(samples * width), start(state, state + chain.state_length());

@@ -6,17 +6,17 @@
 
 #include <cstddef>
 
-#include "hyst/chain.h"
+#include "chain.hpp"
 
 namespace hyst {
 
 class Lanes {
 public:
     // Whether the lane identity holds for this stage: plays of thresholds that ascend from >= 0.
-    static bool can_take(const hyst_stage &stage);
+    static bool can_take(const Stage &stage);
 
     // The stage, which can_take, must outlive this.
-    explicit Lanes(const hyst_stage &stage) : stage_(stage) {}
+    explicit Lanes(const Stage &stage) : stage_(stage) {}
 
     // The state after `count` more samples, without their outputs.
     void jump(double *state, const double *u, std::size_t count) const;
@@ -32,7 +32,7 @@ private:
     bool run_packed(double *packed, const double *u, double *y, std::size_t samples,
                     std::size_t stride) const;
 
-    const hyst_stage &stage_;
+    const Stage &stage_;
 };
 
 }  // namespace hyst

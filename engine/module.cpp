@@ -10,13 +10,12 @@
 #include <string>
 #include <utility>
 
-#include "chain.hpp"
+#include "chain_binding.hpp"
 #include "closed_loop_binding.hpp"
 #include "evaluation.hpp"
 #include "gradient.hpp"
 #include "gram.hpp"
 #include "jacobian.hpp"
-#include "memory_stages_binding.hpp"
 #include "online_binding.hpp"
 #include "parallel.hpp"
 #include "rate_dependent_binding.hpp"
@@ -105,11 +104,9 @@ std::ptrdiff_t run_parameter_sets(Signal p0, Batch p, Batch r, Signal u, Matrix 
     const nb::gil_scoped_release released;
     std::vector<char> finite(sets);
     hyst::parallel(sets, threads, [&](std::size_t set) {
-        hyst_stage stage{};
-        stage.kind = HYST_PI;
-        stage.as.pi = {plays, p0(set), p.data() + set * plays, r.data() + set * plays};
+        const hyst_pi bank{plays, p0(set), p.data() + set * plays, r.data() + set * plays};
         std::vector<double> z(plays, 0.0);
-        finite[set] = hyst::evaluate_stage(stage, z.data(), u.data(), y.data() + set * samples,
+        finite[set] = hyst::evaluate_stage(hyst::stage_of(bank), z.data(), u.data(), y.data() + set * samples,
                                            samples, {});
     });
     const auto bad = std::find(finite.begin(), finite.end(), 0);
@@ -192,24 +189,8 @@ NB_MODULE(_engine, module) {
     nb::set_leak_warnings(false);
     module.doc() = "Compiled engine of hyst: the C core on whole records, and derivatives.";
     nb::class_<hyst::Chain> chain(module, "Chain");
-    hyst::bind_memory_stages(chain);
-    chain.def(nb::init<>())
-        .def("add_affine", &hyst::Chain::add_affine)
-        .def("add_play", &hyst::Chain::add_play)
-        .def("add_stop", &hyst::Chain::add_stop)
-        .def("add_dead_zone", &hyst::Chain::add_dead_zone)
-        .def("add_pi", &hyst::Chain::add_pi)
-        .def("add_rate_dependent_pi",
-             [](hyst::Chain &chain, double p0, std::vector<double> p, std::vector<double> r,
-                double beta, std::vector<double> powers, std::vector<double> slopes,
-                std::vector<double> knees, double dt) {
-                 const hyst::RateCurve curve{beta, std::move(powers), std::move(slopes),
-                                             std::move(knees)};
-                 chain.add_rate_dependent_pi(p0, std::move(p), std::move(r), curve, dt);
-             })
-        .def("add_state_space", &hyst::Chain::add_state_space)
-        .def("add_sections", &hyst::Chain::add_sections)
-        .def_prop_ro("state_length", &hyst::Chain::state_length)
+    hyst::bind_stages(module, chain);
+    chain.def_prop_ro("state_length", &hyst::Chain::state_length)
         .def_prop_ro("parameter_count", &hyst::Chain::parameter_count)
         .def("run", &run, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
              nb::arg("y").noconvert(), nb::arg("engine") = "auto", nb::arg("threads") = 1)

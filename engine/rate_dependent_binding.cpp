@@ -19,10 +19,10 @@ using Vector = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Signal = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 const hyst_rate_dependent_pi &plays_of(const Chain &chain, std::size_t state_length) {
-    if (chain.stages().size() != 1 || chain.stages()[0].kind != HYST_RATE_DEPENDENT_PI) {
+    if (chain.stages().size() != 1 || chain.stages()[0].kind != &kinds::rate_dependent_pi) {
         throw std::invalid_argument("the chain must be one bank of rate-dependent plays");
     }
-    const hyst_rate_dependent_pi &plays = chain.stages()[0].as.rate_dependent_pi;
+    const auto &plays = *static_cast<const hyst_rate_dependent_pi *>(chain.stages()[0].model);
     if (state_length != plays.pi.count + 2) {
         throw std::invalid_argument("state has the wrong length");
     }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "hyst/hyst.h"
+#include "kinds/kind.hpp"
 
 namespace nb = nanobind;
 
@@ -24,33 +25,22 @@ static_assert(sizeof(hyst_real) == sizeof(float), "this module is for single pre
 using Numbers = std::map<std::string, double>;
 using Tables = std::map<std::string, std::vector<double>>;
 using Choices = std::map<std::string, std::size_t>;
-// Kind, form, numbers, tables, choices: see hyst.export.stages.
+// Kind, form, numbers, tables, choices of a stage, as the engine in double has derived them.
 using Description = std::tuple<std::string, std::string, Numbers, Tables, Choices>;
 
-// Stages of the core together with the memory their constants live in.
-class Constants {
-public:
-    explicit Constants(const Description &description) : description_(description) {}
-
-    float number(const std::string &name) const {
-        return static_cast<float>(std::get<2>(description_).at(name));
+hyst::kinds::Constants rounded(const Description &description) {
+    const auto &[kind, form, numbers, tables, choices] = description;
+    hyst::kinds::Constants made;
+    made.form = form;
+    for (const auto &[name, value] : numbers) {
+        made.number(name, static_cast<float>(value), hyst::kinds::not_offered);
     }
-    std::size_t choice(const std::string &name) const { return std::get<4>(description_).at(name); }
-    int is(const std::string &name) const { return static_cast<int>(choice(name)); }
-    std::size_t size(const std::string &name) const {
-        return std::get<3>(description_).at(name).size();
+    for (const auto &[name, values] : tables) {
+        made.table(name, {values.begin(), values.end()}, hyst::kinds::not_offered);
     }
-    const std::string &kind() const { return std::get<0>(description_); }
-    const std::string &form() const { return std::get<1>(description_); }
-    const float *table(const std::string &name, std::deque<std::vector<float>> &home) const {
-        const std::vector<double> &values = std::get<3>(description_).at(name);
-        home.emplace_back(values.begin(), values.end());
-        return home.back().data();
-    }
-
-private:
-    const Description &description_;
-};
+    for (const auto &[name, choice] : choices) made.choose(name, choice);
+    return made;
+}
 
 class Stepper {
 public:
@@ -58,12 +48,12 @@ public:
         : state_(start.begin(), start.end()) {
         std::size_t length = 0;
         for (const Description &each : stages) {
-            const Constants of(each);
-            if (of.kind() == "tracking_controller") {
-                add_controller(of);
+            constants_.push_back(rounded(each));
+            if (std::get<0>(each) == "tracking_controller") {
+                add_controller(constants_.back());
                 length += controller_.order;
             } else {
-                stages_.push_back(stage(of));
+                add_stage(std::get<0>(each), constants_.back());
                 length += hyst_stage_state_length(&stages_.back());
             }
         }
@@ -88,103 +78,23 @@ public:
     void clear_fault() { guard_.fault = 0; }
 
 private:
-    void add_controller(const Constants &of) {
+    void add_controller(const hyst::kinds::Constants &of) {
         controller_ = {of.size("c"),
-                       of.table("a", home_),
-                       of.table("b", home_),
-                       of.table("c", home_),
+                       of.table("a"),
+                       of.table("b"),
+                       of.table("c"),
                        {of.number("d_y_ref"), of.number("d_y")},
                        {0, nullptr}};
         has_two_inputs_ = true;
     }
 
-    hyst_pi plays(const Constants &of) {
-        const float *p = of.table("p", home_);
-        return {of.size("p"), of.number("p0"), p, of.table("r", home_)};
+    void add_stage(const std::string &name, hyst::kinds::Constants &of) {
+        const hyst::kinds::Kind *kind = hyst::kinds::kind_named(name);
+        if (kind == nullptr) throw std::invalid_argument("unknown kind of stage '" + name + "'");
+        stages_.push_back({kind->core, kind->fill(of)});
     }
 
-    hyst_dead_zone ramps(const Constants &of) {
-        const float *weight = of.table("weight", home_);
-        return {of.size("weight"), weight, of.table("threshold", home_)};
-    }
-
-    hyst_stage stage(const Constants &of) {
-        hyst_stage made{};
-        const std::string &kind = of.kind();
-        if (kind == "affine") {
-            made.kind = HYST_AFFINE;
-            made.as.affine = {of.number("gain"), of.number("offset")};
-        } else if (kind == "play" || kind == "stop") {
-            made.kind = kind == "play" ? HYST_PLAY : HYST_STOP;
-            made.as.r = of.number("r");
-        } else if (kind == "dead_zone" || kind == "direction_dead_zone") {
-            made.kind = kind == "dead_zone" ? HYST_DEAD_ZONE : HYST_DIRECTION_DEAD_ZONE;
-            made.as.dead_zone = ramps(of);
-        } else if (kind == "pi") {
-            made.kind = HYST_PI;
-            made.as.pi = plays(of);
-        } else if (kind == "rate_dependent_pi") {
-            made.kind = HYST_RATE_DEPENDENT_PI;
-            made.as.rate_dependent_pi = {plays(of), of.number("growth"), of.size("power"),
-                                         of.table("power", home_), ramps(of)};
-        } else {
-            other(made, of);
-        }
-        return made;
-    }
-
-    void other(hyst_stage &made, const Constants &of) {
-        const std::string &kind = of.kind();
-        if (kind == "state_space") {
-            const float *a = of.table("a", home_), *b = of.table("b", home_);
-            made.kind = HYST_STATE_SPACE;
-            made.as.state_space = {of.size("b"), of.choice("delay"), a, b, of.table("c", home_),
-                                   of.number("d")};
-        } else if (kind == "sections") {
-            made.kind = HYST_SECTIONS;
-            made.as.sections = {of.size("coefficient") / 5, of.table("coefficient", home_)};
-        } else if (kind == "masing") {
-            made.kind = HYST_MASING;
-            made.as.masing = {curve(of), of.is("inverse"), of.is("last_reversal"),
-                              of.choice("depth"), of.number("dead_band")};
-        } else if (kind == "memory_element") {
-            made.kind = HYST_MEMORY_ELEMENT;
-            const float *knot = of.table("knot", home_);
-            made.as.memory_element = {
-                {function(of.form()), of.size("value"), knot, of.table("value", home_)},
-                of.is("inverse"),
-                of.is("absolute"),
-                of.is("is_reset"),
-                of.number("reset_to"),
-                of.number("dt")};
-        } else {
-            throw std::invalid_argument("unknown kind of stage '" + kind + "'");
-        }
-    }
-
-    hyst_loading_curve curve(const Constants &of) {
-        hyst_loading_curve made{};
-        if (of.form() == "HYST_POWER_LAW") {
-            made.kind = HYST_POWER_LAW;
-            made.as.power_law = {of.number("linear"), of.number("factor"), of.number("exponent")};
-        } else if (of.form() == "HYST_PLAYS") {
-            const float *knot = of.table("knot", home_), *value = of.table("value", home_);
-            made.kind = HYST_PLAYS;
-            made.as.pieces = {of.size("knot"), knot, value, of.table("slope", home_)};
-        } else {
-            made.kind = HYST_POLYNOMIAL;
-            made.as.polynomial = {of.size("coefficient"), of.table("coefficient", home_),
-                                  of.number("least_slope")};
-        }
-        return made;
-    }
-
-    static hyst_memory_kind function(const std::string &form) {
-        if (form == "HYST_MEMORY_TABLE") return HYST_MEMORY_TABLE;
-        return form == "HYST_MEMORY_POLYNOMIAL" ? HYST_MEMORY_POLYNOMIAL : HYST_MEMORY_POWER;
-    }
-
-    std::deque<std::vector<float>> home_;
+    std::deque<hyst::kinds::Constants> constants_;
     std::vector<hyst_stage> stages_;
     std::vector<float> state_;
     hyst_tracking_controller controller_{};

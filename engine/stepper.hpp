@@ -4,6 +4,7 @@
 #include <Python.h>
 
 #include "chain.hpp"
+#include "hyst/guard.h"
 
 namespace hyst {
 

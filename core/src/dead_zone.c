@@ -51,3 +51,30 @@ hyst_real hyst_direction_dead_zone_step(const hyst_dead_zone *map, hyst_real *u_
     *u_previous = u;
     return y;
 }
+
+static size_t dead_zone_length(const void *model)
+{
+    (void)model;
+    return 0;
+}
+
+static hyst_real dead_zone_step(const void *model, hyst_real *state, hyst_real u)
+{
+    (void)state;
+    return hyst_dead_zone_step((const hyst_dead_zone *)model, u);
+}
+
+const hyst_kind hyst_dead_zone_kind = {dead_zone_length, dead_zone_step};
+
+static size_t direction_dead_zone_length(const void *model)
+{
+    (void)model;
+    return 1;
+}
+
+static hyst_real direction_dead_zone_step(const void *model, hyst_real *state, hyst_real u)
+{
+    return hyst_direction_dead_zone_step((const hyst_dead_zone *)model, state, u);
+}
+
+const hyst_kind hyst_direction_dead_zone_kind = {direction_dead_zone_length, direction_dead_zone_step};

@@ -63,3 +63,28 @@ hyst_real hyst_sections_step(const hyst_sections *sections, hyst_real *state, hy
     }
     return u;
 }
+
+static size_t state_space_length(const void *model)
+{
+    const hyst_state_space *system = (const hyst_state_space *)model;
+    return system->order + system->delay;
+}
+
+static hyst_real state_space_step(const void *model, hyst_real *state, hyst_real u)
+{
+    return hyst_state_space_step((const hyst_state_space *)model, state, u);
+}
+
+const hyst_kind hyst_state_space_kind = {state_space_length, state_space_step};
+
+static size_t sections_length(const void *model)
+{
+    return 2u * ((const hyst_sections *)model)->count;
+}
+
+static hyst_real sections_step(const void *model, hyst_real *state, hyst_real u)
+{
+    return hyst_sections_step((const hyst_sections *)model, state, u);
+}
+
+const hyst_kind hyst_sections_kind = {sections_length, sections_step};

@@ -65,3 +65,16 @@ hyst_real hyst_memory_element_step(const hyst_memory_element *model, hyst_real *
     state[1] = sign;
     return output;
 }
+
+static size_t memory_element_length(const void *model)
+{
+    (void)model;
+    return 2;
+}
+
+static hyst_real memory_element_step(const void *model, hyst_real *state, hyst_real u)
+{
+    return hyst_memory_element_step((const hyst_memory_element *)model, state, u);
+}
+
+const hyst_kind hyst_memory_element_kind = {memory_element_length, memory_element_step};

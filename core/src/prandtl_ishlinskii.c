@@ -17,3 +17,15 @@ hyst_real hyst_pi_step(const hyst_pi *pi, hyst_real *z, hyst_real u)
     }
     return y;
 }
+
+static size_t pi_length(const void *model)
+{
+    return ((const hyst_pi *)model)->count;
+}
+
+static hyst_real pi_step(const void *model, hyst_real *state, hyst_real u)
+{
+    return hyst_pi_step((const hyst_pi *)model, state, u);
+}
+
+const hyst_kind hyst_pi_kind = {pi_length, pi_step};

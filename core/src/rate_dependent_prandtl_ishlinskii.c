@@ -36,3 +36,15 @@ hyst_real hyst_rate_dependent_pi_step(const hyst_rate_dependent_pi *model, hyst_
     last[1] = HYST_REAL(1.0);
     return y;
 }
+
+static size_t rate_dependent_pi_length(const void *model)
+{
+    return ((const hyst_rate_dependent_pi *)model)->pi.count + 2u;
+}
+
+static hyst_real rate_dependent_pi_step(const void *model, hyst_real *state, hyst_real u)
+{
+    return hyst_rate_dependent_pi_step((const hyst_rate_dependent_pi *)model, state, u);
+}
+
+const hyst_kind hyst_rate_dependent_pi_kind = {rate_dependent_pi_length, rate_dependent_pi_step};

@@ -7,12 +7,12 @@ static const hyst_real p[] = {R(0.5), R(0.25), R(0.125)};
 static const hyst_real r[] = {R(0.25), R(1.0), R(3.0)};
 
 static const hyst_stage stages[] = {
-    {HYST_AFFINE, {.affine = {R(1.5), R(-0.25)}}},
-    {HYST_DEAD_ZONE, {.dead_zone = {3, map_weight, map_threshold}}},
-    {HYST_PI, {.pi = {3, R(0.75), p, r}}},
-    {HYST_PLAY, {.r = R(0.5)}},
-    {HYST_STOP, {.r = R(6.0)}},
-    {HYST_DIRECTION_DEAD_ZONE, {.dead_zone = {2, map_weight, map_threshold}}},
+    {&hyst_affine_kind, &(const hyst_affine){R(1.5), R(-0.25)}},
+    {&hyst_dead_zone_kind, &(const hyst_dead_zone){3, map_weight, map_threshold}},
+    {&hyst_pi_kind, &(const hyst_pi){3, R(0.75), p, r}},
+    {&hyst_play_kind, &(const hyst_real){R(0.5)}},
+    {&hyst_stop_kind, &(const hyst_real){R(6.0)}},
+    {&hyst_direction_dead_zone_kind, &(const hyst_dead_zone){2, map_weight, map_threshold}},
 };
 static const hyst_chain chain = {COUNT(stages), stages};
 
@@ -56,12 +56,12 @@ static void chain_is_its_stages_one_after_the_other(void)
     hyst_real state[state_length] = {R(0.0)}, z[3] = {R(0.0)};
     hyst_real z_play = R(0.0), z_stop = R(0.0), u_previous = R(0.0);
     for (size_t k = 0; k < samples; ++k) {
-        hyst_real v = stages[0].as.affine.gain * u[k] + stages[0].as.affine.offset;
-        v = hyst_dead_zone_step(&stages[1].as.dead_zone, v);
-        v = hyst_pi_step(&stages[2].as.pi, z, v);
-        v = hyst_play_step(stages[3].as.r, &z_play, v);
-        v = hyst_stop_step(stages[4].as.r, &z_stop, v);
-        v = hyst_direction_dead_zone_step(&stages[5].as.dead_zone, &u_previous, v);
+        hyst_real v = hyst_affine_step(stages[0].model, u[k]);
+        v = hyst_dead_zone_step(stages[1].model, v);
+        v = hyst_pi_step(stages[2].model, z, v);
+        v = hyst_play_step(R(0.5), &z_play, v);
+        v = hyst_stop_step(R(6.0), &z_stop, v);
+        v = hyst_direction_dead_zone_step(stages[5].model, &u_previous, v);
         const hyst_real y = hyst_chain_step(&chain, state, u[k]);
         CHECK_SAME_BITS(&y, &v, 1);
     }

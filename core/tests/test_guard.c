@@ -17,7 +17,7 @@ static void finite_is_told_from_the_rest(void)
 /* y = play(u), threshold 1, between good samples and each kind of bad one. */
 static void bad_input_holds_output_and_state(void)
 {
-    const hyst_stage play = {HYST_PLAY, {.r = R(1.0)}};
+    const hyst_stage play = {&hyst_play_kind, &(const hyst_real){R(1.0)}};
     const hyst_chain chain = {1, &play};
     const hyst_real bad[] = {(hyst_real)NAN, (hyst_real)INFINITY, (hyst_real)-INFINITY};
     for (size_t i = 0; i < COUNT(bad); ++i) {
@@ -34,7 +34,7 @@ static void bad_input_holds_output_and_state(void)
 
 static void flag_stays_up_until_lowered(void)
 {
-    const hyst_stage play = {HYST_PLAY, {.r = R(1.0)}};
+    const hyst_stage play = {&hyst_play_kind, &(const hyst_real){R(1.0)}};
     const hyst_chain chain = {1, &play};
     hyst_guard guard = {R(0.0), 0};
     hyst_real state[] = {R(0.0)};
@@ -52,9 +52,9 @@ static void flag_stays_up_until_lowered(void)
 static void overflow_between_stages_goes_no_further(void)
 {
     const hyst_stage stages[] = {
-        {HYST_PI, {.pi = {1, R(0.0), one, half}}},
-        {HYST_AFFINE, {.affine = {REAL_MAX, R(0.0)}}},
-        {HYST_PLAY, {.r = R(1.0)}},
+        {&hyst_pi_kind, &(const hyst_pi){1, R(0.0), one, half}},
+        {&hyst_affine_kind, &(const hyst_affine){REAL_MAX, R(0.0)}},
+        {&hyst_play_kind, &(const hyst_real){R(1.0)}},
     };
     const hyst_chain chain = {COUNT(stages), stages};
     hyst_guard guard = {R(0.0), 0};
@@ -71,8 +71,8 @@ static void overflow_inside_a_stage_is_caught_at_its_output(void)
     const hyst_real weight[] = {REAL_MAX, -REAL_MAX};
     const hyst_real threshold[] = {R(0.0), R(0.0)};
     const hyst_stage stages[] = {
-        {HYST_DEAD_ZONE, {.dead_zone = {2, weight, threshold}}},
-        {HYST_PI, {.pi = {1, R(1.0), one, half}}},
+        {&hyst_dead_zone_kind, &(const hyst_dead_zone){2, weight, threshold}},
+        {&hyst_pi_kind, &(const hyst_pi){1, R(1.0), one, half}},
     };
     const hyst_chain chain = {COUNT(stages), stages};
     hyst_guard guard = {R(4.0), 0};
@@ -88,10 +88,10 @@ static void nothing_gets_in(void)
     const hyst_real weight[] = {REAL_MAX, -R(3.0)};
     const hyst_real threshold[] = {R(100.0), R(0.0)};
     const hyst_stage stages[] = {
-        {HYST_DIRECTION_DEAD_ZONE, {.dead_zone = {2, weight, threshold}}},
-        {HYST_PI, {.pi = {1, R(2.0), one, half}}},
-        {HYST_STOP, {.r = REAL_MAX}},
-        {HYST_PLAY, {.r = R(0.5)}},
+        {&hyst_direction_dead_zone_kind, &(const hyst_dead_zone){2, weight, threshold}},
+        {&hyst_pi_kind, &(const hyst_pi){1, R(2.0), one, half}},
+        {&hyst_stop_kind, &(const hyst_real){REAL_MAX}},
+        {&hyst_play_kind, &(const hyst_real){R(0.5)}},
     };
     const hyst_chain chain = {COUNT(stages), stages};
     const hyst_real fed[] = {R(1.0),   (hyst_real)NAN,       REAL_MAX, (hyst_real)INFINITY,
@@ -112,9 +112,9 @@ static void nothing_gets_in(void)
 static void good_samples_are_those_of_the_plain_chain(void)
 {
     const hyst_stage stages[] = {
-        {HYST_AFFINE, {.affine = {R(1.1), R(0.3)}}},
-        {HYST_PI, {.pi = {1, R(0.7), one, half}}},
-        {HYST_PLAY, {.r = R(0.25)}},
+        {&hyst_affine_kind, &(const hyst_affine){R(1.1), R(0.3)}},
+        {&hyst_pi_kind, &(const hyst_pi){1, R(0.7), one, half}},
+        {&hyst_play_kind, &(const hyst_real){R(0.25)}},
     };
     const hyst_chain chain = {COUNT(stages), stages};
     hyst_real u[500];

@@ -59,8 +59,8 @@ static void test_overflow_leaves_the_state(void)
     const hyst_real growing[] = {R(2.0)}, one[] = {R(1.0)};
     const hyst_real pole[] = {R(1.0), R(0.0), R(0.0), R(-2.0), R(0.0)};
     const hyst_stage stages[] = {
-        {.kind = HYST_STATE_SPACE, .as.state_space = {1, 1, growing, one, one, R(0.0)}},
-        {.kind = HYST_SECTIONS, .as.sections = {1, pole}}};
+        {&hyst_state_space_kind, &(const hyst_state_space){1, 1, growing, one, one, R(0.0)}},
+        {&hyst_sections_kind, &(const hyst_sections){1, pole}}};
     const hyst_real start[2][2] = {{REAL_MAX, R(1.0)}, {REAL_MAX, R(0.0)}};
     for (size_t i = 0; i < COUNT(stages); ++i) {
         const hyst_chain chain = {1, &stages[i]};
@@ -76,8 +76,8 @@ static void test_chain_runs_a_record(void)
 {
     const hyst_real coefficient[] = {R(0.25), R(0.5), R(0.125), R(-0.5), R(0.25)};
     const hyst_stage stages[] = {
-        {.kind = HYST_STATE_SPACE, .as.state_space = {2, 2, a, b, c, R(0.5)}},
-        {.kind = HYST_SECTIONS, .as.sections = {1, coefficient}}};
+        {&hyst_state_space_kind, &(const hyst_state_space){2, 2, a, b, c, R(0.5)}},
+        {&hyst_sections_kind, &(const hyst_sections){1, coefficient}}};
     const hyst_chain chain = {COUNT(stages), stages};
     hyst_real u[100], y[100], stepped[100], at_once[6] = {0}, by_step[6] = {0};
     CHECK(hyst_chain_state_length(&chain) == 6);

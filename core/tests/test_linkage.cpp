@@ -3,11 +3,9 @@
 
 int main() {
     const hyst_real p[] = {1}, r[] = {1};
-    hyst_stage stages[2] = {};
-    stages[0].kind = HYST_DEAD_ZONE;
-    stages[0].as.dead_zone = {0, p, r};
-    stages[1].kind = HYST_PI;
-    stages[1].as.pi = {1, 2, p, r};
+    const hyst_dead_zone map = {0, p, r};
+    const hyst_pi pi = {1, 2, p, r};
+    const hyst_stage stages[2] = {{&hyst_dead_zone_kind, &map}, {&hyst_pi_kind, &pi}};
     const hyst_chain chain = {2, stages};
     hyst_guard guard = {5, 0};
     hyst_real state[1] = {4}, y[1] = {3};
@@ -16,8 +14,8 @@ int main() {
     const bool guarded = hyst_guarded_step(&chain, state, &guard, 3) == 1 && guard.fault == 0;
     hyst_real z = 0, u_previous = 0;
     const bool single = hyst_play_step(1, &z, 3) == 2 && hyst_stop_step(1, &z, 3) == 1 &&
-                        hyst_pi_step(&stages[1].as.pi, state, 3) == 8 &&
-                        hyst_dead_zone_step(&stages[0].as.dead_zone, 3) == 0 &&
-                        hyst_direction_dead_zone_step(&stages[0].as.dead_zone, &u_previous, 3) == 0;
+                        hyst_pi_step(&pi, state, 3) == 8 &&
+                        hyst_dead_zone_step(&map, 3) == 0 &&
+                        hyst_direction_dead_zone_step(&map, &u_previous, 3) == 0;
     return ran && guarded && single && hyst_is_finite(0) ? 0 : 1;
 }

@@ -33,8 +33,8 @@ static const hyst_real p[] = {R(0.5), R(0.25)}, r[] = {R(1.0), R(2.0)};
 
 static void test_inverse_follows_the_linear_part(void)
 {
-    const hyst_stage stages[] = {{.kind = HYST_PI, .as.pi = {2, R(1.0), p, r}},
-                                 {.kind = HYST_AFFINE, .as.affine = {R(0.5), R(1.0)}}};
+    const hyst_stage stages[] = {{&hyst_pi_kind, &(const hyst_pi){2, R(1.0), p, r}},
+                                 {&hyst_affine_kind, &(const hyst_affine){R(0.5), R(1.0)}}};
     hyst_tracking_controller controller = pi_controller();
     controller.inverse.count = COUNT(stages);
     controller.inverse.stage = stages;
@@ -62,7 +62,7 @@ static void test_without_states(void)
 
 static void test_guard_holds_output_and_state(void)
 {
-    const hyst_stage stage = {.kind = HYST_PI, .as.pi = {2, R(1.0), p, r}};
+    const hyst_stage stage = {&hyst_pi_kind, &(const hyst_pi){2, R(1.0), p, r}};
     hyst_tracking_controller controller = pi_controller();
     controller.inverse.count = 1;
     controller.inverse.stage = &stage;

@@ -20,8 +20,8 @@ while read -r source; do
     clang -std=c99 -ffp-contract=off -Icore/include $checks -c "core/$source" \
         -o "$to/core_$(basename "$source" .c).o"
 done < core/SOURCES
-for source in engine/simd/kernels.cpp engine/*.cpp; do
-    case $source in *module.cpp | *_binding.cpp | *stepper.cpp) continue ;; esac
-    clang++ $strict -c "$source" -o "$to/$(basename "$source" .cpp).o"
+for source in engine/simd/kernels.cpp engine/*.cpp engine/kinds/*.cpp engine/kinds/fast/*.cpp; do
+    case $source in *module.cpp | *_binding.cpp | *stepper.cpp | */single.cpp) continue ;; esac
+    clang++ $strict -c "$source" -o "$to/$(echo "$source" | tr / _).o"
 done
 clang++ $strict -fsanitize=fuzzer engine/fuzz/engines.cpp "$to"/*.o -lpthread -o "$to/engines"

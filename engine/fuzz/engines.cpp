@@ -75,13 +75,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     }
     if (u.empty()) return 0;
 
-    hyst::Chain chain;
+    hyst::kinds::Given given{"pi", "", {0.3}, {{"knees", {}}}, {{"plays", n}, {"powers", 1}}, 1.0};
+    given.constants.insert(given.constants.end(), p.begin(), p.end());
+    given.constants.insert(given.constants.end(), r.begin(), r.end());
     if (kind & 64) {
-        chain.add_rate_dependent_pi(0.3, p, r, {0.25, {0.125}, {}, {}}, 1.0);
+        given.kind = "rate_dependent_pi";
+        given.constants.insert(given.constants.end(), {0.25, 0.125});
         z.insert(z.end(), {0.5, kind & 128 ? 1.0 : 0.0});
-    } else {
-        chain.add_pi(0.3, p, r);
     }
+    const hyst::Chain chain({given});
     for (auto each = hyst::available_kernels(); *each != nullptr; ++each) {
         hyst::use_kernels((*each)->name);
         std::vector<double> state = z, y(u.size());

@@ -1,58 +1,19 @@
 """Types of the compiled engine."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.operators.stage import Stage
+
 Array = NDArray[np.float64]
 
 class Chain:
-    def __init__(self) -> None: ...
-    def add_affine(self, gain: float, offset: float) -> None: ...
-    def add_play(self, r: float) -> None: ...
-    def add_stop(self, r: float) -> None: ...
-    def add_dead_zone(
-        self, weights: Sequence[float], thresholds: Sequence[float], by_direction: bool
-    ) -> None: ...
-    def add_pi(self, p0: float, p: Sequence[float], r: Sequence[float]) -> None: ...
-    def add_rate_dependent_pi(
-        self,
-        p0: float,
-        p: Sequence[float],
-        r: Sequence[float],
-        beta: float,
-        powers: Sequence[float],
-        slopes: Sequence[float],
-        knees: Sequence[float],
-        dt: float,
-    ) -> None: ...
-    def add_state_space(
-        self, delay: int, a: Sequence[float], b: Sequence[float], c: Sequence[float], d: float
-    ) -> None: ...
-    def add_sections(self, coefficients: Sequence[float]) -> None: ...
-    def add_masing(
-        self,
-        curve: str,
-        constants: Sequence[float],
-        least_slope: float,
-        inverse: bool,
-        last_reversal: bool,
-        depth: int,
-        dead_band: float,
-    ) -> None: ...
-    def add_memory_element(
-        self,
-        function: str,
-        knots: Sequence[float],
-        constants: Sequence[float],
-        inverse: bool,
-        absolute: bool,
-        is_reset: bool,
-        reset_to: float,
-        dt: float,
-    ) -> None: ...
+    def __init__(self, stages: Iterable[Stage]) -> None: ...
+    def __len__(self) -> int: ...
+    def constants(self, i: int) -> dict[str, Any]: ...
     @property
     def state_length(self) -> int: ...
     @property
@@ -73,6 +34,8 @@ class Chain:
         threads: int = 1,
     ) -> float: ...
     def jacobian(self, state: Array, u: Array, result: Array) -> None: ...
+
+def kinds() -> list[str]: ...
 
 class Rounding:
     def __init__(self, rate: float, contact: float) -> None: ...

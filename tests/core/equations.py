@@ -6,12 +6,14 @@ So the engine must agree with them to the last bit.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from hyst import _engine
+from hyst.operators.stage import Stage
 
 Step = Callable[[float], float]
 
@@ -85,8 +87,16 @@ def direction_dead_zone(weights: list[float], thresholds: list[float]) -> Step:
 class Pair:
     """The same chain twice: compiled, and as Python functions in the order the signal passes."""
 
-    chain: _engine.Chain = field(default_factory=_engine.Chain)
+    stages: list[Stage] = field(default_factory=list)
     steps: list[Step] = field(default_factory=list)
+
+    def add(self, stage: Stage, step: Step) -> None:
+        self.stages.append(stage)
+        self.steps.append(step)
+
+    @functools.cached_property
+    def chain(self) -> _engine.Chain:
+        return _engine.Chain(self.stages)
 
     def oracle(self, u: np.ndarray) -> np.ndarray:
         y = np.empty_like(u)

@@ -9,6 +9,7 @@ import pytest
 from equations import Pair
 
 from hyst import _engine
+from hyst.operators.stage import Stage
 
 
 def run(chain: _engine.Chain, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -107,8 +108,7 @@ def test_stepper_takes_one_number(pair: Pair) -> None:
 
 
 def test_stepper_keeps_its_chain_and_state_alive(noise: np.ndarray) -> None:
-    chain = _engine.Chain()
-    chain.add_play(0.5)
+    chain = _engine.Chain([Stage("play", (0.5,))])
     step = _engine.stepper(chain, np.zeros(1), 0.0)
     expected = run(chain, noise)[0]
     del chain

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from hyst import _engine
+from hyst.operators.stage import Stage
 
 CORE = Path(__file__).resolve().parents[2] / "core"
 # Seven plays: four for a vector, and a rest of three, where compilers would contract.
@@ -62,8 +63,7 @@ def run_alone(library: ctypes.CDLL, real: type, u: np.ndarray) -> np.ndarray:
 
 
 def run_in_engine(u: np.ndarray) -> np.ndarray:
-    chain = _engine.Chain()
-    chain.add_pi(P0, P, R)
+    chain = _engine.Chain([Stage("pi", (P0, *P, *R))])
     y = np.empty((1, u.size))
     chain.run(np.zeros((1, 7)), u.reshape(1, -1), y)
     return y[0]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst import _engine
+from hyst.operators.stage import Stage
 
 Array = NDArray[np.float64]
 
@@ -61,22 +62,36 @@ def _memory(rng: np.random.Generator, r: Array) -> Array:
     return np.zeros(r.size)
 
 
+def bank(p0: float, p: list[float], r: list[float]) -> Stage:
+    return Stage("pi", (p0, *p, *r))
+
+
+def rated_bank(p: Array, r: Array, beta: float, powers: list[float]) -> Stage:
+    """Plays whose thresholds grow by beta, powers and one ramp of the rate."""
+    return Stage(
+        "rate_dependent_pi",
+        (0.3, *p.tolist(), *r.tolist(), beta, *powers, 0.2),
+        fixed={"knees": (0.1,)},
+        choices={"plays": p.size, "powers": len(powers)},
+        dt=0.5,
+    )
+
+
 def random_case(rng: np.random.Generator) -> Case:
     n, samples = int(rng.integers(1, 25)), int(rng.integers(1, 400))
     r, u, p = _thresholds(rng, n), _record(rng, samples), rng.normal(size=n)
-    state, chain = _memory(rng, r), _engine.Chain()
+    state = _memory(rng, r)
     kind = rng.integers(8)
     if kind == 0:
-        powers = [0.1] if rng.random() < 0.5 else []
-        chain.add_rate_dependent_pi(0.3, p.tolist(), r.tolist(), 0.3, powers, [0.2], [0.1], 0.5)
+        stage = rated_bank(p, r, 0.3, [0.1] if rng.random() < 0.5 else [])
         state = np.concatenate([state, [0.4, float(rng.integers(2))]])
     elif kind == 1:
-        (chain.add_play if rng.random() < 0.5 else chain.add_stop)(r[-1])
+        stage = Stage("play" if rng.random() < 0.5 else "stop", (float(r[-1]),))
         state = state[-1:].copy()
     else:
-        chain.add_pi(0.3, p.tolist(), r.tolist())
+        stage = bank(0.3, p.tolist(), r.tolist())
     biggest = np.abs(u).max() + np.abs(state).max() + r[-1]
-    return Case(chain, state, u, float((1.0 + np.abs(p).sum()) * biggest))
+    return Case(_engine.Chain([stage]), state, u, float((1.0 + np.abs(p).sum()) * biggest))
 
 
 def run(case: Case, engine: str, threads: int = 1) -> tuple[Array, Array]:

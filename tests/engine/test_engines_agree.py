@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from engine_cases import Case, random_case, run, same_bits
+from engine_cases import Case, bank, random_case, run, same_bits
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from hyst import _engine
+from hyst.operators.stage import Stage
 
 EPSILON = np.finfo(np.float64).eps
 
@@ -50,8 +51,7 @@ def test_records_that_hypothesis_thinks_of(
     r.sort()
     z = np.array(data.draw(st.lists(values, min_size=len(r), max_size=len(r))))
     p = data.draw(st.lists(st.floats(-2.0, 2.0), min_size=len(r), max_size=len(r)))
-    chain = _engine.Chain()
-    chain.add_pi(0.5, p, r)
+    chain = _engine.Chain([bank(0.5, p, r)])
     case = Case(chain, z, u, 0.0)
     out, memory = np.empty((1, u.size)), z.reshape(1, -1).copy()
     bad = chain.run(memory, u.reshape(1, -1), out, "loop", 1)
@@ -67,8 +67,7 @@ def test_records_that_hypothesis_thinks_of(
 @pytest.mark.parametrize("samples", [1, 7, 63, 64, 65, 512, 4096, 4097, 40_000])
 @pytest.mark.parametrize("engine", ["lanes", "memory-curve"])
 def test_records_of_every_length(instruction_set: str, engine: str, samples: int) -> None:
-    chain = _engine.Chain()
-    chain.add_pi(1.0, [0.5, -0.25, 0.125], [0.0, 0.5, 0.5])
+    chain = _engine.Chain([bank(1.0, [0.5, -0.25, 0.125], [0.0, 0.5, 0.5])])
     u = np.round(np.random.default_rng(samples).normal(size=samples) * 8) / 8
     case = Case(chain, np.zeros(3), u, 0.0)
     # Eighths times eighths: every sum is exact, so even the memory curve has no rounding to do.
@@ -82,11 +81,14 @@ def test_records_of_every_length(instruction_set: str, engine: str, samples: int
 @pytest.mark.parametrize("threads", [2, 3, 7])
 def test_threads_change_nothing(instruction_set: str, engine: str, threads: int) -> None:
     rng = np.random.default_rng(threads)
-    chain = _engine.Chain()
-    chain.add_affine(2.0, 0.5)
-    chain.add_pi(0.3, rng.normal(size=20).tolist(), np.linspace(0.0, 2.0, 20).tolist())
-    chain.add_dead_zone([0.5, 1.0], [-0.25, 0.5], False)
-    chain.add_stop(0.25)
+    chain = _engine.Chain(
+        [
+            Stage("affine", (2.0, 0.5)),
+            bank(0.3, rng.normal(size=20).tolist(), np.linspace(0.0, 2.0, 20).tolist()),
+            Stage("dead_zone", (0.5, 1.0, -0.25, 0.5)),
+            Stage("stop", (0.25,)),
+        ]
+    )
     u = np.cumsum(rng.normal(size=150_001)) * 0.01
     case = Case(chain, np.zeros(21), u, 0.0)
     y, state = run(case, "loop")
@@ -103,11 +105,8 @@ def test_threads_change_nothing(instruction_set: str, engine: str, threads: int)
 @pytest.mark.parametrize("samples", [5, 64, 100, 5000])
 def test_batches_are_their_records(instruction_set: str, rows: int, samples: int) -> None:
     rng = np.random.default_rng([rows, samples])
-    one, two = _engine.Chain(), _engine.Chain()
-    for chain in (one, two):
-        chain.add_pi(0.3, [1.0, -0.5, 0.2], [0.1, 0.1, 0.7])
-    two.add_play(0.2)
-    for chain in (one, two):
+    first = bank(0.3, [1.0, -0.5, 0.2], [0.1, 0.1, 0.7])
+    for chain in (_engine.Chain([first]), _engine.Chain([first, Stage("play", (0.2,))])):
         u = rng.normal(size=(rows, samples))
         start = rng.normal(size=(rows, chain.state_length)) * 0.1
         state, y = start.copy(), np.empty_like(u)
@@ -121,8 +120,7 @@ def test_batches_are_their_records(instruction_set: str, rows: int, samples: int
 def test_unsorted_and_negative_thresholds_fall_back_to_the_loop(instruction_set: str) -> None:
     u = np.random.default_rng(1).normal(size=5000)
     for r in ([0.5, 0.1], [-0.1, 0.2]):
-        chain = _engine.Chain()
-        chain.add_pi(0.3, [1.0, 2.0], r)
+        chain = _engine.Chain([bank(0.3, [1.0, 2.0], r)])
         case = Case(chain, np.zeros(2), u, 0.0)
         y, state = run(case, "loop")
         for engine in ("lanes", "memory-curve", "auto"):
@@ -132,10 +130,8 @@ def test_unsorted_and_negative_thresholds_fall_back_to_the_loop(instruction_set:
 
 
 def test_what_overflows_is_found_where_the_loop_finds_it(instruction_set: str) -> None:
-    chain = _engine.Chain()
-    chain.add_affine(1e300, 0.0)
-    chain.add_affine(1e300, 0.0)
-    chain.add_pi(1.0, [1.0], [0.5])
+    steep = Stage("affine", (1e300, 0.0))
+    chain = _engine.Chain([steep, steep, bank(1.0, [1.0], [0.5])])
     u = np.zeros((1, 2000))
     u[0, 1000:1003] = 1.0, -1.0, 2.0
     for engine in ("loop", "lanes", "memory-curve", "auto"):

@@ -9,12 +9,11 @@ import hyst
 from hyst import _engine
 from hyst.errors import InputError
 from hyst.operators.evaluation import run_parameter_sets
+from hyst.operators.stage import Stage
 
 
 def bank() -> _engine.Chain:
-    chain = _engine.Chain()
-    chain.add_pi(0.3, [1.0, 2.0], [0.1, 0.2])
-    return chain
+    return _engine.Chain([Stage("pi", (0.3, 1.0, 2.0, 0.1, 0.2))])
 
 
 u = np.linspace(0.0, 1.0, 100).reshape(1, -1)

@@ -18,7 +18,7 @@ from fmpy.fmi3 import FMU3Slave
 import hyst
 from hyst import DeadZone, ModifiedPrandtlIshlinskii, Operator, PrandtlIshlinskii
 from hyst.control import TrackingController
-from hyst.export.recording import record_stages
+from hyst.export.core_stage import core_stages
 from hyst.online import JointEstimator
 from reference.examples import EXAMPLES, PI
 
@@ -42,7 +42,7 @@ def one_of_each(operators: dict[str, Operator]) -> dict[str, Operator]:
                 (stage.choices["inverse"], stage.choices["last_reversal"]),
                 tuple(bool(values) for values in stage.tables.values()),
             )
-            for stage in record_stages(operator)
+            for stage in core_stages(operator)
         )  # fmt: skip
         starts = bool(np.any(operator.initial_state()))
         found.setdefault((shape, starts), name)

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hyst import Affine, InputError, PrandtlIshlinskii
+from hyst.export.core_stage import core_stages
 from hyst.export.numbers import as_precision, literal, rounded, table
-from hyst.export.recording import record_stages
 from hyst.export.stage_code import StageCode
 from hyst.models import MasingOperator, PolynomialCurve
 
@@ -51,14 +51,14 @@ def test_what_single_precision_cannot_hold_is_refused() -> None:
     with pytest.raises(InputError, match="beyond single precision"):
         rounded(1e39, "single", "p0")
     with pytest.raises(InputError, match="affine_1_gain is 1e"):
-        StageCode(record_stages(Affine(1e300)), "single")
+        StageCode(core_stages(Affine(1e300)), "single")
     assert rounded(1e300, "double", "p0") == 1e300
     tiny = MasingOperator(PolynomialCurve([1e-60, 1e-60]))
-    StageCode(record_stages(tiny), "double")
+    StageCode(core_stages(tiny), "double")
     with pytest.raises(InputError, match="below what single precision holds"):
-        StageCode(record_stages(tiny), "single")
+        StageCode(core_stages(tiny), "single")
     # Beside larger ones of a table a tiny constant is as good as 0.
-    StageCode(record_stages(PrandtlIshlinskii([1.0, 1e-60], [0.0, 1.0])), "single")
+    StageCode(core_stages(PrandtlIshlinskii([1.0, 1e-60], [0.0, 1.0])), "single")
 
 
 @pytest.mark.parametrize("precision", ["", "float", "Double", None, 64])

@@ -128,7 +128,7 @@ def test_the_generalized_model_of_section_5_3() -> None:
     inverse = hysteresis.inverse()
     # Eq. 5: first the inverse plays, then the inverse envelope.
     assert isinstance(inverse, ModifiedPrandtlIshlinskii)
-    assert inverse.stages == (model().inverse(), DeadZone.odd(XI, RHO).inverse())
+    assert inverse.parts == (model().inverse(), DeadZone.odd(XI, RHO).inverse())
     t = np.linspace(0.0, 2.0, 2001)
     r = 18.0 * np.sin(2.0 * np.pi * t) + 28.0 * np.sin(6.0 * np.pi * t)
     tolerance = 50.0 * 2.4 * 11.0 * np.finfo(float).eps * np.abs(r).max()

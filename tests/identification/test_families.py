@@ -71,7 +71,7 @@ def test_slopes_beyond_the_knots_are_the_free_parameters(family: str) -> None:
     slopes = np.array([0.4, 0.7, 1.5, 0.2])
     theta[-5:-1] = slopes
     operator = parametrization.operator(theta)
-    named = operator.stages[0]  # type: ignore[attr-defined]
+    named = operator.parts[0]  # type: ignore[attr-defined]
     the_map = named.envelope if family == "gpi" else named.output_map
     beyond = START.knots + np.array([-1.0, -1.0, 1.0, 1.0]) * 1e-3
     measured = (the_map(beyond + 1e-5) - the_map(beyond - 1e-5)) / 2e-5

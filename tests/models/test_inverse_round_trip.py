@@ -50,7 +50,7 @@ def offsets(operator: Operator) -> float:
     """What constants add to the signal on its way."""
     if isinstance(operator, Affine):
         return abs(operator.offset) * (1.0 + 1.0 / abs(operator.gain))
-    return sum(offsets(stage) for stage in getattr(operator, "stages", ()))
+    return sum(offsets(part) for part in getattr(operator, "parts", ()))
 
 
 def round_trip_errors(model: Operator, u: Array) -> tuple[float, float]:

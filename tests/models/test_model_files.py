@@ -270,11 +270,11 @@ def test_entries_of_a_bank(file: Path, key: str, value: Any, message: str) -> No
         (ZONE, "variant", ..., "the entry 'variant' is missing"),
         (ZONE, "weights", [1.0], "1 weights but 2 thresholds"),
         (Affine(1.0), "offset", ..., "the entry 'offset' is missing"),
-        (MODEL.stages[0], "envelope", {"kind": "play", "r": 1.0}, "envelope is a play"),
-        (MODEL.stages[0], "envelope", None, "the entry 'envelope' holds None"),
-        (MODEL.stages[0], "pi", {"kind": "play", "r": 1.0}, "pi is a play"),
-        (MODEL.stages[1], "output_map", {"kind": "stop", "r": 1.0}, "output_map is a stop"),
-        (MODEL.stages[1], "output_map", "dead-zone", "an object with an entry 'kind'"),
+        (MODEL.parts[0], "envelope", {"kind": "play", "r": 1.0}, "envelope is a play"),
+        (MODEL.parts[0], "envelope", None, "the entry 'envelope' holds None"),
+        (MODEL.parts[0], "pi", {"kind": "play", "r": 1.0}, "pi is a play"),
+        (MODEL.parts[1], "output_map", {"kind": "stop", "r": 1.0}, "output_map is a stop"),
+        (MODEL.parts[1], "output_map", "dead-zone", "an object with an entry 'kind'"),
     ],
 )
 def test_entries_of_other_operators(

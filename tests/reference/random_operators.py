@@ -212,7 +212,9 @@ def operators_that(
     ]
     for kind in kinds:
         # A kind that hardly ever satisfies the predicate would only be filtered, not tested.
-        verdicts = [predicate(each) for each in EXAMPLES.values() if each.kind == kind] or [True]
+        verdicts = [bool(predicate(each)) for each in EXAMPLES.values() if each.kind == kind] or [
+            True
+        ]
         if 2 * sum(verdicts) >= len(verdicts):
             cases.append(pytest.param(RANDOM[kind].filter(predicate), id=f"random {kind}"))
     return pytest.mark.parametrize("operators", cases)

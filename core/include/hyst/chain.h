@@ -6,12 +6,7 @@
 #ifndef HYST_CHAIN_H
 #define HYST_CHAIN_H
 
-#include "hyst/dead_zone.h"
-#include "hyst/linear_dynamics.h"
-#include "hyst/masing.h"
-#include "hyst/memory_element.h"
-#include "hyst/prandtl_ishlinskii.h"
-#include "hyst/rate_dependent_prandtl_ishlinskii.h"
+#include "hyst/kind.h"
 #include "hyst/real.h"
 
 #ifdef __cplusplus
@@ -19,37 +14,8 @@ extern "C" {
 #endif
 
 typedef struct {
-    hyst_real gain;
-    hyst_real offset;
-} hyst_affine; /* y = gain u + offset */
-
-typedef enum {
-    HYST_AFFINE,
-    HYST_PLAY,
-    HYST_STOP,
-    HYST_DEAD_ZONE,
-    HYST_DIRECTION_DEAD_ZONE,
-    HYST_PI,
-    HYST_RATE_DEPENDENT_PI,
-    HYST_STATE_SPACE,
-    HYST_SECTIONS,
-    HYST_MASING,
-    HYST_MEMORY_ELEMENT
-} hyst_kind;
-
-typedef struct {
-    hyst_kind kind; /* which member of the union is meant */
-    union {
-        hyst_affine affine;
-        hyst_real r; /* threshold of a play or a stop */
-        hyst_dead_zone dead_zone;
-        hyst_pi pi;
-        hyst_rate_dependent_pi rate_dependent_pi;
-        hyst_state_space state_space;
-        hyst_sections sections;
-        hyst_masing masing;
-        hyst_memory_element memory_element;
-    } as;
+    const hyst_kind *kind; /* as &hyst_pi_kind */
+    const void *model;     /* the structure of that kind, as a hyst_pi */
 } hyst_stage;
 
 typedef struct {

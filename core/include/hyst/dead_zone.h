@@ -9,6 +9,7 @@
 #ifndef HYST_DEAD_ZONE_H
 #define HYST_DEAD_ZONE_H
 
+#include "hyst/kind.h"
 #include "hyst/real.h"
 
 #ifdef __cplusplus
@@ -25,6 +26,9 @@ hyst_real hyst_dead_zone_step(const hyst_dead_zone *map, hyst_real u);
 
 hyst_real hyst_direction_dead_zone_step(const hyst_dead_zone *map, hyst_real *u_previous,
                                         hyst_real u);
+
+extern const hyst_kind hyst_dead_zone_kind; /* of a hyst_dead_zone */
+extern const hyst_kind hyst_direction_dead_zone_kind; /* of a hyst_dead_zone */
 
 #ifdef __cplusplus
 }

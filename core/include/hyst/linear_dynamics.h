@@ -8,6 +8,7 @@
 #ifndef HYST_LINEAR_DYNAMICS_H
 #define HYST_LINEAR_DYNAMICS_H
 
+#include "hyst/kind.h"
 #include "hyst/real.h"
 
 #ifdef __cplusplus
@@ -37,6 +38,9 @@ hyst_real hyst_state_space_step(const hyst_state_space *system, hyst_real *state
 
 /* One sample through all sections, each in transposed direct form II. state: two for each. */
 hyst_real hyst_sections_step(const hyst_sections *sections, hyst_real *state, hyst_real u);
+
+extern const hyst_kind hyst_state_space_kind; /* of a hyst_state_space */
+extern const hyst_kind hyst_sections_kind; /* of a hyst_sections */
 
 #ifdef __cplusplus
 }

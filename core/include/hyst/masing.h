@@ -23,6 +23,7 @@
 #ifndef HYST_MASING_H
 #define HYST_MASING_H
 
+#include "hyst/kind.h"
 #include "hyst/loading_curve.h"
 #include "hyst/real.h"
 
@@ -56,6 +57,8 @@ hyst_real hyst_masing_step(const hyst_masing *model, hyst_real *state, hyst_real
 
 /* f or its inverse, as the model has it. */
 hyst_real hyst_masing_curve(const hyst_masing *model, hyst_real x);
+
+extern const hyst_kind hyst_masing_kind; /* of a hyst_masing */
 
 #ifdef __cplusplus
 }

@@ -11,6 +11,7 @@
 #ifndef HYST_MEMORY_ELEMENT_H
 #define HYST_MEMORY_ELEMENT_H
 
+#include "hyst/kind.h"
 #include "hyst/real.h"
 
 #ifdef __cplusplus
@@ -41,6 +42,8 @@ hyst_real hyst_memory_value(const hyst_memory_function *function, hyst_real p);
 /* The state holds p and the sign of the last input that was not zero, 0 before the first. */
 hyst_real hyst_memory_element_step(const hyst_memory_element *model, hyst_real *state,
                                    hyst_real input);
+
+extern const hyst_kind hyst_memory_element_kind; /* of a hyst_memory_element */
 
 #ifdef __cplusplus
 }

@@ -7,6 +7,7 @@
 #ifndef HYST_PLAY_H
 #define HYST_PLAY_H
 
+#include "hyst/kind.h"
 #include "hyst/real.h"
 
 #ifdef __cplusplus
@@ -32,6 +33,9 @@ hyst_real hyst_play_step(hyst_real r, hyst_real *z, hyst_real u);
 
 /* One sample of the stop; z is the state of the play it is built on. */
 hyst_real hyst_stop_step(hyst_real r, hyst_real *z, hyst_real u);
+
+extern const hyst_kind hyst_play_kind; /* of a threshold, hyst_real */
+extern const hyst_kind hyst_stop_kind; /* of a threshold, hyst_real */
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,7 @@
 #ifndef HYST_PRANDTL_ISHLINSKII_H
 #define HYST_PRANDTL_ISHLINSKII_H
 
+#include "hyst/kind.h"
 #include "hyst/real.h"
 
 #ifdef __cplusplus
@@ -18,6 +19,8 @@ typedef struct {
 
 /* One sample. z holds the count play outputs; the sum starts at p0 u and follows the order of i. */
 hyst_real hyst_pi_step(const hyst_pi *pi, hyst_real *z, hyst_real u);
+
+extern const hyst_kind hyst_pi_kind; /* of a hyst_pi */
 
 #ifdef __cplusplus
 }

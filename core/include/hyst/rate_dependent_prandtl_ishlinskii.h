@@ -9,6 +9,7 @@
 #define HYST_RATE_DEPENDENT_PRANDTL_ISHLINSKII_H
 
 #include "hyst/dead_zone.h"
+#include "hyst/kind.h"
 #include "hyst/prandtl_ishlinskii.h"
 #include "hyst/real.h"
 
@@ -31,6 +32,8 @@ hyst_real hyst_widening(const hyst_rate_dependent_pi *model, hyst_real x);
  * previous input (0 before the first sample, whose rate is 0). */
 hyst_real hyst_rate_dependent_pi_step(const hyst_rate_dependent_pi *model, hyst_real *state,
                                       hyst_real u);
+
+extern const hyst_kind hyst_rate_dependent_pi_kind; /* of a hyst_rate_dependent_pi */
 
 #ifdef __cplusplus
 }

@@ -12,6 +12,7 @@
 
 #include "hyst/chain.h"
 #include "hyst/guard.h"
+#include "hyst/linear_dynamics.h"
 #include "hyst/real.h"
 
 #ifdef __cplusplus

@@ -105,7 +105,7 @@ def _settled_after(dynamics: LinearDynamics) -> int:
 
 
 def _split(model: Operator) -> tuple[Operator | None, LinearDynamics, Operator | None]:
-    stages = list(model.stages) if isinstance(model, Composition) else [model]
+    stages = list(model.parts) if isinstance(model, Composition) else [model]
     places = [i for i, stage in enumerate(stages) if isinstance(stage, LinearDynamics)]
     if len(places) != 1:
         raise InputError(

@@ -63,9 +63,7 @@ class RateDependentTask:
 
     def chain(self) -> _engine.Chain:
         """Give the plays as the engine's chain of one stage."""
-        chain = _engine.Chain()
-        self.plays.append_to(chain)
-        return chain
+        return _engine.Chain(self.plays.stages())
 
     def input_of(self, drive: Array) -> Array:
         """Give the model's input for a drive of the plays."""

@@ -227,13 +227,12 @@ def _limit(limit: float | None, r: Array, noise: Array) -> float:
 
 
 def _chain(operator: Operator | None, name: str, dt: float) -> _engine.Chain:
-    chain = _engine.Chain()
-    if operator is not None:
-        if not isinstance(operator, Operator):
-            raise InputError(f"{name} is {type(operator).__name__}; give an operator or None")
-        operator.require_sample_time(dt, "the loop")
-        operator.append_to(chain)
-    return chain
+    if operator is None:
+        return _engine.Chain(())
+    if not isinstance(operator, Operator):
+        raise InputError(f"{name} is {type(operator).__name__}; give an operator or None")
+    operator.require_sample_time(dt, "the loop")
+    return _engine.Chain(operator.stages())
 
 
 def _start(operator: Operator | None) -> Array:

@@ -363,9 +363,7 @@ class TrackingController:
     @functools.cached_property
     def compiled(self) -> _engine.TrackingController:
         """The block in the engine."""
-        chain = _engine.Chain()
-        if self.inverse is not None:
-            self.inverse.append_to(chain)
+        chain = _engine.Chain(() if self.inverse is None else self.inverse.stages())
         columns, b = self.A.T.ravel().tolist(), self.B.T.ravel().tolist()
         return _engine.TrackingController(
             columns, b, self.C.tolist(), float(self.D[0]), float(self.D[1]), chain

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from hyst.export.core_stage import CoreStage, core_stages
 from hyst.export.drive import Drive
-from hyst.export.recording import record_stages
-from hyst.export.stages import Stage
 from hyst.operators import Operator
 from hyst.operators.composition import leaves_of
 
@@ -27,7 +26,7 @@ def drive_for(model: Operator) -> Drive:
     -------
     Drive
     """
-    stages = record_stages(model)
+    stages = core_stages(model)
     best, most = 1.0, -1
     shape = np.concatenate([np.linspace(0, 1, 40), np.linspace(1, -1, 80), np.linspace(-1, 0, 40)])
     for exponent in _EXPONENTS:
@@ -38,7 +37,7 @@ def drive_for(model: Operator) -> Drive:
     return Drive.between(-best, best)
 
 
-def _stages_passed(model: Operator, stages: tuple[Stage, ...], u: np.ndarray) -> int:
+def _stages_passed(model: Operator, stages: tuple[CoreStage, ...], u: np.ndarray) -> int:
     leaves = leaves_of(model)
     if len(leaves) != len(stages):
         leaves = (model,)
@@ -53,7 +52,7 @@ def _stages_passed(model: Operator, stages: tuple[Stage, ...], u: np.ndarray) ->
     return passed
 
 
-def _largest_scale(stage: Stage) -> float:
+def _largest_scale(stage: CoreStage) -> float:
     scales = [abs(stage.numbers[key]) for key in _SCALES if key in stage.numbers]
     # The rate's thresholds of rate-dependent plays are in other units.
     rate = stage.kind == "rate_dependent_pi"

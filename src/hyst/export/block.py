@@ -11,10 +11,9 @@ from typing import Any, final
 from hyst import _single
 from hyst.control.tracking_controller import KIND, TrackingController
 from hyst.errors import InputError
+from hyst.export.core_stage import CoreStage, core_stages
 from hyst.export.numbers import Precision
-from hyst.export.recording import record_stages
 from hyst.export.stage_code import StageCode
-from hyst.export.stages import Stage
 from hyst.models.stable_inverse import StableInverse
 from hyst.online import JointEstimator
 from hyst.operators import Affine, Operator
@@ -74,7 +73,7 @@ class Block:
     start: tuple[float, ...]
     dt: float | None
     model: dict[str, Any]
-    stages: tuple[Stage, ...]
+    stages: tuple[CoreStage, ...]
     chain: Operator
     stepper: Callable[[], Callable[..., float]]
     single_stepper: Callable[[], Callable[..., float]] | None = None
@@ -149,7 +148,7 @@ def block_of(model: Model, precision: Precision) -> Block:
             f"{type(model).__name__} cannot be exported; give an operator, a tracking controller "
             "or a joint estimator"
         )
-    code = StageCode(record_stages(model), precision)
+    code = StageCode(core_stages(model), precision)
     return Block(
         kind=model.kind,
         inputs=("u",),
@@ -168,7 +167,7 @@ def block_of(model: Model, precision: Precision) -> Block:
 
 
 def _controller(model: TrackingController, precision: Precision) -> Block:
-    inverse = () if model.inverse is None else record_stages(model.inverse)
+    inverse = () if model.inverse is None else core_stages(model.inverse)
     code = StageCode((_linear_part(model), *inverse), precision)
     # What the test signal passes: the gain from y_ref to v, then the inverse.
     gain = Affine(abs(float(model.D[0])) or 1.0)
@@ -190,11 +189,25 @@ def _controller(model: TrackingController, precision: Precision) -> Block:
     )
 
 
-def _linear_part(model: TrackingController) -> Stage:
+def _linear_part(model: TrackingController) -> CoreStage:
     tables = {
         "a": tuple(model.A.T.ravel().tolist()),
         "b": tuple(model.B.T.ravel().tolist()),
         "c": tuple(model.C.tolist()),
     }
     numbers = {"d_y_ref": float(model.D[0]), "d_y": float(model.D[1])}
-    return Stage("tracking_controller", numbers, tables, state_length=model.order, dt=model.dt)
+    return CoreStage(
+        kind="tracking_controller",
+        numbers=numbers,
+        tables=tables,
+        choices={},
+        form="",
+        state_length=model.order,
+        offers=dict.fromkeys((*numbers, *tables), (0, "")),
+        feeds_through=True,
+        header="hyst/tracking_controller.h",
+        # Without an inverse: its stages are called one by one, after the linear part.
+        structure="hyst_tracking_controller $model = "
+        "{#c, $a, $b, $c, {$d_y_ref, $d_y}, {0u, NULL}};",
+        call="$signal = hyst_tracking_controller_linear(&$model, $memory, y_ref, y);",
+    )

@@ -62,9 +62,9 @@ def core_files(text: str) -> dict[str, bytes]:
     Examples
     --------
     >>> list(core_files('#include "hyst/play.h"'))
-    ['include/hyst/play.h', 'include/hyst/real.h']
+    ['include/hyst/kind.h', 'include/hyst/play.h', 'include/hyst/real.h']
     >>> list(core_files("hyst_play_step(r, z, u);"))
-    ['include/hyst/play.h', 'include/hyst/real.h', 'src/play.c']
+    ['include/hyst/kind.h', 'include/hyst/play.h', 'include/hyst/real.h', 'src/play.c']
     """
     folder = core_folder()
     sources = _sources(folder)

@@ -32,7 +32,7 @@ _OF_VERSION = {
     "3.0": ("hyst_fmi3.c", "hyst_fmi3.h", "hyst_fmi3_absent.c", "hyst_fmi3_other_kinds.c"),
 }
 _HELD_BY = "constants->of."
-_FUNCTION = re.compile(r"^(?!static)[a-z][\w \*]*?\b(hyst_\w+)\(", re.MULTILINE)
+_SHARED = re.compile(r"^(?!static)[a-z][\w \*]*?\b(hyst_\w+)(?:\(| = )", re.MULTILINE)
 
 
 @final
@@ -172,15 +172,19 @@ def _in_rows(numbers: Sequence[int], length: int = 24) -> str:
 
 
 def _names(name: str, core: dict[str, bytes]) -> str:
-    """Rename the core's functions, so that several FMUs can be linked into one program."""
+    """Rename what the core's files share, so that several FMUs can be linked into one program."""
     found = {
-        function
+        shared
         for path, content in core.items()
         if path.endswith(".c")
-        for function in _FUNCTION.findall(content.decode("ascii"))
+        for shared in _SHARED.findall(content.decode("ascii"))
     }
     lines = [f"#define {each} {name}_{each}" for each in sorted(found)]
-    return "/* The core's functions under names of this FMU's own. */\n" + "\n".join(lines) + "\n"
+    return (
+        "/* The core's functions and tables under names of this FMU's own. */\n"
+        + "\n".join(lines)
+        + "\n"
+    )
 
 
 def _all(core: dict[str, bytes], common: dict[str, str], version: FmiVersion) -> str:

@@ -7,13 +7,14 @@ can be parameters; ``held_by`` then says how that structure is reached, as "mode
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from textwrap import wrap
 from typing import final
 
+from hyst.export.core_stage import CoreStage
 from hyst.export.numbers import Precision, literal, refuse_vanishing, rounded, table
-from hyst.export.stages import Stage
 
 
 @final
@@ -63,7 +64,7 @@ class StageCode:
         If a constant cannot be written in that precision.
     """
 
-    stages: tuple[Stage, ...]
+    stages: tuple[CoreStage, ...]
     precision: Precision
     held_by: str | None = None
 
@@ -88,7 +89,7 @@ class StageCode:
 
     def headers(self) -> tuple[str, ...]:
         """Give the headers of the core that the calls need, sorted."""
-        return tuple(sorted({_HEADERS[stage.kind] for stage in self.stages} - {""}))
+        return tuple(sorted({stage.header for stage in self.stages} - {""}))
 
     def declarations(self) -> str:
         """Give the constants' declarations.
@@ -100,8 +101,8 @@ class StageCode:
         for index, stage in enumerate(self.stages):
             for constant in _constants(stage, index):
                 lines += self._declaration(constant)
-            if self.held_by is None and stage.kind in _POSITIONAL:
-                lines += _in_lines(f"static const {self._structure(stage, index)}")
+            if self.held_by is None and _stands_alone(stage):
+                lines += _in_lines(f"static const {self._written(stage.structure, stage, index)}")
         return "\n".join(lines) + "\n" if lines else ""
 
     def calls(self, signal: str = "u", memory: str = "memory") -> str:
@@ -137,32 +138,37 @@ class StageCode:
             values = table(constant.values, self.precision, constant.name)
             yield f"static const hyst_real {constant.name}{size} = {values};"
 
-    def _call(self, stage: Stage, index: int, signal: str, place: str) -> Iterator[str]:
-        name = _name(stage, index)
-        reference = self._reference(stage, index)
-        if stage.kind == "affine":
-            gain, offset = reference("gain"), reference("offset")
-            yield f"{signal} = {gain} * {signal} + {offset};"
-            return
-        if stage.kind in ("play", "stop"):
-            yield f"{signal} = hyst_{stage.kind}_step({reference('r')}, {place}, {signal});"
-            return
-        if stage.kind == "masing":
-            yield from _masing(stage, name, reference)
+    def _call(self, stage: CoreStage, index: int, signal: str, place: str) -> Iterator[str]:
+        structure = self._written(stage.structure, stage, index)
+        if not _stands_alone(stage):
+            yield from _STATEMENT.findall(structure)
         elif self.held_by is not None:
-            yield from _in_lines(f"const {self._structure(stage, index)}")
-        if stage.kind == "tracking_controller":
-            yield f"{signal} = hyst_tracking_controller_linear(&{name}, {place}, y_ref, y);"
-            return
-        state = "" if stage.kind == "dead_zone" else f"{place}, "
-        yield f"{signal} = hyst_{stage.kind}_step(&{name}, {state}{signal});"
+            yield from _in_lines(f"const {structure}")
+        yield self._written(stage.call, stage, index, signal, place)
 
-    def _structure(self, stage: Stage, index: int) -> str:
-        c_type, initialiser = _POSITIONAL[stage.kind]
-        values = initialiser(stage, self._reference(stage, index))
-        return f"{c_type} {_name(stage, index)} = {values};"
+    def _written(
+        self, text: str, stage: CoreStage, index: int, signal: str = "", place: str = ""
+    ) -> str:
+        """Give the C of a row of ``engine/kinds``, its places filled."""
+        fixed = {
+            "signal": signal,
+            "memory": place,
+            "model": _name(stage, index),
+            "form": stage.form,
+            **{name: str(choice) for name, choice in stage.choices.items()},
+        }
+        reference = self._reference(stage, index)
 
-    def _reference(self, stage: Stage, index: int) -> Callable[[str], str]:
+        def fill(found: re.Match[str]) -> str:
+            mark, name, share = found.groups()
+            if mark == "$":
+                return fixed[name] if name in fixed else reference(name)
+            size = stage.choices[name] if name in stage.choices else len(stage.tables[name])
+            return f"{size // int(share or 1)}u"
+
+        return _PLACE.sub(fill, text)
+
+    def _reference(self, stage: CoreStage, index: int) -> Callable[[str], str]:
         """Give what C writes for a constant of a stage."""
         name = _name(stage, index)
 
@@ -179,111 +185,28 @@ class StageCode:
         return reference
 
 
+# What is filled in: $name, #name for a size, #name/5 for a part of it.
+_PLACE = re.compile(r"([$#])(\w+)(?:/(\d+))?")
+_STATEMENT = re.compile(r"\S[^;]*;")
+
+
+def _stands_alone(stage: CoreStage) -> bool:
+    """Tell whether the structure is one initialised declaration; a union takes statements."""
+    return " $model = {" in stage.structure
+
+
 def _in_lines(statement: str) -> list[str]:
     return wrap(statement, 92, subsequent_indent="    ", break_long_words=False)
 
 
-def _name(stage: Stage, index: int) -> str:
+def _name(stage: CoreStage, index: int) -> str:
     return f"{stage.kind}_{index + 1}"
 
 
-def _constants(stage: Stage, index: int) -> Iterator[Constant]:
+def _constants(stage: CoreStage, index: int) -> Iterator[Constant]:
     name = _name(stage, index)
     for field, value in stage.numbers.items():
         yield Constant(f"{name}_{field}", (value,), False, index, field)
     for field, values in stage.tables.items():
         if values:
             yield Constant(f"{name}_{field}", values, True, index, field)
-
-
-Reference = Callable[[str], str]
-
-
-def _size(stage: Stage, field: str) -> str:
-    return f"{len(stage.tables[field])}u"
-
-
-def _dead_zone(stage: Stage, of: Reference) -> str:
-    return f"{{{_size(stage, 'weight')}, {of('weight')}, {of('threshold')}}}"
-
-
-def _pi(stage: Stage, of: Reference) -> str:
-    return f"{{{_size(stage, 'p')}, {of('p0')}, {of('p')}, {of('r')}}}"
-
-
-def _rate_dependent_pi(stage: Stage, of: Reference) -> str:
-    powers = f"{_size(stage, 'power')}, {of('power')}"
-    return f"{{{_pi(stage, of)}, {of('growth')}, {powers}, {_dead_zone(stage, of)}}}"
-
-
-def _state_space(stage: Stage, of: Reference) -> str:
-    sizes = f"{_size(stage, 'b')}, {stage.choices['delay']}u"
-    return f"{{{sizes}, {of('a')}, {of('b')}, {of('c')}, {of('d')}}}"
-
-
-def _tracking_controller(stage: Stage, of: Reference) -> str:
-    constants = f"{of('a')}, {of('b')}, {of('c')}, {{{of('d_y_ref')}, {of('d_y')}}}"
-    # Without an inverse: its stages are called one by one, after the linear part.
-    return f"{{{_size(stage, 'c')}, {constants}, {{0u, NULL}}}}"
-
-
-def _sections(stage: Stage, of: Reference) -> str:
-    return f"{{{len(stage.tables['coefficient']) // 5}u, {of('coefficient')}}}"
-
-
-def _memory_element(stage: Stage, of: Reference) -> str:
-    function = f"{{{stage.form}, {_size(stage, 'value')}, {of('knot')}, {of('value')}}}"
-    switches = ", ".join(str(stage.choices[key]) for key in ("inverse", "absolute", "is_reset"))
-    return f"{{{function}, {switches}, {of('reset_to')}, {of('dt')}}}"
-
-
-def _masing(stage: Stage, name: str, of: Reference) -> Iterator[str]:
-    """Fill the structure member by member: it holds a union, which C++ cannot initialise."""
-    yield f"hyst_masing {name};"
-    yield f"{name}.curve.kind = {stage.form};"
-    member = _CURVE_MEMBERS[stage.form]
-    for table_name, values in stage.tables.items():
-        if table_name in ("knot", "coefficient"):
-            yield f"{name}.curve.as.{member}.count = {len(values)}u;"
-        yield f"{name}.curve.as.{member}.{table_name} = {of(table_name)};"
-    for number in stage.numbers:
-        if number != "dead_band":
-            yield f"{name}.curve.as.{member}.{number} = {of(number)};"
-    for choice in ("inverse", "last_reversal"):
-        yield f"{name}.{choice} = {stage.choices[choice]};"
-    yield f"{name}.depth = {stage.choices['depth']}u;"
-    yield f"{name}.dead_band = {of('dead_band')};"
-
-
-_CURVE_MEMBERS = {
-    "HYST_POWER_LAW": "power_law",
-    "HYST_PLAYS": "pieces",
-    "HYST_POLYNOMIAL": "polynomial",
-}
-
-# Type and initialiser, in the order of the members in core/include/hyst.
-_POSITIONAL: dict[str, tuple[str, Callable[[Stage, Reference], str]]] = {
-    "dead_zone": ("hyst_dead_zone", _dead_zone),
-    "direction_dead_zone": ("hyst_dead_zone", _dead_zone),
-    "pi": ("hyst_pi", _pi),
-    "rate_dependent_pi": ("hyst_rate_dependent_pi", _rate_dependent_pi),
-    "state_space": ("hyst_state_space", _state_space),
-    "sections": ("hyst_sections", _sections),
-    "tracking_controller": ("hyst_tracking_controller", _tracking_controller),
-    "memory_element": ("hyst_memory_element", _memory_element),
-}
-
-_HEADERS = {
-    "affine": "",
-    "play": "hyst/play.h",
-    "stop": "hyst/play.h",
-    "dead_zone": "hyst/dead_zone.h",
-    "direction_dead_zone": "hyst/dead_zone.h",
-    "pi": "hyst/prandtl_ishlinskii.h",
-    "rate_dependent_pi": "hyst/rate_dependent_prandtl_ishlinskii.h",
-    "state_space": "hyst/linear_dynamics.h",
-    "sections": "hyst/linear_dynamics.h",
-    "masing": "hyst/masing.h",
-    "tracking_controller": "hyst/tracking_controller.h",
-    "memory_element": "hyst/memory_element.h",
-}

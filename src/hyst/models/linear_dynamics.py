@@ -25,8 +25,8 @@ from hyst.operators.base import Operator
 from hyst.operators.checks import as_constants, as_number, as_whole_number
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries, register
-from hyst.operators.stage_sink import StageSink
-from hyst.operators.traits import Traits
+from hyst.operators.stage import Stage
+from hyst.operators.traits import Degree, Traits
 
 Array = NDArray[np.float64]
 
@@ -242,11 +242,11 @@ class LinearDynamics(Operator):
         is_gain = self.order == 0 and self.delay == 0
         return Traits(
             memoryless=is_gain,
-            rate_independent=is_gain,
+            rate_independent=Degree.EXACTLY if is_gain else Degree.NO,
             return_point_memory=is_gain,
             congruent_loops=is_gain,
             monotone=is_gain and self.D >= 0.0,
-            invertible=self.is_invertible(),
+            invertible=self.is_invertible,
         )
 
     def initial_state(self) -> Array:
@@ -325,10 +325,12 @@ class LinearDynamics(Operator):
         """
         return cls(**entries(data, ("dt", "A", "B", "C", "D"), ("delay", "x0")))
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
-        columns = self.A.T.ravel().tolist()
-        chain.add_state_space(self.delay, columns, self.B.tolist(), self.C.tolist(), self.D)
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        rows = self.A.ravel().tolist()
+        constants = (*rows, *self.B.tolist(), *self.C.tolist(), self.D)
+        choices = {"order": self.order, "delay": self.delay}
+        return (Stage("state_space", constants, choices=choices),)
 
     @property
     def order(self) -> int:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from hyst import _engine
 from hyst.errors import InputError, NotInvertibleError
 from hyst.operators.parameters import Parameters
-from hyst.operators.stage_sink import StageSink
+from hyst.operators.stage import Stage
 
 Array = NDArray[np.float64]
 
@@ -35,6 +35,25 @@ class ReversalMemory:
     last_reversal: bool
     depth: int
     dead_band: float
+
+    def stage(
+        self, form: str, constants: tuple[float, ...], inverse: bool, least_slope: float = 0.0
+    ) -> Stage:
+        """Give the stage of a curve of ``form`` and ``constants``, or of its ``inverse``.
+
+        ``least_slope`` bounds the slope of a polynomial from below.
+        """
+        return Stage(
+            "masing",
+            constants,
+            fixed={"least_slope": (least_slope,), "dead_band": (self.dead_band,)},
+            choices={
+                "inverse": int(inverse),
+                "last_reversal": int(self.last_reversal),
+                "depth": self.depth,
+            },
+            form=form,
+        )
 
 
 class LoadingCurve(ABC):
@@ -100,12 +119,8 @@ class LoadingCurve(ABC):
         """
 
     @abstractmethod
-    def append_to(self, chain: StageSink, memory: ReversalMemory, inverse: bool) -> None:
-        """Append the operator of this curve, or of its inverse, to a chain of the engine.
-
-        ``chain`` is what to append to, ``memory`` how reversals are remembered, ``inverse`` whether
-        the inverse function is meant.
-        """
+    def stage(self, memory: ReversalMemory, inverse: bool) -> Stage:
+        """Give the stage of this curve with a memory of reversals, or of its ``inverse``."""
 
 
 _CLASSES: dict[str, type[LoadingCurve]] = {}
@@ -190,8 +205,7 @@ class InverseCurve(LoadingCurve):
     def __call__(self, x: ArrayLike) -> Array:
         """Give the inverse function, in the shape of x."""
         values = np.asarray(x, dtype=np.float64)
-        chain = _engine.Chain()
-        self.append_to(chain, ReversalMemory(False, 1, 0.0), False)
+        chain = _engine.Chain((self.stage(ReversalMemory(False, 1, 0.0), False),))
         result = np.empty((values.size, 1))
         # Each value on its own, from the state without memory: that is the loading curve.
         chain.run(np.zeros((values.size, chain.state_length)), values.reshape(-1, 1).copy(), result)
@@ -236,12 +250,9 @@ class InverseCurve(LoadingCurve):
             raise InputError("an inverse curve has the entries 'kind' and 'curve'")
         return cls(curve_from_dict(data["curve"]))
 
-    def append_to(self, chain: StageSink, memory: ReversalMemory, inverse: bool) -> None:
-        """Append the operator of this curve, or of the curve it inverts, to ``chain``.
-
-        ``memory`` says how reversals are remembered; ``inverse`` asks for the inverse's inverse.
-        """
-        self.curve.append_to(chain, memory, not inverse)
+    def stage(self, memory: ReversalMemory, inverse: bool) -> Stage:
+        """Give the stage with a ``memory``; ``inverse`` asks for the inverse's inverse."""
+        return self.curve.stage(memory, not inverse)
 
 
 register_curve(InverseCurve)

@@ -58,7 +58,7 @@ class GeneralizedPrandtlIshlinskii(Chained):
         as_plays(self.pi)
 
     @property
-    def stages(self) -> tuple[Operator, ...]:
+    def parts(self) -> tuple[Operator, ...]:
         """The envelope, then the plays."""
         return (self.envelope, self.pi)
 
@@ -72,8 +72,8 @@ class GeneralizedPrandtlIshlinskii(Chained):
         """
         return ModifiedPrandtlIshlinskii(self.pi.inverse(), self.envelope.inverse())
 
-    def _with_stages(self, stages: tuple[Operator, ...]) -> Operator:
-        return GeneralizedPrandtlIshlinskii(*stages)
+    def _with_parts(self, parts: tuple[Operator, ...]) -> Operator:
+        return GeneralizedPrandtlIshlinskii(*parts)
 
     def to_dict(self) -> dict[str, Any]:
         """Give kind, envelope and plays."""
@@ -139,7 +139,7 @@ class ModifiedPrandtlIshlinskii(Chained):
         as_map(self.output_map, "output_map")
 
     @property
-    def stages(self) -> tuple[Operator, ...]:
+    def parts(self) -> tuple[Operator, ...]:
         """The plays, then the map."""
         return (self.pi, self.output_map)
 
@@ -153,8 +153,8 @@ class ModifiedPrandtlIshlinskii(Chained):
         """
         return GeneralizedPrandtlIshlinskii(self.output_map.inverse(), self.pi.inverse())
 
-    def _with_stages(self, stages: tuple[Operator, ...]) -> Operator:
-        return ModifiedPrandtlIshlinskii(*stages)
+    def _with_parts(self, parts: tuple[Operator, ...]) -> Operator:
+        return ModifiedPrandtlIshlinskii(*parts)
 
     def to_dict(self) -> dict[str, Any]:
         """Give kind, plays and map."""

@@ -20,8 +20,8 @@ from hyst.operators.base import Operator
 from hyst.operators.checks import as_number
 from hyst.operators.parameters import Parameters
 from hyst.operators.registry import entries, register
-from hyst.operators.stage_sink import StageSink
-from hyst.operators.traits import Traits
+from hyst.operators.stage import Stage
+from hyst.operators.traits import Asked, Degree, Traits
 
 Array = NDArray[np.float64]
 Memory = Literal["masing", "last-reversal"]
@@ -93,7 +93,7 @@ def as_memory(memory: str, depth: int, dead_band: float) -> ReversalMemory:
     return ReversalMemory(last, 1 if last else int(depth), band)
 
 
-def reversal_traits(memory: ReversalMemory, invertible: bool) -> Traits:
+def reversal_traits(memory: ReversalMemory, invertible: Asked) -> Traits:
     """Give the traits of a rising loading curve with memory of reversals.
 
     Parameters
@@ -109,7 +109,7 @@ def reversal_traits(memory: ReversalMemory, invertible: bool) -> Traits:
     """
     return Traits(
         memoryless=False,
-        rate_independent=True,
+        rate_independent=Degree.EXACTLY,
         return_point_memory=not memory.last_reversal,
         # A loop within the dead band is traced along whatever branch it is on.
         congruent_loops=memory.dead_band == 0.0,
@@ -177,7 +177,7 @@ class MasingOperator(Operator):
 
     def traits(self) -> Traits:
         """Give the traits; with the last reversal alone, loops do not close after minor loops."""
-        return reversal_traits(self._memory(), self.is_invertible())
+        return reversal_traits(self._memory(), self.is_invertible)
 
     def initial_state(self) -> Array:
         """Give the state without memory: last input and output, counts, and room for reversals."""
@@ -240,9 +240,9 @@ class MasingOperator(Operator):
         given = entries(data, ("curve", "memory"), ("depth", "dead_band"))
         return cls(curve=curve_from_dict(given.pop("curve")), **given)
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
-        self.curve.append_to(chain, self._memory(), inverse=False)
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        return (self.curve.stage(self._memory(), inverse=False),)
 
     def _memory(self) -> ReversalMemory:
         return as_memory(self.memory, self.depth, self.dead_band)

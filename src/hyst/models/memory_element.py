@@ -16,8 +16,8 @@ from hyst.operators.base import Operator
 from hyst.operators.checks import as_number
 from hyst.operators.parameters import Parameters
 from hyst.operators.registry import entries, register
-from hyst.operators.stage_sink import StageSink
-from hyst.operators.traits import Traits
+from hyst.operators.stage import Stage
+from hyst.operators.traits import Degree, Traits
 
 Array = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ class _Element(Operator):
         """Give the traits: an exact inverse, and none of those of hysteresis over its input."""
         return Traits(
             memoryless=False,
-            rate_independent=False,
+            rate_independent=Degree.NO,
             return_point_memory=False,
             congruent_loops=False,
             monotone=False,
@@ -110,17 +110,24 @@ class _Element(Operator):
     def _is_inverse(self) -> bool:
         """Tell whether the output is u."""
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
-        chain.add_memory_element(
-            self.function.form,
-            self.function.knots.tolist(),
-            self.function.values.tolist(),
-            self._is_inverse(),
-            self.momentum == "absolute",
-            self.reset == "sign-change",
-            self.reset_to,
-            self.sample_time,
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        return (
+            Stage(
+                "memory_element",
+                tuple(self.function.values.tolist()),
+                fixed={
+                    "knots": tuple(self.function.knots.tolist()),
+                    "reset_to": (self.reset_to,),
+                },
+                choices={
+                    "inverse": int(self._is_inverse()),
+                    "absolute": int(self.momentum == "absolute"),
+                    "is_reset": int(self.reset == "sign-change"),
+                },
+                form=self.function.form,
+                dt=self.sample_time,
+            ),
         )
 
 

@@ -19,7 +19,7 @@ from hyst.operators.checks import (
 )
 from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
 from hyst.operators.registry import entries
-from hyst.operators.stage_sink import StageSink
+from hyst.operators.stage import Stage
 
 Array = NDArray[np.float64]
 
@@ -178,17 +178,9 @@ class PiecewiseLinear(LoadingCurve):
         """
         return cls(**entries(data, required=("p", "r", "p0")))
 
-    def append_to(self, chain: StageSink, memory: ReversalMemory, inverse: bool) -> None:
-        """Append the operator of this curve to ``chain``, with ``memory``, or its ``inverse``."""
-        chain.add_masing(
-            "plays",
-            [self.p0, *self.p.tolist(), *self.r.tolist()],
-            0.0,
-            inverse,
-            memory.last_reversal,
-            memory.depth,
-            memory.dead_band,
-        )
+    def stage(self, memory: ReversalMemory, inverse: bool) -> Stage:
+        """Give the stage of this curve with a ``memory`` of reversals, or of its ``inverse``."""
+        return memory.stage("plays", (self.p0, *self.p.tolist(), *self.r.tolist()), inverse)
 
     def _slopes(self) -> Array:
         return np.cumsum(np.concatenate([[self.p0], self.p]))

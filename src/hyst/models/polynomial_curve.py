@@ -14,7 +14,7 @@ from hyst.models.loading_curve import InverseCurve, LoadingCurve, ReversalMemory
 from hyst.operators.checks import as_constants
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries
-from hyst.operators.stage_sink import StageSink
+from hyst.operators.stage import Stage
 
 Array = NDArray[np.float64]
 
@@ -116,18 +116,12 @@ class PolynomialCurve(LoadingCurve):
         """
         return cls(**entries(data, required=("coefficients",)))
 
-    def append_to(self, chain: StageSink, memory: ReversalMemory, inverse: bool) -> None:
-        """Append the operator of this curve to ``chain``, with ``memory``, or its ``inverse``."""
+    def stage(self, memory: ReversalMemory, inverse: bool) -> Stage:
+        """Give the stage of this curve with a ``memory`` of reversals, or of its ``inverse``."""
         # A little below the least slope: a bracket must not fail by rounding.
         least = 0.99 * float(self._slope(self._extremes_of_slope()).min())
-        chain.add_masing(
-            "polynomial",
-            self.coefficients.tolist(),
-            least,
-            inverse,
-            memory.last_reversal,
-            memory.depth,
-            memory.dead_band,
+        return memory.stage(
+            "polynomial", tuple(self.coefficients.tolist()), inverse, least_slope=least
         )
 
     def _slope(self, x: Array) -> Array:

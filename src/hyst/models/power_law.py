@@ -14,7 +14,7 @@ from hyst.models.loading_curve import InverseCurve, LoadingCurve, ReversalMemory
 from hyst.operators.checks import as_number
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries
-from hyst.operators.stage_sink import StageSink
+from hyst.operators.stage import Stage
 
 Array = NDArray[np.float64]
 
@@ -127,17 +127,9 @@ class PowerLaw(LoadingCurve):
         """
         return cls(**entries(data, required=("c1", "c2", "c3")))
 
-    def append_to(self, chain: StageSink, memory: ReversalMemory, inverse: bool) -> None:
-        """Append the operator of this curve to ``chain``, with ``memory``, or its ``inverse``."""
-        chain.add_masing(
-            "power-law",
-            [self.c1, self.c2, self.c3],
-            0.0,
-            inverse,
-            memory.last_reversal,
-            memory.depth,
-            memory.dead_band,
-        )
+    def stage(self, memory: ReversalMemory, inverse: bool) -> Stage:
+        """Give the stage of this curve with a ``memory`` of reversals, or of its ``inverse``."""
+        return memory.stage("power-law", (self.c1, self.c2, self.c3), inverse)
 
 
 register_curve(PowerLaw)

@@ -20,8 +20,8 @@ from hyst.operators.checks import (
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
 from hyst.operators.registry import entries, register
-from hyst.operators.stage_sink import StageSink
-from hyst.operators.traits import Traits
+from hyst.operators.stage import Stage
+from hyst.operators.traits import Degree, Traits
 
 Array = NDArray[np.float64]
 
@@ -87,11 +87,11 @@ class PrandtlIshlinskii(Operator):
         """Give the traits of a superposition of plays."""
         return Traits(
             memoryless=self.p.size == 0,
-            rate_independent=True,
+            rate_independent=Degree.EXACTLY,
             return_point_memory=True,
             congruent_loops=True,
-            monotone=self._is_monotone(),
-            invertible=self.is_invertible(),
+            monotone=self._is_monotone,
+            invertible=self.is_invertible,
         )
 
     def initial_state(self) -> Array:
@@ -200,9 +200,9 @@ class PrandtlIshlinskii(Operator):
         """
         return cls(**entries(data, required=("p", "r", "p0"), optional=("z0",)))
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
-        chain.add_pi(self.p0, self.p.tolist(), self.r.tolist())
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        return (Stage("pi", (self.p0, *self.p.tolist(), *self.r.tolist())),)
 
     def _merged(self) -> tuple[float, Array, Array, Array]:
         """Linear part, weights, thresholds and memory with plays of one threshold taken together.

@@ -25,7 +25,7 @@ from hyst.operators.base import Operator
 from hyst.operators.checks import as_number
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries, register
-from hyst.operators.stage_sink import StageSink
+from hyst.operators.stage import Stage
 from hyst.operators.traits import Traits
 
 Array = NDArray[np.float64]
@@ -287,9 +287,9 @@ class RambergOsgood(Operator):
         """
         return cls(**entries(data, ("c1", "c2", "c3", "memory"), ("depth", "dead_band")))
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
-        self._as_masing().append_to(chain)
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        return self._as_masing().stages()
 
     def _as_masing(self) -> MasingOperator:
         return MasingOperator(self.curve, self.memory, self.depth, self.dead_band)

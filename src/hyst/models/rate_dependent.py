@@ -23,8 +23,8 @@ from hyst.operators.checks import (
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
 from hyst.operators.registry import entries, register
-from hyst.operators.stage_sink import StageSink
-from hyst.operators.traits import Traits
+from hyst.operators.stage import Stage
+from hyst.operators.traits import Degree, Traits
 
 Array = NDArray[np.float64]
 
@@ -172,15 +172,14 @@ class RateDependentPrandtlIshlinskii(Operator):
 
     def traits(self) -> Traits:
         """Give the traits; with a rate that counts none of those of plays is left."""
-        rest = self.at_rest()
         plain = self.rate_curve.is_zero or self.p.size == 0
         return Traits(
-            memoryless=self.p.size == 0 and rest.traits().memoryless,
-            rate_independent=plain,
+            memoryless=self.p.size == 0,
+            rate_independent=Degree.EXACTLY if plain else Degree.NO,
             return_point_memory=plain,
             congruent_loops=plain,
-            monotone=plain and rest.traits().monotone,
-            invertible=self.is_invertible(),
+            monotone=lambda: plain and self.at_rest().traits().monotone,
+            invertible=self.is_invertible,
         )
 
     def initial_state(self) -> Array:
@@ -328,18 +327,19 @@ class RateDependentPrandtlIshlinskii(Operator):
         curve = RateCurve(given.pop("beta"), **{key: given.pop(key, ()) for key in further})
         return cls(beta=curve, **given)
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
         curve = self.rate_curve
-        chain.add_rate_dependent_pi(
-            self.p0,
-            self.p.tolist(),
-            self.r.tolist(),
-            curve.beta,
-            curve.powers.tolist(),
-            curve.slopes.tolist(),
-            curve.knees.tolist(),
-            self.dt,
+        plays = (self.p0, *self.p.tolist(), *self.r.tolist())
+        growth = (curve.beta, *curve.powers.tolist(), *curve.slopes.tolist())
+        return (
+            Stage(
+                "rate_dependent_pi",
+                plays + growth,
+                fixed={"knees": tuple(curve.knees.tolist())},
+                choices={"plays": self.p.size, "powers": curve.powers.size},
+                dt=self.dt,
+            ),
         )
 
 

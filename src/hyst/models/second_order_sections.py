@@ -16,8 +16,8 @@ from hyst.operators.base import Operator
 from hyst.operators.checks import as_constants, as_number, refuse_overflow
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries, register
-from hyst.operators.stage_sink import StageSink
-from hyst.operators.traits import Traits
+from hyst.operators.stage import Stage
+from hyst.operators.traits import Degree, Traits
 
 Array = NDArray[np.float64]
 
@@ -118,11 +118,11 @@ class SecondOrderSections(Operator):
         """Give the traits of a linear system with memory."""
         return Traits(
             memoryless=False,
-            rate_independent=False,
+            rate_independent=Degree.NO,
             return_point_memory=False,
             congruent_loops=False,
             monotone=False,
-            invertible=self.is_invertible(),
+            invertible=self.is_invertible,
         )
 
     def initial_state(self) -> Array:
@@ -183,9 +183,9 @@ class SecondOrderSections(Operator):
         """
         return cls(**entries(data, ("dt", "coefficients")))
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
-        chain.add_sections(self.coefficients.ravel().tolist())
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        return (Stage("sections", tuple(self.coefficients.ravel().tolist())),)
 
 
 def _has_zeros_inside(b0: float, b1: float, b2: float) -> bool:

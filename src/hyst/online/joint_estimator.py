@@ -111,7 +111,7 @@ class JointEstimator:
     >>> estimator = JointEstimator(PrandtlIshlinskii(p=[0.7], r=[1.4], p0=0.8))
     >>> for u_k, y_k in zip(u, truth(u)):
     ...     _ = estimator.update(u_k, y_k)
-    >>> estimator.model.stages[0].r.round(4)
+    >>> estimator.model.parts[0].r.round(4)
     array([1.])
     """
 

@@ -194,7 +194,7 @@ def units_of_plays(model: Operator, input_unit: str, output_unit: str) -> tuple[
 def _flat(model: Operator) -> list[Operator]:
     if not isinstance(model, Chained):
         return [model]
-    return [part for stage in model.stages for part in _flat(stage)]
+    return [part for stage in model.parts for part in _flat(stage)]
 
 
 def _one_of_each(stages: list[Operator]) -> tuple[Affine | None, Map | None]:

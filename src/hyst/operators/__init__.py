@@ -12,13 +12,14 @@ from hyst.operators.play import Play
 from hyst.operators.registry import operator_from_dict
 from hyst.operators.stepper import Stepper
 from hyst.operators.stop import Stop
-from hyst.operators.traits import Traits
+from hyst.operators.traits import Degree, Traits
 
 __all__ = [
     "Affine",
     "Chained",
     "Composition",
     "DeadZone",
+    "Degree",
     "ModelDescription",
     "Operator",
     "Parameters",

@@ -14,8 +14,8 @@ from hyst.operators.base import Operator
 from hyst.operators.checks import as_number, refuse_overflow
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries, register
-from hyst.operators.stage_sink import StageSink
-from hyst.operators.traits import Traits
+from hyst.operators.stage import Stage
+from hyst.operators.traits import Degree, Traits
 
 
 @register
@@ -56,11 +56,11 @@ class Affine(Operator):
         """Give the traits of a straight line."""
         return Traits(
             memoryless=True,
-            rate_independent=True,
+            rate_independent=Degree.EXACTLY,
             return_point_memory=True,
             congruent_loops=True,
             monotone=self.gain >= 0.0,
-            invertible=self.is_invertible(),
+            invertible=self.is_invertible,
         )
 
     def initial_state(self) -> NDArray[np.float64]:
@@ -119,6 +119,6 @@ class Affine(Operator):
         """
         return cls(**entries(data, required=("gain", "offset")))
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
-        chain.add_affine(self.gain, self.offset)
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        return (Stage("affine", (self.gain, self.offset)),)

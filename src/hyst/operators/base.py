@@ -18,7 +18,7 @@ from hyst.operators.engine_name import EngineName, as_engine, as_threads
 from hyst.operators.model_file import ModelDescription, write_model
 from hyst.operators.parameters import Parameters
 from hyst.operators.registry import compose
-from hyst.operators.stage_sink import StageSink
+from hyst.operators.stage import Stage
 from hyst.operators.stepper import Stepper
 from hyst.operators.traits import Traits
 
@@ -187,13 +187,10 @@ class Operator(ABC):
         """
 
     @abstractmethod
-    def append_to(self, chain: StageSink) -> None:
-        """Append the stages of this operator to a chain of the engine, or to what records them.
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the stages of this operator in the order the signal passes them.
 
-        Parameters
-        ----------
-        chain
-            The chain to append to, in the order the signal passes.
+        They are what the engine runs and what exports write as C.
         """
 
     @final
@@ -413,9 +410,7 @@ class Operator(ABC):
 
     @functools.cached_property
     def _chain(self) -> _engine.Chain:
-        chain = _engine.Chain()
-        self.append_to(chain)
-        return chain
+        return _engine.Chain(self.stages())
 
     @final
     def __eq__(self, other: object) -> bool:

@@ -14,7 +14,7 @@ from hyst.errors import InputError
 from hyst.operators.base import Operator
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries, operator_from_dict, register
-from hyst.operators.stage_sink import StageSink
+from hyst.operators.stage import Stage
 from hyst.operators.traits import Traits
 
 Array = NDArray[np.float64]
@@ -28,58 +28,54 @@ class Chained(Operator):
 
     @property
     @abstractmethod
-    def stages(self) -> tuple[Operator, ...]:
+    def parts(self) -> tuple[Operator, ...]:
         """The operators in the order the signal passes them."""
 
     @abstractmethod
-    def _with_stages(self, stages: tuple[Operator, ...]) -> Operator:
-        """Give the same kind of composition of other stages."""
+    def _with_parts(self, parts: tuple[Operator, ...]) -> Operator:
+        """Give the same kind of composition of other operators."""
 
     def traits(self) -> Traits:
-        """Give what follows from the traits of the stages.
+        """Give what follows from the traits of the parts.
 
         Loops stay congruent through a stage with memory, whose input they are, but not through a
         curved map of a signal that already has memory.
         """
         leaves = leaves_of(self)
         traits = [leaf.traits() for leaf in leaves]
-        remembers = False
-        congruent = all(each.congruent_loops for each in traits)
-        for leaf, each in zip(leaves, traits, strict=True):
-            curved = each.memoryless and leaf.kind != "affine"
-            congruent = congruent and not (remembers and curved)
-            remembers = remembers or not each.memoryless
         return Traits(
-            memoryless=not remembers,
-            rate_independent=all(each.rate_independent for each in traits),
-            return_point_memory=all(each.return_point_memory for each in traits)
-            and all(each.monotone for each in traits[:-1]),
-            congruent_loops=congruent,
-            monotone=all(each.monotone for each in traits),
-            invertible=all(each.invertible for each in traits),
+            memoryless=lambda: all(each.memoryless for each in traits),
+            rate_independent=min(each.rate_independent for each in traits),
+            return_point_memory=lambda: (
+                all(each.return_point_memory for each in traits)
+                and all(each.monotone for each in traits[:-1])
+            ),
+            congruent_loops=lambda: _keep_loops_congruent(leaves),
+            monotone=lambda: all(each.monotone for each in traits),
+            invertible=lambda: all(each.invertible for each in traits),
         )
 
     @property
     def dt(self) -> float | None:
-        """The sample time of the stages that have one, seconds."""
-        return _common_sample_time(self.stages)
+        """The sample time of the parts that have one, seconds."""
+        return _common_sample_time(self.parts)
 
     def initial_state(self) -> Array:
-        """Give the states of the stages, one after the other."""
-        return np.concatenate([stage.initial_state() for stage in self.stages])
+        """Give the states of the parts, one after the other."""
+        return np.concatenate([part.initial_state() for part in self.parts])
 
     def inverse(self) -> Operator:
-        """Give the inverses of the stages in reversed order.
+        """Give the inverses of the parts in reversed order.
 
         Raises
         ------
         NotInvertibleError
-            If a stage has none; its own message says why.
+            If a part has none; its own message says why.
         """
-        return Composition(tuple(stage.inverse() for stage in reversed(self.stages)))
+        return Composition(tuple(part.inverse() for part in reversed(self.parts)))
 
     def parameters(self) -> Parameters:
-        """Give the parameters of the stages, one after the other, named by stage."""
+        """Give the parameters of the parts, one after the other, named by part."""
         leaves = leaves_of(self)
         parts = [leaf.parameters() for leaf in leaves]
         names = [
@@ -103,11 +99,11 @@ class Chained(Operator):
 
     def with_parameters(self, theta: Sequence[float] | Array) -> Operator:
         """Give the same composition with other constants."""
-        counts = [len(stage.parameters()) for stage in self.stages]
+        counts = [len(part.parameters()) for part in self.parts]
         vector = as_parameter_vector(theta, sum(counts))
         pieces = np.split(vector, np.cumsum(counts)[:-1])
-        return self._with_stages(
-            tuple(s.with_parameters(piece) for s, piece in zip(self.stages, pieces, strict=True))
+        return self._with_parts(
+            tuple(s.with_parameters(piece) for s, piece in zip(self.parts, pieces, strict=True))
         )
 
     def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
@@ -127,16 +123,15 @@ class Chained(Operator):
         return self._with_stages(tuple(stage.in_units(*share) for stage, share in pairs))
 
     def lipschitz_constant(self) -> float:
-        """Give the product of the stages' constants."""
+        """Give the product of the parts' constants."""
         constant = 1.0
-        for stage in self.stages:
-            constant *= stage.lipschitz_constant()
+        for part in self.parts:
+            constant *= part.lipschitz_constant()
         return constant
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append all stages in the order the signal passes them."""
-        for stage in self.stages:
-            stage.append_to(chain)
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the stages of all parts in the order the signal passes them."""
+        return tuple(stage for part in self.parts for stage in part.stages())
 
 
 @register
@@ -147,9 +142,9 @@ class Composition(Chained):
 
     Parameters
     ----------
-    stages
-        Operators in the order the signal passes them: ``(f @ g)`` has the stages ``(g, f)``.
-        Compositions without a name among them are replaced by their own stages.
+    parts
+        Operators in the order the signal passes them: ``(f @ g)`` has the parts ``(g, f)``.
+        Compositions without a name among them are replaced by their own parts.
 
     Raises
     ------
@@ -165,36 +160,36 @@ class Composition(Chained):
     array([1., 2., 4., 4.])
     """
 
-    _stages: tuple[Operator, ...]
+    _parts: tuple[Operator, ...]
 
     kind = "composition"
 
-    def __init__(self, stages: Sequence[Operator]) -> None:
-        if not isinstance(stages, list | tuple) or not stages:
+    def __init__(self, parts: Sequence[Operator]) -> None:
+        if not isinstance(parts, list | tuple) or not parts:
             raise InputError("a composition has no stage; give a list of at least one operator")
-        for stage in stages:
-            if not isinstance(stage, Operator):
+        for part in parts:
+            if not isinstance(part, Operator):
                 raise InputError(
-                    f"a stage is of type {type(stage).__name__}; compose operators only"
+                    f"a stage is of type {type(part).__name__}; compose operators only"
                 )
-        flat = (part for stage in stages for part in _stages(stage))
-        object.__setattr__(self, "_stages", tuple(flat))
-        _common_sample_time(self._stages)
+        flat = (each for part in parts for each in _parts(part))
+        object.__setattr__(self, "_parts", tuple(flat))
+        _common_sample_time(self._parts)
 
     @property
-    def stages(self) -> tuple[Operator, ...]:
+    def parts(self) -> tuple[Operator, ...]:
         """The operators in the order the signal passes them."""
-        return self._stages
+        return self._parts
 
-    def _with_stages(self, stages: tuple[Operator, ...]) -> Operator:
-        return Composition(stages)
+    def _with_parts(self, parts: tuple[Operator, ...]) -> Operator:
+        return Composition(parts)
 
     def __repr__(self) -> str:
-        return " @ ".join(repr(stage) for stage in reversed(self._stages))
+        return " @ ".join(repr(part) for part in reversed(self._parts))
 
     def to_dict(self) -> dict[str, Any]:
-        """Give the kind and the stages."""
-        return {"kind": self.kind, "stages": [stage.to_dict() for stage in self._stages]}
+        """Give the kind and the parts."""
+        return {"kind": self.kind, "stages": [part.to_dict() for part in self._parts]}
 
     @classmethod
     def from_dict(cls, data: dict[str, Any]) -> Operator:
@@ -211,9 +206,9 @@ class Composition(Chained):
         return cls([operator_from_dict(stage) for stage in stages])
 
 
-def _stages(operator: Operator) -> tuple[Operator, ...]:
+def _parts(operator: Operator) -> tuple[Operator, ...]:
     """Flatten nested compositions without a name; those with a name stay whole."""
-    return operator.stages if type(operator) is Composition else (operator,)
+    return operator.parts if type(operator) is Composition else (operator,)
 
 
 def leaves_of(operator: Operator) -> tuple[Operator, ...]:
@@ -231,7 +226,18 @@ def leaves_of(operator: Operator) -> tuple[Operator, ...]:
     """
     if not isinstance(operator, Chained):
         return (operator,)
-    return tuple(leaf for stage in operator.stages for leaf in leaves_of(stage))
+    return tuple(leaf for part in operator.parts for leaf in leaves_of(part))
+
+
+def _keep_loops_congruent(leaves: tuple[Operator, ...]) -> bool:
+    remembers = False
+    for leaf in leaves:
+        traits = leaf.traits()
+        curved = traits.memoryless and leaf.kind != "affine"
+        if not traits.congruent_loops or (remembers and curved):
+            return False
+        remembers = remembers or not traits.memoryless
+    return True
 
 
 def _scales_of_stages(

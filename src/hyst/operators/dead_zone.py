@@ -15,8 +15,8 @@ from hyst.operators.checks import as_constants, refuse_overflow
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries, register
-from hyst.operators.stage_sink import StageSink
-from hyst.operators.traits import Traits
+from hyst.operators.stage import Stage
+from hyst.operators.traits import Degree, Traits
 
 Array = NDArray[np.float64]
 Variant = Literal["two-sided", "by-direction"]
@@ -122,11 +122,11 @@ class DeadZone(Operator):
         plain = self.variant == "two-sided"
         return Traits(
             memoryless=plain,
-            rate_independent=plain,
+            rate_independent=Degree.EXACTLY if plain else Degree.NO,
             return_point_memory=plain,
             congruent_loops=plain,
-            monotone=plain and bool(self._slopes().min() >= 0.0),
-            invertible=self.is_invertible(),
+            monotone=lambda: plain and bool(self._slopes().min() >= 0.0),
+            invertible=self.is_invertible,
         )
 
     def initial_state(self) -> Array:
@@ -220,11 +220,10 @@ class DeadZone(Operator):
         """
         return cls(**entries(data, required=("weights", "thresholds", "variant")))
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
-        chain.add_dead_zone(
-            self.weights.tolist(), self.thresholds.tolist(), self.variant == "by-direction"
-        )
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        kind = "direction_dead_zone" if self.variant == "by-direction" else "dead_zone"
+        return (Stage(kind, (*self.weights.tolist(), *self.thresholds.tolist())),)
 
     def _linear_part(self) -> float:
         return float(cumulative(0.0, self.weights[self.thresholds == 0.0])[-1])

@@ -91,8 +91,7 @@ def explain(
     signal = as_signal(u)
     if signal.ndim != 1:
         raise InputError(f"u has shape {signal.shape}; give one record, (N,)")
-    chain = _engine.Chain()
-    operator.append_to(chain)
+    chain = _engine.Chain(operator.stages())
     start = operator.initial_state() if state is None else state
     memory = as_state(start, chain.state_length, None)
     rows = signal.reshape(1, -1)

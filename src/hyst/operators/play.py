@@ -7,9 +7,9 @@ from typing import NoReturn, final
 
 from hyst.errors import NotInvertibleError
 from hyst.operators.registry import register
-from hyst.operators.stage_sink import StageSink
+from hyst.operators.stage import Stage
 from hyst.operators.threshold import ThresholdOperator
-from hyst.operators.traits import Traits
+from hyst.operators.traits import Degree, Traits
 
 
 @register
@@ -46,7 +46,7 @@ class Play(ThresholdOperator):
         """Give the traits of a play."""
         return Traits(
             memoryless=False,
-            rate_independent=True,
+            rate_independent=Degree.EXACTLY,
             return_point_memory=True,
             congruent_loops=True,
             monotone=True,
@@ -70,6 +70,6 @@ class Play(ThresholdOperator):
         """Give 1: clamping does not stretch distances."""
         return 1.0
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
-        chain.add_play(self.r)
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        return (Stage("play", (self.r,)),)

@@ -7,9 +7,9 @@ from typing import NoReturn, final
 
 from hyst.errors import NotInvertibleError
 from hyst.operators.registry import register
-from hyst.operators.stage_sink import StageSink
+from hyst.operators.stage import Stage
 from hyst.operators.threshold import ThresholdOperator
-from hyst.operators.traits import Traits
+from hyst.operators.traits import Degree, Traits
 
 
 @register
@@ -47,7 +47,7 @@ class Stop(ThresholdOperator):
         """Give the traits of a stop."""
         return Traits(
             memoryless=False,
-            rate_independent=True,
+            rate_independent=Degree.EXACTLY,
             return_point_memory=True,
             congruent_loops=True,
             monotone=True,
@@ -71,6 +71,6 @@ class Stop(ThresholdOperator):
         """Give 2: the input's own part and the play's."""
         return 2.0
 
-    def append_to(self, chain: StageSink) -> None:
-        """Append this stage to a chain of the engine."""
-        chain.add_stop(self.r)
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        return (Stage("stop", (self.r,)),)

@@ -135,7 +135,7 @@ def stages_with_signals(model: Operator, u: Array) -> Iterator[tuple[Operator, A
         yield model, u, model(u)
         return
     signal = u
-    for stage in model.stages:
+    for stage in model.parts:
         for leaf, before, after in stages_with_signals(stage, signal):
             yield leaf, before, after
             signal = after

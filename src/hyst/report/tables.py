@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from hyst.compensation import Compensation, error_parts
 from hyst.identification import Identified
 from hyst.operators import ModelDescription, Operator
+from hyst.operators.traits import Degree
 
 _TRAITS = {
     "memoryless": "output depends on the present input alone",
@@ -214,15 +215,19 @@ def traits_table(model: Operator) -> Table:
     -------
     Table
     """
-    held = vars(model.traits())
+    held = model.traits().held()
     return Table(
         "Traits",
         ("trait", "holds", "meaning"),
         tuple(
-            (name.replace("_", " "), "yes" if held[name] else "no", meaning)
+            (name.replace("_", " "), _said(held[name]), meaning)
             for name, meaning in _TRAITS.items()
         ),
     )
+
+
+def _said(held: bool | Degree) -> str:
+    return "to rounding" if held is Degree.TO_ROUNDING else "yes" if held else "no"
 
 
 def compensation_table(done: Compensation, unit: str) -> Table:

@@ -1,8 +1,10 @@
 // The momentum p carries its derivatives along: dp' = dp + dt g'(u) du.
-#include "memory_element_jacobian.hpp"
+#include "hyst/memory_element.h"
 
 #include <cmath>
 #include <vector>
+
+#include "memory_element.hpp"
 
 namespace hyst {
 namespace {
@@ -60,8 +62,8 @@ void at_momentum(const hyst_memory_function &f, double p, MemorySlope &at) {
 
 }  // namespace
 
-void memory_element_jacobian(const hyst_memory_element &model, const double *state,
-                             const LinearTangents &t) {
+void memory_element_jacobian(const void *of, double, const double *state, const Tangents &t) {
+    const hyst_memory_element &model = *static_cast<const hyst_memory_element *>(of);
     const std::size_t own = model.function.count, width = t.incoming + own;
     double memory[2] = {state[0], state[1]};
     std::vector<double> p_tangent(width, 0.0);

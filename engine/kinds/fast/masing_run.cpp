@@ -1,13 +1,13 @@
 // The core's step decides at every event: a reversal, a loop that closes, a rest. While the input
 // goes one way inside a loop nothing is decided, and all samples of the stretch are points of one
 // branch, which kernels evaluate in packs; tests hold them to the core's bits.
-#include "masing_run.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "simd/kernels.hpp"
+#include "../../simd/kernels.hpp"
+#include "hyst/masing.h"
+#include "masing.hpp"
 
 namespace hyst {
 namespace {
@@ -96,8 +96,8 @@ std::size_t go_on(const hyst_masing &model, double *state, const double *u, doub
 
 }  // namespace
 
-void run_masing(const hyst_masing &model, double *state, const double *u, double *y,
-                std::size_t samples) {
+void run_masing(const void *of, double *state, const double *u, double *y, std::size_t samples) {
+    const hyst_masing &model = *static_cast<const hyst_masing *>(of);
     std::size_t k = 0;
     while (k < samples) {
         const double input = u[k];  // y may be u

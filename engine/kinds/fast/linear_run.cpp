@@ -1,9 +1,10 @@
 // For an order known to the compiler the matrices stay in registers and the loops vanish; this is
 // three to four times faster than one call of the core a sample.
-#include "linear_run.hpp"
-
 #include <algorithm>
 #include <utility>
+
+#include "hyst/linear_dynamics.h"
+#include "linear.hpp"
 
 namespace hyst {
 namespace {
@@ -65,8 +66,9 @@ Run unrolled(std::size_t order, std::index_sequence<orders...>) {
 
 }  // namespace
 
-void run_state_space(const hyst_state_space &system, double *state, const double *u, double *y,
+void run_state_space(const void *model, double *state, const double *u, double *y,
                      std::size_t samples) {
+    const hyst_state_space &system = *static_cast<const hyst_state_space *>(model);
     const Run run = unrolled(system.order, std::make_index_sequence<kLargestUnrolled + 1>());
     std::size_t k = 0;
     if (run != nullptr && system.delay == 0) k = run(system, state, u, y, samples);

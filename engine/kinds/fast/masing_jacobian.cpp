@@ -1,11 +1,12 @@
 // A branch y = y_i + 2 f((u - u_i) / 2) is differentiated through the reversal it starts at: every
 // reversal on the stack is kept with the derivatives of its input and output. Which reversals there
 // are is read from the core's own state after each step, so the derivative never disagrees with it.
-#include "masing_jacobian.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "hyst/masing.h"
+#include "masing.hpp"
 
 namespace hyst {
 namespace {
@@ -67,6 +68,18 @@ void at_point(const hyst_loading_curve &curve, bool inverse, double argument, Cu
     if (!inverse) return;
     for (double &each : point.by_constant) each /= -point.slope;
     point.slope = 1.0 / point.slope;
+}
+
+std::size_t parameter_count(const hyst_masing &model) {
+    switch (model.curve.kind) {
+    case HYST_POWER_LAW:
+        return 3;
+    case HYST_PLAYS:
+        return 2 * model.curve.as.pieces.count - 1;
+    case HYST_POLYNOMIAL:
+        return model.curve.as.polynomial.count;
+    }
+    return 0;
 }
 
 class Differentiated {
@@ -163,19 +176,8 @@ private:
 
 }  // namespace
 
-std::size_t parameter_count(const hyst_masing &model) {
-    switch (model.curve.kind) {
-    case HYST_POWER_LAW:
-        return 3;
-    case HYST_PLAYS:
-        return 2 * model.curve.as.pieces.count - 1;
-    case HYST_POLYNOMIAL:
-        return model.curve.as.polynomial.count;
-    }
-    return 0;
-}
-
-void masing_jacobian(const hyst_masing &model, const double *state, const LinearTangents &t) {
+void masing_jacobian(const void *of, double, const double *state, const Tangents &t) {
+    const hyst_masing &model = *static_cast<const hyst_masing *>(of);
     Differentiated stage(model, state, t.incoming);
     for (std::size_t k = 0; k < t.samples; ++k) {
         t.signal[k] = stage.step(t.signal[k], t.rows + k * t.stride);

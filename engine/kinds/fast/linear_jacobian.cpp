@@ -1,16 +1,17 @@
 // The derivative of a linear system's output by one of its constants is the output of the same
 // system with another forcing: dx' = A dx + dA x + db w, dy = c dx + dc x + dd w.
-#include "linear_jacobian.hpp"
-
 #include <algorithm>
 #include <vector>
+
+#include "hyst/linear_dynamics.h"
+#include "linear.hpp"
 
 namespace hyst {
 namespace {
 
 // Delay the signal and its incoming tangents; the line holds what came before, which depends on
 // nothing.
-void delay(const double *line, std::size_t delay, const LinearTangents &t) {
+void delay(const double *line, std::size_t delay, const Tangents &t) {
     for (std::size_t k = t.samples; k-- > 0 && delay > 0;) {
         double *row = t.rows + k * t.stride;
         if (k >= delay) {
@@ -75,7 +76,7 @@ struct SystemTangents {
     }
 };
 
-void section_jacobian(const double *coefficient, const double *state, const LinearTangents &t,
+void section_jacobian(const double *coefficient, const double *state, const Tangents &t,
                       std::size_t own) {
     const double b0 = coefficient[0], b1 = coefficient[1], b2 = coefficient[2];
     const double a1 = coefficient[3], a2 = coefficient[4];
@@ -104,8 +105,8 @@ void section_jacobian(const double *coefficient, const double *state, const Line
 
 }  // namespace
 
-void state_space_jacobian(const hyst_state_space &system, const double *state,
-                          const LinearTangents &t) {
+void state_space_jacobian(const void *model, double, const double *state, const Tangents &t) {
+    const hyst_state_space &system = *static_cast<const hyst_state_space *>(model);
     delay(state + system.order, system.delay, t);
     SystemTangents tangents(system, state, t.incoming);
     std::vector<double> incoming(t.incoming);
@@ -118,8 +119,8 @@ void state_space_jacobian(const hyst_state_space &system, const double *state,
     }
 }
 
-void sections_jacobian(const hyst_sections &sections, const double *state,
-                       const LinearTangents &t) {
+void sections_jacobian(const void *model, double, const double *state, const Tangents &t) {
+    const hyst_sections &sections = *static_cast<const hyst_sections *>(model);
     for (std::size_t i = 0; i < sections.count; ++i) {
         section_jacobian(sections.coefficient + 5 * i, state + 2 * i, t, t.incoming + 5 * i);
     }

@@ -1,8 +1,7 @@
-"""The recorder and the engine's chain are handed the same stages."""
+"""Stages as the core has them: what is derived, what is held, what is copied."""
 
 from __future__ import annotations
 
-import inspect
 import re
 
 import numpy as np
@@ -11,45 +10,87 @@ import pytest
 from hyst import _engine, _single
 from hyst.export.block import block_of
 from hyst.export.core_sources import core_files, core_folder
-from hyst.export.recording import Recorder, record_stages
+from hyst.export.core_stage import core_stages
 from hyst.export.stage_code import StageCode
-from hyst.operators.stage_sink import StageSink
+from hyst.operators.stage import Stage
 from reference.examples import EXAMPLES
 
 
-def stage_methods(owner: type) -> set[str]:
-    return {name for name in dir(owner) if name.startswith("add_")}
-
-
-def test_the_recorder_takes_all_that_the_engine_takes() -> None:
-    assert stage_methods(Recorder) == stage_methods(_engine.Chain) == stage_methods(StageSink)
-    for name in stage_methods(Recorder):
-        declared = inspect.signature(getattr(StageSink, name))
-        assert list(inspect.signature(getattr(Recorder, name)).parameters) == list(
-            declared.parameters
-        )
-
-
 def test_every_kind_of_stage_is_among_the_examples() -> None:
-    kinds = {stage.kind for each in EXAMPLES.values() for stage in record_stages(each)}
-    assert len(kinds) == len(stage_methods(Recorder)) + 1  # dead zones are of two kinds
-    forms = {stage.form for each in EXAMPLES.values() for stage in record_stages(each)}
+    kinds = {stage.kind for each in EXAMPLES.values() for stage in each.stages()}
+    assert kinds == set(_engine.kinds())
+    forms = {stage.form for each in EXAMPLES.values() for stage in core_stages(each)}
     assert forms >= {"HYST_POWER_LAW", "HYST_PLAYS", "HYST_POLYNOMIAL"}
     assert forms >= {"HYST_MEMORY_POWER", "HYST_MEMORY_POLYNOMIAL"}
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
+def test_a_stage_has_the_parameters_of_its_operator_in_their_order(name: str) -> None:
+    model = EXAMPLES[name]
+    constants = [each for stage in model.stages() for each in stage.constants]
+    assert constants == model.parameters().values.tolist()
+
+
+def test_constants_of_the_core_are_derived_as_written() -> None:
+    """By hand: 2^c3 c2 / (c3 + 1) of a power law, slopes of plays, a rate times the sample time."""
+    masing = {"inverse": 0, "last_reversal": 0, "depth": 2}
+    fixed = {"least_slope": (0.0,), "dead_band": (0.0,)}
+    power, plays, rated = (
+        Stage("masing", (0.5, 3.0, 2.0), fixed, masing, "power-law"),
+        Stage("masing", (1.0, -0.5, 0.25, 2.0, 4.0), fixed, masing, "plays"),
+        Stage(
+            "rate_dependent_pi",
+            (1.0, 0.5, 2.0, 0.75, 1.5, 3.0, 7.0),
+            fixed={"knees": (12.0,)},
+            choices={"plays": 1, "powers": 2},
+            dt=0.25,
+        ),
+    )
+    chain = _engine.Chain([power, plays, rated])
+    assert len(chain) == 3
+    assert chain.constants(0)["numbers"] == {
+        "dead_band": 0.0, "linear": 0.5, "factor": 4.0, "exponent": 3.0,
+    }  # fmt: skip
+    assert chain.constants(1)["tables"] == {
+        "knot": (0.0, 2.0, 4.0), "value": (0.0, 2.0, 3.0), "slope": (1.0, 0.5, 0.75),
+    }  # fmt: skip
+    assert chain.constants(2)["numbers"] == {"p0": 1.0, "growth": 3.0}
+    assert chain.constants(2)["tables"] == {
+        "p": (0.5,), "r": (2.0,), "power": (24.0, 192.0), "weight": (28.0,), "threshold": (3.0,),
+    }  # fmt: skip
+    with pytest.raises(IndexError, match="no such stage"):
+        chain.constants(3)
+
+
+@pytest.mark.parametrize(
+    ("stage", "what"),
+    [
+        (Stage("dahl", (1.0,)), "unknown kind of stage 'dahl'"),
+        (Stage("pi", (1.0, 2.0)), "kind 'pi' has 2 constants, which do not fit"),
+        (Stage("dead_zone", (1.0,)), "kind 'dead_zone' has 1 constants"),
+        (Stage("state_space", (1.0,), choices={"order": 1, "delay": 0}), "'state_space' has 1"),
+        (Stage("sections", (1.0,)), "'sections' has 1"),
+        (Stage("rate_dependent_pi", (1.0, 0.0)), "lacks a choice or a fixed constant"),
+        (Stage("masing", (1.0,), {"dead_band": (0.0,)}, form="table"), "loading curve 'table'"),
+        (Stage("memory_element", (1.0,), form="plays"), "memory function 'plays'"),
+    ],
+)
+def test_what_is_no_stage_is_refused(stage: Stage, what: str) -> None:
+    with pytest.raises(ValueError, match=what):
+        _engine.Chain([stage])
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
 def test_memory_is_as_long_as_the_engine_s(name: str) -> None:
     model = EXAMPLES[name]
-    chain = _engine.Chain()
-    model.append_to(chain)
-    code = StageCode(record_stages(model), "double")
+    chain = _engine.Chain(model.stages())
+    code = StageCode(core_stages(model), "double")
     assert code.state_length == chain.state_length == model.initial_state().size
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_held_and_fixed_constants_are_the_same(name: str) -> None:
-    stages = record_stages(EXAMPLES[name])
+    stages = core_stages(EXAMPLES[name])
     held = StageCode(stages, "double", "model->")
     assert held.constants() == StageCode(stages, "double").constants()
     members = held.declarations()

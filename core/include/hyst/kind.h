@@ -1,0 +1,21 @@
+/* What a chain asks of a kind of stage: one row, which stands at the end of the kind's own source.
+ * `model` is the kind's structure of constants, as hyst_pi. */
+#ifndef HYST_KIND_H
+#define HYST_KIND_H
+
+#include "hyst/real.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct {
+    size_t (*length)(const void *model); /* number of state values */
+    hyst_real (*step)(const void *model, hyst_real *state, hyst_real u);
+} hyst_kind;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

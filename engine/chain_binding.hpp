@@ -1,0 +1,12 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include "chain.hpp"
+
+namespace hyst {
+
+// How a chain is made of stages, what it tells of them, and the names of all kinds.
+void bind_stages(nanobind::module_ &module, nanobind::class_<Chain> &chain);
+
+}  // namespace hyst

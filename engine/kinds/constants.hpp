@@ -1,0 +1,127 @@
+// From the constants of an operator to those of the core, in the number type of this translation unit.
+//
+// Files of engine/kinds are compiled once for every number type: hyst_real of hyst/real.h. Where two of
+// them meet in one program, the other one names a namespace of its own, -DHYST_KINDS=name.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hyst/real.h"
+
+#ifndef HYST_KINDS
+#define HYST_KINDS kinds
+#endif
+
+namespace hyst {
+namespace HYST_KINDS {
+
+using Reals = std::vector<hyst_real>;
+
+// What an operator says of a stage; hyst.operators.stage.Stage in Python.
+struct Given {
+    std::string kind, form;
+    Reals constants;                                   // in the order of Operator.parameters()
+    std::map<std::string, std::vector<double>> fixed;  // constants that are no parameters
+    std::map<std::string, std::size_t> choices;
+    double dt;  // seconds; 0 where any will do
+
+    // `count` of the constants from place `first` on.
+    Reals part(std::size_t first, std::size_t count) const {
+        require(first + count <= constants.size());
+        return {constants.begin() + static_cast<std::ptrdiff_t>(first),
+                constants.begin() + static_cast<std::ptrdiff_t>(first + count)};
+    }
+    // Constants that are no parameters.
+    Reals kept(const std::string &name) const {
+        const std::vector<double> &values = fixed.at(name);
+        return {values.begin(), values.end()};
+    }
+    void require(bool fits) const {
+        if (fits) return;
+        throw std::invalid_argument("a stage of kind '" + kind + "' has " +
+                                    std::to_string(constants.size()) +
+                                    " constants, which do not fit its sizes");
+    }
+};
+
+// Who may change a constant of an exported model, and what it is; the numbers are those of hyst_fmu.h.
+// The memory does not depend on weights, gains and memoryless maps: they may change at any time. It
+// belongs to thresholds and to what widens them, which may change until initialization ends. What must
+// satisfy conditions that no single entry shows (stability, monotony) is not offered.
+struct Offer {
+    enum Rule { constant, fixed, threshold, tunable } rule;
+    const char *meaning;
+};
+constexpr Offer not_offered{Offer::constant, ""};
+
+// A constant of the core by its place in the core's structure.
+struct Constant {
+    std::string name;
+    Reals values;
+    bool is_table;
+    Offer offer;
+};
+
+// What the core needs of one stage, and the memory that its structure points into.
+class Constants {
+public:
+    void number(std::string name, hyst_real value, Offer offer) {
+        all_.push_back({std::move(name), {value}, false, offer});
+    }
+    void table(std::string name, Reals values, Offer offer) {
+        all_.push_back({std::move(name), std::move(values), true, offer});
+    }
+    // A size that no table has, or what is switched on (1) or off (0).
+    void choose(std::string name, std::size_t choice) {
+        choices_.emplace_back(std::move(name), choice);
+    }
+
+    hyst_real number(const char *name) const { return find(name).values[0]; }
+    const hyst_real *table(const char *name) const { return find(name).values.data(); }
+    std::size_t size(const char *name) const { return find(name).values.size(); }
+    std::size_t choice(const char *name) const {
+        for (const auto &each : choices_) {
+            if (each.first == name) return each.second;
+        }
+        throw std::invalid_argument(std::string("a stage has no choice '") + name + "'");
+    }
+    int is(const char *name) const { return static_cast<int>(choice(name)); }
+
+    const std::vector<Constant> &all() const { return all_; }
+    const std::vector<std::pair<std::string, std::size_t>> &choices() const { return choices_; }
+
+    std::string form;       // which curve or function: the enumerator of the core, or ""
+    const char *structure = "";    // the C that makes the structure; see kind.hpp
+    bool feeds_through = true;     // whether the output of a sample depends on its input
+
+    // Keeps a structure of the core as long as its constants.
+    template <class Model>
+    const void *hold(const Model &model) {
+        const std::align_val_t alignment{alignof(Model)};
+        model_ = {::operator new(sizeof(Model), alignment),
+                  [alignment](void *place) { ::operator delete(place, alignment); }};
+        return new (model_.get()) Model(model);
+    }
+
+private:
+    const Constant &find(const char *name) const {
+        for (const Constant &each : all_) {
+            if (each.name == name) return each;
+        }
+        throw std::invalid_argument(std::string("a stage has no constant '") + name + "'");
+    }
+
+    std::vector<Constant> all_;
+    std::vector<std::pair<std::string, std::size_t>> choices_;
+    std::shared_ptr<void> model_;
+};
+
+}  // namespace HYST_KINDS
+}  // namespace hyst
