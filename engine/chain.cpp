@@ -1,11 +1,12 @@
 #include "chain.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace hyst {
 
-Chain::Chain(const std::vector<kinds::Given> &stages) {
-    for (const kinds::Given &given : stages) {
+Chain::Chain(const std::vector<kinds::Given> &stages) : given_(stages) {
+    for (const kinds::Given &given : given_) {
         const kinds::Kind *kind = kinds::kind_named(given.kind);
         if (kind == nullptr) {
             throw std::invalid_argument("unknown kind of stage '" + given.kind + "'");
@@ -14,6 +15,17 @@ Chain::Chain(const std::vector<kinds::Given> &stages) {
         const void *model = kinds::build(*kind, given, constants_.back());
         stages_.push_back({kind, model, given.dt, given.constants.size()});
         core_.push_back(stages_.back().core());
+    }
+}
+
+void Chain::set_parameters(const double *values) {
+    for (std::size_t i = 0; i < given_.size(); ++i) {
+        kinds::Reals &own = given_[i].constants;
+        std::copy(values, values + own.size(), own.begin());
+        values += own.size();
+        constants_[i] = kinds::Constants();
+        stages_[i].model = kinds::build(*stages_[i].kind, given_[i], constants_[i]);
+        core_[i] = stages_[i].core();
     }
 }
 

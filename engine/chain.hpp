@@ -45,10 +45,15 @@ public:
     std::size_t state_length() const;
     std::size_t parameter_count() const;
 
+    // Other constants for the same stages, in the order of the operators' parameters, all stages one
+    // after the other. Sizes, state and what is fixed stay.
+    void set_parameters(const double *values);
+
     // One record; the state is carried in and out.
     void run(double *state, const double *u, double *y, std::size_t samples) const;
 
 private:
+    std::vector<kinds::Given> given_;
     std::deque<kinds::Constants> constants_;
     std::vector<Stage> stages_;
     std::vector<hyst_stage> core_;

@@ -132,6 +132,11 @@ void use_instruction_set(const std::string &name) {
     }
 }
 
+void set_parameters(hyst::Chain &chain, Signal values) {
+    require(values.shape(0) == chain.parameter_count(), "the parameters have the wrong length");
+    chain.set_parameters(values.data());
+}
+
 void jacobian(const hyst::Chain &chain, Vector state, Signal u, Matrix result) {
     require(state.shape(0) == chain.state_length(), "state has the wrong length");
     require(result.shape(0) == u.shape(0) && result.shape(1) == chain.parameter_count(),
@@ -190,7 +195,8 @@ NB_MODULE(_engine, module) {
     module.doc() = "Compiled engine of hyst: the C core on whole records, and derivatives.";
     nb::class_<hyst::Chain> chain(module, "Chain");
     hyst::bind_stages(module, chain);
-    chain.def_prop_ro("state_length", &hyst::Chain::state_length)
+    chain.def("set_parameters", &set_parameters, nb::arg("values").noconvert())
+        .def_prop_ro("state_length", &hyst::Chain::state_length)
         .def_prop_ro("parameter_count", &hyst::Chain::parameter_count)
         .def("run", &run, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
              nb::arg("y").noconvert(), nb::arg("engine") = "auto", nb::arg("threads") = 1)

@@ -92,9 +92,9 @@ class Chained(Operator):
 
     def nearest_parameters(self, theta: Array) -> Array:
         """Give the nearest vectors of the stages, one after the other."""
-        counts = [len(stage.parameters()) for stage in self.stages]
+        counts = [len(stage.parameters()) for stage in self.parts]
         pieces = np.split(theta, np.cumsum(counts)[:-1])
-        pairs = zip(self.stages, pieces, strict=True)
+        pairs = zip(self.parts, pieces, strict=True)
         return np.concatenate([stage.nearest_parameters(piece) for stage, piece in pairs])
 
     def with_parameters(self, theta: Sequence[float] | Array) -> Operator:
@@ -108,8 +108,8 @@ class Chained(Operator):
 
     def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
         """Give the factors of the stages' parameters, one after the other."""
-        shares = _scales_of_stages(self.stages, input_scale, output_scale)
-        pairs = zip(self.stages, shares, strict=True)
+        shares = _scales_of_stages(self.parts, input_scale, output_scale)
+        pairs = zip(self.parts, shares, strict=True)
         return np.concatenate([stage.parameter_scales(*share) for stage, share in pairs])
 
     def in_units(self, input_scale: float, output_scale: float) -> Operator:
@@ -118,9 +118,9 @@ class Chained(Operator):
         Maps keep the unit of their signal; the first stage that is none turns the unit of the
         input into that of the output.
         """
-        shares = _scales_of_stages(self.stages, input_scale, output_scale)
-        pairs = zip(self.stages, shares, strict=True)
-        return self._with_stages(tuple(stage.in_units(*share) for stage, share in pairs))
+        shares = _scales_of_stages(self.parts, input_scale, output_scale)
+        pairs = zip(self.parts, shares, strict=True)
+        return self._with_parts(tuple(stage.in_units(*share) for stage, share in pairs))
 
     def lipschitz_constant(self) -> float:
         """Give the product of the parts' constants."""

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst import _engine
 from hyst.identification.fit.bounded_least_squares import Problem
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.record_use.used_samples import Data
@@ -67,9 +66,11 @@ def model_jacobian(data: Data, operator: Operator) -> Array:
     )
 
 
-@dataclass(frozen=True, eq=False)
 class Evaluation:
     """Model outputs and their derivatives by theta over the samples used.
+
+    The engine is given the constants as one vector; no operator is built or checked, for the bounds
+    of a parametrization and its canonical form keep every theta one that makes an operator.
 
     Parameters
     ----------
@@ -79,17 +80,41 @@ class Evaluation:
         Free parameters of a model.
     """
 
-    data: Data
-    parametrization: Parametrization
+    def __init__(self, data: Data, parametrization: Parametrization) -> None:
+        self._parametrization = parametrization
+        self._chain = _engine.Chain(parametrization.template.stages())
+        self._start = parametrization.template.initial_state()
+        self._free = np.flatnonzero(parametrization.free)
+        self._by_theta = parametrization.transform[self._free]
+        self._passes = [
+            (np.ascontiguousarray(record.u[: window.stop]), window)
+            for record, window in zip(data.records, data.windows(), strict=True)
+        ]
 
     def output(self, theta: Array) -> Array:
         """Give the output of the model of canonical theta, shape (samples used,)."""
-        return model_output(self.data, self.parametrization.operator(theta))
+        self._chain.set_parameters(self._parametrization.constants(theta))
+        parts = []
+        for u, window in self._passes:
+            y = np.empty((1, u.size))
+            if self._chain.run(self._start[None, :].copy(), u[None, :], y) >= 0:
+                self._parametrization.operator(theta)(u)  # names the sample that overflows
+            parts.append(y[0, window])
+        return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
     def jacobian(self, theta: Array) -> Array:
         """Give its derivative by theta, shape (samples used, m)."""
-        by_constants = model_jacobian(self.data, self.parametrization.operator(theta))
-        return by_constants @ self.parametrization.transform
+        self._chain.set_parameters(self._parametrization.constants(theta))
+        lengths = [window.stop - window.start for _, window in self._passes]
+        result = np.empty((sum(lengths), theta.size))
+        row = 0
+        for (u, window), length in zip(self._passes, lengths, strict=True):
+            rows = np.empty((u.size, self._chain.parameter_count))
+            self._chain.jacobian(self._start.copy(), u, rows)
+            used = rows[window][:, self._free]
+            np.matmul(used, self._by_theta, out=result[row : row + length])
+            row += length
+        return result
 
 
 def problem_of(
