@@ -8,12 +8,12 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.numbers import as_positive
 from hyst.compensation.mapped_plays import MappedPlays
 from hyst.compensation.piecewise_map import PiecewiseMap, largest_distance
 from hyst.compensation.slope_steps import SlopeSteps
 from hyst.errors import InputError
 from hyst.operators import Operator
-from hyst.operators.checks import as_number
 
 Array = NDArray[np.float64]
 
@@ -144,9 +144,7 @@ def error_bound(model: Operator, approximate_inverse: Operator, y_max: float) ->
     >>> limit.bound, limit.reached, limit.output_bound
     (1.0, 1.0, 2.0)
     """
-    reach = as_number(y_max, "y_max")
-    if reach <= 0.0:
-        raise InputError(f"y_max is {reach:.6g}; give the largest |y_ref|, a positive number")
+    reach = as_positive(y_max, "y_max", "the largest |y_ref|")
     own = MappedPlays.of(model, "the model")
     exact = own.inverse()
     approximate = MappedPlays.of(approximate_inverse, "the approximate inverse", like=exact)

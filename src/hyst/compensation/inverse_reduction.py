@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.numbers import as_positive, whole_number
 from hyst.compensation.mapped_plays import MappedPlays
 from hyst.compensation.slope_steps import SlopeSteps
-from hyst.errors import InputError
 from hyst.models import PrandtlIshlinskii
 from hyst.operators import Composition, Operator
-from hyst.operators.checks import as_number
 
 Array = NDArray[np.float64]
 
@@ -59,14 +58,11 @@ def reduce_inverse(model: Operator, plays: int, y_max: float) -> Operator:
     >>> reduced.r.round(9), round(reduced.p0, 3), reduced.p.round(3)
     (array([1.2]), 1.429, array([-0.762]))
     """
-    if isinstance(plays, bool) or not isinstance(plays, int | np.integer) or plays < 0:
-        raise InputError(f"plays is {plays!r}; give how many plays to keep, an integer >= 0")
-    reach = as_number(y_max, "y_max")
-    if reach <= 0.0:
-        raise InputError(f"y_max is {reach:.6g}; give the largest |y_ref|, a positive number")
+    kept = whole_number(plays, "plays", 0)
+    reach = as_positive(y_max, "y_max", "the largest |y_ref|")
     exact = MappedPlays.of(model, "the model").inverse()
     edges, levels = SlopeSteps.of(exact.plays).pieces(exact.before.largest_value(reach))
-    starts, best = _fewer_steps(np.diff(edges), levels, int(plays) + 1)
+    starts, best = _fewer_steps(np.diff(edges), levels, kept + 1)
     keep = np.append(True, np.diff(best) != 0.0)
     starts, best = starts[keep], best[keep]
     reduced = PrandtlIshlinskii(np.diff(best), edges[starts[1:]], float(best[0]))

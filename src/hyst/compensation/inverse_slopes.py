@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.numbers import as_positive
 from hyst.compensation.mapped_plays import MappedPlays
 from hyst.compensation.piecewise_map import PiecewiseMap, largest_distance
 from hyst.compensation.slope_steps import SlopeSteps
-from hyst.errors import InputError
 from hyst.operators import Operator
-from hyst.operators.checks import as_number
 
 Array = NDArray[np.float64]
 
@@ -57,9 +56,7 @@ def slope_range(
     >>> slope_range(model, model.inverse(), 5.0), slope_range(model, Affine(1.0), 5.0)
     ((1.0, 1.0), (1.0, 2.0))
     """
-    reach = as_number(y_max, "y_max")
-    if reach <= 0.0:
-        raise InputError(f"y_max is {reach:.6g}; give the largest |v|, a positive number")
+    reach = as_positive(y_max, "y_max", "the largest |v|")
     own = MappedPlays.of(model, "the model")
     # Gains move into plays wherever the model has no map to undo.
     like = MappedPlays(own.after, own.plays, own.before)

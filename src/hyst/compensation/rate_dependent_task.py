@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst import _engine
+from hyst.checks.arrays import finite_vector
 from hyst.compensation.exact import range_of_input
 from hyst.errors import InputError, NotInvertibleError
 from hyst.models import RateDependentPrandtlIshlinskii
 from hyst.operators import Composition, Operator
 from hyst.operators.composition import leaves_of
-from hyst.signals.vector import finite_vector
 
 Array = NDArray[np.float64]
 

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hyst.checks.numbers import as_positive, whole_number
 from hyst.compensation.compensation import Compensation
 from hyst.compensation.exact import invert_exactly
 from hyst.compensation.explicit import drive_explicitly
@@ -136,10 +137,10 @@ def invert_trajectory(
         found = drive_sample_by_sample(task)
     elif method == "preview":
         change = _change(task, rate_limit)
-        found = drive_with_preview(task, _as_count(preview, "preview"), change, say)
+        found = drive_with_preview(task, whole_number(preview, "preview", 1), change, say)
         found = judge_rate_limit(task, found, change, False)
     else:
-        limit = _as_count(max_iterations, "max_iterations")
+        limit = whole_number(max_iterations, "max_iterations", 1)
         change = _change(task, rate_limit)
         found = drive_along_trajectory(task, change, limit, say)
         found = judge_rate_limit(task, found, change, True)
@@ -167,23 +168,14 @@ def _compensation(task: RateDependentTask, found: SolvedDrive, method: str) -> C
     )
 
 
-def _as_count(value: int, name: str) -> int:
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
-        raise InputError(f"{name} is {value!r}; give a whole number, at least 1")
-    return int(value)
-
-
 def _change(task: RateDependentTask, rate_limit: float | None) -> float:
     """Largest change of the drive per sample."""
     if rate_limit is None:
         return float("inf")
-    if not (np.isfinite(rate_limit) and rate_limit > 0.0):
-        raise InputError(
-            f"rate_limit is {rate_limit}; give a positive rate, input units per second"
-        )
+    rate = as_positive(rate_limit, "rate_limit", "a rate in input units per second")
     if task.before is not None:
         raise InputError(
             "the model has a map before its plays, so the rate of its input is not that of the "
             "drive; leave out rate_limit"
         )
-    return float(rate_limit) * task.plays.dt
+    return rate * task.plays.dt

@@ -10,6 +10,8 @@ from typing import Any, Self, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import as_constants
+from hyst.checks.numbers import as_sample_time, whole_number
 from hyst.errors import InputError
 from hyst.models.linear_properties import (
     answers_after,
@@ -22,7 +24,6 @@ from hyst.models.linear_properties import (
 from hyst.models.matrices import checked_matrices
 from hyst.models.realizations import cascade, companion, sections_of, zero_order_hold
 from hyst.operators.base import Operator
-from hyst.operators.checks import as_constants, as_number, as_whole_number
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries, register
 from hyst.operators.stage_sink import StageSink
@@ -88,9 +89,6 @@ class LinearDynamics(Operator):
         start = as_constants(np.zeros(b.size) if x0 is None else x0, "x0")
         if start.size != b.size:
             raise InputError(f"x0 has {start.size} entries; the order is {b.size}")
-        time = as_number(dt, "dt")
-        if time <= 0.0:
-            raise InputError(f"dt is {time}; give the sample time in seconds, above 0")
         for name, value in zip(
             ("A", "B", "C", "D", "_dt", "delay", "x0"),
             (
@@ -98,8 +96,8 @@ class LinearDynamics(Operator):
                 b,
                 c,
                 feedthrough,
-                time,
-                as_whole_number(delay, "delay"),
+                as_sample_time(dt),
+                whole_number(delay, "delay", 0),
                 as_constants(start + 0.0, ""),
             ),
             strict=True,
@@ -357,7 +355,7 @@ class LinearDynamics(Operator):
             If ``samples`` is no whole number above 0, or the response overflows, as that of an
             unstable system does in the end.
         """
-        impulse = np.zeros(as_whole_number(samples, "samples", 1))
+        impulse = np.zeros(whole_number(samples, "samples", 1))
         impulse[0] = 1.0
         return self.run(impulse, np.zeros(self.order + self.delay))[0]
 

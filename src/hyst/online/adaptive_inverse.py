@@ -8,8 +8,8 @@ from typing import Any, final
 
 import numpy as np
 
+from hyst.checks.numbers import as_positive
 from hyst.errors import InputError
-from hyst.online.checks import positive
 from hyst.online.joint_estimator import JointEstimator
 from hyst.online.saving import restored_state, save_estimator
 from hyst.operators import ModelDescription, Operator
@@ -67,9 +67,9 @@ class AdaptiveInverse:
         if not isinstance(estimator, JointEstimator):
             raise InputError(f"estimator is a {type(estimator).__name__}; give a JointEstimator")
         self.estimator = estimator
-        self._seconds = positive(window, "window", "seconds")
+        self._seconds = as_positive(window, "window", "seconds")
         self._window = self._seconds / estimator.dt
-        self._margin = positive(margin, "margin", "a ratio above 1")
+        self._margin = as_positive(margin, "margin", "a ratio above 1")
         if self._margin <= 1.0:
             raise InputError(f"margin is {margin!r}; give a ratio above 1")
         self._good = estimator.model
@@ -179,7 +179,7 @@ class AdaptiveInverse:
         inverse._fallback.restart(inverse._good)  # refuses what cannot be inverted
         inverse._fallback = JointEstimator.restore(**settings["fallback"])
         usual = settings["usual"]
-        inverse._usual = math.inf if usual is None else positive(usual, "usual", "a mean square")
+        inverse._usual = math.inf if usual is None else as_positive(usual, "usual", "a mean square")
         numbers = np.zeros(7)
         restored_state(numbers, state)
         if (numbers < 0.0).any() or numbers[4] not in (0.0, 1.0):

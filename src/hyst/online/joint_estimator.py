@@ -10,13 +10,13 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import finite_vector
+from hyst.checks.numbers import as_positive, as_reading, as_sample_time
 from hyst.online.checks import (
     memory_from,
     memory_or_none,
     names_of,
-    number,
     patience_in_samples,
-    positive,
     sample,
     samples_of,
 )
@@ -32,7 +32,6 @@ from hyst.online.trajectory import Trajectory
 from hyst.operators import ModelDescription, Operator
 from hyst.operators.registry import operator_from_dict
 from hyst.signals import Record
-from hyst.signals.vector import finite_vector
 
 Array = NDArray[np.float64]
 
@@ -133,13 +132,13 @@ class JointEstimator:
         search: bool = True,
     ) -> None:
         self._parts = take_apart(model)
-        self.dt = positive(dt, "dt", "the time between samples in seconds")
+        self.dt = as_sample_time(dt)
         self.settings: dict[str, Any] = {
             "model": model.to_dict(),
             "dt": self.dt,
             "memory": memory_or_none(memory),
-            "radius_spread": positive(radius_spread, "radius_spread", "a share"),
-            "weight_spread": positive(weight_spread, "weight_spread", "a share"),
+            "radius_spread": as_positive(radius_spread, "radius_spread", "a share"),
+            "weight_spread": as_positive(weight_spread, "weight_spread", "a share"),
             "noise": noise,
             "held": names_of(held, (*self.names, *GROUPS)),
             "estimate_maps": bool(estimate_maps),
@@ -304,7 +303,7 @@ class JointEstimator:
         float
         """
         before, after = self._parts.before, self._parts.after
-        v = self.core.command(self.state, number(y_ref, "y_ref") / after.gain)
+        v = self.core.command(self.state, as_reading(y_ref, "y_ref") / after.gain)
         return v if before is None else (v - before.offset) / before.gain
 
     def restart(self, model: Operator | None = None) -> None:

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.numbers import as_positive, given_or
 from hyst.errors import InputError, NotInvertibleError
-from hyst.online.checks import given_or, positive
 from hyst.online.parts import Parts
 
 Array = NDArray[np.float64]
@@ -49,7 +49,7 @@ def complete_scales(settings: dict[str, Any], theta: Array, plays: int) -> None:
         ("most_slope", 1e3 * total, "a slope"),
         ("most_radius", 1e3 * radius or 1.0, "a radius"),
     ):
-        settings[name] = positive(given_or(settings[name], value), name, what)
+        settings[name] = as_positive(given_or(settings[name], value), name, what)
 
 
 def checked_start(parts: Parts, theta: Array, settings: dict[str, Any]) -> Array:
