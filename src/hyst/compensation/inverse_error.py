@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_positive
-from hyst.compensation.mapped_plays import MappedPlays
-from hyst.compensation.piecewise_map import PiecewiseMap, largest_distance
 from hyst.compensation.slope_steps import SlopeSteps
 from hyst.errors import InputError
+from hyst.models.mapped_plays import MappedPlays
+from hyst.models.piecewise_map import PiecewiseMap, largest_distance
 from hyst.operators import Operator
 
 Array = NDArray[np.float64]

@@ -218,7 +218,7 @@ class LinearDynamics(Operator):
 
             LinearDynamics.from_control(control.tf([1.0], [1.0, -0.5], 0.01))
         """
-        from hyst.models.control_objects import matrices_of  # the one door to python-control
+        from hyst.models.python_control import matrices_of  # the one door to python-control
 
         A, B, C, D, time = matrices_of(system, dt)
         return cls(A, B, C, D, time)
@@ -231,7 +231,7 @@ class LinearDynamics(Operator):
         MissingExtraError
             If python-control is not installed.
         """
-        from hyst.models.control_objects import state_space_of  # the one door to python-control
+        from hyst.models.python_control import state_space_of  # the one door to python-control
 
         return state_space_of(self)
 

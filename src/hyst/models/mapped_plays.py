@@ -7,9 +7,9 @@ from typing import final
 
 import numpy as np
 
-from hyst.compensation.piecewise_map import PiecewiseMap
 from hyst.errors import InputError
-from hyst.models import PrandtlIshlinskii
+from hyst.models.piecewise_map import PiecewiseMap
+from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii
 from hyst.operators import Affine, DeadZone, Operator
 from hyst.operators.composition import leaves_of
 
