@@ -22,6 +22,7 @@ from hyst.models.linear_properties import (
     zeros_of,
 )
 from hyst.models.matrices import checked_matrices
+from hyst.models.python_control import matrices_of, state_space_of
 from hyst.models.realizations import cascade, companion, sections_of, zero_order_hold
 from hyst.operators.base import Operator
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
@@ -218,8 +219,6 @@ class LinearDynamics(Operator):
 
             LinearDynamics.from_control(control.tf([1.0], [1.0, -0.5], 0.01))
         """
-        from hyst.models.python_control import matrices_of  # the one door to python-control
-
         A, B, C, D, time = matrices_of(system, dt)
         return cls(A, B, C, D, time)
 
@@ -231,9 +230,7 @@ class LinearDynamics(Operator):
         MissingExtraError
             If python-control is not installed.
         """
-        from hyst.models.python_control import state_space_of  # the one door to python-control
-
-        return state_space_of(self)
+        return state_space_of(self.A, self.B, self.C, self.D, self.dt, self.delay)
 
     def traits(self) -> Traits:
         """Give the traits of a linear system; with order and delay 0 it is a gain."""

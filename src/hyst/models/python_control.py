@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError, MissingExtraError
 from hyst.models.realizations import companion, zero_order_hold
-
-if TYPE_CHECKING:
-    from hyst.models.linear_dynamics import LinearDynamics
 
 Array = NDArray[np.float64]
 
@@ -55,8 +52,17 @@ def matrices_of(system: Any, dt: float | None) -> tuple[Array, Array, Array, flo
     return (*companion(num, den), time)
 
 
-def state_space_of(dynamics: LinearDynamics) -> Any:
-    """Give the ``control.StateSpace`` of the same system, the delay written as poles at 0.
+def state_space_of(A: Array, B: Array, C: Array, D: float, dt: float, delay: int) -> Any:
+    """Give the ``control.StateSpace`` of a system, its delay written as poles at 0.
+
+    Parameters
+    ----------
+    A, B, C, D
+        Shapes (n, n), (n,), (n,) and a number.
+    dt
+        Sample time, s.
+    delay
+        Samples.
 
     Raises
     ------
@@ -69,17 +75,16 @@ def state_space_of(dynamics: LinearDynamics) -> Any:
         raise MissingExtraError(
             "python-control is not installed; install hyst[control] or the package control"
         ) from None
-    n, d = dynamics.order, dynamics.delay
-    A, B = np.zeros((n + d, n + d)), np.zeros((n + d, 1))
-    C, D = np.zeros((1, n + d)), dynamics.D if d == 0 else 0.0
-    A[:n, :n], C[0, :n] = dynamics.A, dynamics.C
+    n, d = B.size, delay
+    a, b, c = np.zeros((n + d, n + d)), np.zeros((n + d, 1)), np.zeros((1, n + d))
+    a[:n, :n], c[0, :n] = A, C
     if d == 0:
-        B[:n, 0] = dynamics.B
+        b[:n, 0] = B
     else:
         # The first of the line is the oldest value: it feeds the system, u enters at the end.
-        A[:n, n], C[0, n], B[-1, 0] = dynamics.B, dynamics.D, 1.0
-        A[np.arange(n, n + d - 1), np.arange(n + 1, n + d)] = 1.0
-    return control.ss(A, B, C, D, dynamics.dt, remove_useless_states=False)
+        a[:n, n], c[0, n], b[-1, 0] = B, D, 1.0
+        a[np.arange(n, n + d - 1), np.arange(n + 1, n + d)] = 1.0
+    return control.ss(a, b, c, D if d == 0 else 0.0, dt, remove_useless_states=False)
 
 
 def _polynomials(system: Any) -> tuple[Array, Array]:
