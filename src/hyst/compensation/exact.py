@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.arrays import finite_vector
-from hyst.compensation.compensation import Compensation
+from hyst.compensation.result import Compensation
 from hyst.errors import InputError
 from hyst.operators import Operator
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.arrays import finite_vector
-from hyst.compensation.compensation import Compensation
+from hyst.compensation.result import Compensation
 from hyst.errors import InputError
 from hyst.models import LinearDynamics, StableInverse
 from hyst.models.linear_properties import settling_samples

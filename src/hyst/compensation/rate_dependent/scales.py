@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.compensation.rate_dependent_task import RateDependentTask
-from hyst.compensation.trajectory_descent import Stage
+from hyst.compensation.rate_dependent.task import RateDependentTask
+from hyst.compensation.rate_dependent.trajectory_descent import Stage
 
 Array = NDArray[np.float64]
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyst.compensation.limits_kept import refuse_or_tell
-from hyst.compensation.rate_dependent_task import RateDependentTask
-from hyst.compensation.solved_drive import SolvedDrive
+from hyst.compensation.rate_dependent.limits_kept import refuse_or_tell
+from hyst.compensation.rate_dependent.solved_drive import SolvedDrive
+from hyst.compensation.rate_dependent.task import RateDependentTask
 
 
 def drive_explicitly(task: RateDependentTask) -> SolvedDrive:

@@ -15,11 +15,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.compensation.preview import drive_with_preview
-from hyst.compensation.rate_dependent_task import RateDependentTask
-from hyst.compensation.scales import Scales, scales_of
-from hyst.compensation.solved_drive import CONVERGED, ITERATION_LIMIT, SOLVED, SolvedDrive
-from hyst.compensation.trajectory_descent import Descent, Stage, within_limits
+from hyst.compensation.rate_dependent.preview import drive_with_preview
+from hyst.compensation.rate_dependent.scales import Scales, scales_of
+from hyst.compensation.rate_dependent.solved_drive import (
+    CONVERGED,
+    ITERATION_LIMIT,
+    SOLVED,
+    SolvedDrive,
+)
+from hyst.compensation.rate_dependent.task import RateDependentTask
+from hyst.compensation.rate_dependent.trajectory_descent import Descent, Stage, within_limits
 
 Array = NDArray[np.float64]
 

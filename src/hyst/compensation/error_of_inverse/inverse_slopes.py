@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_positive
-from hyst.compensation.slope_steps import SlopeSteps
+from hyst.compensation.error_of_inverse.slope_steps import SlopeSteps
 from hyst.models.mapped_plays import MappedPlays
 from hyst.models.piecewise_map import PiecewiseMap, largest_distance
 from hyst.operators import Operator

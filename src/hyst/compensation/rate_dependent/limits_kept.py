@@ -7,8 +7,8 @@ import dataclasses
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.compensation.rate_dependent_task import RateDependentTask
-from hyst.compensation.solved_drive import SolvedDrive
+from hyst.compensation.rate_dependent.solved_drive import SolvedDrive
+from hyst.compensation.rate_dependent.task import RateDependentTask
 from hyst.errors import InputError
 
 Array = NDArray[np.float64]

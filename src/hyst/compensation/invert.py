@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hyst.checks.numbers import as_positive, whole_number
-from hyst.compensation.compensation import Compensation
 from hyst.compensation.exact import invert_exactly
-from hyst.compensation.explicit import drive_explicitly
-from hyst.compensation.limits_kept import judge_rate_limit
 from hyst.compensation.noncausal import invert_noncausally
-from hyst.compensation.preview import drive_with_preview
-from hyst.compensation.rate_dependent_task import RateDependentTask, prepare_task
-from hyst.compensation.sample_exact import drive_sample_by_sample
-from hyst.compensation.solved_drive import ITERATION_LIMIT, SolvedDrive
-from hyst.compensation.trajectory import drive_along_trajectory
+from hyst.compensation.rate_dependent.explicit import drive_explicitly
+from hyst.compensation.rate_dependent.limits_kept import judge_rate_limit
+from hyst.compensation.rate_dependent.preview import drive_with_preview
+from hyst.compensation.rate_dependent.sample_exact import drive_sample_by_sample
+from hyst.compensation.rate_dependent.solved_drive import ITERATION_LIMIT, SolvedDrive
+from hyst.compensation.rate_dependent.task import RateDependentTask, prepare_task
+from hyst.compensation.rate_dependent.whole_trajectory import drive_along_trajectory
+from hyst.compensation.result import Compensation
 from hyst.errors import InputError, SolverError
 from hyst.operators import Operator
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_positive, whole_number
-from hyst.compensation.slope_steps import SlopeSteps
+from hyst.compensation.error_of_inverse.slope_steps import SlopeSteps
 from hyst.models import PrandtlIshlinskii
 from hyst.models.mapped_plays import MappedPlays
 from hyst.operators import Composition, Operator

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from hyst import _engine
-from hyst.compensation.limits_kept import refuse_or_tell
-from hyst.compensation.rate_dependent_task import RateDependentTask
-from hyst.compensation.solved_drive import SOLVED, SolvedDrive
+from hyst.compensation.rate_dependent.limits_kept import refuse_or_tell
+from hyst.compensation.rate_dependent.solved_drive import SOLVED, SolvedDrive
+from hyst.compensation.rate_dependent.task import RateDependentTask
 from hyst.errors import NotInvertibleError
 
 # A sample at the end of the range is clipped if it misses more than this of the largest output.
