@@ -11,7 +11,7 @@ from hyst import _single
 from hyst.export.block import Block
 from hyst.export.numbers import Precision, literal, refuse_vanishing, table
 from hyst.online import JointEstimator
-from hyst.online.parts import take_apart
+from hyst.online.joint.parts import take_apart
 from hyst.operators import Affine
 from hyst.operators.registry import operator_from_dict
 

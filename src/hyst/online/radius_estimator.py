@@ -15,8 +15,8 @@ from hyst.checks.numbers import as_not_negative, as_positive, as_sample_time, gi
 from hyst.errors import InputError
 from hyst.models import PrandtlIshlinskii
 from hyst.online.checks import memory_from, memory_or_none, sample, samples_of
-from hyst.online.excitation import Excitation, watch
-from hyst.online.prior import covariance_of
+from hyst.online.joint.excitation import Excitation, watch
+from hyst.online.joint.prior import covariance_of
 from hyst.online.saved import check_saved_radii
 from hyst.online.saving import restored_state, save_estimator
 from hyst.online.trajectory import Trajectory

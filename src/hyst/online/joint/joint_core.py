@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst import _engine
-from hyst.online.cells import Cells, cells_for
-from hyst.online.parts import Map, Parts
-from hyst.online.prior import start_covariance
-from hyst.online.start import LEAST_MAP_SLOPE, MOST_MAP_SLOPE
+from hyst.online.joint.cells import Cells, cells_for
+from hyst.online.joint.parts import Map, Parts
+from hyst.online.joint.prior import start_covariance
+from hyst.online.joint.start import LEAST_MAP_SLOPE, MOST_MAP_SLOPE
 
 Array = NDArray[np.float64]
 

@@ -20,14 +20,14 @@ from hyst.online.checks import (
     sample,
     samples_of,
 )
-from hyst.online.excitation import Excitation, watch
-from hyst.online.innovation import Innovation
-from hyst.online.joint_core import GROUPS, new_core, prior_of, search_cells
-from hyst.online.parts import take_apart
-from hyst.online.prior import covariance_of, factors
+from hyst.online.joint.excitation import Excitation, watch
+from hyst.online.joint.innovation import Innovation
+from hyst.online.joint.joint_core import GROUPS, new_core, prior_of, search_cells
+from hyst.online.joint.parts import take_apart
+from hyst.online.joint.prior import covariance_of, factors
+from hyst.online.joint.start import checked_start, complete_scales
 from hyst.online.saved import check_saved
 from hyst.online.saving import restored_state, save_estimator
-from hyst.online.start import checked_start, complete_scales
 from hyst.online.trajectory import Trajectory
 from hyst.operators import ModelDescription, Operator
 from hyst.operators.registry import operator_from_dict

@@ -10,7 +10,7 @@ import numpy as np
 
 from hyst.checks.numbers import as_positive
 from hyst.errors import InputError
-from hyst.online.joint_estimator import JointEstimator
+from hyst.online.joint.joint_estimator import JointEstimator
 from hyst.online.saving import restored_state, save_estimator
 from hyst.operators import ModelDescription, Operator
 from hyst.operators.registry import operator_from_dict

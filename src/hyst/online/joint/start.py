@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_positive, given_or
 from hyst.errors import InputError, NotInvertibleError
-from hyst.online.parts import Parts
+from hyst.online.joint.parts import Parts
 
 Array = NDArray[np.float64]
 
