@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hyst.export.firmware import CProject, c_project
+from hyst.export.c.firmware import CProject, c_project
 from hyst.export.fmu_archive import Fmu, fmu
 from hyst.export.inverses import explicit_inverse, inverse_of, reversed_description
 from hyst.export.loading import load_exportable

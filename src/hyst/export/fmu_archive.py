@@ -11,7 +11,8 @@ from typing import final
 
 import hyst
 from hyst.errors import InputError
-from hyst.export.block import Model
+from hyst.export.c.block import Model
+from hyst.export.c.names import as_c_name
 from hyst.export.fmu_binary import binary_path, compiled
 from hyst.export.fmu_description import (
     FmiVersion,
@@ -22,7 +23,6 @@ from hyst.export.fmu_description import (
 )
 from hyst.export.fmu_sources import FmuModel, fmu_model, fmu_sources
 from hyst.export.folder import FORMAT, MANIFEST, write_export
-from hyst.export.names import as_c_name
 from hyst.export.tool_block import tool_block
 from hyst.operators import ModelDescription
 

@@ -8,9 +8,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
 
-from hyst.export.block import Model
-from hyst.export.c_sources import header, places, source
-from hyst.export.core_sources import core_files
+from hyst.export.c.block import Model
+from hyst.export.c.c_sources import header, places, source
+from hyst.export.c.core_sources import core_files
+from hyst.export.c.numbers import table
+from hyst.export.c.one_file import renamed, shared_names
+from hyst.export.c.templating import filled, indented
 from hyst.export.fmu_description import FmiVersion
 from hyst.export.fmu_variables import (
     ParameterVariable,
@@ -18,10 +21,7 @@ from hyst.export.fmu_variables import (
     direct_inputs,
     parameter_variables,
 )
-from hyst.export.numbers import table
-from hyst.export.one_file import renamed, shared_names
 from hyst.export.stage_code import StageCode
-from hyst.export.templating import filled, indented
 from hyst.export.tool_block import ToolBlock, tool_block
 from hyst.operators import ModelDescription
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from textwrap import wrap
 from typing import final
 
-from hyst.export.numbers import Precision, literal, refuse_vanishing, rounded, table
+from hyst.export.c.numbers import Precision, literal, refuse_vanishing, rounded, table
 from hyst.export.stages import Stage
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-_FOLDER = Path(__file__).resolve().parent / "templates"
+_FOLDER = Path(__file__).resolve().parents[1] / "templates"
 _PLACE = re.compile(r"@\{(\w+)\}")
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from hyst import __version__
-from hyst.export.block import Block
-from hyst.export.drive import PERIOD, SAMPLES
-from hyst.export.names import plain_text
-from hyst.export.numbers import Precision, literal, table
-from hyst.export.readme import signals
-from hyst.export.selftest import BAD, SEEDS, SelfTest
-from hyst.export.templating import filled, indented
+from hyst.export.c.block import Block
+from hyst.export.c.drive import PERIOD, SAMPLES
+from hyst.export.c.names import plain_text
+from hyst.export.c.numbers import Precision, literal, table
+from hyst.export.c.readme import signals
+from hyst.export.c.selftest import BAD, SEEDS, SelfTest
+from hyst.export.c.templating import filled, indented
 from hyst.operators.model_file import ModelDescription
 
 WORD_BYTES = {"double": 8, "single": 4}

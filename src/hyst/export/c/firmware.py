@@ -10,17 +10,17 @@ from pathlib import Path
 from typing import Any, final
 
 from hyst import __version__
-from hyst.export.block import Block, Model, block_of
-from hyst.export.c_sources import WORD_BYTES, header, places, selftest_source, source, vectors
-from hyst.export.core_sources import core_files
-from hyst.export.drive import SAMPLES
-from hyst.export.estimator import estimator_block
+from hyst.export.c.block import Block, Model, block_of
+from hyst.export.c.c_sources import WORD_BYTES, header, places, selftest_source, source, vectors
+from hyst.export.c.core_sources import core_files
+from hyst.export.c.drive import SAMPLES
+from hyst.export.c.estimator import estimator_block
+from hyst.export.c.names import as_c_name
+from hyst.export.c.numbers import Precision, as_precision
+from hyst.export.c.readme import readme
+from hyst.export.c.selftest import SelfTest
+from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, MANIFEST, write_export
-from hyst.export.names import as_c_name
-from hyst.export.numbers import Precision, as_precision
-from hyst.export.readme import readme
-from hyst.export.selftest import SelfTest
-from hyst.export.templating import filled
 from hyst.online import JointEstimator
 from hyst.operators import ModelDescription
 

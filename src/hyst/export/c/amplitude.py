@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyst.export.drive import Drive
+from hyst.export.c.drive import Drive
 from hyst.export.recording import record_stages
 from hyst.export.stages import Stage
 from hyst.operators import Operator

@@ -11,7 +11,7 @@ from typing import Any, final
 from hyst import _single
 from hyst.control.tracking_controller import KIND, TrackingController
 from hyst.errors import InputError
-from hyst.export.numbers import Precision
+from hyst.export.c.numbers import Precision
 from hyst.export.recording import record_stages
 from hyst.export.stage_code import StageCode
 from hyst.export.stages import Stage

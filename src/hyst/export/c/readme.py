@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from hyst.export.block import Block
-from hyst.export.names import plain_text
-from hyst.export.selftest import SelfTest
-from hyst.export.templating import filled
+from hyst.export.c.block import Block
+from hyst.export.c.names import plain_text
+from hyst.export.c.selftest import SelfTest
+from hyst.export.c.templating import filled
 from hyst.operators import ModelDescription
 
 

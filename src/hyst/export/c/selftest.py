@@ -7,10 +7,10 @@ from typing import final
 
 import numpy as np
 
-from hyst.export.amplitude import drive_for
-from hyst.export.block import Block, stepper_of
-from hyst.export.drive import PERIOD, Array, Drive
-from hyst.export.numbers import Precision
+from hyst.export.c.amplitude import drive_for
+from hyst.export.c.block import Block, stepper_of
+from hyst.export.c.drive import PERIOD, Array, Drive
+from hyst.export.c.numbers import Precision
 from hyst.operators import ModelDescription
 
 SEEDS = (1, 2)

@@ -8,8 +8,8 @@ from typing import final
 import numpy as np
 
 from hyst import _single
-from hyst.export.block import Block
-from hyst.export.numbers import Precision, literal, refuse_vanishing, table
+from hyst.export.c.block import Block
+from hyst.export.c.numbers import Precision, literal, refuse_vanishing, table
 from hyst.online import JointEstimator
 from hyst.online.joint.parts import take_apart
 from hyst.operators import Affine
