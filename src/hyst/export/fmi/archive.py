@@ -13,21 +13,21 @@ import hyst
 from hyst.errors import InputError
 from hyst.export.c.block import Model
 from hyst.export.c.names import as_c_name
-from hyst.export.fmu_binary import binary_path, compiled
-from hyst.export.fmu_description import (
+from hyst.export.fmi.binary import binary_path, compiled
+from hyst.export.fmi.description import (
     FmiVersion,
     FmuDescription,
     Signal,
     build_description,
     model_description,
 )
-from hyst.export.fmu_sources import FmuModel, fmu_model, fmu_sources
+from hyst.export.fmi.sources import FmuModel, fmu_model, fmu_sources
 from hyst.export.folder import FORMAT, MANIFEST, write_export
 from hyst.export.tool_block import tool_block
 from hyst.operators import ModelDescription
 
 _VERSIONS: tuple[FmiVersion, ...] = ("2.0", "3.0")
-_LICENSE = Path(__file__).resolve().parent / "templates" / "LICENSE"
+_LICENSE = Path(__file__).resolve().parents[1] / "templates" / "LICENSE"
 
 
 @final

@@ -14,7 +14,7 @@ from hyst.export.c.core_sources import core_files
 from hyst.export.c.numbers import table
 from hyst.export.c.one_file import renamed, shared_names
 from hyst.export.c.templating import filled, indented
-from hyst.export.fmu_description import FmiVersion
+from hyst.export.fmi.description import FmiVersion
 from hyst.export.fmu_variables import (
     ParameterVariable,
     constant_rules,
@@ -25,7 +25,7 @@ from hyst.export.stage_code import StageCode
 from hyst.export.tool_block import ToolBlock, tool_block
 from hyst.operators import ModelDescription
 
-_TEMPLATES = Path(__file__).resolve().parent / "templates" / "fmu"
+_TEMPLATES = Path(__file__).resolve().parents[1] / "templates" / "fmu"
 _COMMON = ("hyst_fmu.c", "hyst_fmu.h")
 _OF_VERSION = {
     "2.0": ("hyst_fmi2.c", "hyst_fmi2.h"),

@@ -9,7 +9,7 @@ from typing import Literal, final
 from xml.etree import ElementTree
 
 import hyst
-from hyst.export.fmu_units import base_unit
+from hyst.export.fmi.units import base_unit
 from hyst.export.fmu_variables import ParameterVariable, Rule
 
 FmiVersion = Literal["2.0", "3.0"]
