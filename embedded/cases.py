@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from embedded.rounding_bound import NoBoundError, controller_bound, single_precision_bound
 from hyst import ModifiedPrandtlIshlinskii, Operator, PrandtlIshlinskii
 from hyst.control import TrackingController
-from hyst.export.block import Block, block_of, stepper_of
-from hyst.export.estimator import estimator_block
-from hyst.export.numbers import Precision
+from hyst.export.c.block import Block, block_of, stepper_of
+from hyst.export.c.estimator import estimator_block
+from hyst.export.c.numbers import Precision
 from hyst.online import JointEstimator
 from hyst.operators import DeadZone
 from reference.examples import EXAMPLES

@@ -22,7 +22,7 @@ from embedded.emulator import Report, on_processor
 from embedded.rounding_bound import NoBoundError
 from embedded.target import BUILDS, Build
 from hyst.export import c_project
-from hyst.export.numbers import PRECISIONS
+from hyst.export.c.numbers import PRECISIONS
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import shutil
 import subprocess
 from dataclasses import dataclass
 
-from hyst.export.numbers import Precision
+from hyst.export.c.numbers import Precision
 
 COMPILER = "arm-none-eabi-gcc"
 EMULATOR = "qemu-system-arm"

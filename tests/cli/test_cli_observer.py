@@ -145,7 +145,7 @@ MISTAKES = {
     ),
     "[reference] duration is 1e+06 s": change("duration = 3.0", "duration = 1e6"),
     "[internal_model] kind is 'sine'": change('"integrator"\n', '"sine"\n'),
-    "[internal_model] sinusoids has -50": change("# sinusoids = [50.0]", "sinusoids = [-50.0]"),
+    "[internal_model] sinusoids is -50": change("# sinusoids = [50.0]", "sinusoids = [-50.0]"),
     "p has 9 entries but r has 10": change("1.1, 1.7]", "1.1]"),
     "p0 is -0.1": change("p0 = 0.1", "p0 = -0.1"),
     "is no TOML file": change("[plant]", "[plant"),

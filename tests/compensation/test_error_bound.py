@@ -152,7 +152,7 @@ FLAT = GeneralizedPrandtlIshlinskii(hyst.DeadZone([1.0], [1.0]), PAPER)
         (PAPER, PAPER, 0.0, InputError, "y_max is 0"),
         (PAPER, PAPER, -1.0, InputError, "y_max is -1"),
         (PAPER, PAPER, float("nan"), InputError, "y_max is nan"),
-        (PAPER, PAPER, [1.0], InputError, "y_max has shape"),
+        (PAPER, PAPER, [1.0], InputError, r"y_max is \[1\.0\]; give"),
         ("PI", PAPER, 1.0, InputError, "the model is of type str"),
         (PAPER, None, 1.0, InputError, "the approximate inverse is of type NoneType"),
         (hyst.Stop(1.0), PAPER, 1.0, InputError, "holds a stop"),

@@ -8,9 +8,9 @@ import pytest
 import hyst
 from hyst import InputError, NotInvertibleError, RateDependentPrandtlIshlinskii, SolverError
 from hyst.compensation import Compensation, invert_trajectory
-from hyst.compensation.limits_kept import judge_rate_limit
-from hyst.compensation.rate_dependent_task import prepare_task
-from hyst.compensation.solved_drive import SolvedDrive
+from hyst.compensation.rate_dependent.limits_kept import judge_rate_limit
+from hyst.compensation.rate_dependent.solved_drive import SolvedDrive
+from hyst.compensation.rate_dependent.task import prepare_task
 from hyst.models import RateCurve
 from reference.rate_dependent_plays import ACTUATOR, DT, EXAMPLE, output, rate, reference_signal
 

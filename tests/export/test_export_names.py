@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from hyst import InputError, PrandtlIshlinskii
 from hyst.export import c_project
-from hyst.export.names import as_c_name, plain_text
+from hyst.export.c.names import as_c_name, plain_text
 from hyst.operators import ModelDescription
 
 MODEL = PrandtlIshlinskii([0.5, 0.2], [0.1, 0.3], 1.0)

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hyst import Affine, InputError, PrandtlIshlinskii
+from hyst.export.c.numbers import as_precision, literal, rounded, table
 from hyst.export.core_stage import core_stages
-from hyst.export.numbers import as_precision, literal, rounded, table
 from hyst.export.stage_code import StageCode
 from hyst.models import MasingOperator, PolynomialCurve
 

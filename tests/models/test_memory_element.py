@@ -129,7 +129,10 @@ def test_theorem_4_in_rates() -> None:
         (lambda: MemoryFunction.table([0.0], [1.0, 2.0]), "as many"),
         (lambda: MemoryFunction("spline", [1.0]), "'spline'"),
         (lambda: MemoryFunction("polynomial", [1.0], [0.0]), "no knots"),
-        (lambda: MemoryElement(FUNCTIONS["table"], 0.0), "positive"),
+        (
+            lambda: MemoryElement(FUNCTIONS["table"], 0.0),
+            "sample_time is 0.0; give the time between samples",
+        ),
         (lambda: MemoryElement(FUNCTIONS["table"], 1.0, momentum="odd"), "'odd'"),
         (lambda: MemoryElement(FUNCTIONS["table"], 1.0, reset="always"), "'always'"),
         (lambda: MemoryElement(FUNCTIONS["table"], 1.0, start=float("nan")), "start is nan"),

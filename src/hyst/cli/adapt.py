@@ -150,7 +150,7 @@ def _picture(
     trajectory: hyst.online.Trajectory,
     heading: str,
 ) -> bytes:
-    units = hyst.online.parts.units_of_plays(model, about.input_unit, about.output_unit)
+    units = hyst.online.units_of_plays(model, about.input_unit, about.output_unit)
     return hyst.report.draw_estimates({"": trajectory}, {}, heading, units)
 
 

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 import typer
 
 import hyst
+from hyst.checks.numbers import as_positive
 
 ModelFile = Annotated[
     Path,
@@ -56,19 +57,12 @@ def numbers(text: str, name: str) -> list[float]:
         ) from None
 
 
-def positive(value: float, name: str) -> float:
-    """Refuse an option that is not above 0."""
-    if not 0.0 < value < float("inf"):
-        raise hyst.InputError(f"--{name} is {value}; give a positive number")
-    return value
-
-
 def sample_time_known(
     model: hyst.operators.Operator, file: Path, rate: float | None, what: str
 ) -> bool:
     """Refuse a file of another sample time than the model's; say if the file or --rate tells."""
     if rate is not None:
-        model.require_sample_time(1.0 / positive(rate, "rate"), what)
+        model.require_sample_time(1.0 / as_positive(rate, "--rate", "samples per second"), what)
         return True
     if model.dt is None:
         return True

@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 import hyst
-from hyst.cli.arguments import numbers, positive
+from hyst.checks.numbers import as_positive, whole_number
+from hyst.cli.arguments import numbers
 from hyst.cli.console import note, show_files, show_table
 from hyst.cli.relevant_options import given, refuse_irrelevant
 
@@ -92,14 +93,12 @@ def excite(
     name: Name = "u",
 ) -> None:
     """Design an input within limits; write it with a figure, and say what it can determine."""
-    if not (math.isfinite(rate) and rate > 0.0):
-        raise hyst.InputError(f"--rate is {rate}; give samples per second, above 0")
+    as_positive(rate, "--rate", "samples per second")
     if kind in KINDS:
         refuse_irrelevant(context, _BY_KIND, [kind], "--kind")
     if rms is not None and given(context, "amplitude"):
         raise hyst.InputError("--amplitude and --rms are both given; give one of them")
-    if fir_order < 0:
-        raise hyst.InputError(f"--fir-order is {fir_order}; give 0 or more samples")
+    whole_number(fir_order, "--fir-order", 0, more=" samples")
     ends = None if band is None else numbers(band, "band")
     if ends is not None and len(ends) != 2:
         raise hyst.InputError(f"--band is {band!r}; give the lowest and the highest frequency")
@@ -128,7 +127,7 @@ def excite(
 
 def _samples(duration: float, rate: float) -> int:
     """Give the samples of one period; how many there may be is for the drive to say."""
-    count = positive(duration, "duration") * rate
+    count = as_positive(duration, "--duration", "seconds") * rate
     return max(round(min(count, 1e18)), 1)
 
 

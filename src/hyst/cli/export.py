@@ -16,7 +16,7 @@ from hyst.cli.console import show_table
 from hyst.cli.relevant_options import refuse_irrelevant
 
 if TYPE_CHECKING:
-    from hyst.export.block import Model
+    from hyst.export.c.block import Model
     from hyst.operators import ModelDescription
 
 

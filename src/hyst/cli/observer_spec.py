@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import hyst
+from hyst.checks.numbers import as_not_negative, as_positive
 from hyst.cli.spec_section import Section
 
 if TYPE_CHECKING:
@@ -89,9 +90,9 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
             f"[simulation] settle is {settle:g} s of {reference.size * dt:g} s; leave some to "
             "measure"
         )
-    noise = simulation.number("noise", 0.0)
-    if noise < 0.0:
-        raise hyst.InputError(f"[simulation] noise is {noise:g}; give a standard deviation >= 0")
+    noise = as_not_negative(
+        simulation.number("noise", 0.0), "[simulation] noise", "a standard deviation"
+    )
     method = implemented.text("method", "tustin", get_args(hyst.control.discretization.Method))
     filter_dt = implemented.number("dt", positive=True)
     if filter_dt >= reference.size * dt - settle:
@@ -137,10 +138,7 @@ def _internal_model(given: Section) -> InternalModel:
         )
     given.done()
     for frequency in sinusoids:
-        if frequency <= 0.0:
-            raise hyst.InputError(
-                f"[internal_model] sinusoids has {frequency:g}; give frequencies in Hz, above 0"
-            )
+        as_positive(frequency, "[internal_model] sinusoids", "frequencies in Hz")
         model = model + hyst.control.InternalModel.sinusoid(2.0 * np.pi * float(frequency))
     return model
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import hyst
+from hyst.checks.numbers import as_number, as_positive, said, whole_number
 
 if TYPE_CHECKING:
     from hyst.control import LinearSystem
@@ -32,7 +33,7 @@ class Section:
 
     def __init__(self, data: Any, name: str) -> None:
         if not isinstance(data, dict):
-            raise hyst.InputError(f"{name} is {_said(data)}; give a table of entries")
+            raise hyst.InputError(f"{name} is {said(data)}; give a table of entries")
         self._data: dict[str, Any] = data
         self._name = name
         self._known: set[str] = set()
@@ -95,11 +96,8 @@ class Section:
             If it is missing or none.
         """
         value = default if default is not None and not self.has(key) else self.whole(key)
-        if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
-            raise hyst.InputError(f"{self._name} {key} is {_said(value)}; give a finite number")
-        if positive and value <= 0.0:
-            raise hyst.InputError(f"{self._name} {key} is {value:g}; give a number above 0")
-        return float(value)
+        check = as_positive if positive else as_number
+        return check(value, f"{self._name} {key}")
 
     def count(self, key: str, default: int | None = None) -> int:
         """Give a whole number, 0 or more.
@@ -117,9 +115,7 @@ class Section:
             If it is missing or none.
         """
         value = default if default is not None and not self.has(key) else self.whole(key)
-        if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-            raise hyst.InputError(f"{self._name} {key} is {_said(value)}; give a whole number >= 0")
-        return value
+        return whole_number(value, f"{self._name} {key}", 0)
 
     def text(self, key: str, default: str | None = None, choices: Sequence[str] = ()) -> str:
         """Give a text, one of some choices if there are any.
@@ -141,7 +137,7 @@ class Section:
         value = default if default is not None and not self.has(key) else self.whole(key)
         if not isinstance(value, str) or (choices and value not in choices):
             wanted = f"one of {', '.join(choices)}" if choices else "a text"
-            raise hyst.InputError(f"{self._name} {key} is {_said(value)}; give {wanted}")
+            raise hyst.InputError(f"{self._name} {key} is {said(value)}; give {wanted}")
         return value
 
     def numbers(self, key: str, default: Sequence[float] | None = None) -> Array:
@@ -240,7 +236,7 @@ class Section:
         value = self.whole(key)
         where = f"{self._name} {key}"
         if not isinstance(value, list):
-            raise hyst.InputError(f"{where} is {_said(value)}; give a list")
+            raise hyst.InputError(f"{where} is {said(value)}; give a list")
         roots: list[complex] = []
         for each in value:
             if isinstance(each, list):
@@ -277,14 +273,9 @@ def _array(value: Any, where: str, dimensions: int, wanted: str) -> Array:
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):
-        raise hyst.InputError(f"{where} is {_said(value)}; give {wanted}") from None
+        raise hyst.InputError(f"{where} is {said(value)}; give {wanted}") from None
     if array.ndim != dimensions and array.size:
-        raise hyst.InputError(f"{where} is {_said(value)}; give {wanted}")
+        raise hyst.InputError(f"{where} is {said(value)}; give {wanted}")
     if not np.isfinite(array).all():
         raise hyst.InputError(f"{where} holds a number that is not finite; give {wanted}")
     return array.reshape(-1) if dimensions == 1 else array
-
-
-def _said(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 40 else f"{text[:37]}..."

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from hyst.compensation.compensation import Compensation, error_parts
-from hyst.compensation.inverse_error import ErrorBound, error_bound
-from hyst.compensation.inverse_reduction import reduce_inverse
-from hyst.compensation.inverse_slopes import slope_range
-from hyst.compensation.trajectory_inversion import METHODS, invert_trajectory
+from hyst.compensation.error_of_inverse.inverse_error import ErrorBound, error_bound
+from hyst.compensation.error_of_inverse.inverse_reduction import reduce_inverse
+from hyst.compensation.error_of_inverse.inverse_slopes import slope_range
+from hyst.compensation.invert import METHODS, invert_trajectory
+from hyst.compensation.result import Compensation, error_parts
 
 __all__ = [
     "METHODS",

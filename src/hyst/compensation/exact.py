@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst.compensation.compensation import Compensation
+from hyst.checks.arrays import finite_vector
+from hyst.compensation.result import Compensation
 from hyst.errors import InputError
 from hyst.operators import Operator
-from hyst.signals.vector import finite_vector
 
 Array = NDArray[np.float64]
 

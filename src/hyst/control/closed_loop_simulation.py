@@ -8,14 +8,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst import _engine
+from hyst.checks.arrays import one_record
+from hyst.checks.numbers import (
+    as_not_negative,
+    as_number,
+    as_positive,
+    as_sample_time,
+    whole_number,
+)
 from hyst.control.closed_loop import ClosedLoop
 from hyst.control.controller_parts import disturbance_observer_of, feedback_controller, joined
-from hyst.control.discretization import sample_time
 from hyst.control.loop_system import continuous_loop, held_step, plant_of
 from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError, SolverError
 from hyst.operators import Operator
-from hyst.operators.checks import as_number, as_signal
 
 Array = NDArray[np.float64]
 
@@ -120,7 +126,7 @@ def simulate_closed_loop(
     >>> loop.rms_error < 1e-6
     True
     """
-    time, r = sample_time(dt), _record(reference, "reference")
+    time, r = as_sample_time(dt), one_record(reference, "reference")
     settled = _settling(settle, r.size, time)
     _refuse_other(disturbance_at, get_args(Place), "disturbance_at")
     _refuse_other(algebraic_loop, get_args(AlgebraicLoop), "algebraic_loop")
@@ -187,17 +193,10 @@ def _refuse_other(given: str, allowed: tuple[str, ...], name: str) -> None:
         raise InputError(f"{name} is {given!r}; give one of {', '.join(allowed)}")
 
 
-def _record(values: ArrayLike, name: str) -> Array:
-    record = as_signal(values, name)
-    if record.ndim != 1:
-        raise InputError(f"{name} has shape {record.shape}; give one record, (N,)")
-    return record
-
-
 def _signal(values: ArrayLike, samples: int, name: str) -> Array:
     if np.ndim(values) == 0:
         return np.full(samples, as_number(values, name))
-    record = _record(values, name)
+    record = one_record(values, name)
     if record.size != samples:
         raise InputError(f"{name} has {record.size} samples, the reference {samples}; give as many")
     return record
@@ -206,24 +205,18 @@ def _signal(values: ArrayLike, samples: int, name: str) -> Array:
 def _noise(noise: ArrayLike, samples: int, seed: int) -> Array:
     if np.ndim(noise) != 0:
         return _signal(noise, samples, "noise")
-    deviation = as_number(noise, "noise")
-    if deviation < 0.0:
-        raise InputError(f"noise is {deviation}; give a standard deviation of 0 or more")
-    if not isinstance(seed, int | np.integer) or seed < 0:
-        raise InputError(f"seed is {seed!r}; give a whole number of 0 or more")
+    deviation = as_not_negative(noise, "noise", "a standard deviation")
+    draw = whole_number(seed, "seed", 0)
     if deviation == 0.0:
         return np.zeros(samples)
-    return deviation * np.random.default_rng(seed).standard_normal(samples)
+    return deviation * np.random.default_rng(draw).standard_normal(samples)
 
 
 def _limit(limit: float | None, r: Array, noise: Array) -> float:
     if limit is None:
         largest = float(np.abs(r).max() + np.abs(noise).max())
         return _FAR * largest if largest > 0.0 else np.inf
-    given = as_number(limit, "limit")
-    if given <= 0.0:
-        raise InputError(f"limit is {given}; give a bound of the output above 0")
-    return given
+    return as_positive(limit, "limit", "a bound of the output")
 
 
 def _chain(operator: Operator | None, name: str, dt: float) -> _engine.Chain:

@@ -8,10 +8,10 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
+from hyst.checks.numbers import as_sample_time
 from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.errors import InputError
 from hyst.models import LinearDynamics
-from hyst.operators.checks import as_number
 
 Array = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ def discretize(system: Any, dt: float, method: Method = "tustin") -> LinearSyste
     >>> bool(abs(lag.A[0, 0] - np.exp(-1.0)) < 1e-15)
     True
     """
-    time = sample_time(dt)
+    time = as_sample_time(dt)
     if method not in get_args(Method):
         raise InputError(f"method is {method!r}; give one of {', '.join(get_args(Method))}")
     given = as_linear_system(system)
@@ -130,29 +130,6 @@ def held(system: LinearSystem, dt: float) -> tuple[Array, Array, Array, Array]:
     sampled = scipy.linalg.expm(block)
     A = sampled[:n, :n] * scale[:, None] / scale
     return A, sampled[:n, n:] * scale[:, None], system.C, system.D
-
-
-def sample_time(dt: Any) -> float:
-    """Check a sample time.
-
-    Parameters
-    ----------
-    dt
-        Seconds.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    InputError
-        If it is not a finite number above 0.
-    """
-    time = as_number(dt, "dt")
-    if time <= 0.0:
-        raise InputError(f"dt is {time}; give the sample time in seconds, above 0")
-    return time
 
 
 def _trapezoidal(system: LinearSystem, dt: float) -> tuple[Array, Array, Array, Array]:

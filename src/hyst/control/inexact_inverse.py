@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from hyst.checks.numbers import as_number
 from hyst.control.controller_parts import disturbance_observer_of, feedback_controller, joined
 from hyst.control.infinity_norm import hinf_norm
 from hyst.control.linear_system import LinearSystem
 from hyst.control.loop_system import continuous_loop, plant_of
 from hyst.errors import InputError
-from hyst.operators.checks import as_number
 
 _SLOPES = 200
 

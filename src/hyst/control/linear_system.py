@@ -11,6 +11,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
+from hyst.checks.arrays import finite_array
 from hyst.errors import InputError, MissingExtraError
 from hyst.models.realizations import companion
 
@@ -40,13 +41,13 @@ class LinearSystem:
     dt: float = 0.0
 
     def __post_init__(self) -> None:
-        D = np.atleast_2d(np.array(self.D, dtype=np.float64))
+        D = np.atleast_2d(finite_array(self.D, "D"))
         outputs, inputs = D.shape
-        A = np.array(self.A, dtype=np.float64)
+        A = finite_array(self.A, "A")
         order = 0 if A.size == 0 else A.shape[0] if A.ndim == 2 else 1
         given = {"A": (order, order), "B": (order, inputs), "C": (outputs, order)}
         for name, shape in given.items():
-            matrix = np.array(getattr(self, name), dtype=np.float64)
+            matrix = finite_array(getattr(self, name), name)
             if matrix.size != shape[0] * shape[1]:
                 raise InputError(
                     f"{name} has shape {matrix.shape}, not {shape}; check the matrices"
@@ -54,10 +55,7 @@ class LinearSystem:
             object.__setattr__(self, name, matrix.reshape(shape))
         object.__setattr__(self, "D", D)
         for name in ("A", "B", "C", "D"):
-            matrix = getattr(self, name)
-            if not np.isfinite(matrix).all():
-                raise InputError(f"{name} holds a number that is not finite; check the system")
-            matrix.setflags(write=False)
+            getattr(self, name).setflags(write=False)
 
     @property
     def order(self) -> int:

@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst import _engine
+from hyst.checks.arrays import as_constants, as_signal, as_state
+from hyst.checks.numbers import as_sample_time
 from hyst.control.controller_parts import disturbance_observer_of, feedback_controller, joined
-from hyst.control.discretization import Method, discretize, sample_time
+from hyst.control.discretization import Method, discretize
 from hyst.errors import InputError
 from hyst.operators import Operator
-from hyst.operators.checks import as_constants, as_signal, as_state
 from hyst.operators.model_file import ModelDescription, read_model, write_model
 from hyst.operators.registry import entries, operator_from_dict
 
@@ -96,7 +97,7 @@ class TrackingController:
         x0: ArrayLike | None = None,
     ) -> None:
         c = as_constants(C, "C")
-        n, time = c.size, sample_time(dt)
+        n, time = c.size, as_sample_time(dt)
         if n > _LARGEST_ORDER:
             raise InputError(f"the controller has {n} states; at most {_LARGEST_ORDER} can be run")
         if (E is None) != (F is None):

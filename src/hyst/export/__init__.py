@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from hyst.export.firmware import CProject, c_project
-from hyst.export.fmu_archive import Fmu, fmu
+from hyst.export.c.firmware import CProject, c_project
+from hyst.export.fmi.archive import Fmu, fmu
 from hyst.export.inverses import explicit_inverse, inverse_of, reversed_description
 from hyst.export.loading import load_exportable
 from hyst.export.mex_folder import MexFolder, mex

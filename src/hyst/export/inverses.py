@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from hyst.errors import InputError
-from hyst.export.block import Model
+from hyst.export.c.block import Model
 from hyst.models import RateDependentPrandtlIshlinskii
 from hyst.operators import ModelDescription, Operator
 from hyst.operators.composition import leaves_of

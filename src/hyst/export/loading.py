@@ -8,7 +8,7 @@ from pathlib import Path
 
 from hyst.control.tracking_controller import KIND, TrackingController
 from hyst.errors import InputError
-from hyst.export.block import Model
+from hyst.export.c.block import Model
 from hyst.models.model_loading import load_described
 from hyst.online import JointEstimator
 from hyst.online.loading import load_described_estimator

@@ -12,14 +12,14 @@ from typing import final
 
 import hyst
 from hyst.errors import InputError
-from hyst.export.block import Block, Model
-from hyst.export.c_sources import header, places, source
-from hyst.export.core_sources import core_files
+from hyst.export.c.block import Block, Model
+from hyst.export.c.c_sources import header, places, source
+from hyst.export.c.core_sources import core_files
+from hyst.export.c.names import as_c_name, plain_text
+from hyst.export.c.one_file import in_one_file
+from hyst.export.c.readme import lag_row
+from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, MANIFEST, write_export
-from hyst.export.names import as_c_name, plain_text
-from hyst.export.one_file import in_one_file
-from hyst.export.readme import lag_row
-from hyst.export.templating import filled
 from hyst.export.tool_block import ToolBlock, tool_block
 from hyst.operators import ModelDescription
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import final
 
-from hyst.export.block import Block, Model, block_of
-from hyst.export.estimator import estimator_block
+from hyst.export.c.block import Block, Model, block_of
+from hyst.export.c.estimator import estimator_block
 from hyst.online import JointEstimator
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 import os
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.numbers import as_positive
 from hyst.errors import InputError
 from hyst.io.columns import find_column, refuse_flaws
 from hyst.io.formats import read_table
@@ -183,9 +183,7 @@ def _period(rate: float | None, time: int | str | None, time_unit: str | None) -
         )
     if rate is None:
         return None
-    if not (math.isfinite(rate) and rate > 0.0 and math.isfinite(1.0 / rate)):
-        raise InputError(f"rate is {rate}; give the samples per second, above 0")
-    return 1.0 / rate
+    return 1.0 / as_positive(rate, "rate", "the samples per second")
 
 
 def _choose(table: Table, wanted: dict[str, int | str | None]) -> list[int]:

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst import _engine
+from hyst.checks.arrays import as_constants, as_signal, refuse_overflow
+from hyst.checks.numbers import as_number
 from hyst.errors import InputError, NotInvertibleError
-from hyst.operators.checks import as_constants, as_number, as_signal, refuse_overflow
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 
 Array = NDArray[np.float64]

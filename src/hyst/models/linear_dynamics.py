@@ -10,6 +10,8 @@ from typing import Any, Self, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import as_constants
+from hyst.checks.numbers import as_sample_time, whole_number
 from hyst.errors import InputError
 from hyst.models.linear_properties import (
     answers_after,
@@ -20,9 +22,9 @@ from hyst.models.linear_properties import (
     zeros_of,
 )
 from hyst.models.matrices import checked_matrices
+from hyst.models.python_control import matrices_of, state_space_of
 from hyst.models.realizations import cascade, companion, sections_of, zero_order_hold
 from hyst.operators.base import Operator
-from hyst.operators.checks import as_constants, as_number, as_whole_number
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
@@ -88,9 +90,6 @@ class LinearDynamics(Operator):
         start = as_constants(np.zeros(b.size) if x0 is None else x0, "x0")
         if start.size != b.size:
             raise InputError(f"x0 has {start.size} entries; the order is {b.size}")
-        time = as_number(dt, "dt")
-        if time <= 0.0:
-            raise InputError(f"dt is {time}; give the sample time in seconds, above 0")
         for name, value in zip(
             ("A", "B", "C", "D", "_dt", "delay", "x0"),
             (
@@ -98,8 +97,8 @@ class LinearDynamics(Operator):
                 b,
                 c,
                 feedthrough,
-                time,
-                as_whole_number(delay, "delay"),
+                as_sample_time(dt),
+                whole_number(delay, "delay", 0),
                 as_constants(start + 0.0, ""),
             ),
             strict=True,
@@ -220,8 +219,6 @@ class LinearDynamics(Operator):
 
             LinearDynamics.from_control(control.tf([1.0], [1.0, -0.5], 0.01))
         """
-        from hyst.models.control_objects import matrices_of  # the one door to python-control
-
         A, B, C, D, time = matrices_of(system, dt)
         return cls(A, B, C, D, time)
 
@@ -233,9 +230,7 @@ class LinearDynamics(Operator):
         MissingExtraError
             If python-control is not installed.
         """
-        from hyst.models.control_objects import state_space_of  # the one door to python-control
-
-        return state_space_of(self)
+        return state_space_of(self.A, self.B, self.C, self.D, self.dt, self.delay)
 
     def traits(self) -> Traits:
         """Give the traits of a linear system; with order and delay 0 it is a gain."""
@@ -377,7 +372,7 @@ class LinearDynamics(Operator):
             If ``samples`` is no whole number above 0, or the response overflows, as that of an
             unstable system does in the end.
         """
-        impulse = np.zeros(as_whole_number(samples, "samples", 1))
+        impulse = np.zeros(whole_number(samples, "samples", 1))
         impulse[0] = 1.0
         return self.run(impulse, np.zeros(self.order + self.delay))[0]
 

@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.arrays import refuse_overflow
 from hyst.errors import NotInvertibleError
-from hyst.operators.checks import refuse_overflow
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -9,6 +9,7 @@ from typing import Any, Literal, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.numbers import as_number, whole_number
 from hyst.errors import InputError
 from hyst.models.loading_curve import (
     InverseCurve,
@@ -17,7 +18,6 @@ from hyst.models.loading_curve import (
     curve_from_dict,
 )
 from hyst.operators.base import Operator
-from hyst.operators.checks import as_number
 from hyst.operators.parameters import Parameters
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
@@ -79,10 +79,7 @@ def as_memory(memory: str, depth: int, dead_band: float) -> ReversalMemory:
         If one of them is not allowed.
     """
     as_mode(memory)
-    if isinstance(depth, bool) or not isinstance(depth, int | np.integer):
-        raise InputError(f"depth is {depth!r}; give a whole number of reversals")
-    if not 1 <= depth <= 100_000:
-        raise InputError(f"depth is {depth}; give 1 to 100000 reversals")
+    room = whole_number(depth, "depth", 1, 100_000, " reversals")
     band = as_number(dead_band, "dead_band")
     if band < 0.0 or (band > 0.0 and memory == "masing"):
         raise InputError(
@@ -90,7 +87,7 @@ def as_memory(memory: str, depth: int, dead_band: float) -> ReversalMemory:
             "close by themselves"
         )
     last = memory == "last-reversal"
-    return ReversalMemory(last, 1 if last else int(depth), band)
+    return ReversalMemory(last, 1 if last else room, band)
 
 
 def reversal_traits(memory: ReversalMemory, invertible: Asked) -> Traits:

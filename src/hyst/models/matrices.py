@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import as_constants
 from hyst.errors import InputError
-from hyst.operators.checks import as_constants
 
 Array = NDArray[np.float64]
 

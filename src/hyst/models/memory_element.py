@@ -10,10 +10,10 @@ from typing import Any, Literal, Self, final
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.numbers import as_number, as_sample_time
 from hyst.errors import InputError
 from hyst.models.memory_function import MemoryFunction
 from hyst.operators.base import Operator
-from hyst.operators.checks import as_number
 from hyst.operators.parameters import Parameters
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
@@ -38,9 +38,7 @@ class _Element(Operator):
             raise InputError(
                 f"function is of type {type(self.function).__name__}; give a MemoryFunction"
             )
-        object.__setattr__(self, "sample_time", as_number(self.sample_time, "sample_time"))
-        if self.sample_time <= 0.0:
-            raise InputError(f"sample_time is {self.sample_time:.6g}; a sample time is positive")
+        object.__setattr__(self, "sample_time", as_sample_time(self.sample_time, "sample_time"))
         if self.momentum not in ("signed", "absolute"):
             raise InputError(f"momentum is {self.momentum!r}; choose 'signed' or 'absolute'")
         if self.reset not in ("never", "sign-change"):

@@ -9,8 +9,9 @@ from typing import Any, Literal, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import as_constants
+from hyst.checks.numbers import as_number
 from hyst.errors import InputError
-from hyst.operators.checks import as_constants, as_number
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries
 

@@ -9,14 +9,11 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import as_constants, refuse_overflow
+from hyst.checks.numbers import as_number
+from hyst.checks.thresholds import as_weights_and_thresholds
 from hyst.errors import InputError
 from hyst.models.loading_curve import LoadingCurve, ReversalMemory, refuse_flat, register_curve
-from hyst.operators.checks import (
-    as_constants,
-    as_number,
-    as_weights_and_thresholds,
-    refuse_overflow,
-)
 from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
 from hyst.operators.registry import entries
 from hyst.operators.stage import Stage

@@ -9,9 +9,9 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import as_constants
 from hyst.errors import InputError
 from hyst.models.loading_curve import InverseCurve, LoadingCurve, ReversalMemory, register_curve
-from hyst.operators.checks import as_constants
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries
 from hyst.operators.stage import Stage

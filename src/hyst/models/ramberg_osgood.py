@@ -10,6 +10,7 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.numbers import as_number, as_positive
 from hyst.errors import InputError
 from hyst.models.masing import (
     DEPTH,
@@ -22,7 +23,6 @@ from hyst.models.masing import (
 )
 from hyst.models.power_law import PowerLaw
 from hyst.operators.base import Operator
-from hyst.operators.checks import as_number
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
@@ -153,8 +153,7 @@ class RambergOsgood(Operator):
         """
         given = {"y_star": y_star, "u_star": u_star, "gamma - 1": as_number(gamma, "gamma") - 1.0}
         for name, value in given.items():
-            if as_number(value, name) <= 0.0:
-                raise InputError(f"{name} is {value:.6g}; it must be positive")
+            as_positive(value, name)
         slope, power = y_star / u_star, gamma - 1.0
         growth = slope * as_number(alpha, "alpha") * gamma / (2.0 * u_star) ** power
         return cls(slope, growth, power, memory)

@@ -8,8 +8,9 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import as_constants
+from hyst.checks.numbers import as_number
 from hyst.errors import InputError
-from hyst.operators.checks import as_constants, as_number
 from hyst.operators.parameters import Parameters, numbered
 
 Array = NDArray[np.float64]

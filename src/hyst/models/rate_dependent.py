@@ -9,17 +9,13 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import as_constants, one_record, refuse_overflow
+from hyst.checks.numbers import as_number, as_sample_time
+from hyst.checks.thresholds import as_weights_and_thresholds
 from hyst.errors import InputError, NotInvertibleError
 from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii
 from hyst.models.rate_curve import RateCurve
 from hyst.operators.base import Operator
-from hyst.operators.checks import (
-    as_constants,
-    as_number,
-    as_signal,
-    as_weights_and_thresholds,
-    refuse_overflow,
-)
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
 from hyst.operators.registry import entries, register
@@ -97,15 +93,12 @@ class RateDependentPrandtlIshlinskii(Operator):
     ) -> None:
         weights, thresholds = as_weights_and_thresholds(p, r)
         curve = beta if isinstance(beta, RateCurve) else RateCurve(beta)
-        sample_time = as_number(dt, "dt")
-        if sample_time <= 0.0:
-            raise InputError(f"dt is {sample_time}; a sample time is positive")
         memory = as_constants(np.zeros(weights.size) if z0 is None else z0, "z0")
         _require_memory(memory, thresholds)
         object.__setattr__(self, "p", weights)
         object.__setattr__(self, "r", thresholds)
         object.__setattr__(self, "beta", curve.beta)
-        object.__setattr__(self, "sample_time", sample_time)
+        object.__setattr__(self, "sample_time", as_sample_time(dt))
         object.__setattr__(self, "p0", as_number(p0, "p0"))
         object.__setattr__(self, "z0", as_constants(memory + 0.0, "z0"))
         object.__setattr__(self, "rate_curve", curve)
@@ -149,9 +142,7 @@ class RateDependentPrandtlIshlinskii(Operator):
         InputError
             If ``u`` is not one record of finite numbers.
         """
-        signal = as_signal(u)
-        if signal.ndim != 1:
-            raise InputError(f"u has shape {signal.shape}; give one record, (N,)")
+        signal = one_record(u)
         widening = self.rate_curve(np.diff(signal, prepend=signal[0]) / self.dt)
         return np.asarray(widening[:, None] + self.r)
 

@@ -12,8 +12,9 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import as_constants
+from hyst.checks.numbers import as_number
 from hyst.errors import InputError
-from hyst.operators.checks import as_constants, as_number
 
 Array = NDArray[np.float64]
 Matrices = tuple[Array, Array, Array, float]

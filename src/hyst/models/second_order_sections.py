@@ -9,11 +9,12 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import as_constants, refuse_overflow
+from hyst.checks.numbers import as_sample_time
 from hyst.errors import InputError, NotInvertibleError
 from hyst.models.linear_dynamics import LinearDynamics
 from hyst.models.realizations import cascade, sections_of
 from hyst.operators.base import Operator
-from hyst.operators.checks import as_constants, as_number, refuse_overflow
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
@@ -64,10 +65,7 @@ class SecondOrderSections(Operator):
         table = flat.reshape(-1, 5)
         table.flags.writeable = False
         object.__setattr__(self, "coefficients", table)
-        time = as_number(dt, "dt")
-        if time <= 0.0:
-            raise InputError(f"dt is {time}; give the sample time in seconds, above 0")
-        object.__setattr__(self, "_dt", time)
+        object.__setattr__(self, "_dt", as_sample_time(dt))
 
     @property
     def dt(self) -> float:

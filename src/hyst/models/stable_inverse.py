@@ -14,9 +14,10 @@ from typing import Self, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst.errors import InputError, NotInvertibleError
+from hyst.checks.arrays import one_record
+from hyst.checks.numbers import as_positive
+from hyst.errors import NotInvertibleError
 from hyst.models.linear_dynamics import LinearDynamics
-from hyst.operators.checks import as_signal
 
 Array = NDArray[np.float64]
 
@@ -100,11 +101,10 @@ class StableInverse:
         InputError
             If an argument cannot be used.
         """
-        if not 0.0 < tolerance < 0.1:
-            raise InputError(f"tolerance is {tolerance}; give a share between 0 and 0.1")
+        as_positive(tolerance, "tolerance", "a share", most=0.1)
         nyquist = 0.5 / dynamics.dt
-        if band is not None and band <= 0.0:
-            raise InputError(f"band is {band}; give a frequency in Hz, above 0")
+        if band is not None:
+            as_positive(band, "band", "a frequency in Hz")
         _require_expandable(dynamics, band, smallest_distance)
         length = _first_length(dynamics, smallest_distance)
         while True:
@@ -150,9 +150,7 @@ class StableInverse:
         InputError
             If y is not one record of finite numbers.
         """
-        signal = as_signal(y, "y")
-        if signal.ndim != 1:
-            raise InputError(f"y has shape {signal.shape}; give one record, (N,)")
+        signal = one_record(y, "y")
         padded = np.concatenate(
             [np.full(self.memory, signal[0]), signal, np.full(self.preview, signal[-1])]
         )

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from hyst.online.adaptive_inverse import AdaptiveInverse
-from hyst.online.excitation import Excitation, PlayExcitation
-from hyst.online.innovation import Innovation
-from hyst.online.joint_estimator import JointEstimator
+from hyst.online.joint.adaptive_inverse import AdaptiveInverse
+from hyst.online.joint.excitation import Excitation, PlayExcitation
+from hyst.online.joint.innovation import Innovation
+from hyst.online.joint.joint_estimator import JointEstimator
+from hyst.online.joint.parts import units_of_plays
 from hyst.online.loading import load_described_estimator, load_estimator
 from hyst.online.radius_estimator import RadiusEstimator
 from hyst.online.trajectory import Trajectory
@@ -20,4 +21,5 @@ __all__ = [
     "Trajectory",
     "load_described_estimator",
     "load_estimator",
+    "units_of_plays",
 ]

@@ -7,138 +7,13 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from hyst.checks.numbers import as_positive, whole_number
 from hyst.errors import InputError
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
-
-
-def positive(value: float, name: str, what: str, infinite: bool = False) -> float:
-    """Read a number above 0.
-
-    Parameters
-    ----------
-    value
-        The number.
-    name, what
-        What it is called, and what to give instead of a bad one.
-    infinite
-        Whether it may be infinite.
-
-    Raises
-    ------
-    InputError
-        If it is not.
-
-    Examples
-    --------
-    >>> positive(2, "dt", "the sample time in seconds")
-    2.0
-    """
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        number = math.nan
-    if not number > 0.0 or (math.isinf(number) and not infinite):
-        raise InputError(f"{name} is {value!r}; give {what}, above 0")
-    return number
-
-
-def not_negative(value: float, name: str) -> float:
-    """Read a finite number of at least 0.
-
-    Parameters
-    ----------
-    value
-        The number.
-    name
-        What it is called.
-
-    Raises
-    ------
-    InputError
-        If it is not.
-
-    Examples
-    --------
-    >>> not_negative(0, "dead_time")
-    0.0
-    """
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        number = math.nan
-    if not (math.isfinite(number) and number >= 0.0):
-        raise InputError(f"{name} is {value!r}; give a finite number of at least 0")
-    return number
-
-
-def one_each(values: ArrayLike, count: int, name: str) -> Array:
-    """Read one number for all or one for each play.
-
-    Parameters
-    ----------
-    values
-        A number, or shape (n,).
-    count
-        n.
-    name
-        What they are called.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (n,).
-
-    Raises
-    ------
-    InputError
-        If they are not that many finite numbers.
-
-    Examples
-    --------
-    >>> one_each(2.0, 3, "gain")
-    array([2., 2., 2.])
-    """
-    try:
-        given = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} is {values!r}; give numbers") from None
-    if given.ndim == 0:
-        given = np.full(count, float(given))
-    if given.shape != (count,):
-        raise InputError(f"{name} has shape {given.shape}; give one number, or one for each play")
-    if not np.isfinite(given).all():
-        raise InputError(f"{name} has an entry that is not finite; give finite numbers")
-    return given
-
-
-def number(value: float, name: str) -> float:
-    """Read a number, finite or not.
-
-    Parameters
-    ----------
-    value
-        The number.
-    name
-        What it is called.
-
-    Raises
-    ------
-    InputError
-        If it is no number.
-
-    Examples
-    --------
-    >>> number(1, "y_ref")
-    1.0
-    """
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} is {value!r}; give a number") from None
 
 
 def sample(u: float, y: float) -> tuple[float, float]:
@@ -240,10 +115,9 @@ def samples_of(record: Record, dt: float, every: int) -> tuple[Array, Array, Arr
             f"the record has dt = {record.dt:.9g} s but the estimator was made for {dt:.9g} s; "
             "make one for this sample time, or resample the record"
         )
-    if isinstance(every, bool) or not isinstance(every, int) or every < 1:
-        raise InputError(f"every is {every!r}; give a whole number of samples, 1 or more")
-    rows = record.u.size // every
-    return record.u, record.y, np.asarray(dt * (np.arange(1, rows + 1) * every - 1.0))
+    step = whole_number(every, "every", 1, more=" samples")
+    rows = record.u.size // step
+    return record.u, record.y, np.asarray(dt * (np.arange(1, rows + 1) * step - 1.0))
 
 
 def patience_in_samples(patience: float | None, memory: float, dt: float) -> float:
@@ -265,18 +139,13 @@ def patience_in_samples(patience: float | None, memory: float, dt: float) -> flo
     10.0
     """
     if patience is not None:
-        return max(float(round(positive(patience, "patience", "seconds") / dt)), 1.0)
+        return max(float(round(as_positive(patience, "patience", "seconds") / dt)), 1.0)
     return max(float(round(memory / dt)), 1.0) if math.isfinite(memory) else 1e4
-
-
-def given_or(value: float | None, otherwise: float) -> float:
-    """Give ``value``, or ``otherwise`` where there is none."""
-    return otherwise if value is None else value
 
 
 def memory_or_none(memory: float) -> float | None:
     """Read a memory in seconds; None stands for an infinite one, which JSON does not have."""
-    seconds = positive(memory, "memory", "seconds, or infinity", True)
+    seconds = as_positive(memory, "memory", "seconds, or infinity", infinite=True)
     return seconds if math.isfinite(seconds) else None
 
 

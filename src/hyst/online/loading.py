@@ -7,8 +7,8 @@ import os
 from pathlib import Path
 
 from hyst.errors import InputError
-from hyst.online.adaptive_inverse import AdaptiveInverse
-from hyst.online.joint_estimator import JointEstimator
+from hyst.online.joint.adaptive_inverse import AdaptiveInverse
+from hyst.online.joint.joint_estimator import JointEstimator
 from hyst.online.radius_estimator import RadiusEstimator
 from hyst.online.saving import FORMAT, VERSION
 from hyst.operators import ModelDescription

@@ -10,20 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst import _engine
+from hyst.checks.arrays import one_each
+from hyst.checks.numbers import as_not_negative, as_positive, as_sample_time, given_or
 from hyst.errors import InputError
 from hyst.models import PrandtlIshlinskii
-from hyst.online.checks import (
-    given_or,
-    memory_from,
-    memory_or_none,
-    not_negative,
-    one_each,
-    positive,
-    sample,
-    samples_of,
-)
-from hyst.online.excitation import Excitation, watch
-from hyst.online.prior import covariance_of
+from hyst.online.checks import memory_from, memory_or_none, sample, samples_of
+from hyst.online.joint.excitation import Excitation, watch
+from hyst.online.joint.prior import covariance_of
 from hyst.online.saved import check_saved_radii
 from hyst.online.saving import restored_state, save_estimator
 from hyst.online.trajectory import Trajectory
@@ -130,13 +123,13 @@ class RadiusEstimator:
                 f"p[{worst + 1}] is {start.p[worst]:.6g}; slopes tell regimes apart only where "
                 "every weight is positive, so use the joint estimator"
             )
-        self.dt = positive(dt, "dt", "the time between samples in seconds")
-        gains = one_each(gain, n, "gain")
+        self.dt = as_sample_time(dt)
+        gains = one_each(gain, n, "gain", "play")
         if (gains < 0.0).any():
             raise InputError(f"gain has the entry {gains.min():.6g}; give gains of at least 0")
         largest = float(start.r[-1]) if n else 0.0
         bound = 1e3 * largest or 1e9 if most_radius is None else most_radius
-        if positive(bound, "most_radius", "a radius") < largest:
+        if as_positive(bound, "most_radius", "a radius") < largest:
             raise InputError(
                 f"most_radius is {bound:.6g}, but the start has r[{n}] = {largest:.6g}; raise the "
                 "bound or start below it"
@@ -149,9 +142,9 @@ class RadiusEstimator:
             "p0": start.p0,
             "method": method,
             "memory": memory_or_none(memory),
-            "filter_time": not_negative(filter_time, "filter_time"),
-            "dead_time": not_negative(dead_time, "dead_time"),
-            "dead_band": not_negative(dead_band, "dead_band"),
+            "filter_time": as_not_negative(filter_time, "filter_time"),
+            "dead_time": as_not_negative(dead_time, "dead_time"),
+            "dead_band": as_not_negative(dead_band, "dead_band"),
             "tolerance": _tolerance(tolerance, method),
             "most_radius": float(bound),
             "z0": start.z0.tolist(),
@@ -223,8 +216,8 @@ class RadiusEstimator:
         InputError
             If ``patience`` is not a number above 0, or ``swing`` not one of at least 0.
         """
-        patience = positive(patience, "patience", "seconds, or infinity", True)
-        swing = not_negative(swing, "swing")
+        patience = as_positive(patience, "patience", "seconds, or infinity", infinite=True)
+        swing = as_not_negative(swing, "swing")
         age = self.state[self._at["age"] : self._at["d"]]
         return watch(self._p0, self._p, self.radii, age, patience / self.dt, swing)
 
@@ -331,6 +324,4 @@ class RadiusEstimator:
 
 def _tolerance(given: float | None, method: str) -> float:
     share = given_or(given, _TOLERANCES.get(method, 1.0))
-    if positive(share, "tolerance", "a share of at most 1") > 1.0:
-        raise InputError(f"tolerance is {given!r}; give a share of at most 1")
-    return float(share)
+    return as_positive(share, "tolerance", "a share", most=1.0)

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError, NotInvertibleError
-from hyst.online.parts import Parts
-from hyst.online.start import falling_map
+from hyst.online.joint.parts import Parts
+from hyst.online.joint.start import falling_map
 
 Array = NDArray[np.float64]
 

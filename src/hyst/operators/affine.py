@@ -9,9 +9,10 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.arrays import refuse_overflow
+from hyst.checks.numbers import as_number
 from hyst.errors import NotInvertibleError
 from hyst.operators.base import Operator
-from hyst.operators.checks import as_number, refuse_overflow
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst import _engine
+from hyst.checks.arrays import as_signal, as_state, refuse_sample
 from hyst.errors import InputError, NotInvertibleError
-from hyst.operators.checks import as_signal, as_state, refuse_sample
 from hyst.operators.engine_name import EngineName, as_engine, as_threads
 from hyst.operators.model_file import ModelDescription, write_model
 from hyst.operators.parameters import Parameters

@@ -9,9 +9,9 @@ from typing import Any, Literal, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import as_constants, refuse_overflow
 from hyst.errors import InputError, NotInvertibleError
 from hyst.operators.base import Operator
-from hyst.operators.checks import as_constants, refuse_overflow
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.registry import entries, register

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import operator
 from typing import Literal, SupportsIndex, TypeAlias, get_args
 
-import numpy as np
-
+from hyst.checks.numbers import whole_number
 from hyst.errors import InputError
 
 EngineName: TypeAlias = Literal["auto", "loop", "lanes", "memory-curve"]
@@ -51,10 +49,6 @@ def as_threads(count: SupportsIndex) -> int:
     Raises
     ------
     InputError
-        If it is not an integer from 1 to 1024.
+        If it is no whole number from 1 to 1024.
     """
-    if not isinstance(count, int | np.integer) or isinstance(count, bool):
-        raise InputError(f"threads is {count!r}; give an integer from 1 to 1024")
-    if not 1 <= (number := operator.index(count)) <= 1024:
-        raise InputError(f"threads is {count!r}; give an integer from 1 to 1024")
-    return number
+    return whole_number(count, "threads", 1, 1024)

@@ -11,15 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst import _engine
+from hyst.checks.arrays import as_constants, as_signal, as_state, one_record, refuse_sample
+from hyst.checks.thresholds import as_ascending_thresholds
 from hyst.errors import InputError
 from hyst.operators.base import Operator
-from hyst.operators.checks import (
-    as_ascending_thresholds,
-    as_constants,
-    as_signal,
-    as_state,
-    refuse_sample,
-)
 from hyst.operators.engine_name import EngineName, as_engine, as_threads
 
 Array = NDArray[np.float64]
@@ -88,9 +83,7 @@ def explain(
     >>> explain(model, [0.0, 1.0, 0.2])[0].engine
     'loop'
     """
-    signal = as_signal(u)
-    if signal.ndim != 1:
-        raise InputError(f"u has shape {signal.shape}; give one record, (N,)")
+    signal = one_record(u)
     chain = _engine.Chain(operator.stages())
     start = operator.initial_state() if state is None else state
     memory = as_state(start, chain.state_length, None)
@@ -141,15 +134,13 @@ def run_parameter_sets(
     array([[0.  , 1.45],
            [0.  , 1.6 ]])
     """
-    linear, signal = as_constants(p0, "p0"), as_signal(u)
+    linear, signal = as_constants(p0, "p0"), one_record(u)
     weights, thresholds = as_signal(p, "p"), as_signal(r, "r")
     if weights.ndim != 2 or weights.shape[0] != linear.size or weights.shape != thresholds.shape:
         raise InputError(
             f"p0 has shape {linear.shape}, p {weights.shape} and r {thresholds.shape}; "
             "give (sets,), (sets, n) and (sets, n)"
         )
-    if signal.ndim != 1:
-        raise InputError(f"u has shape {signal.shape}; give one record, (N,)")
     for s, row in enumerate(thresholds):
         as_ascending_thresholds(row, f"r[{s}]")
     y = np.empty((linear.size, signal.size))

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import json
 import math
-import numbers
 import os
 import re
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any, NoReturn
 
+from hyst.checks.numbers import as_number, as_sample_time, said, whole_number
 from hyst.errors import InputError
 from hyst.files import replacing
 
@@ -65,10 +65,8 @@ class ModelDescription:
         for field in fields(self):
             value = _checked(field.name, getattr(self, field.name), str(field.type))
             object.__setattr__(self, field.name, value)
-        if self.delay < 0:
-            raise InputError(f"delay is {self.delay}; give zero or more samples")
-        if self.dt is not None and self.dt <= 0.0:
-            raise InputError(f"dt is {self.dt}; give a sample time above 0, in seconds")
+        if self.dt is not None:
+            as_sample_time(self.dt)
         for signal in ("input", "output"):
             low, high = getattr(self, f"{signal}_low"), getattr(self, f"{signal}_high")
             if low is not None and high is not None and low > high:
@@ -212,17 +210,12 @@ def _checked(name: str, value: Any, wanted: str) -> Any:
         # A lone surrogate cannot be written as UTF-8.
         if isinstance(value, str) and not re.search("[\ud800-\udfff]", value):
             return value
-    elif value is None:
-        if wanted == "float | None":
-            return None
-    elif not isinstance(value, bool) and isinstance(value, numbers.Real):
-        number = float(value)
-        if math.isfinite(number) and (wanted != "int" or number.is_integer()):
-            return int(number) if wanted == "int" else number
-    raise InputError(f"{name} is {value!r}; give {_WANTED[wanted]}")
-
-
-_WANTED = {"str": "text", "int": "a whole number", "float | None": "a finite number"}
+        raise InputError(f"{name} is {said(value)}; give text")
+    if wanted == "int":
+        # JSON has one kind of number: 2.0 counts as 2 does.
+        is_whole = isinstance(value, float) and value.is_integer()
+        return whole_number(int(value) if is_whole else value, name, 0)
+    return None if value is None else as_number(value, name)
 
 
 def _lists_on_one_line(text: str) -> str:

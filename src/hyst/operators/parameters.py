@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.arrays import as_constants
 from hyst.errors import InputError
-from hyst.operators.checks import as_constants
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.numbers import as_number, as_threshold
 from hyst.operators.base import Operator
-from hyst.operators.checks import as_number, as_threshold
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import entries
 

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.arrays import finite_vector
+from hyst.checks.numbers import as_positive, whole_number
 from hyst.errors import InputError
 from hyst.signals.excitation_order import Persistence, persistence
-from hyst.signals.vector import finite_vector
 
 Array = NDArray[np.float64]
 
@@ -43,8 +44,7 @@ class Limits:
 
     def __post_init__(self) -> None:
         for name in ("max_rate", "max_acceleration"):
-            if not getattr(self, name) > 0.0:
-                raise InputError(f"{name} is {getattr(self, name)}; give a limit above 0")
+            as_positive(getattr(self, name), name, "a limit", infinite=True)
 
     def step(self, dt: float, largest: float) -> float:
         """Give the largest change from sample to sample.
@@ -192,35 +192,26 @@ def fitted(
     )
 
 
-def as_positive(value: float, name: str) -> float:
-    """Check that a value is a positive finite number; name is what messages call it.
-
-    Raises
-    ------
-    InputError
-        If it is something else.
-    """
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        number = math.nan
-    if not (math.isfinite(number) and number > 0.0):
-        raise InputError(f"{name} is {value!r}; give a finite number above 0")
-    return number
-
-
 def as_count(value: int, name: str, least: int = 1) -> int:
-    """Check that a value is a whole number, at least ``least``; name is what messages call it.
+    """Check a number of samples, or of what takes some; a drive may have so many.
+
+    Parameters
+    ----------
+    value
+        A whole number.
+    name
+        What messages call it.
+    least
+        The smallest that is allowed.
 
     Raises
     ------
     InputError
-        If it is something else, too small, or more than a drive may have samples.
+        If it is no whole number, is below ``least``, or more than a drive may have samples.
     """
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-        raise InputError(f"{name} is {value!r}; give a whole number, at least {least}")
-    require_length(value)
-    return int(value)
+    count = whole_number(value, name, least)
+    require_length(count)
+    return count
 
 
 def require_length(samples: float) -> None:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hyst.checks.arrays import finite_vector
 from hyst.errors import InputError
 from hyst.signals.lagged import lagged_factor, lagged_gram
-from hyst.signals.vector import finite_vector
 
 # Up to this condition the normal equations still tell it, above only a QR factor does.
 _TOLD_BY_GRAM = 1e6

@@ -7,10 +7,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import finite_vector, same_length
+from hyst.checks.numbers import whole_number
 from hyst.errors import InputError
 from hyst.signals.noise import suggest_dead_band
 from hyst.signals.turning_points import reversals
-from hyst.signals.vector import finite_vector, same_length
 
 Branch = tuple[NDArray[np.float64], NDArray[np.float64]]
 
@@ -111,8 +112,7 @@ def loop_area(u: ArrayLike, y: ArrayLike, cycles: int = 1) -> float:
     """
     inputs, outputs = finite_vector(u, "u"), finite_vector(y, "y")
     same_length(inputs, outputs, "u and y")
-    if cycles < 1:
-        raise InputError(f"cycles is {cycles}; give the whole number of cycles in the record")
+    whole_number(cycles, "cycles", 1, more=": the cycles in the record")
     # The area does not depend on the origin, but the rounding error does.
     inputs, outputs = inputs - np.mean(inputs), outputs - np.mean(outputs)
     twice = np.dot(inputs, np.roll(outputs, -1)) - np.dot(np.roll(inputs, -1), outputs)

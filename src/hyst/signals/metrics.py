@@ -8,8 +8,9 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import finite_vector, same_length
+from hyst.checks.numbers import as_positive
 from hyst.errors import InputError
-from hyst.signals.vector import finite_vector, same_length
 
 
 @dataclass(frozen=True)
@@ -100,9 +101,8 @@ def error_metrics(
         raise InputError(
             f"y is {measured[0]} throughout; errors in percent need an output that moves"
         )
-    reference = float(np.ptp(measured)) if output_range is None else float(output_range)
-    if not (math.isfinite(reference) and reference > 0.0):
-        raise InputError(f"output_range is {output_range}; give a finite number above 0")
+    given = float(np.ptp(measured)) if output_range is None else output_range
+    reference = as_positive(given, "output_range")
     error = modelled - measured
     bias = float(np.mean(error))
     if free_offset:

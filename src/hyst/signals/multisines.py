@@ -7,8 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.numbers import as_positive, as_sample_time
 from hyst.errors import InputError
-from hyst.signals.drive import Drive, Limits, as_count, as_positive, fitted, require_length
+from hyst.signals.drive import Drive, Limits, as_count, fitted, require_length
 
 Array = NDArray[np.float64]
 
@@ -85,7 +86,7 @@ def multisine(
     >>> len(drive), round(drive.rms, 9), drive.period
     (2000, 30.0, 1000)
     """
-    time, count = as_positive(dt, "dt"), as_count(samples, "samples", 4)
+    time, count = as_sample_time(dt), as_count(samples, "samples", 4)
     require_length(count * as_count(periods, "periods"))
     rng = np.random.default_rng(seed)
     chosen = _lines(time, count, band, lines, rng)

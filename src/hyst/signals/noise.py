@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hyst.signals.vector import finite_vector
+from hyst.checks.arrays import finite_vector
 
 # Median of |x| for x normal with unit variance.
 _NORMAL_MEDIAN = 0.6744897501960817

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.arrays import finite_vector, same_length
+from hyst.checks.numbers import as_sample_time
 from hyst.errors import InputError
-from hyst.signals.vector import finite_vector, same_length
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +66,7 @@ class Record:
         same_length(u, y, f"input {self.input_name!r} and output {self.output_name!r}")
         object.__setattr__(self, "u", u)
         object.__setattr__(self, "y", y)
-        object.__setattr__(self, "dt", _positive_seconds(self.dt))
+        object.__setattr__(self, "dt", as_sample_time(self.dt))
         object.__setattr__(self, "notes", tuple(self.notes))
 
     def __eq__(self, other: object) -> bool:
@@ -133,13 +133,3 @@ class Record:
 
     def _labels(self) -> tuple[float | str, ...]:
         return (self.dt, self.input_name, self.output_name, self.input_unit, self.output_unit)
-
-
-def _positive_seconds(dt: float) -> float:
-    try:
-        seconds = float(dt)
-    except (TypeError, ValueError, OverflowError):
-        seconds = math.nan
-    if not (math.isfinite(seconds) and seconds > 0.0):
-        raise InputError(f"dt is {dt!r}; give the time between samples in seconds, above 0")
-    return seconds

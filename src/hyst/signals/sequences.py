@@ -7,8 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.numbers import as_positive, as_sample_time, whole_number
 from hyst.errors import InputError
-from hyst.signals.drive import Drive, Limits, as_count, as_positive, require_length
+from hyst.signals.drive import Drive, Limits, as_count, require_length
 from hyst.signals.waypoints import path
 
 Array = NDArray[np.float64]
@@ -66,9 +67,8 @@ def triangle(
     >>> triangle(0.5, 1.0, 2.000001, cycles=1).u.tolist()
     [0.0, 1.0, 0.0, -1.0, 0.0]
     """
-    time, half = as_positive(dt, "dt"), as_positive(amplitude, "amplitude")
-    if not 0.0 < decay <= 1.0:
-        raise InputError(f"decay is {decay}; give a factor above 0 and up to 1")
+    time, half = as_sample_time(dt), as_positive(amplitude, "amplitude")
+    as_positive(decay, "decay", "a factor", most=1.0)
     peaks = half * decay ** np.arange(as_count(cycles, "cycles"))
     points = np.concatenate([[0.0], np.column_stack([peaks, -peaks]).ravel(), [0.0]]) + offset
     limits = Limits(as_positive(rate, "rate"), max_acceleration)
@@ -156,7 +156,7 @@ def forc(
     >>> forc(1.0, 0.0, 2.0, 1.0000001, curves=2).u.tolist()
     [0.0, 1.0, 2.0, 1.0, 2.0, 1.0, 0.0, 1.0, 2.0]
     """
-    time = as_positive(dt, "dt")
+    time = as_sample_time(dt)
     if not low < high:
         raise InputError(f"low is {low} and high is {high}; give low below high")
     reversals = np.linspace(high, low, as_count(curves, "curves") + 1)[1:]
@@ -207,7 +207,7 @@ def staircase(
     >>> staircase(1.0, 0.0, 1.0, 1.0000001, steps=1, hold=2.0).u.tolist()
     [0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]
     """
-    time = as_positive(dt, "dt")
+    time = as_sample_time(dt)
     if not low < high:
         raise InputError(f"low is {low} and high is {high}; give low below high")
     up = np.linspace(low, high, as_count(steps, "steps") + 1)
@@ -268,12 +268,9 @@ def prbs(
     >>> drive.period, float(drive.u.sum())
     (15, 2.0)
     """
-    time, half = as_positive(dt, "dt"), as_positive(amplitude, "amplitude")
-    if register not in _TAPS:
-        raise InputError(f"register is {register!r}; give 2 to 20")
-    if not 1 <= seed < 2**register:
-        raise InputError(f"seed is {seed}; give 1 to {2**register - 1}")
-    bits = _maximal_sequence(register, seed)
+    time, half = as_sample_time(dt), as_positive(amplitude, "amplitude")
+    length = whole_number(register, "register", min(_TAPS), max(_TAPS))
+    bits = _maximal_sequence(length, whole_number(seed, "seed", 1, 2**length - 1))
     samples = as_count(clock, "clock")
     require_length(bits.size * samples * as_count(periods, "periods"))
     low, high = float(offset) - half, float(offset) + half

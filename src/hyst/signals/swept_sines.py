@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
+from hyst.checks.numbers import as_positive, as_sample_time
 from hyst.errors import InputError
-from hyst.signals.drive import Drive, Limits, as_count, as_positive, fitted, require_length
+from hyst.signals.drive import Drive, Limits, as_count, fitted, require_length
 
 
 def swept_sine(
@@ -59,7 +60,7 @@ def swept_sine(
     >>> swept_sine(1e-3, 2000, (1.0, 50.0), 5.0).period
     2000
     """
-    time, count = as_positive(dt, "dt"), as_count(samples, "samples", 4)
+    time, count = as_sample_time(dt), as_count(samples, "samples", 4)
     require_length(count * as_count(periods, "periods"))
     first, last = as_positive(band[0], "band[0]"), as_positive(band[1], "band[1]")
     if max(first, last) >= 0.5 / time:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst.errors import InputError
-from hyst.signals.vector import finite_vector
+from hyst.checks.arrays import finite_vector
+from hyst.checks.numbers import as_not_negative
 
 
 def reversals(u: ArrayLike, dead_band: float = 0.0) -> NDArray[np.intp]:
@@ -57,8 +55,7 @@ def reversals(u: ArrayLike, dead_band: float = 0.0) -> NDArray[np.intp]:
     array([3, 4])
     """
     signal = finite_vector(u, "u")
-    if not math.isfinite(dead_band) or dead_band < 0.0:
-        raise InputError(f"dead_band is {dead_band}; give a finite number of at least 0")
+    dead_band = as_not_negative(dead_band, "dead_band")
     turning = _turning_points(signal)
     if dead_band == 0.0:
         return turning

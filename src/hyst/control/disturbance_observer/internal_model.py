@@ -9,6 +9,8 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import finite_array
+from hyst.checks.numbers import as_positive, whole_number
 from hyst.errors import InputError
 
 Array = NDArray[np.float64]
@@ -48,8 +50,8 @@ class InternalModel:
     C_d: Array
 
     def __post_init__(self) -> None:
-        A_d = np.atleast_2d(np.array(self.A_d, dtype=np.float64))
-        C_d = np.atleast_2d(np.array(self.C_d, dtype=np.float64))
+        A_d = np.atleast_2d(finite_array(self.A_d, "A_d"))
+        C_d = np.atleast_2d(finite_array(self.C_d, "C_d"))
         if A_d.ndim != 2 or A_d.shape[0] != A_d.shape[1] or A_d.size == 0:
             raise InputError(f"A_d has shape {A_d.shape}; give a square matrix")
         if C_d.shape != (1, A_d.shape[0]):
@@ -58,8 +60,6 @@ class InternalModel:
                 f"it needs (1, {A_d.shape[0]})"
             )
         for name, matrix in (("A_d", A_d), ("C_d", C_d)):
-            if not np.isfinite(matrix).all():
-                raise InputError(f"{name} holds a number that is not finite")
             matrix.setflags(write=False)
             object.__setattr__(self, name, matrix)
 
@@ -92,11 +92,10 @@ class InternalModel:
         InputError
             If the degree is negative.
         """
-        if degree < 0:
-            raise InputError(f"a polynomial of degree {degree} does not exist; give at least 0")
-        C_d = np.zeros((1, degree + 1))
+        order = whole_number(degree, "the degree", 0) + 1
+        C_d = np.zeros((1, order))
         C_d[0, 0] = 1.0
-        return cls(np.eye(degree + 1, k=1), C_d)
+        return cls(np.eye(order, k=1), C_d)
 
     @classmethod
     def sinusoid(cls, frequency: float) -> InternalModel:
@@ -112,8 +111,7 @@ class InternalModel:
         InputError
             If the frequency is not positive.
         """
-        if not frequency > 0.0:
-            raise InputError(f"the frequency is {frequency:g} rad/s; give a positive number")
+        as_positive(frequency, "the frequency", "a finite number of rad/s")
         return cls(np.array([[0.0, frequency], [-frequency, 0.0]]), np.array([[1.0, 0.0]]))
 
     def __add__(self, other: InternalModel) -> InternalModel:

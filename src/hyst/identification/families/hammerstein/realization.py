@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import finite_vector
 from hyst.errors import InputError
 from hyst.models import LinearDynamics
-from hyst.signals.vector import finite_vector
 
 Array = NDArray[np.float64]
 

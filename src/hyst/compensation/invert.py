@@ -1,0 +1,181 @@
+"""Choose a method of inversion by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hyst.checks.numbers import as_positive, whole_number
+from hyst.compensation.exact import invert_exactly
+from hyst.compensation.noncausal import invert_noncausally
+from hyst.compensation.rate_dependent.explicit import drive_explicitly
+from hyst.compensation.rate_dependent.limits_kept import judge_rate_limit
+from hyst.compensation.rate_dependent.preview import drive_with_preview
+from hyst.compensation.rate_dependent.sample_exact import drive_sample_by_sample
+from hyst.compensation.rate_dependent.solved_drive import ITERATION_LIMIT, SolvedDrive
+from hyst.compensation.rate_dependent.task import RateDependentTask, prepare_task
+from hyst.compensation.rate_dependent.whole_trajectory import drive_along_trajectory
+from hyst.compensation.result import Compensation
+from hyst.errors import InputError, SolverError
+from hyst.operators import Operator
+
+METHODS = ("exact", "noncausal", "explicit", "sample-exact", "preview", "trajectory")
+
+
+def invert_trajectory(
+    model: Operator,
+    y_ref: ArrayLike,
+    method: str = "exact",
+    *,
+    input_range: tuple[float, float] | None = None,
+    outside: Literal["refuse", "clip"] = "refuse",
+    history: ArrayLike | None = None,
+    rate_limit: float | None = None,
+    preview: int = 20,
+    max_iterations: int = 1000,
+    allow_unconverged: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> Compensation:
+    """Find the input that makes a model follow a wanted output.
+
+    ``exact``: ``u = model.inverse()(y_ref)``, with the memory of both starting in the same state.
+    The other methods are for rate-dependent plays, with maps before and after them or without:
+
+    ``explicit``: the explicit inverse of S4 eqs. 12-16, causal and smooth. It takes the rate of the
+    reference for that of the drive and leaves an error.
+    ``sample-exact``: every sample solved exactly, causal; the drive may chatter.
+    ``preview``: causal but for the next ``preview`` samples of the reference, planned anew at every
+    sample, here for a whole record at once.
+    ``trajectory``: the whole reference known; the simulated error is minimised.
+
+    The predicted error is always that of the model driven by the command, thresholds from the
+    command's own rate.
+
+    ``noncausal``: for linear dynamics behind (or before) a hysteresis; looks ahead through the
+    dynamics, then inverts the hysteresis exactly.
+
+    Parameters
+    ----------
+    model
+        An operator; for ``exact`` one with an exact inverse.
+    y_ref
+        Wanted output, shape (N,), finite, output units.
+    method
+        One of ``METHODS``.
+    input_range
+        Lowest and highest input allowed, input units; no limits if left out.
+    outside
+        What to do about a reference that would take the input out of its range: ``"refuse"``, or
+        ``"clip"``: hold the input at the end of the range. ``exact`` then lets the memory of the
+        inverse follow the output really reached, so that tracking is exact again as soon as the
+        reference is back in reach; ``sample-exact``, ``preview`` and ``trajectory`` do so anyway.
+    history
+        Inputs the actuator has passed just before the first sample, shape (M,), input units; they
+        set its memory. Left out, the model starts from its own initial state.
+    rate_limit
+        Largest rate of the input, input units per second, for ``preview`` and ``trajectory``. One
+        that is out of reach is refused; with ``outside="clip"`` a note says so, and ``trajectory``
+        gives nothing worse than a drive at rest, which ``preview`` cannot know beforehand.
+    preview
+        Samples of the reference known beyond the present one, >= 1, for ``preview``.
+    max_iterations
+        Of each stage of ``trajectory``.
+    allow_unconverged
+        Give the best command with its status instead of raising if ``trajectory`` did not converge.
+    progress
+        Called with the share done, 0 to 1.
+
+    Returns
+    -------
+    Compensation
+        The command ``u``, ``y_predicted``, ``predicted_error`` and what follows from it.
+
+    Raises
+    ------
+    InputError
+        If a signal is empty or not finite (the first bad index is named), the method, ``outside``
+        or another option is not one there is, the range is not two finite ascending numbers, the
+        method is not for this model, or, with ``"refuse"``, the reference is out of reach or takes
+        the input of ``explicit`` or ``sample-exact`` out of its range, or the limit of the rate is
+        far below what the reference needs.
+    NotInvertibleError
+        If the model has no exact inverse and the method needs one, or p0 is not positive.
+    SolverError
+        If the trajectory inversion did not converge and ``allow_unconverged`` is false.
+
+    Examples
+    --------
+    >>> from hyst.models import PrandtlIshlinskii
+    >>> model = PrandtlIshlinskii(p=[0.5], r=[1.0], p0=1.0)
+    >>> done = invert_trajectory(model, [0.0, 4.0, 9.0, 5.5], input_range=(0, 5), outside="clip")
+    >>> done.u
+    array([0. , 3. , 5. , 3.5])
+    >>> done.predicted_error
+    array([ 0.,  0., -2.,  0.])
+    """
+    if method not in METHODS:
+        known = ", ".join(METHODS)
+        raise InputError(f"unknown method {method!r}; the methods there are: {known}")
+    if outside not in ("refuse", "clip"):
+        raise InputError(f"outside is {outside!r}; choose 'refuse' or 'clip'")
+    clip = outside == "clip"
+    change_limited = rate_limit is not None
+    if change_limited and method not in ("preview", "trajectory"):
+        raise InputError(f"method {method!r} knows no rate limit; use 'preview' or 'trajectory'")
+    if method == "exact":
+        return invert_exactly(model, y_ref, input_range, clip, history)
+    if method == "noncausal":
+        return invert_noncausally(model, y_ref, input_range, clip, history)
+    task = prepare_task(model, y_ref, input_range, clip, history)
+    say = progress or _silent
+    if method == "explicit":
+        found = drive_explicitly(task)
+    elif method == "sample-exact":
+        found = drive_sample_by_sample(task)
+    elif method == "preview":
+        change = _change(task, rate_limit)
+        found = drive_with_preview(task, whole_number(preview, "preview", 1), change, say)
+        found = judge_rate_limit(task, found, change, False)
+    else:
+        limit = whole_number(max_iterations, "max_iterations", 1)
+        change = _change(task, rate_limit)
+        found = drive_along_trajectory(task, change, limit, say)
+        found = judge_rate_limit(task, found, change, True)
+    done = _compensation(task, found, method)
+    if found.status == ITERATION_LIMIT and not allow_unconverged:
+        raise SolverError(
+            f"the trajectory inversion did not converge in {max_iterations} iterations a stage; "
+            f"its best command leaves an error of {done.max_abs:.4g} (rms {done.rms:.4g}); raise "
+            "max_iterations, or accept it with allow_unconverged"
+        )
+    return done
+
+
+def _silent(_: float) -> None:
+    """Report progress to nobody."""
+
+
+def _compensation(task: RateDependentTask, found: SolvedDrive, method: str) -> Compensation:
+    """Drive the whole model with the command and see what it does."""
+    u = task.input_of(found.drive)
+    y_predicted, _ = task.model.run(u, task.start)
+    at_end = int(np.count_nonzero((found.drive <= task.low) | (found.drive >= task.high)))
+    return Compensation(
+        u, task.y_ref, y_predicted, method, at_end, found.status, found.iterations, found.notes
+    )
+
+
+def _change(task: RateDependentTask, rate_limit: float | None) -> float:
+    """Largest change of the drive per sample."""
+    if rate_limit is None:
+        return float("inf")
+    rate = as_positive(rate_limit, "rate_limit", "a rate in input units per second")
+    if task.before is not None:
+        raise InputError(
+            "the model has a map before its plays, so the rate of its input is not that of the "
+            "drive; leave out rate_limit"
+        )
+    return rate * task.plays.dt

@@ -1,0 +1,213 @@
+"""What is exported: signals, memory, and the C that takes one sample."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, final
+
+from hyst import _single
+from hyst.control.tracking_controller import KIND, TrackingController
+from hyst.errors import InputError
+from hyst.export.c.numbers import Precision
+from hyst.export.core_stage import CoreStage, core_stages
+from hyst.export.stage_code import StageCode
+from hyst.models.stable_inverse import StableInverse
+from hyst.online import JointEstimator
+from hyst.operators import Affine, Operator
+from hyst.operators.registry import compose
+
+Model = Operator | TrackingController | StableInverse | JointEstimator
+
+
+@final
+@dataclass(frozen=True)
+class Block:
+    """Something that gives one number for every sample.
+
+    Parameters
+    ----------
+    kind
+        Of the model, for people.
+    inputs
+        Names of the signals it takes, as C has them.
+    output
+        Name of the signal it gives.
+    head
+        C declarations of constants for the head of the file.
+    body
+        C statements that take the inputs and leave the output in ``signal``.
+    signal
+        The variable they leave it in.
+    headers
+        Of the core, that they need.
+    start
+        Memory before the first sample.
+    dt
+        Sample time, seconds; None if any will do.
+    model
+        Plain data that say all there is to know of the model.
+    stages
+        What the statements take a sample through.
+    chain
+        What a signal passes, for the choice of a test signal.
+    stepper
+        Makes a function that gives the same numbers in Python, in double.
+    single_stepper
+        The same in single, for what is no chain of stages.
+    is_estimator
+        Whether it takes in samples and gives commands instead of one output a sample.
+    more
+        What else the templates of an estimator need.
+    """
+
+    kind: str
+    inputs: tuple[str, ...]
+    output: str
+    head: str
+    body: str
+    signal: str
+    headers: tuple[str, ...]
+    start: tuple[float, ...]
+    dt: float | None
+    model: dict[str, Any]
+    stages: tuple[CoreStage, ...]
+    chain: Operator
+    stepper: Callable[[], Callable[..., float]]
+    single_stepper: Callable[[], Callable[..., float]] | None = None
+    is_estimator: bool = False
+    more: Mapping[str, str] = field(default_factory=dict)
+
+    def sha256(self) -> str:
+        """Give the hash of the model."""
+        text = json.dumps(self.model, sort_keys=True, separators=(",", ":"), allow_nan=False)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def identity(self, precision: Precision) -> int:
+        """Give the number above 0 that marks the states of this model in a ``precision``."""
+        digest = hashlib.sha256(f"hyst state 1 {precision} {self.sha256()}".encode()).digest()
+        return int.from_bytes(digest[:4], "big") or 1
+
+
+def stepper_of(block: Block, precision: Precision) -> Callable[..., float]:
+    """Give what takes one sample at a time with the numbers of a target.
+
+    Parameters
+    ----------
+    block
+        What is exported.
+    precision
+        Of the target.
+
+    Returns
+    -------
+    callable
+        From the inputs to the output, guarded, from the initial state.
+    """
+    if precision == "double":
+        return block.stepper()
+    if block.single_stepper is not None:
+        return block.single_stepper()
+    stages = [
+        (stage.kind, stage.form, dict(stage.numbers), dict(stage.tables), dict(stage.choices))
+        for stage in block.stages
+    ]
+    return _single.Stepper(stages, block.start)
+
+
+def block_of(model: Model, precision: Precision) -> Block:
+    """Give what is exported of a model.
+
+    Parameters
+    ----------
+    model
+        Any operator, or a tracking controller; a stable inverse is refused with the reason.
+    precision
+        Of the target.
+
+    Returns
+    -------
+    Block
+
+    Raises
+    ------
+    InputError
+        If it is something else, or a constant cannot be written in that precision.
+    """
+    if isinstance(model, TrackingController):
+        return _controller(model, precision)
+    if isinstance(model, StableInverse):
+        raise InputError(
+            f"a stable inverse looks {model.preview} samples ahead, which a target cannot; compute "
+            "the command beforehand with hyst compensate --method noncausal"
+        )
+    if not isinstance(model, Operator):
+        raise InputError(
+            f"{type(model).__name__} cannot be exported; give an operator, a tracking controller "
+            "or a joint estimator"
+        )
+    code = StageCode(core_stages(model), precision)
+    return Block(
+        kind=model.kind,
+        inputs=("u",),
+        output="y",
+        head=code.declarations(),
+        body=code.calls(),
+        signal="u",
+        headers=code.headers(),
+        start=tuple(model.initial_state().tolist()),
+        dt=model.dt,
+        model=model.to_dict(),
+        stages=code.stages,
+        chain=model,
+        stepper=model.stepper,
+    )
+
+
+def _controller(model: TrackingController, precision: Precision) -> Block:
+    inverse = () if model.inverse is None else core_stages(model.inverse)
+    code = StageCode((_linear_part(model), *inverse), precision)
+    # What the test signal passes: the gain from y_ref to v, then the inverse.
+    gain = Affine(abs(float(model.D[0])) or 1.0)
+    return Block(
+        kind=KIND,
+        inputs=("y_ref", "y"),
+        output="u",
+        head=code.declarations(),
+        body="hyst_real v = (y_ref - y_ref) + (y - y); /* 0, or NaN if one is not finite */\n"
+        + code.calls("v"),
+        signal="v",
+        headers=code.headers(),
+        start=tuple(model.initial_state().tolist()),
+        dt=model.dt,
+        model=model.to_dict(),
+        stages=code.stages,
+        chain=gain if model.inverse is None else compose((gain, model.inverse)),
+        stepper=model.stepper,
+    )
+
+
+def _linear_part(model: TrackingController) -> CoreStage:
+    tables = {
+        "a": tuple(model.A.T.ravel().tolist()),
+        "b": tuple(model.B.T.ravel().tolist()),
+        "c": tuple(model.C.tolist()),
+    }
+    numbers = {"d_y_ref": float(model.D[0]), "d_y": float(model.D[1])}
+    return CoreStage(
+        kind="tracking_controller",
+        numbers=numbers,
+        tables=tables,
+        choices={},
+        form="",
+        state_length=model.order,
+        offers=dict.fromkeys((*numbers, *tables), (0, "")),
+        feeds_through=True,
+        header="hyst/tracking_controller.h",
+        # Without an inverse: its stages are called one by one, after the linear part.
+        structure="hyst_tracking_controller $model = "
+        "{#c, $a, $b, $c, {$d_y_ref, $d_y}, {0u, NULL}};",
+        call="$signal = hyst_tracking_controller_linear(&$model, $memory, y_ref, y);",
+    )

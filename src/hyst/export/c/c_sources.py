@@ -1,0 +1,174 @@
+"""The C of an exported block: header, source and self-test."""
+
+from __future__ import annotations
+
+from hyst import __version__
+from hyst.export.c.block import Block
+from hyst.export.c.drive import PERIOD, SAMPLES
+from hyst.export.c.names import plain_text
+from hyst.export.c.numbers import Precision, literal, table
+from hyst.export.c.readme import signals
+from hyst.export.c.selftest import BAD, SEEDS, SelfTest
+from hyst.export.c.templating import filled, indented
+from hyst.operators.model_file import ModelDescription
+
+WORD_BYTES = {"double": 8, "single": 4}
+
+
+def places(
+    block: Block, name: str, precision: Precision, about: ModelDescription
+) -> dict[str, str]:
+    """Give what the templates of a block have in common.
+
+    Parameters
+    ----------
+    block
+        What is exported.
+    name
+        The prefix, checked.
+    precision
+        Of the target.
+    about
+        What the numbers mean.
+
+    Returns
+    -------
+    dict
+    """
+    length = max(len(block.start), 1)
+    single = precision == "single"
+    return {
+        "name": name,
+        "NAME": name.upper(),
+        "version": plain_text(__version__),
+        "title": f"{plain_text(block.kind)} as C, {precision} precision",
+        "precision": precision,
+        "state_length": str(len(block.start)),
+        "memory_length": str(length),
+        "saved_bytes": str(12 + WORD_BYTES[precision] * (length + 1)),
+        "word": "uint32_t" if single else "uint64_t",
+        "word_bytes": str(WORD_BYTES[precision]),
+        "zero": "HYST_REAL(0.0)",
+        "identity": f"0x{block.identity(precision):08x}",
+        "wrong_precision": "ifndef" if single else "ifdef",
+        "how_to_compile": "compile every file with -DHYST_SINGLE"
+        if single
+        else "compile without HYST_SINGLE",
+        "define": "-DHYST_SINGLE " if single else "",
+        "output": block.output,
+        "first": block.inputs[0],
+        "arguments": ", ".join(f"hyst_real {each}" for each in block.inputs),
+        "records": ", ".join(f"const hyst_real *{each}" for each in block.inputs),
+        "elements": ", ".join(f"{each}[k]" for each in block.inputs),
+        "samples": str(SAMPLES),
+        "signals": _signals(block, about),
+        "sample_time": _sample_time(block, name),
+        # What a refused sample leaves in an estimator's scratch area is of no use.
+        "saved_number": "hyst_is_finite(state->memory[i]) ? state->memory[i] : HYST_REAL(0.0)"
+        if block.is_estimator
+        else "state->memory[i]",
+        **block.more,
+    }
+
+
+def header(block: Block, places: dict[str, str]) -> str:
+    """Give the header file of a ``block``, filled with ``places``."""
+    return filled(f"{_template(block)}.h", places)
+
+
+def source(block: Block, places: dict[str, str], precision: Precision) -> str:
+    """Give the source file of a ``block`` in a ``precision``, filled with ``places``."""
+    uses_memory = "memory" in block.body
+    more = {
+        "includes": "".join(
+            f'#include "{each}"\n' for each in sorted({"hyst/finite.h", *block.headers})
+        ),
+        "declarations": _start_table(block, precision) + block.head,
+        "start": indented(_start(block)),
+        "memory": "    hyst_real *const memory = state->memory;\n" if uses_memory else "",
+        "calls": indented(block.body),
+        "signal": block.signal,
+    }
+    return filled(f"{_template(block)}.c", places | more) + filled("state.c", places)
+
+
+def selftest_source(block: Block, places: dict[str, str]) -> str:
+    """Give the self-test of a ``block``, filled with ``places``."""
+    shared = places | {"drive": filled("drive.c", {})}
+    if block.is_estimator:
+        bad = {"bad_u": str(BAD[0]), "bad_y": str(BAD[1])}
+        return filled("estimator_selftest.c", shared | bad)
+    drives = [f"drive_{each}" for each in block.inputs]
+    lines = [
+        f"static drive {each} = {{{seed}u, DRIVE_LOW, DRIVE_LOW, 1}};"
+        for each, seed in zip(drives, SEEDS, strict=False)
+    ]
+    drawn = [
+        f"const hyst_real {name} = next_sample(&{each}, k, {bad}u);"
+        for name, each, bad in zip(block.inputs, drives, BAD, strict=False)
+    ]
+    more = {
+        "ones": ", ".join("1" for _ in block.inputs),
+        "drives": indented("\n".join(lines)) + "\n",
+        "samples_drawn": indented("\n".join(drawn), 8) + "\n",
+        "arguments": ", ".join(block.inputs),
+    }
+    return filled("selftest.c", shared | more)
+
+
+def vectors(test: SelfTest, places: dict[str, str], precision: Precision) -> str:
+    """Give the header with what a ``test`` expects in a ``precision``, filled with ``places``."""
+    drive = test.drive
+    more = {
+        "low": f"({drive.low})",
+        "count": str(drive.count),
+        "stride": str(drive.stride),
+        "period": str(PERIOD),
+        "unit": literal(drive.unit, precision, "unit"),
+        "measured": _measured(test, precision),
+        "expected": table(test.expected.tolist(), precision, "expected"),
+    }
+    return filled("selftest_vectors.h", places | more)
+
+
+def _template(block: Block) -> str:
+    return "estimator" if block.is_estimator else "block"
+
+
+def _measured(test: SelfTest, precision: Precision) -> str:
+    if test.measured is None:
+        return ""
+    values = table(test.measured.tolist(), precision, "measured")
+    return f"static const hyst_real measured[SAMPLES] = {values};\n"
+
+
+def _signals(block: Block, about: ModelDescription) -> str:
+    lines = [""]
+    for role, (name, unit) in signals(block, about).items():
+        said = f" in {plain_text(unit)}" if unit else ""
+        lines.append(f" *   {role}: {plain_text(name)}{said}")
+    return "\n".join(lines) + "\n" if len(lines) > 1 else "\n"
+
+
+def _sample_time(block: Block, name: str) -> str:
+    if block.dt is None:
+        return ""
+    return (
+        f"#define {name.upper()}_DT HYST_REAL({float(block.dt)!r}) "
+        "/* seconds between samples; the model holds for no other */\n"
+    )
+
+
+def _start_table(block: Block, precision: Precision) -> str:
+    if not any(block.start):
+        return ""
+    values = table(block.start, precision, "start")
+    return f"static const hyst_real start_memory[{len(block.start)}] = {values};\n"
+
+
+def _start(block: Block) -> str:
+    if not block.start:
+        return "state->memory[0] = HYST_REAL(0.0);"
+    value = "start_memory[i]" if any(block.start) else "HYST_REAL(0.0)"
+    count = len(block.start)
+    return f"size_t i;\nfor (i = 0; i < {count}u; ++i) {{\n    state->memory[i] = {value};\n}}"

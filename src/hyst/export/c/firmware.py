@@ -1,0 +1,192 @@
+"""Export as a C project: sources, self-test, build, description."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, final
+
+from hyst import __version__
+from hyst.export.c.block import Block, Model, block_of
+from hyst.export.c.c_sources import WORD_BYTES, header, places, selftest_source, source, vectors
+from hyst.export.c.core_sources import core_files
+from hyst.export.c.drive import SAMPLES
+from hyst.export.c.estimator import estimator_block
+from hyst.export.c.names import as_c_name
+from hyst.export.c.numbers import Precision, as_precision
+from hyst.export.c.readme import readme
+from hyst.export.c.selftest import SelfTest
+from hyst.export.c.templating import filled
+from hyst.export.folder import FORMAT, MANIFEST, write_export
+from hyst.online import JointEstimator
+from hyst.operators import ModelDescription
+
+
+@final
+@dataclass(frozen=True)
+class CProject:
+    """A C project that has been written.
+
+    Parameters
+    ----------
+    path
+        The folder, or the zip.
+    files
+        What it holds, "/" between folders, sorted.
+    name
+        Prefix of everything it defines.
+    precision
+        "double" or "single".
+    state_length
+        Numbers of memory.
+    state_bytes
+        Of the state structure.
+    saved_bytes
+        Of a saved state.
+    away_from_double
+        Largest difference of the self-test's outputs from those in double: 0 in double.
+    """
+
+    path: Path
+    files: tuple[str, ...]
+    name: str
+    precision: str
+    state_length: int
+    state_bytes: int
+    saved_bytes: int
+    away_from_double: float
+
+
+def c_project(
+    model: Model,
+    folder: str | os.PathLike[str],
+    precision: str = "double",
+    name: str = "stage",
+    force: bool = False,
+    *,
+    description: ModelDescription | None = None,
+) -> CProject:
+    """Write a model as C99 for firmware, with the core's sources it needs and a self-test.
+
+    Parameters
+    ----------
+    model
+        Any operator; a tracking controller, whose step takes y_ref and y; or a joint estimator,
+        which takes in samples and gives commands, from the estimate and the memory it has now.
+    folder
+        What to create: a folder, or a zip if it ends in ``.zip``.
+    precision
+        "double", for the same bits as in Python, or "single".
+    name
+        Prefix of files, functions and types, a C identifier.
+    force
+        Whether an earlier export of that path is replaced, as a whole.
+    description
+        Names, units and ranges of input and output, for comments and the self-test's range.
+
+    Returns
+    -------
+    CProject
+
+    Raises
+    ------
+    InputError
+        If the model, the name or the precision cannot be used, or the path exists.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from hyst import PrandtlIshlinskii
+    >>> model = PrandtlIshlinskii(p=[0.5, 0.2], r=[0.1, 0.3], p0=1.0)
+    >>> with tempfile.TemporaryDirectory() as parent:
+    ...     project = c_project(model.inverse(), f"{parent}/inverse", name="inverse")
+    >>> [file for file in project.files if file.endswith(".c")]
+    ['core/src/prandtl_ishlinskii.c', 'inverse.c', 'selftest.c']
+    """
+    as_c_name(name)
+    exact = as_precision(precision)
+    about = description or ModelDescription()
+    if isinstance(model, JointEstimator):
+        block = estimator_block(model, exact)
+    else:
+        block = block_of(model, exact)
+    test = SelfTest.of(block, exact, about)
+    files = project_files(block, test, name, exact, about)
+    length = max(len(block.start), 1)
+    path = write_export(folder, files, name, force=force)
+    return CProject(
+        path=path,
+        files=tuple(sorted(files)),
+        name=name,
+        precision=exact,
+        state_length=len(block.start),
+        state_bytes=WORD_BYTES[exact] * (length + 1) + 8,
+        saved_bytes=WORD_BYTES[exact] * (length + 1) + 12,
+        away_from_double=test.away_from_double,
+    )
+
+
+def project_files(
+    block: Block, test: SelfTest, name: str, precision: Precision, about: ModelDescription
+) -> dict[str, bytes]:
+    """Give the files of a project.
+
+    Parameters
+    ----------
+    block
+        What is exported.
+    test
+        Its self-test.
+    name
+        The prefix, checked.
+    precision
+        Of the target.
+    about
+        What the numbers mean.
+
+    Returns
+    -------
+    dict
+        Content by path.
+    """
+    common = places(block, name, precision, about)
+    head, main = header(block, common), source(block, common, precision)
+    core = {f"core/{path}": text for path, text in core_files(main + head).items()}
+    sources = [f"{name}.c", *(path for path in core if path.endswith(".c"))]
+    cmake = {
+        "sources": "\n".join(f"  {each}" for each in sources),
+        "definitions": f"target_compile_definitions({name} PUBLIC HYST_SINGLE)\n"
+        if precision == "single"
+        else "",
+    }
+    texts = {
+        f"{name}.h": head,
+        f"{name}.c": main,
+        "selftest.c": selftest_source(block, common),
+        "selftest_vectors.h": vectors(test, common, precision),
+        "CMakeLists.txt": filled("CMakeLists.txt", common | cmake),
+        "LICENSE": filled("LICENSE", {}),
+        "README.md": readme(block, common, about, test, len(sources) > 1),
+    }
+    files = {path: text.encode("ascii") for path, text in texts.items()} | core
+    return files | {MANIFEST: _manifest(block, name, precision, files, test)}
+
+
+def _manifest(
+    block: Block, name: str, precision: str, files: dict[str, bytes], test: SelfTest
+) -> bytes:
+    content: dict[str, Any] = {
+        "format": FORMAT,
+        "version": 1,
+        "hyst": __version__,
+        "target": "c",
+        "name": name,
+        "precision": precision,
+        "model": {"kind": block.kind, "sha256": block.sha256()},
+        "selftest": {"samples": SAMPLES, "away_from_double": test.away_from_double},
+        "files": {path: hashlib.sha256(files[path]).hexdigest() for path in sorted(files)},
+    }
+    return (json.dumps(content, indent=2) + "\n").encode()

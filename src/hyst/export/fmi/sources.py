@@ -1,0 +1,201 @@
+"""The C sources of an FMU: the stage with constants of its own in every instance, and FMI's API."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import final
+
+from hyst.export.c.block import Model
+from hyst.export.c.c_sources import header, places, source
+from hyst.export.c.core_sources import core_files
+from hyst.export.c.numbers import table
+from hyst.export.c.one_file import renamed, shared_names
+from hyst.export.c.templating import filled, indented
+from hyst.export.fmi.description import FmiVersion
+from hyst.export.fmu_variables import (
+    ParameterVariable,
+    constant_rules,
+    direct_inputs,
+    parameter_variables,
+)
+from hyst.export.stage_code import StageCode
+from hyst.export.tool_block import ToolBlock, tool_block
+from hyst.operators import ModelDescription
+
+_TEMPLATES = Path(__file__).resolve().parents[1] / "templates" / "fmu"
+_COMMON = ("hyst_fmu.c", "hyst_fmu.h")
+_OF_VERSION = {
+    "2.0": ("hyst_fmi2.c", "hyst_fmi2.h"),
+    "3.0": ("hyst_fmi3.c", "hyst_fmi3.h", "hyst_fmi3_absent.c", "hyst_fmi3_other_kinds.c"),
+}
+_HELD_BY = "constants->of."
+_SHARED = re.compile(r"^(?!static)[a-z][\w \*]*?\b(hyst_\w+)(?:\(| = )", re.MULTILINE)
+
+
+@final
+@dataclass(frozen=True)
+class FmuModel:
+    """A model as an FMU runs it.
+
+    Parameters
+    ----------
+    tool
+        One call of it, with the constants where ``code`` has them.
+    code
+        Its stages.
+    """
+
+    tool: ToolBlock
+    code: StageCode
+
+    @property
+    def parameters(self) -> tuple[ParameterVariable, ...]:
+        """The constants that may be set."""
+        return tuple(parameter_variables(self.code))
+
+    @property
+    def direct(self) -> tuple[bool, ...]:
+        """Of each input, whether the output depends on it in the same sample."""
+        return direct_inputs(self.tool.block.stages, self.tool.inputs)
+
+    def values(self) -> tuple[float, ...]:
+        """Give all constants, one after the other."""
+        return tuple(value for each in self.code.constants() for value in each.values)
+
+
+def fmu_model(model: Model) -> FmuModel:
+    """Give a model as an FMU runs it.
+
+    Parameters
+    ----------
+    model
+        What ``c_project`` takes.
+
+    Returns
+    -------
+    FmuModel
+
+    Raises
+    ------
+    InputError
+        If it cannot be exported.
+    """
+    tool = tool_block(model)
+    block = tool.block
+    fixed = StageCode(block.stages, "double").calls(block.signal)
+    code = StageCode(block.stages, "double", _HELD_BY)
+    if block.is_estimator:
+        return FmuModel(tool, code)
+    body = block.body.replace(fixed, code.calls(block.signal))
+    return FmuModel(replace(tool, block=replace(block, head="", body=body)), code)
+
+
+def fmu_sources(
+    model: FmuModel, name: str, about: ModelDescription, version: FmiVersion, token: str
+) -> dict[str, bytes]:
+    """Give the files below ``sources/``.
+
+    Parameters
+    ----------
+    model
+        What is exported.
+    name
+        The prefix, checked.
+    about
+        What the numbers mean.
+    version
+        Of FMI.
+    token
+        By which the FMU knows its description.
+
+    Returns
+    -------
+    dict
+        Content by path.
+    """
+    block = model.tool.block
+    common = places(block, name, "double", about)
+    held = {
+        "arguments": f"const hyst_fmu_constants *constants, {common['arguments']}",
+        "records": f"const hyst_fmu_constants *constants, {common['records']}",
+        "elements": f"constants, {common['elements']}",
+    }
+    stage = source(block, common | held, "double")
+    if _HELD_BY not in block.body and not block.is_estimator:
+        stage = stage.replace(
+            "    if (state->ready", "    (void)constants;\n    if (state->ready", 1
+        )
+    core = {
+        path.replace("include/", "").replace("src/", "hyst_core_"): text
+        for path, text in core_files(stage + header(block, common)).items()
+    }
+    files = (*_COMMON, *_OF_VERSION[version])
+    return core | {file: (_TEMPLATES / file).read_bytes() for file in files} | {
+        f"{name}.h": header(block, common | held).encode("ascii"),
+        f"{name}.c": stage.encode("ascii"),
+        "hyst_model.h": _model_header(model, common, token).encode("ascii"),
+        "hyst_names.h": _names(name, core).encode("ascii"),
+        "hyst_all.c": _all(core, common, version).encode("ascii"),
+    }  # fmt: skip
+
+
+def _model_header(model: FmuModel, common: dict[str, str], token: str) -> str:
+    tool, values = model.tool, model.values()
+    dt = tool.block.dt
+    rules = [rule.value for rule in constant_rules(model.code)]
+    members = model.code.declarations() or "hyst_real none;\n"
+    signals = tuple(f"(input)[{k}]" for k in range(len(tool.inputs)))
+    more = {
+        "token": token,
+        "inputs": str(len(tool.inputs)),
+        "estimates": str(len(tool.estimates)),
+        "estimate": f"(state)->memory[{common['NAME']}_THETA + (place)]"
+        if tool.estimates
+        else "HYST_REAL(0.0)",
+        "count": str(len(values)),
+        "size": str(max(len(values), 1)),
+        "sample_time": "" if dt is None else f"#define HYST_FMU_DT {dt!r} /* seconds */\n",
+        "members": indented(members, 8),
+        "evaluate": tool.step(common["name"], "state", signals, "constants, "),
+        "defaults": table(values or (0.0,), "double", "constants"),
+        "rules": f"{{{_in_rows(rules or [0])}}}",
+    }
+    return filled("fmu/hyst_model.h", common | more)
+
+
+def _in_rows(numbers: Sequence[int], length: int = 24) -> str:
+    rows = [numbers[i : i + length] for i in range(0, len(numbers), length)]
+    return ",\n    ".join(", ".join(map(str, row)) for row in rows)
+
+
+def _names(name: str, core: dict[str, bytes]) -> str:
+    """Rename what the core's files share, so that several FMUs can be linked into one program."""
+    found = {
+        shared
+        for path, content in core.items()
+        if path.endswith(".c")
+        for shared in _SHARED.findall(content.decode("ascii"))
+    }
+    lines = [f"#define {each} {name}_{each}" for each in sorted(found)]
+    return (
+        "/* The core's functions and tables under names of this FMU's own. */\n"
+        + "\n".join(lines)
+        + "\n"
+    )
+
+
+def _all(core: dict[str, bytes], common: dict[str, str], version: FmiVersion) -> str:
+    interface = _OF_VERSION[version]
+    texts = {path: text.decode("ascii") for path, text in core.items() if path.endswith(".c")}
+    shared = shared_names(texts)
+    more = {
+        "api": interface[0].removesuffix(".c").removeprefix("hyst_"),
+        "core": "".join(
+            renamed(each, shared.get(each, ()), f'#include "{each}"\n') for each in texts
+        ),
+        "interface": "".join(f'#include "{each}"\n' for each in interface if each.endswith(".c")),
+    }
+    return filled("fmu/hyst_all.c", common | more)

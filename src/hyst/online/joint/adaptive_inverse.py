@@ -1,0 +1,212 @@
+"""An inverse that follows the estimate, and a guard that knows a model to fall back to."""
+
+from __future__ import annotations
+
+import math
+import os
+from typing import Any, final
+
+import numpy as np
+
+from hyst.checks.numbers import as_positive
+from hyst.errors import InputError
+from hyst.online.joint.joint_estimator import JointEstimator
+from hyst.online.saving import restored_state, save_estimator
+from hyst.operators import ModelDescription, Operator
+from hyst.operators.registry import operator_from_dict
+
+_BOUNDS = ("least_slope", "most_slope", "most_radius")
+# Share of the mean square of the output below which errors are not worth a judgement.
+_NEGLIGIBLE = 1e-6
+
+
+@final
+class AdaptiveInverse:
+    """Compensate with the inverse of the running estimate.
+
+    ``command(y_ref)`` solves ``model(u) = y_ref`` with the parameters and the memory the estimator
+    has at that moment. So the memory of the inverse always belongs to its parameters, and a command
+    jumps for no other reason than what has been learnt.
+
+    The guard compares, window by window, how well the estimate and the last good model predict the
+    output. Where the estimate does worse by the factor ``margin``, or where both do worse than ever
+    by that factor and learning does not help, commands come from the last good model and the
+    estimator starts anew from it. Where the estimate does as well as the good model and about as
+    well as ever, it is trusted again and becomes the last good model; but where its errors follow
+    each other, so that they cannot be noise, it must do better by ``margin`` for that.
+
+    Parameters
+    ----------
+    estimator
+        Started from a model that may serve as the first good one.
+    window
+        Seconds over which errors are compared, at least a period of what is tracked.
+    margin
+        Ratio of the mean square errors at which the guard falls back, above 1.
+
+    Raises
+    ------
+    InputError
+        If a number is out of range, or ``estimator`` is no joint estimator.
+
+    Examples
+    --------
+    >>> from hyst.models import PrandtlIshlinskii
+    >>> plant = PrandtlIshlinskii(p=[0.5], r=[1.0], p0=1.0).stepper()
+    >>> inverse = AdaptiveInverse(JointEstimator(PrandtlIshlinskii([0.7], [1.4], 0.8)), window=400)
+    >>> for k in range(2000):
+    ...     y_ref = 4.0 * math.sin(k / 30.0)
+    ...     u = inverse.command(y_ref)
+    ...     y = plant(u)
+    ...     inverse.update(u, y)
+    >>> abs(y - y_ref) < 1e-3
+    True
+    """
+
+    def __init__(self, estimator: JointEstimator, window: float, margin: float = 4.0) -> None:
+        if not isinstance(estimator, JointEstimator):
+            raise InputError(f"estimator is a {type(estimator).__name__}; give a JointEstimator")
+        self.estimator = estimator
+        self._seconds = as_positive(window, "window", "seconds")
+        self._window = self._seconds / estimator.dt
+        self._margin = as_positive(margin, "margin", "a ratio above 1")
+        if self._margin <= 1.0:
+            raise InputError(f"margin is {margin!r}; give a ratio above 1")
+        self._good = estimator.model
+        held = ("p0", "p", "r", "offset", "front", "back")
+        bounds = {name: estimator.settings[name] for name in _BOUNDS}
+        self._fallback = JointEstimator(self._good, dt=estimator.dt, held=held, **bounds)
+        self._powers = [0.0, 0.0, 0.0]
+        self._samples = 0
+        self._usual = math.inf
+        self.trusts_estimate = True
+        """Whether commands come from the estimate, or from the last good model."""
+        self.fallbacks = 0
+        """How many windows the guard has rejected."""
+        self.doubts = 0
+        """How many windows in a row the estimate's errors could not be noise."""
+
+    @property
+    def model(self) -> Operator:
+        """The model commands come from, with its memory."""
+        return self._source().model
+
+    @property
+    def good_model(self) -> Operator:
+        """The last good model, with the memory it was taken with."""
+        return self._good
+
+    @property
+    def status(self) -> str:
+        """Where commands come from, and what there is to doubt, in a sentence."""
+        source = "the estimate" if self.trusts_estimate else "the last good model"
+        doubt = f", doubted for {self.doubts} windows" if self.doubts else ""
+        return f"commands come from {source}{doubt}; {self.estimator.innovation}"
+
+    def command(self, y_ref: float) -> float:
+        """Give the input for a wanted output.
+
+        Parameters
+        ----------
+        y_ref
+            Wanted output.
+
+        Returns
+        -------
+        float
+        """
+        return self._source().command(y_ref)
+
+    def update(self, u: float, y: float) -> None:
+        """Learn from the input that was applied and the output that was measured.
+
+        Parameters
+        ----------
+        u, y
+            The sample; one that is not finite is skipped.
+        """
+        if not (self._fallback.update(u, y) and self.estimator.update(u, y)):
+            return
+        values = (self.estimator.error, self._fallback.error, y)
+        self._powers = [power + value**2 for power, value in zip(self._powers, values, strict=True)]
+        self._samples += 1
+        if self._samples >= self._window:
+            adaptive, good, output = (power / self._samples for power in self._powers)
+            self._judge(adaptive, good, _NEGLIGIBLE * output)
+            self._powers, self._samples = [0.0, 0.0, 0.0], 0
+
+    def save(
+        self, path: str | os.PathLike[str], description: ModelDescription | None = None
+    ) -> None:
+        """Write everything, every double exact; ``load_estimator`` continues with the same bits.
+
+        Parameters
+        ----------
+        path
+            The file to create or replace.
+        description
+            What the model's numbers mean.
+        """
+        parts = {}
+        for name, each in (("estimator", self.estimator), ("fallback", self._fallback)):
+            settings, state = each.saved()
+            parts[name] = {"settings": settings, "state": state.tolist()}
+        usual = None if math.isinf(self._usual) else self._usual
+        settings = {"window": self._seconds, "margin": self._margin, "usual": usual}
+        settings |= {"good": self._good.to_dict(), **parts}
+        counts = [self._samples, float(self.trusts_estimate), self.fallbacks, self.doubts]
+        save_estimator(path, "inverse", settings, np.array([*self._powers, *counts]), description)
+
+    @classmethod
+    def restore(cls, settings: dict[str, Any], state: list[float]) -> AdaptiveInverse:
+        """Rebuild an inverse from what ``save`` wrote.
+
+        Parameters
+        ----------
+        settings, state
+            As in the file.
+
+        Raises
+        ------
+        InputError
+            If the state does not fit the settings, or holds an inadmissible estimate.
+        """
+        inverse = cls(
+            JointEstimator.restore(**settings["estimator"]), settings["window"], settings["margin"]
+        )
+        inverse._fallback = JointEstimator.restore(**settings["fallback"])
+        inverse._good = operator_from_dict(settings["good"])
+        inverse._fallback.restart(inverse._good)  # refuses what cannot be inverted
+        inverse._fallback = JointEstimator.restore(**settings["fallback"])
+        usual = settings["usual"]
+        inverse._usual = math.inf if usual is None else as_positive(usual, "usual", "a mean square")
+        numbers = np.zeros(7)
+        restored_state(numbers, state)
+        if (numbers < 0.0).any() or numbers[4] not in (0.0, 1.0):
+            raise InputError("the saved guard has counts out of range; save the inverse again")
+        inverse._powers = numbers[:3].tolist()
+        inverse._samples, trusts, inverse.fallbacks, inverse.doubts = (
+            int(each) for each in numbers[3:]
+        )
+        inverse.trusts_estimate = bool(trusts)
+        return inverse
+
+    def _source(self) -> JointEstimator:
+        return self.estimator if self.trusts_estimate else self._fallback
+
+    def _judge(self, adaptive: float, good: float, negligible: float) -> None:
+        """Mean squares of a window: both models' errors, and what is too small to matter."""
+        is_worse = adaptive > self._margin * (good + negligible)
+        is_unusual = adaptive > self._margin * (self._usual + negligible)
+        is_doubtful = not self.estimator.innovation.consistent
+        self.doubts = self.doubts + 1 if is_doubtful else 0
+        if is_worse or (is_unusual and adaptive > good / self._margin):
+            self.trusts_estimate = False
+            self.fallbacks += 1
+            self.estimator.restart(self._good)
+        elif adaptive <= good + negligible and not is_unusual:
+            self.trusts_estimate = True
+            self._usual = adaptive
+            if not is_doubtful or adaptive < max(good / self._margin, negligible):
+                self._good = self.estimator.model
+                self._fallback.restart(self._good)
