@@ -10,12 +10,12 @@ from hyst.errors import InputError
 from hyst.identification.families.family import Family, require_this_version
 from hyst.identification.families.hammerstein.hammerstein import Hammerstein
 from hyst.identification.families.linear import Linear
-from hyst.identification.families.option import Option
-from hyst.identification.families.plays import (
+from hyst.identification.families.mapped_plays import (
     GeneralizedPrandtlIshlinskii,
     ModifiedPrandtlIshlinskii,
-    PrandtlIshlinskii,
 )
+from hyst.identification.families.option import Option
+from hyst.identification.families.plays import PrandtlIshlinskii
 from hyst.identification.families.ramberg_osgood import RambergOsgood
 from hyst.identification.families.rate_dependent import RateDependent
 

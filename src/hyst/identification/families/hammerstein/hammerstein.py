@@ -50,6 +50,7 @@ MOST_FITTED = 300_000
 
 MOST_LAGS, MOST_STATES, LONGEST_PERIOD = 5000, 64, 10**9
 
+_WARM_UP = 8_000
 _BURST = 12
 _STALLED = 0.99
 _TOLERANCE = 2e-2  # of the residual variance: at most a seventh of a standard error is left
@@ -214,6 +215,17 @@ class Hammerstein(Family):
             if used >= max_iterations:
                 return replace(found, iterations=used)
             theta, before = found.theta, found.cost
+
+    def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Improve the hysteresis as its own family knows, the dynamics following."""
+        seen = replace(fit, family=self.front, parametrization=joint_of(fit).seen_by_front())
+        short = Overview(shortened(overview.data, _WARM_UP))
+        improved = self.front.finish(seen, short, _BURST)
+        if np.array_equal(improved.solution.theta, fit.solution.theta):
+            return fit
+        problem = fit.problem(overview.data)
+        again = self.solve(problem, improved.solution.theta, max_iterations)
+        return replace(fit, solution=again) if again.cost < fit.solution.cost else fit
 
     def simplified(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
         """Fit again without the parts of the hysteresis that came out idle."""

@@ -9,7 +9,7 @@ and dynamics, is a gauge: the dynamics' gain at rest is 1.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Self
 
 import numpy as np
@@ -42,11 +42,6 @@ class JointParametrization(Parametrization):
     base: LinearDynamics = None  # type: ignore[assignment]
     feedthrough: bool = True
 
-    @property
-    def free_count(self) -> int:
-        """Number of parameters that can move without the gauge of the dynamics."""
-        return super().free_count - 1
-
     def hysteresis(self, theta: Array) -> Operator:
         """Give the hysteresis."""
         return self.front.operator(theta[: self.front.size])
@@ -56,6 +51,11 @@ class JointParametrization(Parametrization):
         base = self.base
         A, C, D = _matrices(theta[self.front.size :], base, self.feedthrough)
         return LinearDynamics(A, base.B, C, D, base.dt, base.delay)
+
+    def seen_by_front(self) -> Parametrization:
+        """Give the same free parameters for the family of the hysteresis: its own come first."""
+        taken = {each.name: getattr(self, each.name) for each in fields(Parametrization)}
+        return replace(self.front, **taken)
 
     def in_units(self, theta: Array, input_scale: float, output_scale: float) -> Self:
         """Give the same free parameters in other units, which the hysteresis alone takes."""
@@ -107,6 +107,7 @@ def joint(front: Start, base: LinearDynamics) -> Start:
         upper=np.concatenate([hysteresis.upper, free]),
         canonical=_canonical(hysteresis),
         gauges=_gauges(hysteresis, base, feedthrough),
+        gauge_count=1 + hysteresis.gauge_count,
         is_allowed=_is_allowed(hysteresis, base, feedthrough),
         front=hysteresis,
         base=base,
