@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 import hyst
+from hyst._files import replacing
 from hyst.cli.arguments import numbers, positive
 from hyst.cli.console import note, show_files, show_table
 from hyst.cli.relevant_options import given, refuse_irrelevant
@@ -136,7 +137,7 @@ def _write(drive: hyst.signals.Drive, out: Path, name: str) -> None:
     label, unit = hyst.io.split_unit(name)
     figure = out.with_suffix(".png")
     hyst.io.write_columns(out, ["time [s]", hyst.io.join_unit(label, unit)], (drive.time, drive.u))
-    with hyst.files.replacing(figure) as temporary:
+    with replacing(figure) as temporary:
         temporary.write_bytes(hyst.report.draw_drive(drive, label, unit))
     show_files([out, figure])
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hyst.identification import hammerstein
 from hyst.identification.from_records import identify
 from hyst.identification.identified import Candidate, Identified, UsedSamples
 from hyst.identification.slopes import Slopes, identify_weights_from_slopes
@@ -11,6 +12,11 @@ __all__ = [
     "Identified",
     "Slopes",
     "UsedSamples",
+    "hammerstein",
     "identify",
     "identify_weights_from_slopes",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

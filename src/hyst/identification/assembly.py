@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +15,8 @@ from hyst.identification.families import RAMBERG_OSGOOD, Parametrization, at_lim
 from hyst.identification.fitting import Fit, Fitter, model_jacobian, model_output
 from hyst.identification.identified import Candidate, Identified
 from hyst.operators import ModelDescription, Operator
+from hyst.operators.description import errors_of
+from hyst.operators.provenance import provenance
 from hyst.signals import Metrics, Record, error_metrics
 
 Array = NDArray[np.float64]
@@ -150,6 +154,30 @@ def _pair(name: str, data: Data, operator: Operator) -> dict[str, Metrics]:
             measured, modelled, free_offset=True, output_range=float(span)
         ),
     }
+
+
+def traced(found: Identified, records: Sequence[Record], options: Mapping[str, Any]) -> Identified:
+    """Give a result whose model tells what it means, how good it is and where it comes from.
+
+    Parameters
+    ----------
+    found
+        As identified, with the description of its signals.
+    records
+        What it was identified from.
+    options
+        What was asked for otherwise than by default.
+
+    Returns
+    -------
+    Identified
+    """
+    about = replace(
+        found.description,
+        errors=errors_of(found.metrics),
+        provenance=provenance(records, options),
+    )
+    return replace(found, description=about, model=found.model.with_description(about))
 
 
 def describe(data: Data, family: str) -> ModelDescription:

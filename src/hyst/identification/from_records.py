@@ -8,6 +8,7 @@ from typing import Any, Literal
 from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 
+from hyst.identification.assembly import traced
 from hyst.identification.data import require_same_units
 from hyst.identification.hammerstein.from_options import (
     HAMMERSTEIN,
@@ -19,6 +20,7 @@ from hyst.identification.options import Options, as_radii, as_rule
 from hyst.identification.rate_dependent import RDPI, identify_rate_dependent
 from hyst.identification.rate_independent import identify_rate_independent
 from hyst.identification.separable import PowerLawOptions
+from hyst.operators.provenance import options_asked
 from hyst.signals import Record
 
 
@@ -132,13 +134,14 @@ def identify(
     >>> bool(np.abs(found.model(u) - true(u))[500:].max() < 1e-6)
     True
     """
+    asked = options_asked(identify, locals())
     say, given, judged = progress or _silent, _listed(records), _listed(validation)
     require_same_units((*given, *judged))
     require_usable(family, hysteresis, period)
     with threadpool_limits(1, user_api="blas"):
         # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
         if family == HAMMERSTEIN:
-            return identify_with_dynamics(
+            found: Identified = identify_with_dynamics(
                 given,
                 hysteresis=hysteresis,
                 orders=(fir_order, state_order),
@@ -153,10 +156,11 @@ def identify(
                 limits=(max_iterations, allow_unconverged),
                 say=say,
             )
+            return traced(found, given, asked)
         common: dict[str, Any] = {"plays": plays, "radii": radii, "delay": delay, "start": start}
         common |= {"max_iterations": max_iterations, "allow_unconverged": allow_unconverged}
         if family == RDPI:
-            return identify_rate_dependent(
+            found = identify_rate_dependent(
                 given,
                 spacing=spacing,
                 record_weights=record_weights,
@@ -164,9 +168,10 @@ def identify(
                 progress=progress,
                 **common,
             )
+            return traced(found, given, asked)
         power_law = PowerLawOptions(memory, regression, signal_to_noise)
         options = Options(knots, weights, power_law, judged, say, **common)
-        return identify_rate_independent(given, family, options)
+        return traced(identify_rate_independent(given, family, options), given, asked)
 
 
 def _listed(records: Record | Sequence[Record]) -> tuple[Record, ...]:

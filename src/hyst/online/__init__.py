@@ -6,7 +6,6 @@ from hyst.online.adaptive_inverse import AdaptiveInverse
 from hyst.online.excitation import Excitation, PlayExcitation
 from hyst.online.innovation import Innovation
 from hyst.online.joint_estimator import JointEstimator
-from hyst.online.loading import load_described_estimator, load_estimator
 from hyst.online.radius_estimator import RadiusEstimator
 from hyst.online.trajectory import Trajectory
 
@@ -18,6 +17,8 @@ __all__ = [
     "PlayExcitation",
     "RadiusEstimator",
     "Trajectory",
-    "load_described_estimator",
-    "load_estimator",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__
