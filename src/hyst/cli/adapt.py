@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import typer
@@ -90,16 +90,9 @@ def adapt(
     else:
         model = load_operator(model_file or data)
     about = model.description
-    record = hyst.read_record(
-        data,
-        input=input_column,
-        output=output_column,
-        time=time,
-        rate=rate,
-        time_unit=time_unit,
-        repair=repair,
-    )
-    record = _without_delay(record, about.delay)
+    how: dict[str, Any] = {"time": time, "rate": rate, "time_unit": time_unit, "repair": repair}
+    measured = hyst.read_record(data, input=input_column, output=output_column, **how)
+    record = _without_delay(measured, about.delay)
     history, record = _from_start(record, start)
     if estimator is None:
         estimator = hyst.online.JointEstimator(
@@ -119,12 +112,8 @@ def adapt(
         say("figure")
         picture = _picture(estimator.model, about, trajectory, _HEADING.format(data.name))
     names = ("model.json", "estimator.json", "parameters.csv", "parameters.png")
+    estimator.description = _described(estimator, about, measured)
     with replacing_files(folder) as temporary:
-        estimator.description = replace(
-            about.of_other_constants(),
-            dt=record.dt,
-            provenance=hyst.operators.provenance.provenance([record], _options(estimator)),
-        )
         estimator.model.save(temporary / names[0])
         estimator.save(temporary / names[1])
         _write_parameters(temporary / names[2], trajectory)
@@ -133,9 +122,18 @@ def adapt(
     show_files([folder / name for name in names])
 
 
-def _options(estimator: hyst.online.JointEstimator) -> dict[str, object]:
-    """Give what the estimate was asked for, beside the model it started from."""
-    return {name: each for name, each in estimator.settings.items() if name != "model"}
+def _described(
+    estimator: hyst.online.JointEstimator,
+    about: hyst.operators.ModelDescription,
+    measured: hyst.Record,
+) -> hyst.operators.ModelDescription:
+    """Give the model's description with the origin of the estimate in the place of its own."""
+    asked = {name: each for name, each in estimator.settings.items() if name != "model"}
+    return replace(
+        about.of_other_constants(),
+        dt=measured.dt,
+        provenance=hyst.operators.provenance.provenance([measured], asked),
+    )
 
 
 def _refuse_if_few_used(estimator: hyst.online.JointEstimator, data: Path) -> None:

@@ -141,7 +141,7 @@ def identify(
     with threadpool_limits(1, user_api="blas"):
         # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
         if family == HAMMERSTEIN:
-            found: Identified = identify_with_dynamics(
+            dynamic = identify_with_dynamics(
                 given,
                 hysteresis=hysteresis,
                 orders=(fir_order, state_order),
@@ -156,19 +156,13 @@ def identify(
                 limits=(max_iterations, allow_unconverged),
                 say=say,
             )
-            return traced(found, given, asked)
+            return traced(dynamic, given, asked)
         common: dict[str, Any] = {"plays": plays, "radii": radii, "delay": delay, "start": start}
         common |= {"max_iterations": max_iterations, "allow_unconverged": allow_unconverged}
         if family == RDPI:
-            found = identify_rate_dependent(
-                given,
-                spacing=spacing,
-                record_weights=record_weights,
-                validation=judged,
-                progress=progress,
-                **common,
-            )
-            return traced(found, given, asked)
+            common |= {"spacing": spacing, "record_weights": record_weights}
+            common |= {"validation": judged, "progress": progress}
+            return traced(identify_rate_dependent(given, **common), given, asked)
         power_law = PowerLawOptions(memory, regression, signal_to_noise)
         options = Options(knots, weights, power_law, judged, say, **common)
         return traced(identify_rate_independent(given, family, options), given, asked)

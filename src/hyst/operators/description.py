@@ -184,7 +184,13 @@ def errors_of(metrics: Mapping[str, Any]) -> dict[str, dict[str, float]]:
 
 
 def as_description(description: ModelDescription) -> ModelDescription:
-    """Give a description as it is; refuse anything else."""
+    """Give a description as it is.
+
+    Raises
+    ------
+    InputError
+        If it is something else.
+    """
     if not isinstance(description, ModelDescription):
         raise InputError(
             f"the description is a {type(description).__name__}; give a ModelDescription"

@@ -7,7 +7,7 @@ import math
 import numbers
 import re
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -15,41 +15,45 @@ from hyst.errors import InputError
 
 
 def as_text(name: str, value: Any) -> str:
-    """Give a text that UTF-8 can write; refuse anything else under ``name``."""
+    """Give a ``value`` that is text UTF-8 can write; ``name`` is what a refusal calls it."""
     # A lone surrogate cannot be written as UTF-8.
-    if isinstance(value, str) and not re.search("[\ud800-\udfff]", value):
-        return value
-    raise InputError(f"{name} is {value!r}; give text")
+    if not isinstance(value, str) or re.search("[\ud800-\udfff]", value):
+        _refuse(name, value, "text")
+    return value
 
 
 def as_finite(name: str, value: Any) -> float:
-    """Give a finite number as a float; refuse anything else under ``name``."""
-    if not isinstance(value, bool) and isinstance(value, numbers.Real):
-        number = float(value)
-        if math.isfinite(number):
-            return number
-    raise InputError(f"{name} is {value!r}; give a finite number")
+    """Give a ``value`` that is a finite number; ``name`` is what a refusal calls it."""
+    if not _is_real(value) or not math.isfinite(value):
+        _refuse(name, value, "a finite number")
+    return float(value)
 
 
 def as_finite_or_none(name: str, value: Any) -> float | None:
-    """Give a finite number, or None as it is; refuse anything else under ``name``."""
+    """Give a ``value`` that is None or a finite number; ``name`` is what a refusal calls it."""
     return None if value is None else as_finite(name, value)
 
 
 def as_whole(name: str, value: Any) -> int:
-    """Give a whole number as an int; refuse anything else under ``name``."""
-    if not isinstance(value, bool) and isinstance(value, numbers.Real):
-        number = float(value)
-        if number.is_integer():
-            return int(number)
-    raise InputError(f"{name} is {value!r}; give a whole number")
+    """Give a ``value`` that is a whole number; ``name`` is what a refusal calls it."""
+    if not _is_real(value) or not float(value).is_integer():
+        _refuse(name, value, "a whole number")
+    return int(value)
 
 
 def as_mapping(name: str, value: Any) -> dict[str, Any]:
-    """Give a mapping with names as keys as a new dictionary; refuse anything else."""
+    """Give a ``value`` with names as keys as a dictionary; ``name`` is what a refusal calls it."""
     if not isinstance(value, Mapping):
-        raise InputError(f"{name} is {value!r}; give a mapping of names to values")
+        _refuse(name, value, "a mapping of names to values")
     return {as_text(f"a name in {name}", key): each for key, each in value.items()}
+
+
+def _is_real(value: Any) -> bool:
+    return isinstance(value, numbers.Real) and not isinstance(value, bool)
+
+
+def _refuse(name: str, value: Any, wanted: str) -> NoReturn:
+    raise InputError(f"{name} is {value!r}; give {wanted}")
 
 
 def as_plain(name: str, value: Any) -> Any:
