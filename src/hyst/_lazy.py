@@ -11,15 +11,15 @@ from __future__ import annotations
 
 import ast
 import importlib
+import os.path
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 
 def attach(package: str, file: str) -> tuple[Callable[[str], Any], list[str]]:
     """Give ``__getattr__`` and ``__all__`` of a ``package`` whose ``__init__.py`` is ``file``."""
-    homes = _homes(package, Path(file).with_suffix(".pyi"))
+    homes = _homes(package, os.path.dirname(file))
 
     def load(name: str) -> Any:
         if name not in homes:
@@ -39,15 +39,18 @@ def _loaded(package: str, home: str, name: str) -> Any:
     return getattr(module, name)
 
 
-def _homes(package: str, stub: Path) -> dict[str, str]:
-    """Give where to find each name that a stub offers."""
+def _homes(package: str, folder: str) -> dict[str, str]:
+    """Give where to find each name that the stub of a package in a folder offers."""
     homes: dict[str, str] = {}
-    for line in ast.parse(stub.read_text(encoding="utf-8")).body:
+    # Not pathlib, whose own import would add a fifth to the time of ``import hyst``.
+    with open(os.path.join(folder, "__init__.pyi"), encoding="utf-8") as stub:
+        lines = ast.parse(stub.read()).body
+    for line in lines:
         if not isinstance(line, ast.ImportFrom) or line.module is None:
             continue
         names = [each.name for each in line.names]
         if names == ["*"]:
             below = line.module.removeprefix(f"{package}.").split(".")
-            names = list(_homes(line.module, stub.parent.joinpath(*below, stub.name)))
+            names = list(_homes(line.module, os.path.join(folder, *below)))
         homes |= dict.fromkeys(names, line.module)
     return homes
