@@ -49,7 +49,7 @@ def test_model_file_knows_names_units_ranges_and_sample_time(
     run: Run, record_file: Path, folder: Path
 ) -> None:
     run("identify", record_file, *COLUMNS, "--time", "t", *QUICK, "-o", "out")
-    _, about = hyst.models.load_described(folder / "out" / "model.json")
+    about = hyst.load(folder / "out" / "model.json").description
     assert (about.input_name, about.input_unit) == ("u", "V")
     assert (about.output_name, about.output_unit) == ("y", "um")
     assert (about.input_low, about.input_high) == (drive().min(), drive().max())
@@ -65,7 +65,7 @@ def test_columns_by_index_rate_labels_validation_and_several_records(
         *("--input-label", "drive [mV]", "--output-label", "stroke"),
     )
     assert ended.code == 0, ended.err
-    _, about = hyst.models.load_described(folder / "out" / "model.json")
+    about = hyst.load(folder / "out" / "model.json").description
     assert (about.input_name, about.input_unit) == ("drive", "mV")
     assert (about.output_name, about.output_unit) == ("stroke", "")
     assert "validation 1" in ended.out
@@ -82,7 +82,7 @@ def test_time_in_milliseconds_and_repaired_rows(run: Run, folder: Path) -> None:
     assert run(*arguments, "-o", "out").code == 2
     ended = run(*arguments, "--repair", "-o", "out")
     assert ended.code == 0, ended.err
-    _, about = hyst.models.load_described(folder / "out" / "model.json")
+    about = hyst.load(folder / "out" / "model.json").description
     assert about.dt == pytest.approx(0.01, rel=1e-12)
     assert "left out 1 row" in (folder / "out" / "report.html").read_text()
 

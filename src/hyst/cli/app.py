@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 import hyst
+from hyst._typed_command import carrying_out
 from hyst.cli.adapt import adapt
 from hyst.cli.compensate import compensate
 from hyst.cli.demo import demo
@@ -61,7 +62,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # Whoever repeats a failed command appends the option, so it may stand anywhere.
     given = [each for each in given if each != "--debug"]
     try:
-        status = app(args=given, prog_name="hyst", standalone_mode=False)
+        with carrying_out(given):
+            status = app(args=given, prog_name="hyst", standalone_mode=False)
     except typer.Abort:
         return _end("stopped", FAILURE)
     except Exception as error:

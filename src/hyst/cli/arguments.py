@@ -37,6 +37,17 @@ SampleRate = Annotated[
 _STAMPS_ROUNDED = 1e-3
 
 
+def load_operator(path: Path) -> hyst.operators.Operator:
+    """Read a model file that holds an operator, and nothing else."""
+    found = hyst.load(path)
+    if not isinstance(found, hyst.operators.Operator):
+        raise hyst.InputError(
+            f"{path} holds a {type(found).__name__}, not one input's model; give a model file, as "
+            "hyst identify writes"
+        )
+    return found
+
+
 def whole_or_auto(text: str, name: str) -> int | Literal["auto"]:
     """Read a whole number or the word auto."""
     if text == "auto":

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 import hyst
+from hyst._files import require_folder
 from hyst.cli.arguments import InputColumn, numbers, whole_or_auto
 from hyst.cli.console import at_work, show_files, show_table
 from hyst.cli.relevant_options import refuse_irrelevant
@@ -157,7 +158,7 @@ def identify(
     allow_unconverged: AllowUnconverged = False,
 ) -> None:
     """Identify a model from measured records, and write model, numbers, figures and a report."""
-    hyst.files.require_folder(folder)
+    require_folder(folder)
     _refuse_what_is_not_used(context, family, hysteresis, regression)
     how_to_read = {"input": input_column, "output": output_column, "time": time, "rate": rate}
     how_to_read |= {"time_unit": time_unit, "repair": repair}

@@ -18,3 +18,7 @@ __all__ = [
     "reduce_inverse",
     "slope_range",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -15,3 +15,7 @@ __all__ = [
     "identify",
     "identify_weights_from_slopes",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

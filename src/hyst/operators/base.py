@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, final
 
 import numpy as np
@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 from hyst import _engine
 from hyst.checks.arrays import as_signal, as_state, refuse_sample
 from hyst.errors import InputError, NotInvertibleError
+from hyst.operators.description import Described, ModelDescription
 from hyst.operators.engine_name import EngineName, as_engine, as_threads
-from hyst.operators.model_file import ModelDescription, write_model
+from hyst.operators.model_file import MODEL, write_file
 from hyst.operators.parameters import Parameters
 from hyst.operators.registry import compose
 from hyst.operators.stage import Stage
@@ -25,7 +26,7 @@ from hyst.operators.traits import Traits
 Array = NDArray[np.float64]
 
 
-class Operator(ABC):
+class Operator(Described, ABC):
     """A causal operator with a finite state; ``y = operator(u)``.
 
     Concrete operators are frozen dataclasses that say what they are (constants, traits, state,
@@ -35,6 +36,11 @@ class Operator(ABC):
     kind: ClassVar[str]
     is_map: ClassVar[bool] = False
     """Whether it is a memoryless map, which may keep the unit of its signal."""
+
+    def __init_subclass__(cls) -> None:
+        # An inverse means what its operator means, the signals changed; no class has to say so.
+        if "inverse" in vars(cls):
+            cls.inverse = _described_inverse(cls.inverse)  # type: ignore[method-assign]
 
     @abstractmethod
     def traits(self) -> Traits:
@@ -390,14 +396,15 @@ class Operator(ABC):
         path
             The file to create or replace; it is written whole or not at all.
         description
-            What the numbers mean: names, units, sample time, delay.
+            What the numbers mean; that of the operator itself if left out.
 
         Raises
         ------
         InputError
             If the folder does not exist.
         """
-        write_model(path, self.to_dict(), description)
+        about = self.description if description is None else description
+        write_file(path, MODEL, {"model": self.to_dict()}, about)
 
     @final
     def is_invertible(self) -> bool:
@@ -427,4 +434,13 @@ class Operator(ABC):
     @final
     def __reduce__(self) -> tuple[Any, ...]:
         # The compiled chain is rebuilt, not carried, when an operator goes to another process.
-        return type(self).from_dict, (self.to_dict(),)
+        return type(self).from_dict, (self.to_dict(),), self._carried()
+
+
+def _described_inverse(inverse: Callable[..., Operator]) -> Callable[..., Operator]:
+    @functools.wraps(inverse)
+    def described(self: Operator) -> Operator:
+        found, about = inverse(self), self.description
+        return found if about == ModelDescription() else found.with_description(about.of_inverse())
+
+    return described

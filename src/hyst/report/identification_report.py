@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hyst.files import replacing_files
+from hyst._files import replacing_files
 from hyst.identification import Identified
 from hyst.report.error_figure import autocorrelation, draw_error
 from hyst.report.fitted_record import FittedRecord, fit_records

@@ -6,8 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
+from hyst.checks.numbers import whole_number as as_whole_number
 from hyst.errors import InputError
 
 AUTO = "auto"
@@ -70,31 +69,6 @@ def choice(choices: tuple[str, ...], help: str) -> Option:
         return value
 
     return Option(check, help, lambda text, _: text, "|".join(choices))
-
-
-def as_whole_number(value: Any, name: str, least: int, most: int, more: str = "") -> int:
-    """Check a number that counts something.
-
-    Parameters
-    ----------
-    value
-        A whole number from ``least`` to ``most``.
-    name
-        What messages call it.
-    least, most
-        Ends of the range.
-    more
-        What messages add after the range: a unit, or a word that is taken in its place.
-
-    Raises
-    ------
-    InputError
-        If it is something else.
-    """
-    is_whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-    if not is_whole or not least <= value <= most:
-        raise InputError(f"{name} is {value!r}; give {least} to {most}{more}")
-    return int(value)
 
 
 def read_numbers(text: str, name: str) -> Any:

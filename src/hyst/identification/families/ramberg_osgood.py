@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst import models
-from hyst.errors import InputError
+from hyst.checks.numbers import as_not_negative
 from hyst.identification.families.family import Family, Fit, Start, Words
 from hyst.identification.families.option import Option, choice, option, read_number
 from hyst.identification.families.power_law_fit import (
@@ -28,13 +28,6 @@ from hyst.operators import Affine
 Array = NDArray[np.float64]
 
 OUTPUT, SLOPE = "output", "slope"
-
-
-def _as_ratio(value: Any, name: str) -> float:
-    is_number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-    if not (is_number and np.isfinite(value) and value >= 0.0):
-        raise InputError(f"{name} is {value}; give a finite number, 0 or more")
-    return float(value)
 
 
 @final
@@ -77,7 +70,9 @@ class RambergOsgood(Family):
     )
     signal_to_noise: Any = option(
         3.0,
-        Option(_as_ratio, "With slopes: what a step must be over its noise.", read_number, "X"),
+        Option(
+            as_not_negative, "With slopes: what a step must be over its noise.", read_number, "X"
+        ),
     )
 
     def least_parameters(self, size: int) -> int:
