@@ -282,17 +282,9 @@ class LinearDynamics(Operator):
         return np.repeat([1.0, ratio], [n * n + n, n + 1])
 
     def in_units(self, input_scale: float, output_scale: float) -> LinearDynamics:
-        """Give the system in other units, its initial state too."""
-        ratio = output_scale / input_scale
-        return LinearDynamics(
-            self.A,
-            self.B,
-            self.C * ratio,
-            self.D * ratio,
-            self.dt,
-            self.delay,
-            self.x0 * input_scale,
-        )
+        """Give the system, and its initial state, in other units."""
+        C, D = (each * (output_scale / input_scale) for each in (self.C, self.D))
+        return LinearDynamics(self.A, self.B, C, D, self.dt, self.delay, self.x0 * input_scale)
 
     def lipschitz_constant(self) -> float:
         """Give the sum of the absolute impulse response; infinity if G is not stable."""

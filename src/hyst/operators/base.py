@@ -5,8 +5,8 @@ from __future__ import annotations
 import functools
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
-from typing import Any, ClassVar, final
+from collections.abc import Callable
+from typing import Any, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,10 +14,10 @@ from numpy.typing import ArrayLike, NDArray
 from hyst import _engine
 from hyst.checks.arrays import as_signal, as_state, refuse_sample
 from hyst.errors import InputError, NotInvertibleError
+from hyst.operators.constants import Constants
 from hyst.operators.description import Described, ModelDescription
 from hyst.operators.engine_name import EngineName, as_engine, as_threads
 from hyst.operators.model_file import MODEL, write_file
-from hyst.operators.parameters import Parameters
 from hyst.operators.registry import compose
 from hyst.operators.stage import Stage
 from hyst.operators.stepper import Stepper
@@ -26,16 +26,12 @@ from hyst.operators.traits import Traits
 Array = NDArray[np.float64]
 
 
-class Operator(Described, ABC):
+class Operator(Described, Constants, ABC):
     """A causal operator with a finite state; ``y = operator(u)``.
 
     Concrete operators are frozen dataclasses that say what they are (constants, traits, state,
     inverse); how records, samples and derivatives are computed is written here, once, for all.
     """
-
-    kind: ClassVar[str]
-    is_map: ClassVar[bool] = False
-    """Whether it is a memoryless map, which may keep the unit of its signal."""
 
     def __init_subclass__(cls) -> None:
         # An inverse means what its operator means, the signals changed; no class has to say so.
@@ -87,86 +83,6 @@ class Operator(Described, ABC):
         NotInvertibleError
             If there is none; the message names the condition that fails.
         """
-
-    @abstractmethod
-    def parameters(self) -> Parameters:
-        """Give the constants as one flat vector with names and bounds."""
-
-    def nearest_parameters(self, theta: Array) -> Array:
-        """Give the nearest parameter vector that keeps an order the constructor demands.
-
-        Parameters
-        ----------
-        theta
-            Shape (m,), within the bounds of ``parameters()``.
-
-        Returns
-        -------
-        numpy.ndarray
-            ``theta`` itself where the order of the constants is free.
-        """
-        return theta
-
-    @abstractmethod
-    def with_parameters(self, theta: Sequence[float] | Array) -> Operator:
-        """Give the same operator with other constants.
-
-        Parameters
-        ----------
-        theta
-            Shape (m,), in the order and the units of ``parameters()``.
-
-        Raises
-        ------
-        InputError
-            If the length is wrong or a value is not allowed.
-        """
-
-    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
-        """Give the factors of the parameters in units in which signals have larger numbers.
-
-        The operator of these parameters, ``in_units``, gives ``output_scale f(u / input_scale)``.
-
-        Parameters
-        ----------
-        input_scale, output_scale
-            By which the numbers of input and output grow; powers of two keep all bits.
-
-        Returns
-        -------
-        numpy.ndarray
-            Shape (m,).
-
-        Raises
-        ------
-        InputError
-            If this kind of operator has no constants that could take the change.
-        """
-        raise InputError(
-            f"a {self.kind} cannot be brought to other units by its constants; compose it with "
-            "Affine operators that do"
-        )
-
-    def in_units(self, input_scale: float, output_scale: float) -> Operator:
-        """Give the same operator in units in which signals have larger numbers.
-
-        Parameters
-        ----------
-        input_scale, output_scale
-            By which the numbers of input and output grow.
-
-        Returns
-        -------
-        Operator
-            ``output_scale f(u / input_scale)``, of the same kind.
-
-        Raises
-        ------
-        InputError
-            As ``parameter_scales``.
-        """
-        scales = self.parameter_scales(input_scale, output_scale)
-        return self.with_parameters(scales * self.parameters().values)
 
     @abstractmethod
     def lipschitz_constant(self) -> float:

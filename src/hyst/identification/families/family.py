@@ -169,7 +169,17 @@ class Family(ABC):
     def solve(
         self, problem: Problem, theta: Array, max_iterations: int, tolerance: float = 1e-3
     ) -> Solution:
-        """Minimise the squared error from a start."""
+        """Minimise the squared error from a start.
+
+        Parameters
+        ----------
+        problem
+            What to minimise.
+        theta
+            The start.
+        max_iterations, tolerance
+            As of ``minimize``.
+        """
         return minimize(problem, theta, max_iterations, tolerance)
 
     def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
@@ -263,7 +273,15 @@ class Fit:
         return self.parametrization.operator(self.solution.theta)
 
     def problem(self, data: Data, chosen: NDArray[np.bool_] | None = None) -> Problem:
-        """Pose the problem of this fit over other records or some samples."""
+        """Pose the problem of this fit over other records or some samples.
+
+        Parameters
+        ----------
+        data
+            The records.
+        chosen
+            Shape (samples used,): which samples count; all if left out.
+        """
         return problem_of(data, self.parametrization, chosen, self.family.root_weights(data))
 
 

@@ -36,12 +36,28 @@ class Option:
 
 
 def option(default: Any, what: Option) -> Any:
-    """Give the field of a family for an option."""
+    """Give the field of a family for an option.
+
+    Parameters
+    ----------
+    default
+        Its default.
+    what
+        The option.
+    """
     return field(default=default, metadata={"option": what})
 
 
 def whole_number_or_auto(least: int, most: int, help: str) -> Option:
-    """Give an option that is a count or ``"auto"``."""
+    """Give an option that is a count or ``"auto"``.
+
+    Parameters
+    ----------
+    least, most
+        Ends of the range.
+    help
+        One sentence.
+    """
 
     def check(value: Any, name: str) -> Any:
         if isinstance(value, str) and value == AUTO:
@@ -52,7 +68,15 @@ def whole_number_or_auto(least: int, most: int, help: str) -> Option:
 
 
 def whole_number(least: int, most: int, help: str) -> Option:
-    """Give an option that is a count."""
+    """Give an option that is a count.
+
+    Parameters
+    ----------
+    least, most
+        Ends of the range.
+    help
+        One sentence.
+    """
 
     def check(value: Any, name: str) -> int:
         return as_whole_number(value, name, least, most)
@@ -61,7 +85,15 @@ def whole_number(least: int, most: int, help: str) -> Option:
 
 
 def choice(choices: tuple[str, ...], help: str) -> Option:
-    """Give an option that is one of a few words."""
+    """Give an option that is one of a few words.
+
+    Parameters
+    ----------
+    choices
+        The words.
+    help
+        One sentence.
+    """
 
     def check(value: Any, name: str) -> str:
         if not isinstance(value, str) or value not in choices:
@@ -72,7 +104,18 @@ def choice(choices: tuple[str, ...], help: str) -> Option:
 
 
 def read_numbers(text: str, name: str) -> Any:
-    """Read numbers with commas between them."""
+    """Read numbers with commas between them.
+
+    Parameters
+    ----------
+    text, name
+        What was typed, and the option's name.
+
+    Raises
+    ------
+    InputError
+        If it is something else.
+    """
     try:
         return [float(each) for each in text.split(",")]
     except ValueError:
@@ -82,7 +125,18 @@ def read_numbers(text: str, name: str) -> Any:
 
 
 def read_number(text: str, name: str) -> float:
-    """Read one number."""
+    """Read one number.
+
+    Parameters
+    ----------
+    text, name
+        What was typed, and the option's name.
+
+    Raises
+    ------
+    InputError
+        If it is something else.
+    """
     try:
         return float(text)
     except ValueError:

@@ -8,7 +8,7 @@ from typing import Any
 from hyst.errors import InputError
 from hyst.identification.families.family import Family, require_this_version
 from hyst.identification.families.linear import Linear
-from hyst.identification.families.plays import (
+from hyst.identification.families.prandtl_ishlinskii import (
     GeneralizedPrandtlIshlinskii,
     ModifiedPrandtlIshlinskii,
     PrandtlIshlinskii,

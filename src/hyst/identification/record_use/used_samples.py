@@ -100,7 +100,13 @@ class Data:
         return [window.stop - window.start for window in self.windows()]
 
     def in_units(self, input_scale: float, output_scale: float) -> Data:
-        """Give the same records in units smaller by these factors: their numbers are larger."""
+        """Give the same records in smaller units, in which their numbers are larger.
+
+        Parameters
+        ----------
+        input_scale, output_scale
+            By which the numbers of input and output grow.
+        """
         records = tuple(
             replace(each, u=each.u * input_scale, y=each.y * output_scale) for each in self.records
         )

@@ -90,7 +90,7 @@ class Spread:
             Its column in ``open_directions``, counted from 0.
         """
         share = self.shares[:, direction]
-        return np.flatnonzero(share > INVOLVED * share.max())
+        return np.asarray(np.flatnonzero(share > INVOLVED * share.max()), dtype=np.intp)
 
 
 def spread_of_estimates(
