@@ -36,7 +36,13 @@ _SLOPES_TEXT = (
 @final
 @dataclass(frozen=True)
 class PrandtlIshlinskii(Plays):
-    """``y = sign (p0 u + sum_i p_i z_i) + offset``."""
+    """``y = sign (p0 u + sum_i p_i z_i) + offset``.
+
+    Parameters
+    ----------
+    plays, radii, weights
+        Number of plays or ``"auto"``, radii to keep, and what weights may be: see ``Plays``.
+    """
 
     name = "pi"
     words = Words(
@@ -66,6 +72,8 @@ class MappedPlays(Plays):
 
     Parameters
     ----------
+    plays, radii, weights
+        See ``Plays``.
     knots
         Number of knots of the map, 1 to 50, evenly spaced over the signal it acts on.
     """
@@ -100,7 +108,15 @@ class MappedPlays(Plays):
 @final
 @dataclass(frozen=True)
 class GeneralizedPrandtlIshlinskii(MappedPlays):
-    """``y = sign P[gamma(u)] + offset`` with an envelope gamma before the plays (S1 sec. 2.1)."""
+    """``y = sign P[gamma(u)] + offset`` with an envelope gamma before the plays (S1 sec. 2.1).
+
+    Parameters
+    ----------
+    plays, radii, weights
+        Number of plays or ``"auto"``, radii to keep, and what weights may be: see ``Plays``.
+    knots
+        Number of knots of the map, evenly spaced over the signal it acts on.
+    """
 
     name = "gpi"
     words = Words(
@@ -129,7 +145,15 @@ class GeneralizedPrandtlIshlinskii(MappedPlays):
 @final
 @dataclass(frozen=True)
 class ModifiedPrandtlIshlinskii(MappedPlays):
-    """``y = sign Lambda(P[u]) + offset`` with a map Lambda after the plays (S4 sec. III-D)."""
+    """``y = sign Lambda(P[u]) + offset`` with a map Lambda after the plays (S4 sec. III-D).
+
+    Parameters
+    ----------
+    plays, radii, weights
+        Number of plays or ``"auto"``, radii to keep, and what weights may be: see ``Plays``.
+    knots
+        Number of knots of the map, evenly spaced over the signal it acts on.
+    """
 
     name = "mpi"
     words = Words(
