@@ -26,6 +26,7 @@ from hyst.models.python_control import matrices_of, state_space_of
 from hyst.models.realizations import cascade, companion, sections_of, zero_order_hold
 from hyst.operators.base import Operator
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
+from hyst.operators.portrait import NOTHING, Portrait
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
 from hyst.operators.traits import Degree, Traits
@@ -286,6 +287,14 @@ class LinearDynamics(Operator):
         C, D = (each * (output_scale / input_scale) for each in (self.C, self.D))
         return LinearDynamics(self.A, self.B, C, D, self.dt, self.delay, self.x0 * input_scale)
 
+    def keeps_unit(self) -> bool:
+        """Tell whether the gain at rest is 1."""
+        return bool(np.isclose(self.dc_gain(), 1.0, rtol=1e-6))
+
+    def portrait(self) -> Portrait:
+        """Show nothing: dynamics are seen over frequency, not over the input."""
+        return NOTHING
+
     def lipschitz_constant(self) -> float:
         """Give the sum of the absolute impulse response; infinity if G is not stable."""
         if not self.is_stable():
@@ -379,18 +388,6 @@ class LinearDynamics(Operator):
         angle = 2.0 * np.pi * self.dt * np.atleast_1d(np.asarray(frequency, dtype=np.float64))
         points = np.exp(1j * angle)
         return np.asarray(values_at(points, self.A, self.B, self.C, self.D) / points**self.delay)
-
-    def scaled(self, factor: float) -> LinearDynamics:
-        """Give the system with its output multiplied by a number.
-
-        Parameters
-        ----------
-        factor
-            The number.
-        """
-        return LinearDynamics(
-            self.A, self.B, factor * self.C, factor * self.D, self.dt, self.delay, self.x0
-        )
 
     def __repr__(self) -> str:
         late = f", delay={self.delay}" if self.delay else ""

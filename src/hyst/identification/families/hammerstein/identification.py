@@ -215,7 +215,7 @@ def _normalized(dynamics: LinearDynamics) -> LinearDynamics:
             f"{peak:.3g} in all; an actuator or sensor that does not pass constant values cannot "
             "be split into hysteresis and dynamics of DC gain 1"
         )
-    return dynamics.scaled(1.0 / gain)
+    return dynamics.in_units(1.0, 1.0 / gain)
 
 
 def _inverse(dynamics: LinearDynamics) -> tuple[StableInverse | None, tuple[str, ...]]:
