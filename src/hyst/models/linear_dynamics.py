@@ -26,6 +26,7 @@ from hyst.models.python_control import matrices_of, state_space_of
 from hyst.models.realizations import cascade, companion, sections_of, zero_order_hold
 from hyst.operators.base import Operator
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
+from hyst.operators.portrait import NOTHING, Portrait
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
 from hyst.operators.traits import Degree, Traits
@@ -285,6 +286,14 @@ class LinearDynamics(Operator):
         """Give the system, and its initial state, in other units."""
         C, D = (each * (output_scale / input_scale) for each in (self.C, self.D))
         return LinearDynamics(self.A, self.B, C, D, self.dt, self.delay, self.x0 * input_scale)
+
+    def keeps_unit(self) -> bool:
+        """Tell whether the gain at rest is 1."""
+        return bool(np.isclose(self.dc_gain(), 1.0, rtol=1e-6))
+
+    def portrait(self) -> Portrait:
+        """Show nothing: dynamics are seen over frequency, not over the input."""
+        return NOTHING
 
     def lipschitz_constant(self) -> float:
         """Give the sum of the absolute impulse response; infinity if G is not stable."""

@@ -9,6 +9,7 @@ from hyst.operators.dead_zone import DeadZone
 from hyst.operators.description import ModelDescription
 from hyst.operators.parameters import Parameters
 from hyst.operators.play import Play
+from hyst.operators.portrait import Portrait
 from hyst.operators.provenance import Provenance, data_hash
 from hyst.operators.registry import operator_from_dict
 from hyst.operators.stepper import Stepper
@@ -25,6 +26,7 @@ __all__ = [
     "Operator",
     "Parameters",
     "Play",
+    "Portrait",
     "Provenance",
     "Stepper",
     "Stop",

@@ -18,6 +18,7 @@ from hyst.operators.constants import Constants
 from hyst.operators.description import Described, ModelDescription
 from hyst.operators.engine_name import EngineName, as_engine, as_threads
 from hyst.operators.model_file import MODEL, write_file
+from hyst.operators.portrait import LOOP, Portrait
 from hyst.operators.registry import compose
 from hyst.operators.stage import Stage
 from hyst.operators.stepper import Stepper
@@ -83,6 +84,14 @@ class Operator(Described, Constants, ABC):
         NotInvertibleError
             If there is none; the message names the condition that fails.
         """
+
+    def keeps_unit(self) -> bool:
+        """Tell whether a signal keeps its unit, as what is only bent, shifted or delayed does."""
+        return False
+
+    def portrait(self) -> Portrait:
+        """Say how the operator is best drawn: by its loop, unless it knows better."""
+        return LOOP
 
     @abstractmethod
     def lipschitz_constant(self) -> float:
