@@ -241,6 +241,16 @@ class Family(ABC):
         """
         return identified
 
+    def words_for(self, identified: Identified) -> Words:
+        """Give the words for a result: the family's own, unless the result has parts with others.
+
+        Parameters
+        ----------
+        identified
+            A result of this family.
+        """
+        return self.words
+
     @final
     def named_size(self, size: int) -> str:
         """Say a size in words."""
