@@ -13,9 +13,16 @@ from numpy.typing import NDArray
 
 import hyst
 from hyst._files import replacing_files, require_folder
-from hyst.cli.arguments import InputColumn, load_operator
+from hyst.cli.arguments import (
+    InputColumn,
+    OutputColumn,
+    Rate,
+    Repair,
+    TimeColumn,
+    TimeUnit,
+    load_operator,
+)
 from hyst.cli.console import at_work, note, show_files, show_table
-from hyst.cli.identify import OutputColumn, Rate, Repair, TimeColumn, TimeUnit
 
 Files = Annotated[
     list[Path],

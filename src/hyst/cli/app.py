@@ -16,6 +16,7 @@ from hyst.cli.compensate import compensate
 from hyst.cli.demo import demo
 from hyst.cli.excite import excite
 from hyst.cli.export import export
+from hyst.cli.family_options import FamilyCommand
 from hyst.cli.identify import identify
 from hyst.cli.info import info
 from hyst.cli.observer import observer
@@ -33,7 +34,7 @@ app = typer.Typer(
 )
 VERBS = (excite, identify, adapt, simulate, compensate, observer, export, info, reproduce, demo)
 for verb in VERBS:
-    app.command(verb.__name__)(verb)
+    app.command(verb.__name__, cls=FamilyCommand if verb is identify else None)(verb)
 
 
 def _show_version(wanted: bool) -> None:

@@ -29,6 +29,8 @@ Array = NDArray[np.float64]
 
 OUTPUT, SLOPE = "output", "slope"
 
+_SIGNAL_TO_NOISE = 3.0
+
 
 @final
 @dataclass(frozen=True)
@@ -69,11 +71,19 @@ class RambergOsgood(Family):
         OUTPUT, choice((OUTPUT, SLOPE), "Fit the output, or its slope over the input.")
     )
     signal_to_noise: Any = option(
-        3.0,
+        _SIGNAL_TO_NOISE,
         Option(
             as_not_negative, "With slopes: what a step must be over its noise.", read_number, "X"
         ),
     )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.regression != SLOPE and self.signal_to_noise != _SIGNAL_TO_NOISE:
+            raise InputError(
+                f"signal_to_noise is {self.signal_to_noise:g}, which regression "
+                f"{self.regression!r} does not use; leave it out, or choose regression {SLOPE!r}"
+            )
 
     def least_parameters(self, size: int) -> int:
         """Give 4: c1, c2, c3 and the offset."""
