@@ -11,7 +11,6 @@ import pytest
 import hyst
 from hyst.identification import Identified
 from hyst.identification.families.hammerstein.words import words_behind
-from hyst.identification.families.registry import families
 from hyst.report import in_short, write_report
 from hyst.report.words import command_method, lag_sentence, words_of
 
@@ -57,16 +56,6 @@ def result(model: hyst.Operator, family: str) -> Identified:
     return replace(found, model=model, family=family)
 
 
-@pytest.mark.parametrize("name", families)
-def test_every_family_is_explained(name: str) -> None:
-    words = families[name].words
-    assert words.full_name
-    assert words.equations[0].startswith("y(t) =")
-    assert words.explanations
-    assert all(each.endswith(".") for each in words.explanations)
-    assert not any("{" in each.format(sign="-") for each in words.equations)
-
-
 def test_the_sign_is_that_of_the_output() -> None:
     rising, falling = (words_of(result(hyst.Affine(k) @ PLAYS, "pi")) for k in (1.0, -1.0))
     assert rising.equations[0] == "y(t) = P[u](t) + offset"
@@ -85,7 +74,7 @@ def test_a_family_nobody_knows_is_told_by_what_it_does(family: str, name: str) -
 
 
 def test_dynamics_call_the_output_of_the_hysteresis_v() -> None:
-    words = words_behind(families["pi"].words)
+    words = words_behind(hyst.families["pi"].words)
     assert words.equations[0] == "v(t) = {sign}P[u](t) + offset"
     assert words.equations[-1] == "y(t) = G[v](t)"
     assert "is a play" in words.explanations[0]
