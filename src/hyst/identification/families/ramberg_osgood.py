@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hyst import models
 from hyst.checks.numbers import as_not_negative
+from hyst.errors import InputError
 from hyst.identification.families.family import Family, Fit, Start, Words
 from hyst.identification.families.option import Option, choice, option, read_number
 from hyst.identification.families.power_law_fit import (
