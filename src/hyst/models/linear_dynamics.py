@@ -91,19 +91,10 @@ class LinearDynamics(Operator):
         start = as_constants(np.zeros(b.size) if x0 is None else x0, "x0")
         if start.size != b.size:
             raise InputError(f"x0 has {start.size} entries; the order is {b.size}")
-        for name, value in zip(
-            ("A", "B", "C", "D", "_dt", "delay", "x0"),
-            (
-                a,
-                b,
-                c,
-                feedthrough,
-                as_sample_time(dt),
-                whole_number(delay, "delay", 0),
-                as_constants(start + 0.0, ""),
-            ),
-            strict=True,
-        ):
+        names = ("A", "B", "C", "D", "_dt", "delay", "x0")
+        numbers = (as_sample_time(dt), whole_number(delay, "delay", 0))
+        values = (a, b, c, feedthrough, *numbers, as_constants(start + 0.0, ""))
+        for name, value in zip(names, values, strict=True):
             object.__setattr__(self, name, value)
 
     @property
