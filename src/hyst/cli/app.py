@@ -17,6 +17,7 @@ from hyst.cli.demo import demo
 from hyst.cli.excite import excite
 from hyst.cli.export import export
 from hyst.cli.family_options import FamilyCommand
+from hyst.cli.fit import fit
 from hyst.cli.identify import identify
 from hyst.cli.info import info
 from hyst.cli.observer import observer
@@ -32,7 +33,19 @@ app = typer.Typer(
     help="From a measured hysteresis loop to a model, its exact inverse and a command.",
     epilog="Exit code: 0 done, 2 bad input, 1 failure.",
 )
-VERBS = (excite, identify, adapt, simulate, compensate, observer, export, info, reproduce, demo)
+VERBS = (
+    excite,
+    identify,
+    fit,
+    adapt,
+    simulate,
+    compensate,
+    observer,
+    export,
+    info,
+    reproduce,
+    demo,
+)
 for verb in VERBS:
     app.command(verb.__name__, cls=FamilyCommand if verb is identify else None)(verb)
 

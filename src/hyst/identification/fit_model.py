@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, final
 
 import numpy as np
@@ -138,14 +138,17 @@ def fit(
     parametrization, theta = parametrize_own(model, free, bounds or {})
     options = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
     data = prepare(given, start, 0, fewest_turns=0)
-    data = data.delayed(as_delay(delay, data))
+    data = data.delayed(as_delay(delay, data, ""))
     for record in (*given, *judged):
         model.require_sample_time(record.dt)
     with threadpool_limits(1, user_api="blas"):
         found = _fitted(OwnModel(parametrization, theta), data, options)
         require_sample_time(judged, data)
         told = identified_from_fit(data, found, (), judged, ())
-    return traced(told, given, asked)
+    # With other constants it is of the family it was of.
+    family = model.description.family
+    about = replace(told.description, family=family)
+    return traced(replace(told, family=family, description=about), given, asked)
 
 
 def parametrize_own(
