@@ -1,151 +1,39 @@
 """hyst: from a measured hysteresis loop to a model, its exact inverse and a command.
 
-Names are loaded when they are first used, so that ``import hyst`` stays quick.
+Names are loaded when they are first used, so that ``import hyst`` stays quick; ``__init__.pyi``
+lists them.
 """
 
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any
+import re
+from pathlib import Path
+from typing import Any
 
 __version__ = "0.1.0"
 
-if TYPE_CHECKING:
-    from hyst import (
-        compensation,
-        control,
-        demo,
-        errors,
-        export,
-        files,
-        identification,
-        io,
-        models,
-        online,
-        operators,
-        report,
-        signals,
-        studies,
-    )
-    from hyst.errors import (
-        HystError,
-        InputError,
-        MissingExtraError,
-        NotIdentifiableError,
-        NotInvertibleError,
-        SolverError,
-    )
-    from hyst.identification import Identified, identify
-    from hyst.io import read_record
-    from hyst.models import (
-        GeneralizedPrandtlIshlinskii,
-        LinearDynamics,
-        MasingOperator,
-        MemoryElement,
-        ModifiedPrandtlIshlinskii,
-        PrandtlIshlinskii,
-        RambergOsgood,
-        RateDependentPrandtlIshlinskii,
-    )
-    from hyst.models.model_loading import load
-    from hyst.operators import Affine, Composition, DeadZone, Operator, Play, Stop
-    from hyst.signals import Record
-
+# Where each name is at home; a package is at home in hyst itself.
 _HOME = {
-    "HystError": "hyst.errors",
-    "InputError": "hyst.errors",
-    "MissingExtraError": "hyst.errors",
-    "NotIdentifiableError": "hyst.errors",
-    "NotInvertibleError": "hyst.errors",
-    "SolverError": "hyst.errors",
-    "Identified": "hyst.identification",
-    "identify": "hyst.identification",
-    "read_record": "hyst.io",
-    "GeneralizedPrandtlIshlinskii": "hyst.models",
-    "LinearDynamics": "hyst.models",
-    "ModifiedPrandtlIshlinskii": "hyst.models",
-    "PrandtlIshlinskii": "hyst.models",
-    "RateDependentPrandtlIshlinskii": "hyst.models",
-    "MasingOperator": "hyst.models",
-    "MemoryElement": "hyst.models",
-    "RambergOsgood": "hyst.models",
-    "load": "hyst.models",
-    "Affine": "hyst.operators",
-    "Composition": "hyst.operators",
-    "DeadZone": "hyst.operators",
-    "Operator": "hyst.operators",
-    "Play": "hyst.operators",
-    "Stop": "hyst.operators",
-    "Record": "hyst.signals",
+    name: home
+    for home, name in re.findall(
+        r"^from (\S+) import (\w+) as \2$",
+        Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"),
+        re.MULTILINE,
+    )
 }
-_PACKAGES = (
-    "compensation",
-    "control",
-    "demo",
-    "errors",
-    "export",
-    "files",
-    "identification",
-    "io",
-    "models",
-    "online",
-    "operators",
-    "report",
-    "signals",
-    "studies",
-)
+_PACKAGES = tuple(name for name, home in _HOME.items() if home == "hyst")
 
-__all__ = [
-    "Affine",
-    "Composition",
-    "DeadZone",
-    "GeneralizedPrandtlIshlinskii",
-    "HystError",
-    "Identified",
-    "InputError",
-    "LinearDynamics",
-    "MasingOperator",
-    "MemoryElement",
-    "MissingExtraError",
-    "ModifiedPrandtlIshlinskii",
-    "NotIdentifiableError",
-    "NotInvertibleError",
-    "Operator",
-    "Play",
-    "PrandtlIshlinskii",
-    "RambergOsgood",
-    "RateDependentPrandtlIshlinskii",
-    "Record",
-    "SolverError",
-    "Stop",
-    "__version__",
-    "compensation",
-    "control",
-    "demo",
-    "errors",
-    "export",
-    "files",
-    "identification",
-    "identify",
-    "io",
-    "load",
-    "models",
-    "online",
-    "operators",
-    "read_record",
-    "report",
-    "signals",
-    "studies",
-]
+__all__ = ["__version__", *_HOME]
 
 
 def __getattr__(name: str) -> Any:
-    if name in _HOME:
-        value = getattr(importlib.import_module(_HOME[name]), name)
-    elif name in _PACKAGES:
+    if name not in _HOME:
+        raise AttributeError(f"module 'hyst' has no attribute {name!r}")
+    if name in _PACKAGES:
         value = importlib.import_module(f"hyst.{name}")
     else:
-        raise AttributeError(f"module 'hyst' has no attribute {name!r}")
+        value = getattr(importlib.import_module(_HOME[name]), name)
     globals()[name] = value
     return value
 
