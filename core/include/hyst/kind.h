@@ -1,4 +1,4 @@
-/* What a chain asks of a kind of stage: one row, which stands at the end of the kind's own source.
+/* What a chain asks of a kind of stage: one row, which stands beside the kind's step.
  * `model` is the kind's structure of constants, as hyst_pi. */
 #ifndef HYST_KIND_H
 #define HYST_KIND_H
