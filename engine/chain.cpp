@@ -4,7 +4,7 @@
 
 namespace hyst {
 
-Chain::Chain(const std::vector<kinds::Given> &stages) {
+Chain::Chain(const std::vector<kinds::Given> &stages) : given_(stages) {
     for (const kinds::Given &given : stages) {
         const kinds::Kind *kind = kinds::kind_named(given.kind);
         if (kind == nullptr) {
