@@ -161,7 +161,7 @@ double loss_gradient(const Chain &chain, double *state, const double *u, const d
     }
     const std::size_t width = chain.parameter_count();
     std::vector<double> y(samples), rows(samples * width), start(state, state + chain.state_length());
-    jacobian(chain, start.data(), u, samples, rows.data());
+    jacobian(chain, start.data(), u, samples, Derivative::automatic, rows.data());
     std::fill(gradient, gradient + width, 0.0);
     if (evaluate(chain, state, u, y.data(), 1, samples, options, nullptr) < samples) {
         return std::numeric_limits<double>::quiet_NaN();

@@ -5,7 +5,7 @@
 
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -14,7 +14,7 @@ typedef struct {
     hyst_real (*step)(const void *model, hyst_real *state, hyst_real u);
 } hyst_kind;
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

@@ -20,7 +20,7 @@
 
 #include <stdint.h>
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -127,7 +127,7 @@ static inline hyst_real hyst_power(hyst_real x, hyst_real e)
     return x > HYST_REAL(0.0) ? result : HYST_REAL(0.0);
 }
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 
