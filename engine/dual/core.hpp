@@ -15,7 +15,10 @@
 
 namespace hyst {
 
-double core_power(double x, double e);  // hyst_power of the core in double
+// hyst_power, hyst_log2 and hyst_exp2 of the core in double.
+double core_power(double x, double e);
+double core_log2(double x);
+double core_exp2(double v);
 
 namespace HYST_KINDS {
 

@@ -61,6 +61,8 @@ const Width &width_for(std::size_t columns) {
 }  // namespace
 
 double core_power(double x, double e) { return hyst_power(x, e); }
+double core_log2(double x) { return hyst_log2(x); }
+double core_exp2(double v) { return hyst_exp2(v); }
 
 void kernel_jacobian(const Said &said, const double *state, const Tangents &t) {
     const std::size_t columns = t.incoming + said.constants.size();
