@@ -1,4 +1,4 @@
-"""All families, from the simplest to the richest. A new one is one line here."""
+"""All families that ``families/__init__.pyi`` lists, from the simplest to the richest."""
 
 from __future__ import annotations
 
@@ -6,26 +6,21 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from hyst.errors import InputError
+from hyst.identification import families as listed
 from hyst.identification.families.family import Family, require_this_version
-from hyst.identification.families.linear import Linear
-from hyst.identification.families.prandtl_ishlinskii import (
-    GeneralizedPrandtlIshlinskii,
-    ModifiedPrandtlIshlinskii,
-    PrandtlIshlinskii,
-)
-from hyst.identification.families.ramberg_osgood import RambergOsgood
-from hyst.identification.families.rate_dependent import RateDependent
-
-_CLASSES: tuple[type[Family], ...] = (
-    Linear,
-    RambergOsgood,
-    PrandtlIshlinskii,
-    GeneralizedPrandtlIshlinskii,
-    ModifiedPrandtlIshlinskii,
-    RateDependent,
-)
 
 AUTO = "auto"
+
+
+def _richness(family: type[Family]) -> tuple[int, bool, str]:
+    """Order families by the parameters of their smallest size, those asked for by name first."""
+    smallest = family()
+    return smallest.least_parameters(smallest.sizes()[0]), family.compared, family.name
+
+
+_CLASSES: tuple[type[Family], ...] = tuple(
+    sorted((getattr(listed, each) for each in dir(listed)), key=_richness)
+)
 
 
 class Families(Mapping[str, Family]):
