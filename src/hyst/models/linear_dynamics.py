@@ -19,7 +19,7 @@ from hyst.models.linear_properties import (
     values_at,
     zeros_of,
 )
-from hyst.models.matrices import checked_matrices
+from hyst.models.matrices import LARGEST_DELAY, checked_matrices
 from hyst.models.realizations import cascade, companion, sections_of, zero_order_hold
 from hyst.operators.base import Operator
 from hyst.operators.checks import as_constants, as_number, as_whole_number
@@ -48,14 +48,14 @@ class LinearDynamics(Operator):
     dt
         Sample time, s, > 0. It says what a sample means; the equations do not need it.
     delay
-        Whole samples >= 0.
+        Whole samples, 0 to 10^6.
     x0
         Shape (n,), state before the first sample; zeros if left out. The delay line starts at 0.
 
     Raises
     ------
     InputError
-        If shapes do not fit, a number is not finite, or n is above 64.
+        If shapes do not fit, a number is not finite, n is above 64 or the delay too long.
 
     Examples
     --------
@@ -99,7 +99,7 @@ class LinearDynamics(Operator):
                 c,
                 feedthrough,
                 time,
-                as_whole_number(delay, "delay"),
+                as_whole_number(delay, "delay", most=LARGEST_DELAY),
                 as_constants(start + 0.0, ""),
             ),
             strict=True,

@@ -184,7 +184,7 @@ def as_number(value: Any, name: str) -> float:
     return float(number)
 
 
-def as_whole_number(value: Any, name: str, least: int = 0) -> int:
+def as_whole_number(value: Any, name: str, least: int = 0, most: int | None = None) -> int:
     """Check a number of samples or of states.
 
     Parameters
@@ -193,8 +193,8 @@ def as_whole_number(value: Any, name: str, least: int = 0) -> int:
         A whole number, at least ``least``.
     name
         What messages call it.
-    least
-        The smallest that is allowed.
+    least, most
+        The smallest and the largest that are allowed.
 
     Returns
     -------
@@ -208,6 +208,8 @@ def as_whole_number(value: Any, name: str, least: int = 0) -> int:
     number = as_number(value, name)
     if number < least or number != int(number):
         raise InputError(f"{name} is {value}; give a whole number, at least {least}")
+    if most is not None and number > most:
+        raise InputError(f"{name} is {value}; give at most {most}")
     return int(number)
 
 
