@@ -21,7 +21,7 @@ from hyst.models.linear_properties import (
     values_at,
     zeros_of,
 )
-from hyst.models.matrices import checked_matrices
+from hyst.models.matrices import LARGEST_DELAY, checked_matrices
 from hyst.models.python_control import matrices_of, state_space_of
 from hyst.models.realizations import cascade, companion, sections_of, zero_order_hold
 from hyst.operators.base import Operator
@@ -51,14 +51,14 @@ class LinearDynamics(Operator):
     dt
         Sample time, s, > 0. It says what a sample means; the equations do not need it.
     delay
-        Whole samples >= 0.
+        Whole samples, 0 to 10^6.
     x0
         Shape (n,), state before the first sample; zeros if left out. The delay line starts at 0.
 
     Raises
     ------
     InputError
-        If shapes do not fit, a number is not finite, or n is above 64.
+        If shapes do not fit, a number is not finite, n is above 64 or the delay too long.
 
     Examples
     --------
@@ -92,7 +92,7 @@ class LinearDynamics(Operator):
         if start.size != b.size:
             raise InputError(f"x0 has {start.size} entries; the order is {b.size}")
         names = ("A", "B", "C", "D", "_dt", "delay", "x0")
-        numbers = (as_sample_time(dt), whole_number(delay, "delay", 0))
+        numbers = (as_sample_time(dt), whole_number(delay, "delay", 0, LARGEST_DELAY))
         values = (a, b, c, feedthrough, *numbers, as_constants(start + 0.0, ""))
         for name, value in zip(names, values, strict=True):
             object.__setattr__(self, name, value)
