@@ -17,6 +17,9 @@ endif
 bin := .venv/bin
 installed := .venv/.installed
 installed_dev := .venv/.installed-dev
+# How long `make fuzz` runs, and its first seed.
+FUZZ_SECONDS ?= 60
+FUZZ_SEED ?= 1
 core_build := build/core-tests/$(notdir $(CC))
 built_from := pyproject.toml CMakeLists.txt core/SOURCES \
 	$(shell find core/include core/src engine)
@@ -28,7 +31,7 @@ export MKL_NUM_THREADS := 1
 export CC CXX
 
 .DEFAULT_GOAL := help
-.PHONY: help venv install demo test core-test embedded embedded-table misra lint types bench \
+.PHONY: help venv install demo test core-test fuzz embedded embedded-table misra lint types bench \
 	clean distclean
 
 help: ## list the targets
@@ -52,6 +55,9 @@ core-test: $(installed_dev) ## C tests of the core: double and float, plain and 
 	@$(bin)/ctest --test-dir $(core_build) --output-on-failure --parallel $(JOBS) \
 		--quiet --output-log $(core_build)/ctest.log || { cat $(core_build)/ctest.log; exit 1; }
 	@grep 'tests passed' $(core_build)/ctest.log
+
+fuzz: build/fuzz/engines ## random bytes through every engine against the core's loop, sanitized
+	build/fuzz/engines $(FUZZ_SECONDS) $(FUZZ_SEED)
 
 embedded: $(installed_dev) ## exported models on emulated Cortex-M4F and M7: numbers and costs
 	PYTHONPATH=tests $(bin)/python -m embedded --jobs $(JOBS)
@@ -94,6 +100,9 @@ define demand_compilers
 		echo "hyst needs a C and a C++ compiler, and there is no $$compiler;" \
 		"install one, or name it: make CC=gcc CXX=g++" >&2; exit 1; }; done
 endef
+
+build/fuzz/engines: core/SOURCES $(shell find core/include core/src engine)
+	sh engine/fuzz/build.sh $(@D)
 
 # pip fetches what builds the package (scikit-build-core, nanobind and, where the machine has none,
 # cmake and ninja) into an environment of its own.

@@ -59,7 +59,9 @@ def compare(
     """Time all of them in turn; the project is the one in single."""
     folder.mkdir()
     begin = time.perf_counter()
-    projects = {each: c_project(model, folder / each, each) for each in ("double", "single")}
+    projects = {
+        each: c_project(model, folder / each, precision=each) for each in ("double", "single")
+    }
     seconds = (time.perf_counter() - begin) / 2.0
     step, samples = model.stepper(), u.tolist()
     works: dict[str, Callable[[], object]] = {

@@ -44,7 +44,7 @@ def main() -> None:
 def steps_per_second(model: Operator, version: str, driver: Path) -> float:
     """Export, unpack and time one FMU."""
     with tempfile.TemporaryDirectory() as folder:
-        written = hyst.export.fmu(model, Path(folder) / "model.fmu", version)
+        written = hyst.export.fmu(model, Path(folder) / "model.fmu", version=version)
         with zipfile.ZipFile(written.path) as archive:
             library = next(each for each in written.files if each.startswith("binaries/"))
             archive.extract(library, folder)

@@ -91,7 +91,7 @@ def identified(u: Array, y: Array, regression: str, seed: int) -> Array | None:
             hyst.Record(u, y + noise, 1e-3),
             family="ramberg-osgood",
             regression=regression,
-            signal_to_noise=0.3,
+            **({"signal_to_noise": 0.3} if regression == "slope" else {}),
             delay=0,
             start=0,
         )

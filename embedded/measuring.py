@@ -77,7 +77,7 @@ def measure(case: Case, work: Path, store: ObjectStore) -> Result:
     for precision in PRECISIONS:
         projects[precision] = work / precision / "project"
         projects[precision].parent.mkdir(parents=True, exist_ok=True)
-        c_project(case.model, projects[precision], precision, force=True)
+        c_project(case.model, projects[precision], precision=precision, force=True)
     expected = {precision: case.expected(precision) for precision in PRECISIONS}
     costs = {}
     for build in BUILDS:

@@ -85,7 +85,7 @@ def exported_sources(folder: Path) -> list[Path]:
     sources = []
     for number, model in enumerate({id(each): each for each in kinds.values()}.values()):
         project = folder / f"export_{number}"
-        c_project(model, project, "single")
+        c_project(model, project, precision="single")
         sources.append(project / "stage.c")
     return sources
 

@@ -40,7 +40,8 @@ public:
 
     hyst_chain view() const { return {core_.size(), core_.data()}; }
     const std::vector<Stage> &stages() const { return stages_; }
-    // What the core is given of stage i.
+    // What the operator says of stage i, and what the core is given of it.
+    const kinds::Given &given(std::size_t i) const { return given_[i]; }
     const kinds::Constants &constants(std::size_t i) const { return constants_[i]; }
     std::size_t state_length() const;
     std::size_t parameter_count() const;

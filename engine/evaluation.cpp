@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kSmallestPart = 16384;  // samples that are worth a thread
 constexpr std::size_t kBlock = 4096;          // samples copied, or looked at, while they are in the cache
 constexpr double kNot = std::numeric_limits<double>::quiet_NaN();
+constexpr double kModerate = 1e150;  // for an output that goes on through stages of any constants
 
 // The memory curve gives up the last bits of y, so it must be worth it.
 constexpr double kWorthwhileShare = 0.6;
@@ -61,16 +62,27 @@ bool in_blocks(std::size_t samples, const Work &work) {
     return true;
 }
 
-// This and all that follow return whether all of u and y were finite.
+struct Way {
+    Engine engine;
+    double limit = kHuge;  // of the sums along a memory curve
+};
+
+// This and all that follow return whether all of u and y were finite; along the memory curve also
+// false where that is left to the core's order of operations.
 bool along_curve(const hyst_pi &pi, const double *state, const double *u, double *y,
-                 std::size_t samples) {
+                 std::size_t samples, double limit) {
     MemoryCurve curve(pi, state);
-    if (u != y) return curve.run(u, y, samples) == samples;
-    std::vector<double> copy(std::min(samples, kBlock));
-    return in_blocks(samples, [&](std::size_t first, std::size_t count) {
-        std::copy(u + first, u + first + count, copy.begin());
-        return curve.run(copy.data(), y + first, count) == count;
-    });
+    bool finite = false;
+    if (u != y) {
+        finite = curve.run(u, y, samples);
+    } else {
+        std::vector<double> copy(std::min(samples, kBlock));
+        finite = in_blocks(samples, [&](std::size_t first, std::size_t count) {
+            std::copy(u + first, u + first + count, copy.begin());
+            return curve.run(copy.data(), y + first, count);
+        });
+    }
+    return finite && curve.largest() <= headroom(pi, state, limit);
 }
 
 bool in_loop(const Stage &stage, double *state, const double *u, double *y,
@@ -84,10 +96,10 @@ bool in_loop(const Stage &stage, double *state, const double *u, double *y,
     return finite && all_finite(y, samples);
 }
 
-bool run_part(const Stage &stage, Engine engine, double *state, const double *u, double *y,
+bool run_part(const Stage &stage, Way way, double *state, const double *u, double *y,
               std::size_t samples) {
-    if (engine == Engine::lanes) return Lanes(stage).run(state, u, y, samples);
-    if (engine == Engine::loop) {
+    if (way.engine == Engine::lanes) return Lanes(stage).run(state, u, y, samples);
+    if (way.engine == Engine::loop) {
         return in_blocks(samples, [&](std::size_t first, std::size_t count) {
             return in_loop(stage, state, u + first, y + first, count);
         });
@@ -95,17 +107,17 @@ bool run_part(const Stage &stage, Engine engine, double *state, const double *u,
     const hyst_pi &bank = *stage.kind->plays->bank(stage.model);
     std::vector<double> end(state, state + bank.count);
     Lanes(stage).jump(end.data(), u, samples);
-    const bool finite = along_curve(bank, state, u, y, samples);
+    const bool finite = along_curve(bank, state, u, y, samples, way.limit);
     std::copy(end.begin(), end.end(), state);
     return finite;
 }
 
 // Parts of the record on threads, each from the exact state that the parts before it leave.
-bool run_parts(const Stage &stage, Engine engine, double *state, const double *u, double *y,
+bool run_parts(const Stage &stage, Way way, double *state, const double *u, double *y,
                std::size_t samples, std::size_t threads) {
     const std::size_t parts = std::min(threads, samples / kSmallestPart);
-    if (parts <= 1 || engine == Engine::loop) {
-        return run_part(stage, engine, state, u, y, samples);
+    if (parts <= 1 || way.engine == Engine::loop) {
+        return run_part(stage, way, state, u, y, samples);
     }
     const std::size_t values = stage.state_length(), length = samples / parts;
     std::vector<double> states, end(state, state + values);
@@ -117,7 +129,7 @@ bool run_parts(const Stage &stage, Engine engine, double *state, const double *u
     parallel(parts, threads, [&](std::size_t part) {
         const std::size_t first = part * length;
         const std::size_t count = part + 1 < parts ? length : samples - first;
-        finite[part] = run_part(stage, engine, &states[part * values], u + first, y + first, count);
+        finite[part] = run_part(stage, way, &states[part * values], u + first, y + first, count);
     });
     for (std::size_t i = 0; i < values; ++i) state[i] = states[(parts - 1) * values + i];
     return std::find(finite.begin(), finite.end(), 0) == finite.end();
@@ -133,7 +145,9 @@ bool run_chain(const Chain &chain, double *state, const double *u, double *y, st
     for (const Stage &stage : chain.stages()) {
         const Choice choice = choose(stage, state, in, samples, options.engine);
         if (choices != nullptr) choices->push_back(choice);
-        if (!run_parts(stage, choice.engine, state, in, y, samples, options.threads)) return false;
+        // The last bits that the curve gives up must not decide on an overflow further on.
+        const Way way{choice.engine, &stage == &chain.stages().back() ? kHuge : kModerate};
+        if (!run_parts(stage, way, state, in, y, samples, options.threads)) return false;
         state += stage.state_length();
         in = y;
     }
@@ -151,6 +165,11 @@ std::size_t run_guarded(const Chain &chain, double *state, const double *u, doub
         if (guard.fault) return k;
     }
     return samples;
+}
+
+void tell_of_core(const Chain &chain, std::vector<Choice> &choices) {
+    choices.assign(chain.stages().size(),
+                   {Engine::loop, "only the core's order tells what overflows", kNot, kNot, kNot, {}});
 }
 
 // Short records of a batch: as many as there are lanes go side by side.
@@ -188,8 +207,17 @@ Choice choose(const Stage &stage, const double *state, const double *u, std::siz
 bool evaluate_stage(const Stage &stage, double *state, const double *u, double *y,
                     std::size_t samples, const Options &options) {
     if (samples == 0) return true;
-    const Choice choice = choose(stage, state, u, samples, options.engine);
-    return run_parts(stage, choice.engine, state, u, y, samples, options.threads);
+    const Engine engine = choose(stage, state, u, samples, options.engine).engine;
+    if (engine != Engine::memory_curve) {
+        return run_parts(stage, {engine}, state, u, y, samples, options.threads);
+    }
+    const std::vector<double> before(state, state + stage.state_length());
+    std::vector<double> copy;
+    if (u == y) copy.assign(u, u + samples);
+    const double *in = u == y ? copy.data() : u;
+    if (run_parts(stage, {engine}, state, in, y, samples, options.threads)) return true;
+    std::copy(before.begin(), before.end(), state);
+    return run_parts(stage, {Engine::lanes}, state, in, y, samples, options.threads);
 }
 
 std::size_t evaluate(const Chain &chain, double *states, const double *u, double *y,
@@ -222,8 +250,9 @@ std::size_t evaluate(const Chain &chain, double *states, const double *u, double
     std::copy(before.begin(), before.end(), states);
     std::size_t bad = kernels().first_non_finite(u, total);
     if (bad < total) return bad;
-    // Something overflows. The core's step says where, and whether it does so there too: sums of the
-    // memory curve can where those of the plays do not.
+    // Something overflows, or may. The core's step says whether and where: sums in its order are what
+    // counts, not those of the memory curve.
+    if (choices != nullptr) tell_of_core(chain, *choices);
     for (std::size_t row = 0; row < rows; ++row) {
         const std::size_t first = row * samples;
         const std::size_t taken =

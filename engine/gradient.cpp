@@ -1,6 +1,7 @@
 #include "gradient.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct Memory {
 // Loss and sums over a part of the record; by_direction is turned into the gradient by r at the end.
 struct Sums {
     double loss = 0.0, by_p0 = 0.0;
+    double largest = 0.0;  // magnitude of the input
     std::vector<double> by_p, by_direction;
 
     explicit Sums(std::size_t plays) : by_p(plays, 0.0), by_direction(plays, 0.0) {}
@@ -35,6 +37,7 @@ struct Sums {
     void add(const Sums &other) {
         loss += other.loss;
         by_p0 += other.by_p0;
+        largest = std::max(largest, other.largest);
         for (std::size_t i = 0; i < by_p.size(); ++i) by_p[i] += other.by_p[i];
         for (std::size_t i = 0; i < by_p.size(); ++i) by_direction[i] += other.by_direction[i];
     }
@@ -50,6 +53,7 @@ void step_by_step(const hyst_pi &pi, Memory &memory, const double *u, const doub
             memory.z[i] = now;
             error += pi.p[i] * now;
         }
+        sums.largest = std::max(sums.largest, std::abs(u[k]));
         sums.loss += 0.5 * error * error;
         sums.by_p0 += error * u[k];
         for (std::size_t i = 0; i < pi.count; ++i) {
@@ -84,6 +88,7 @@ void in_lanes(const hyst_pi &pi, const Memory &start, const double *u, const dou
     const GradientSums found = fast.gradient_lanes(bank, u, target, length, length);
     sums.loss += found.loss;
     sums.by_p0 += found.by_p0;
+    sums.largest = std::max(sums.largest, found.largest);
     for (std::size_t i = 0; i < n; ++i) sums.by_p[i] += sum_of(&by_p[i * width], width);
     for (std::size_t i = 0; i < n; ++i) {
         sums.by_direction[i] += sum_of(&by_direction[i * width], width);
@@ -114,6 +119,7 @@ void along_curve(const hyst_pi &pi, const Memory &memory, const double *u, const
     fast.finish_curve_gradient(data);
     sums.loss += data.loss;
     sums.by_p0 += data.by_p0;
+    sums.largest = data.curve.largest;
     double input = 0.0, way = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
         input += by_input[i];
@@ -123,10 +129,11 @@ void along_curve(const hyst_pi &pi, const Memory &memory, const double *u, const
     }
 }
 
-}  // namespace
-
-double pi_loss_gradient(const hyst_pi &pi, double *z, const double *u, const double *target,
-                        std::size_t samples, const Options &options, double *gradient) {
+// Of a single bank: by p0, p_1 .. p_n, r_1 .. r_n. Returns false, and nothing of use, where only the
+// core's order of operations tells whether y overflows.
+bool bank_loss_gradient(const hyst_pi &pi, double *z, const double *u, const double *target,
+                        std::size_t samples, const Options &options, double *gradient,
+                        double &loss) {
     const std::size_t n = pi.count;
     const std::size_t parts = std::max<std::size_t>(1, std::min(options.threads, samples / 16384));
     const std::size_t length = samples / parts;
@@ -146,27 +153,33 @@ double pi_loss_gradient(const hyst_pi &pi, double *z, const double *u, const dou
         add(pi, starts[part], u + first, target + first, count, sums[part]);
     });
     for (std::size_t part = 1; part < parts; ++part) sums[0].add(sums[part]);
+    if (!(sums[0].largest <= headroom(pi, z, kHuge))) return false;
     gradient[0] = sums[0].by_p0;
     for (std::size_t i = 0; i < n; ++i) gradient[1 + i] = sums[0].by_p[i];
     for (std::size_t i = 0; i < n; ++i) gradient[1 + n + i] = pi.p[i] * sums[0].by_direction[i];
     std::copy(memory.z.begin(), memory.z.end(), z);
-    return sums[0].loss;
+    loss = sums[0].loss;
+    return true;
 }
+
+}  // namespace
 
 double loss_gradient(const Chain &chain, double *state, const double *u, const double *target,
                      std::size_t samples, const Options &options, double *gradient) {
     const Stage *stage = chain.stages().data();
-    if (chain.stages().size() == 1 && stage->kind == &kinds::pi && Lanes::can_take(*stage)) {
-        return pi_loss_gradient(*static_cast<const hyst_pi *>(stage->model), state, u, target, samples, options, gradient);
+    double loss = 0.0;
+    if (chain.stages().size() == 1 && stage->kind == &kinds::pi && Lanes::can_take(*stage) &&
+        bank_loss_gradient(*static_cast<const hyst_pi *>(stage->model), state, u, target, samples,
+                           options, gradient, loss)) {
+        return loss;
     }
     const std::size_t width = chain.parameter_count();
     std::vector<double> y(samples), rows(samples * width), start(state, state + chain.state_length());
-    jacobian(chain, start.data(), u, samples, rows.data());
+    jacobian(chain, start.data(), u, samples, Derivative::automatic, rows.data());
     std::fill(gradient, gradient + width, 0.0);
     if (evaluate(chain, state, u, y.data(), 1, samples, options, nullptr) < samples) {
         return std::numeric_limits<double>::quiet_NaN();
     }
-    double loss = 0.0;
     for (std::size_t k = 0; k < samples; ++k) {
         const double error = y[k] - target[k];
         loss += 0.5 * error * error;

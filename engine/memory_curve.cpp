@@ -1,7 +1,7 @@
 #include "memory_curve.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace hyst {
 
@@ -13,6 +13,18 @@ bool is_admissible(const hyst_pi &pi, const double *z) {
         if (!(std::abs(z[i + 1] - z[i]) <= reach)) return false;
     }
     return true;
+}
+
+double headroom(const hyst_pi &pi, const double *z, double limit) {
+    double weights = 0.0, start = 0.0;
+    for (std::size_t i = 0; i < pi.count; ++i) {
+        weights += std::abs(pi.p[i]);
+        start = std::max(start, std::abs(z[i]));
+    }
+    // A play is never further from 0 than at the start or than the input has been.
+    const double held = weights * (start + pi.r[pi.count - 1]);
+    const double room = (limit - held) / (std::abs(pi.p0) + weights);
+    return std::min(room, limit);  // in this order a NaN stays one
 }
 
 MemoryCurve::MemoryCurve(const hyst_pi &pi, const double *z)
@@ -27,7 +39,7 @@ MemoryCurve::MemoryCurve(const hyst_pi &pi, const double *z)
     }
     for (std::size_t i = pi.count; i-- > 0;) start_sum_[i] = start_sum_[i + 1] + pi.p[i] * z[i];
     data_ = {&pi,  z, p_sum_.data(), pr_sum_.data(), start_sum_.data(), first_in_cell_.data(),
-             0.0, stack_.data(), 0};
+             0.0, stack_.data(), 0, 0.0};
     build_index(pi);
 }
 

@@ -137,12 +137,19 @@ void set_parameters(hyst::Chain &chain, Signal values) {
     chain.set_parameters(values.data());
 }
 
-void jacobian(const hyst::Chain &chain, Vector state, Signal u, Matrix result) {
+hyst::Derivative derivative_named(const std::string &name) {
+    require(name == "auto" || name == "kernel", "derivative is auto or kernel");
+    return name == "auto" ? hyst::Derivative::automatic : hyst::Derivative::kernel;
+}
+
+void jacobian(const hyst::Chain &chain, Vector state, Signal u, Matrix result,
+              const std::string &derivative) {
     require(state.shape(0) == chain.state_length(), "state has the wrong length");
     require(result.shape(0) == u.shape(0) && result.shape(1) == chain.parameter_count(),
             "the Jacobian has the wrong shape");
+    const hyst::Derivative way = derivative_named(derivative);
     const nb::gil_scoped_release released;
-    hyst::jacobian(chain, state.data(), u.data(), u.shape(0), result.data());
+    hyst::jacobian(chain, state.data(), u.data(), u.shape(0), way, result.data());
 }
 
 // Plays whose thresholds are given for every sample: row k of r.
@@ -206,7 +213,7 @@ NB_MODULE(_engine, module) {
              nb::arg("u").noconvert(), nb::arg("target").noconvert(),
              nb::arg("gradient").noconvert(), nb::arg("engine") = "auto", nb::arg("threads") = 1)
         .def("jacobian", &jacobian, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
-             nb::arg("result").noconvert());
+             nb::arg("result").noconvert(), nb::arg("derivative") = "auto");
     module.def("play_gram", &gram, nb::arg("r"), nb::arg("z").noconvert(),
                nb::arg("u").noconvert(), nb::arg("y").noconvert(), nb::arg("edges"),
                nb::arg("result").noconvert());

@@ -24,8 +24,10 @@ hyst_real hyst_stage_step(const hyst_stage *stage, hyst_real *state, hyst_real u
 hyst_real hyst_chain_step(const hyst_chain *chain, hyst_real *state, hyst_real u)
 {
     for (size_t i = 0; i < chain->count; ++i) {
+        if (i > 0u) {
+            state += hyst_stage_state_length(&chain->stage[i - 1u]);
+        }
         u = hyst_stage_step(&chain->stage[i], state, u);
-        state += hyst_stage_state_length(&chain->stage[i]);
     }
     return u;
 }
@@ -33,8 +35,11 @@ hyst_real hyst_chain_step(const hyst_chain *chain, hyst_real *state, hyst_real u
 void hyst_stage_run(const hyst_stage *stage, hyst_real *state, const hyst_real *u, hyst_real *y,
                     size_t samples)
 {
+    /* Looked up once: what is written to y could be the row, as far as a compiler knows. */
+    const hyst_stage own = *stage;
+    const hyst_kind kind = *own.kind;
     for (size_t k = 0; k < samples; ++k) {
-        y[k] = hyst_stage_step(stage, state, u[k]);
+        y[k] = kind.step(own.model, state, u[k]);
     }
 }
 

@@ -6,8 +6,10 @@ hyst_real hyst_guarded_step(const hyst_chain *chain, hyst_real *state, hyst_guar
 {
     /* Every stage is given a finite number or nothing: a finite input may overflow on its way. */
     for (size_t i = 0; i < chain->count && hyst_is_finite(u); ++i) {
+        if (i > 0u) {
+            state += hyst_stage_state_length(&chain->stage[i - 1u]);
+        }
         u = hyst_stage_step(&chain->stage[i], state, u);
-        state += hyst_stage_state_length(&chain->stage[i]);
     }
     if (hyst_is_finite(u)) {
         guard->y_last = u;

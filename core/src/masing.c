@@ -209,15 +209,3 @@ hyst_real hyst_masing_step(const hyst_masing *model, hyst_real *state, hyst_real
     return model->last_reversal ? of_last_reversal(model, state, input)
                                 : nested(model, state, input);
 }
-
-static size_t masing_length(const void *model)
-{
-    return hyst_masing_state_length((const hyst_masing *)model);
-}
-
-static hyst_real masing_step(const void *model, hyst_real *state, hyst_real u)
-{
-    return hyst_masing_step((const hyst_masing *)model, state, u);
-}
-
-const hyst_kind hyst_masing_kind = {masing_length, masing_step};

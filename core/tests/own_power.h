@@ -1,5 +1,5 @@
-/* What a firmware may name with HYST_POWER_HEADER: a power function of its own. This one is libm's, and
- * it counts how often it is taken. */
+/* What a firmware may name with HYST_POWER_HEADER: power, logarithm and exponential of its
+ * own. These are libm's, and powers are counted. */
 #ifndef OWN_POWER_H
 #define OWN_POWER_H
 
@@ -18,5 +18,9 @@ static inline hyst_real hyst_power(hyst_real x, hyst_real e)
     return pow(x, e);
 #endif
 }
+
+static inline hyst_real hyst_log2(hyst_real x) { return (hyst_real)log2((double)x); }
+
+static inline hyst_real hyst_exp2(hyst_real v) { return (hyst_real)exp2((double)v); }
 
 #endif

@@ -1,5 +1,5 @@
-// Fuzz target for libFuzzer: every engine on every instruction set against the core's loop.
-// engine/fuzz/build.sh builds it; docs/engine.md says how long it has run.
+// Fuzz target: every engine on every instruction set against the core's loop. `make fuzz` builds and
+// runs it with driver.cpp; libFuzzer can drive it too (build.sh).
 //
 // The bytes are a bank, its memory and a record. Numbers come from a few bytes in three ways, so
 // that ties, plateaus and rounding all happen: small multiples of 1/8, differences of those by
@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 #include "../evaluation.hpp"
@@ -54,6 +55,32 @@ bool same(const std::vector<double> &a, const std::vector<double> &b) {
     return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
+std::unique_ptr<hyst::Chain> chain_of(bool rate_dependent, const std::vector<double> &p,
+                                      const std::vector<double> &r) {
+    hyst::kinds::Given given{"pi", "", {0.3}, {{"knees", {}}}, {{"plays", p.size()}, {"powers", 1}}, 1.0};
+    given.constants.insert(given.constants.end(), p.begin(), p.end());
+    given.constants.insert(given.constants.end(), r.begin(), r.end());
+    if (rate_dependent) {
+        given.kind = "rate_dependent_pi";
+        given.constants.insert(given.constants.end(), {0.25, 0.125});
+    }
+    return std::make_unique<hyst::Chain>(std::vector<hyst::kinds::Given>{given});
+}
+
+bool all_finite(const std::vector<double> &u) {
+    return std::all_of(u.begin(), u.end(), [](double each) { return std::isfinite(each); });
+}
+
+// The loss is refused, by a NaN, where the loop refuses a sample; target is anything finite.
+void check_loss(const hyst::Chain &chain, const std::vector<double> &z, const std::vector<double> &u,
+                const std::vector<double> &target, hyst::Engine engine, bool refused) {
+    std::vector<double> state = z, gradient(chain.parameter_count());
+    const double loss = hyst::loss_gradient(chain, state.data(), u.data(), target.data(), u.size(),
+                                            {engine, 1}, gradient.data());
+    if (refused) demand(std::isnan(loss) && same(state, z), "what the loss refuses");
+    if (!refused) demand(!std::isnan(loss), "what the loss takes");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
@@ -75,15 +102,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     }
     if (u.empty()) return 0;
 
-    hyst::kinds::Given given{"pi", "", {0.3}, {{"knees", {}}}, {{"plays", n}, {"powers", 1}}, 1.0};
-    given.constants.insert(given.constants.end(), p.begin(), p.end());
-    given.constants.insert(given.constants.end(), r.begin(), r.end());
-    if (kind & 64) {
-        given.kind = "rate_dependent_pi";
-        given.constants.insert(given.constants.end(), {0.25, 0.125});
-        z.insert(z.end(), {0.5, kind & 128 ? 1.0 : 0.0});
-    }
-    const hyst::Chain chain({given});
+    const bool rate_dependent = kind & 64;
+    const std::unique_ptr<hyst::Chain> bank = chain_of(rate_dependent, p, r);
+    const hyst::Chain &chain = *bank;
+    if (rate_dependent) z.insert(z.end(), {0.5, kind & 128 ? 1.0 : 0.0});
     for (auto each = hyst::available_kernels(); *each != nullptr; ++each) {
         hyst::use_kernels((*each)->name);
         std::vector<double> state = z, y(u.size());
@@ -98,10 +120,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
             demand(same(state_found, state), "the state");
             if (taken == u.size() && engine == hyst::Engine::lanes) demand(same(y_found, y), "y");
         }
-        if (taken == u.size()) {
-            std::vector<double> gradient(chain.parameter_count());
-            hyst::loss_gradient(chain, z.data(), u.data(), y.data(), u.size(),
-                                {hyst::Engine::memory_curve, 1}, gradient.data());
+        if (!all_finite(u)) continue;
+        for (hyst::Engine engine : {hyst::Engine::lanes, hyst::Engine::memory_curve}) {
+            check_loss(chain, z, u, taken == u.size() ? y : u, engine, taken < u.size());
         }
     }
     return 0;

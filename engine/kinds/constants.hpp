@@ -104,9 +104,9 @@ public:
     // Keeps a structure of the core as long as its constants.
     template <class Model>
     const void *hold(const Model &model) {
-        const std::align_val_t alignment{alignof(Model)};
+        constexpr std::align_val_t alignment{alignof(Model)};
         model_ = {::operator new(sizeof(Model), alignment),
-                  [alignment](void *place) { ::operator delete(place, alignment); }};
+                  [](void *place) { ::operator delete(place, std::align_val_t{alignof(Model)}); }};
         return new (model_.get()) Model(model);
     }
 

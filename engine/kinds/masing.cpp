@@ -107,7 +107,7 @@ const Kind masing = {"masing",
                      derive_masing,
                      fill_masing,
                      {"hyst/masing.h", "$signal = hyst_masing_step(&$model, $memory, $signal);"},
-                     HYST_IN_DOUBLE(masing_jacobian),
+                     nullptr,
                      HYST_IN_DOUBLE(run_masing),
                      nullptr};
 

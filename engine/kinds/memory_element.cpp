@@ -1,7 +1,6 @@
 // Memory elements.
 #include "hyst/memory_element.h"
 
-#include "fast/memory_element.hpp"
 #include "kind.hpp"
 
 namespace hyst {
@@ -57,7 +56,7 @@ const Kind memory_element = {
     derive_memory_element,
     fill_memory_element,
     {"hyst/memory_element.h", "$signal = hyst_memory_element_step(&$model, $memory, $signal);"},
-    HYST_IN_DOUBLE(memory_element_jacobian),
+    nullptr,
     nullptr,
     nullptr};
 

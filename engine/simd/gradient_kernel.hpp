@@ -58,7 +58,7 @@ inline double sum_of_lanes(Pack pack) {
 
 inline GradientSums gradient_lanes(const GradientBank &bank, const double *u, const double *target,
                                    std::size_t samples, std::size_t stride) {
-    Pack squares{}, by_p0{};
+    Pack squares{}, by_p0{}, sizes{};
     for (std::size_t k = 0; k < samples; k += kWidth) {
         Pack in[kWidth], wanted[kWidth], error[kWidth];
         for (std::size_t c = 0; c < kWidth; ++c) {
@@ -72,12 +72,17 @@ inline GradientSums gradient_lanes(const GradientBank &bank, const double *u, co
         forward(bank, in, error);
         for (std::size_t t = 0; t < kWidth; ++t) {
             error[t] -= wanted[t];
+            sizes = larger(sizes, magnitude(in[t]));
             squares += error[t] * error[t];
             by_p0 += error[t] * in[t];
         }
         add_sums(bank, error);
     }
-    return {0.5 * sum_of_lanes(squares), sum_of_lanes(by_p0)};
+    double largest = 0.0;
+    for (std::size_t lane = 0; lane < kWidth; ++lane) {
+        largest = sizes[lane] > largest ? sizes[lane] : largest;
+    }
+    return {0.5 * sum_of_lanes(squares), sum_of_lanes(by_p0), largest};
 }
 
 }  // namespace hyst::HYST_INSTRUCTION_SET

@@ -44,6 +44,7 @@ struct MemoryCurveData {
     double cells_per_unit;
     Segment *stack;  // count + 2: at most one segment a play, and an empty one on top
     std::size_t depth;
+    double largest;  // magnitude of the samples taken so far
 };
 
 // Sums of the gradient along a memory curve; see curve_gradient_kernel.hpp.
@@ -65,8 +66,9 @@ struct GradientBank {
 };
 
 struct GradientSums {
-    double loss;   // half the sum of squared errors
-    double by_p0;  // sum of error times input
+    double loss;     // half the sum of squared errors
+    double by_p0;    // sum of error times input
+    double largest;  // magnitude of the input
 };
 
 // A branch of a loading curve: y = output +- twice f(|share u - start|).
@@ -94,8 +96,7 @@ struct Kernels {
     void (*rate_dependent_pi_jump)(const hyst_rate_dependent_pi &model, double previous,
                                    const double *u, std::size_t count, double *z);
 
-    // Returns how many samples were finite and have been taken; 0 if y was not finite. y may not be
-    // u.
+    // Returns how many samples were finite and have been taken. y may not be u.
     std::size_t (*memory_curve)(MemoryCurveData &curve, const double *u, double *y,
                                 std::size_t count);
 

@@ -1,8 +1,8 @@
 // Straight stretches of the memory curve: while the input moves one way and pushes no further play,
 // the output is a + b u.
 //
-// Invariant: a sample is taken only if it is not behind the one before it and not beyond the limit;
-// as the limit is finite, infinities and NaNs end a stretch.
+// Invariant: a sample is taken only if it is not behind the one before it and not beyond the limit.
+// So a NaN ends a stretch, and nothing but infinities follows an infinity.
 #pragma once
 
 #include "kernels.hpp"

@@ -121,28 +121,30 @@ inline std::size_t sweep(MemoryCurveData &curve, const double *u, double *y, std
     return taken;
 }
 
-// The next movement of the input, up or down, until it pushes another play.
+inline double larger_magnitude(double bound, double u) {
+    const double size = u < 0.0 ? -u : u;
+    return bound > size ? bound : size;
+}
+
+// The next movement of the input, up or down, until it pushes another play. Of a movement the ends
+// are the largest.
 template <class Observer>
 inline std::size_t move(MemoryCurveData &curve, const double *u, double *y, std::size_t count,
                         Observer &observer) {
     const double now = curve.depth > 0 ? curve.stack[curve.depth - 1].e
                                        : curve.start[0] - curve.pi->r[0];
-    return u[0] > now ? sweep<1>(curve, u, y, count, observer)
-                      : sweep<-1>(curve, u, y, count, observer);
+    const std::size_t taken = u[0] > now ? sweep<1>(curve, u, y, count, observer)
+                                         : sweep<-1>(curve, u, y, count, observer);
+    curve.largest = larger_magnitude(larger_magnitude(curve.largest, u[0]), u[taken - 1]);
+    return taken;
 }
 
-// Between the ends of a movement y is monotone, so if both are finite it is.
 inline std::size_t memory_curve(MemoryCurveData &curve, const double *u, double *y,
                                 std::size_t count) {
     NoObserver observer;
-    double zero = 0.0;  // 0 times a number; 0 times an infinity or a NaN is NaN and stays
     std::size_t k = 0;
-    while (k < count && u[k] - u[k] == 0.0) {
-        const std::size_t first = k;
-        k += move(curve, u + k, y + k, count - k, observer);
-        zero += 0.0 * y[first] + 0.0 * y[k - 1];
-    }
-    return zero == 0.0 ? k : 0;
+    while (k < count && u[k] - u[k] == 0.0) k += move(curve, u + k, y + k, count - k, observer);
+    return k;
 }
 
 }  // namespace hyst::HYST_INSTRUCTION_SET

@@ -45,7 +45,7 @@ def test_an_fmu_of_an_inverse_in_a_folder(run: Run, folder: Path, model_file: Pa
 def test_a_mex_function_is_what_python_writes(run: Run, folder: Path, model_file: Path) -> None:
     ended = run("export", model_file, "--target", "mex", "--name", "lens", "-o", "out")
     assert ended.code == 0
-    written = mex(STAGE, folder / "python", "lens", description=describe(STAGE))
+    written = mex(STAGE, folder / "python", name="lens", description=describe(STAGE))
     assert snapshot(folder / "out") == snapshot(written.path)
 
 

@@ -14,7 +14,6 @@ from command_runs import Run
 import hyst
 from hyst.cli import main
 from hyst.cli.observer_template import TEMPLATE
-from hyst.control import TrackingController
 
 # As quick as it can be: one period after the start is left out.
 QUICK = TEMPLATE.replace("duration = 3.0", "duration = 1.5").replace("settle = 1.0", "settle = 0.5")
@@ -68,7 +67,7 @@ def test_what_is_to_be_implemented_is_what_was_simulated(
     answered: Callable[[str, str], Path],
 ) -> None:
     out = answered("repaired", QUICK)
-    block = TrackingController.load(out / "controller.json")
+    block = hyst.load(out / "controller.json")
     assert block.dt == 1e-4
     signals = hyst.read_record(out / "signals.csv", input="y_ref", output="y", time="time [s]")
     u = hyst.io.read_column(out / "signals.csv", "u")[0]

@@ -59,7 +59,7 @@ def test_errors_end_in_one_sentence_and_show_their_origin_on_demand(
     def fail(path: object) -> None:
         raise error
 
-    monkeypatch.setattr("hyst.models.load_described", fail)
+    monkeypatch.setattr("hyst.load", fail)
     before = ["--debug"] if place == "before" else []
     after = ["--debug"] if place == "after" else []
     ended = run(*before, "info", "model.json", *after)
@@ -79,7 +79,7 @@ def test_an_interruption_shows_no_origin(
     def stop(path: object) -> None:
         raise interruption
 
-    monkeypatch.setattr("hyst.models.load_described", stop)
+    monkeypatch.setattr("hyst.load", stop)
     ended = run("info", "model.json")
     assert ended.code == code
     assert "Traceback" not in ended.err
@@ -104,7 +104,8 @@ def test_from_a_measured_loop_to_a_command(run: Run, measured_data: Path, folder
     columns = ("--input", 0, "--output", 4, "--rate", 200)
     ended = run("identify", data, *columns, "--family", "mpi", "-o", "out")
     assert ended.code == 0, ended.err
-    model, about = hyst.models.load_described(folder / "out" / "model.json")
+    model = hyst.load(folder / "out" / "model.json")
+    about = model.description
     record = hyst.read_record(data, input=0, output=4, rate=200)
     error = model(record.u)[: record.samples - about.delay] - record.y[about.delay :]
     # The goal for this record: 0.45 % of its range, once the start-up of two seconds is over.

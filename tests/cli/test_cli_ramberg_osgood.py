@@ -74,8 +74,11 @@ def test_several_families_in_one_table(recorded: Path, tmp_path: Path, capsys) -
 def test_refusals(recorded: Path, tmp_path: Path, capsys) -> None:
     start = ["identify", str(recorded), *COLUMNS, "-o", str(tmp_path / "out"), "--family"]
     for arguments, part in (
-        (["ramberg-osgood", "--memory", "none"], "'masing' or 'last-reversal'"),
-        (["ramberg-osgood", "--regression", "none"], "'output' or 'slope'"),
+        (
+            ["ramberg-osgood", "--memory", "none"],
+            "--memory is 'none'; choose one of masing, last-reversal",
+        ),
+        (["ramberg-osgood", "--regression", "none"], "choose one of output, slope"),
         (["pi,none"], "unknown family 'none'"),
     ):
         assert main([*start, *arguments]) == 2

@@ -65,7 +65,7 @@ def test_every_example_gives_the_bits_of_python(
 def test_every_self_test_finds_no_difference(
     name: str, precision: str, tmp_path: Path, objects: Objects
 ) -> None:
-    project = c_project(EXAMPLES[name], tmp_path / "out", precision)
+    project = c_project(EXAMPLES[name], tmp_path / "out", precision=precision)
     finished = run_selftest(project.path, objects)
     assert finished.stdout == "10000 samples, max difference 0\n"
     assert finished.returncode == 0
@@ -131,7 +131,7 @@ def test_controllers_give_the_bits_of_python(name: str, tmp_path: Path, objects:
         assert same_bits(code.run(state, y_ref, y), u)
         assert same_bits(code.memory(state), np.asarray(in_python.state))
     for precision in ("double", "single"):
-        other = c_project(model, tmp_path / precision, precision)
+        other = c_project(model, tmp_path / precision, precision=precision)
         assert run_selftest(other.path, objects).stdout == "10000 samples, max difference 0\n"
 
 

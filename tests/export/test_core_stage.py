@@ -140,7 +140,9 @@ def test_every_source_of_the_core_is_found_by_what_it_defines() -> None:
         lines = (folder / path).read_text().splitlines()
         # A definition starts in column 0 and its brace stands alone on a line after it.
         heads = [line for line in lines if re.match(r"[a-rt-z][^=]*\bhyst_\w+\(", line)]
-        assert heads, name
+        # What defines a row alone is needed by chains, which no export has.
+        row_alone = any(line.startswith("const hyst_kind hyst_") for line in lines)
+        assert heads or row_alone, name
         for head in heads:
             function = head[head.index("hyst_", head.index(" ")) :].split("(")[0]
             assert path in core_files(f"{function}(x);"), (name, function)

@@ -81,7 +81,7 @@ def test_one_command_builds_and_tests_a_zip(tmp_path: Path) -> None:
 
 def test_cmake_builds_library_and_self_test(tmp_path: Path) -> None:
     cmake = compiler("cmake")
-    project = c_project(MODEL, tmp_path / "out", "single", name="lens")
+    project = c_project(MODEL, tmp_path / "out", precision="single", name="lens")
     for command in (["-S", ".", "-B", "build"], ["--build", "build"]):
         finished = subprocess.run(
             [cmake, *command], cwd=project.path, capture_output=True, text=True, check=False
@@ -95,7 +95,7 @@ def test_cmake_builds_library_and_self_test(tmp_path: Path) -> None:
 
 
 def test_the_manifest_holds_the_hash_of_every_file(tmp_path: Path) -> None:
-    project = c_project(MODEL, tmp_path / "out", "single")
+    project = c_project(MODEL, tmp_path / "out", precision="single")
     manifest = json.loads((project.path / "manifest.json").read_text())
     assert manifest["hyst"] == hyst.__version__
     assert (manifest["name"], manifest["precision"]) == ("stage", "single")
@@ -197,7 +197,7 @@ def test_a_failure_leaves_the_earlier_export(
 
 def test_a_model_that_cannot_be_written_leaves_nothing(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="single precision"):
-        c_project(PrandtlIshlinskii([1e300], [1.0]), tmp_path / "out", "single")
+        c_project(PrandtlIshlinskii([1e300], [1.0]), tmp_path / "out", precision="single")
     assert not list(tmp_path.iterdir())
 
 
@@ -254,7 +254,7 @@ def test_a_step_before_init_gives_zero_and_a_fault(tmp_path: Path, objects: Obje
 
 def test_sampled_models_say_their_sample_time(tmp_path: Path) -> None:
     for precision, literal in (("double", "0.1"), ("single", "0.1")):
-        project = c_project(EXAMPLES["rate-dependent"], tmp_path / precision, precision)
+        project = c_project(EXAMPLES["rate-dependent"], tmp_path / precision, precision=precision)
         header = (project.path / "stage.h").read_text()
         assert f"#define STAGE_DT HYST_REAL({literal})" in header
         assert "0.1 s, and no other" in (project.path / "README.md").read_text()

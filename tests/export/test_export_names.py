@@ -109,7 +109,7 @@ def test_units_stay_readable() -> None:
 
 def test_a_compiler_without_the_flag_of_the_precision_is_stopped(tmp_path: Path) -> None:
     for precision, flags in (("double", ["-DHYST_SINGLE"]), ("single", [])):
-        project = c_project(MODEL, tmp_path / precision, precision)
+        project = c_project(MODEL, tmp_path / precision, precision=precision)
         finished = subprocess.run(
             [compiler("gcc"), *AS_C, *flags, "-fsyntax-only", "-I.", "-Icore/include", "stage.c"],
             cwd=project.path, capture_output=True, text=True, check=False,

@@ -49,7 +49,7 @@ def described(written: hyst.export.Fmu) -> ElementTree.Element:
 @pytest.mark.parametrize("name", MODELS)
 def test_the_description_is_valid(name: str, version: str, tmp_path: Path) -> None:
     written = hyst.export.fmu(
-        MODELS[name], tmp_path / "a.fmu", version, description=HOSTILE, binary=False
+        MODELS[name], tmp_path / "a.fmu", version=version, description=HOSTILE, binary=False
     )
     assert validate_fmu(str(written.path)) == []  # schema and FMPy's own rules
     problems = wrong_references(described(written), version)
@@ -86,7 +86,9 @@ def wrong_references(root: ElementTree.Element, version: str) -> list[str]:
 @pytest.mark.parametrize("version", VERSIONS)
 def test_the_variables(version: str, tmp_path: Path) -> None:
     about = ModelDescription("voltage", "position", "V", "um")
-    written = hyst.export.fmu(PI, tmp_path / "a.fmu", version, description=about, binary=False)
+    written = hyst.export.fmu(
+        PI, tmp_path / "a.fmu", version=version, description=about, binary=False
+    )
     model = fmpy.read_model_description(str(written.path))
     found = {each.name: each for each in model.modelVariables}
     assert (found["u"].causality, found["u"].unit, float(found["u"].start)) == ("input", "V", 0.0)
@@ -115,15 +117,15 @@ def test_dependencies(model: Operator, depends: bool, version: str, tmp_path: Pa
     u = np.zeros(8)
     u[-1] = 1.0
     assert bool(model(u)[-1] != model(0.0 * u)[-1]) is depends  # what is told is true
-    written = hyst.export.fmu(model, tmp_path / "a.fmu", version, binary=False)
+    written = hyst.export.fmu(model, tmp_path / "a.fmu", version=version, binary=False)
     output = fmpy.read_model_description(str(written.path)).outputs[0]
     assert [each.name for each in output.dependencies] == ["u"] * depends
 
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_the_step_size_is_told(version: str, tmp_path: Path) -> None:
-    sampled = hyst.export.fmu(LAG, tmp_path / "a.fmu", version, binary=False)
-    any_step = hyst.export.fmu(PI, tmp_path / "b.fmu", version, binary=False)
+    sampled = hyst.export.fmu(LAG, tmp_path / "a.fmu", version=version, binary=False)
+    any_step = hyst.export.fmu(PI, tmp_path / "b.fmu", version=version, binary=False)
     assert described(sampled).find("DefaultExperiment").get("stepSize") == "0.01"
     assert described(any_step).find("DefaultExperiment") is None
     can = "canHandleVariableCommunicationStepSize"
@@ -137,11 +139,11 @@ def test_the_step_size_is_told(version: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("version", VERSIONS)
 def test_the_same_model_gives_the_same_bytes(version: str, tmp_path: Path) -> None:
     twice = [
-        hyst.export.fmu(INVERSE_MPI, tmp_path / f"{i}.fmu", version, description=HOSTILE)
+        hyst.export.fmu(INVERSE_MPI, tmp_path / f"{i}.fmu", version=version, description=HOSTILE)
         for i in range(2)
     ]
     assert twice[0].path.read_bytes() == twice[1].path.read_bytes()
-    other = hyst.export.fmu(PI, tmp_path / "other.fmu", version, binary=False)
+    other = hyst.export.fmu(PI, tmp_path / "other.fmu", version=version, binary=False)
     assert other.token != twice[0].token
     with zipfile.ZipFile(other.path) as archive:
         manifest = json.loads(archive.read("resources/manifest.json"))
@@ -162,7 +164,7 @@ def test_sources_of_the_core_are_unchanged(tmp_path: Path) -> None:
 @has_compiler
 @pytest.mark.parametrize("version", VERSIONS)
 def test_an_importer_can_build_the_binary(version: str, tmp_path: Path) -> None:
-    written = hyst.export.fmu(INVERSE_MPI, tmp_path / "a.fmu", version, binary=False)
+    written = hyst.export.fmu(INVERSE_MPI, tmp_path / "a.fmu", version=version, binary=False)
     assert not any(each.startswith("binaries/") for each in written.files)
     unpacked = tmp_path / "a-unpacked"
     sources_of(written, unpacked)
@@ -180,7 +182,9 @@ def test_an_importer_can_build_the_binary(version: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("version", VERSIONS)
 def test_our_declarations_are_the_standards(version: str, tmp_path: Path) -> None:
     """Compiled with the standard's own headers in the place of ours."""
-    sources = sources_of(hyst.export.fmu(PI, tmp_path / "a.fmu", version, binary=False), tmp_path)
+    sources = sources_of(
+        hyst.export.fmu(PI, tmp_path / "a.fmu", version=version, binary=False), tmp_path
+    )
     number = version[0]
     header = sources / f"hyst_fmi{number}.h"
     functions = {line.split()[1] for line in header.read_text().splitlines()
@@ -218,7 +222,9 @@ def test_two_fmus_linked_into_one_program(version: str, tmp_path: Path) -> None:
     objects = []
     prefix = f"-DFMI{version[0]}_FUNCTION_PREFIX="
     for name, model in (("first", PI), ("second", INVERSE_MPI)):
-        written = hyst.export.fmu(model, tmp_path / f"{name}.fmu", version, name, binary=False)
+        written = hyst.export.fmu(
+            model, tmp_path / f"{name}.fmu", version=version, name=name, binary=False
+        )
         sources = sources_of(written, tmp_path / name)
         run_cc([f"{prefix}{name}_", "-fPIC", "-c", "hyst_all.c", "-o", "all.o"], sources)
         objects.append(str(sources / "all.o"))
@@ -232,7 +238,9 @@ def test_two_fmus_linked_into_one_program(version: str, tmp_path: Path) -> None:
 @has_compiler
 @pytest.mark.parametrize("version", VERSIONS)
 def test_nothing_but_fmi_is_seen_from_outside(version: str, tmp_path: Path) -> None:
-    sources = sources_of(hyst.export.fmu(PI, tmp_path / "a.fmu", version, binary=False), tmp_path)
+    sources = sources_of(
+        hyst.export.fmu(PI, tmp_path / "a.fmu", version=version, binary=False), tmp_path
+    )
     run_cc(["-shared", "-fPIC", "-O2", "hyst_all.c", "-o", "library"], sources)
     assert all(name.startswith("fmi") for name in exported(sources / "library"))
 
@@ -261,13 +269,13 @@ def test_a_path_that_cannot_be(tmp_path: Path) -> None:
         hyst.export.fmu(PI, tmp_path / "mine.fmu", binary=False, force=True)
     assert (tmp_path / "mine.fmu").read_text() == "not hyst's"
     first = hyst.export.fmu(PI, tmp_path / "a.fmu", binary=False)
-    again = hyst.export.fmu(PI, tmp_path / "a.fmu", "3.0", binary=False, force=True)
+    again = hyst.export.fmu(PI, tmp_path / "a.fmu", version="3.0", binary=False, force=True)
     assert fmpy.read_model_description(str(first.path)).fmiVersion == again.version
 
 
 def test_what_cannot_be_asked_for(tmp_path: Path) -> None:
     with pytest.raises(hyst.InputError, match="version"):
-        hyst.export.fmu(PI, tmp_path / "a.fmu", "1.0")
+        hyst.export.fmu(PI, tmp_path / "a.fmu", version="1.0")
     with pytest.raises(hyst.InputError, match="word of C"):
         hyst.export.fmu(PI, tmp_path / "a.fmu", name="while")
     assert list(tmp_path.iterdir()) == []

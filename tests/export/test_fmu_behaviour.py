@@ -29,7 +29,7 @@ def written(
     folder = tmp_path_factory.mktemp("fmus")
     models = {"pi": PI, "sampled": SAMPLED, "rate": RATE_DEPENDENT}
     return {
-        name: hyst.export.fmu(model, folder / f"{name}.fmu", request.param)
+        name: hyst.export.fmu(model, folder / f"{name}.fmu", version=request.param)
         for name, model in models.items()
     }
 

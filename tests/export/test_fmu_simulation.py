@@ -52,7 +52,7 @@ def test_every_kind_of_model(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("operator", [INVERSE_MPI, LAG @ PI], ids=["inverse", "sampled"])
 def test_a_simulation_by_fmpy(operator: Operator, version: str, tmp_path: Path) -> None:
-    written = hyst.export.fmu(operator, tmp_path / "model.fmu", version)
+    written = hyst.export.fmu(operator, tmp_path / "model.fmu", version=version)
     dt = operator.dt or 0.001
     u = rough_signal(2000)
     t = np.arange(u.size) * dt
@@ -70,8 +70,8 @@ def test_a_simulation_by_fmpy(operator: Operator, version: str, tmp_path: Path) 
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_instances_side_by_side(version: str, tmp_path: Path) -> None:
-    first = hyst.export.fmu(INVERSE_MPI, tmp_path / "a.fmu", version)
-    second = hyst.export.fmu(LAG @ PI, tmp_path / "b.fmu", version)
+    first = hyst.export.fmu(INVERSE_MPI, tmp_path / "a.fmu", version=version)
+    second = hyst.export.fmu(LAG @ PI, tmp_path / "b.fmu", version=version)
     runs = [FmuRun(first, tmp_path, "a1"), FmuRun(second, tmp_path, "b"), FmuRun(first, tmp_path)]
     models = [INVERSE_MPI, LAG @ PI, INVERSE_MPI]
     signals = [rough_signal(N, seed) for seed in range(3)]
@@ -91,7 +91,7 @@ def test_instances_side_by_side(version: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_a_state_that_was_kept(version: str, tmp_path: Path) -> None:
-    written = hyst.export.fmu(INVERSE_MPI, tmp_path / "model.fmu", version)
+    written = hyst.export.fmu(INVERSE_MPI, tmp_path / "model.fmu", version=version)
     u = rough_signal(2 * N)
     expected = stepped(INVERSE_MPI, u)
     run = FmuRun(written, tmp_path).initialize()
@@ -118,7 +118,7 @@ def test_a_state_that_was_kept(version: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_reset_starts_anew(version: str, tmp_path: Path) -> None:
-    run = FmuRun(hyst.export.fmu(INVERSE_MPI, tmp_path / "model.fmu", version), tmp_path)
+    run = FmuRun(hyst.export.fmu(INVERSE_MPI, tmp_path / "model.fmu", version=version), tmp_path)
     u = rough_signal(N)
     first = run.initialize(u=2.0).run(u, 0.1)
     run.set_all({next(name for name in run.variables if name.endswith("weight[1]")): 7.0})
@@ -130,7 +130,7 @@ def test_reset_starts_anew(version: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_initialization_looks_without_moving(version: str, tmp_path: Path) -> None:
-    written = hyst.export.fmu(PI, tmp_path / "model.fmu", version)
+    written = hyst.export.fmu(PI, tmp_path / "model.fmu", version=version)
     run = FmuRun(written, tmp_path)
     if run.is_2:
         run.fmu.setupExperiment()
@@ -147,7 +147,7 @@ def test_initialization_looks_without_moving(version: str, tmp_path: Path) -> No
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_a_controller_with_two_inputs(version: str, tmp_path: Path) -> None:
-    written = hyst.export.fmu(CONTROLLER, tmp_path / "model.fmu", version)
+    written = hyst.export.fmu(CONTROLLER, tmp_path / "model.fmu", version=version)
     assert (written.inputs, written.output) == (("y_ref", "y"), "u")
     run = FmuRun(written, tmp_path).initialize()
     y_ref, y = rough_signal(N, 1), rough_signal(N, 2)
@@ -165,8 +165,8 @@ def test_a_controller_with_two_inputs(version: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("version", VERSIONS)
 def test_an_inverse_before_its_model(version: str, tmp_path: Path) -> None:
     """Two FMUs connected: what is wanted comes out."""
-    inverse = FmuRun(hyst.export.fmu(INVERSE_MPI, tmp_path / "i.fmu", version), tmp_path)
-    model = FmuRun(hyst.export.fmu(MPI, tmp_path / "m.fmu", version), tmp_path)
+    inverse = FmuRun(hyst.export.fmu(INVERSE_MPI, tmp_path / "i.fmu", version=version), tmp_path)
+    model = FmuRun(hyst.export.fmu(MPI, tmp_path / "m.fmu", version=version), tmp_path)
     inverse.initialize()
     model.initialize()
     y_ref = rough_signal(N)
@@ -184,7 +184,7 @@ def test_an_inverse_before_its_model(version: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("version", VERSIONS)
 def test_an_estimator(version: str, tmp_path: Path) -> None:
     estimator, u, y, y_ref = estimation()
-    written = hyst.export.fmu(estimator, tmp_path / "model.fmu", version, compiler=STRICT)
+    written = hyst.export.fmu(estimator, tmp_path / "model.fmu", version=version, compiler=STRICT)
     assert (written.inputs, written.output) == (("u", "y", "y_ref"), "command")
     assert validate_fmu(str(written.path)) == []
     run = FmuRun(written, tmp_path).initialize()

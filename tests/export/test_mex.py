@@ -58,7 +58,9 @@ def test_every_kind_of_model(part: int, tmp_path: Path) -> None:
     program = READ.format("u")
     for i, model in enumerate(models.values()):
         name = f"model_{i}"
-        folder = compiled(hyst.export.mex(model, tmp_path / name, name), "-Wall", "-Wextra", "-O0")
+        folder = compiled(
+            hyst.export.mex(model, tmp_path / name, name=name), "-Wall", "-Wextra", "-O0"
+        )
         program += f"addpath('{folder}'); y = {name}(u);\n"
         program += WRITE.format("y").replace("y.bin", f"{name}.bin")
     octave(tmp_path, program)
@@ -70,7 +72,7 @@ def test_every_kind_of_model(part: int, tmp_path: Path) -> None:
 @pytest.fixture(scope="module")
 def inverse(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("mex") / "inverse"
-    compiled(hyst.export.mex(INVERSE_MPI, folder, "lens"))
+    compiled(hyst.export.mex(INVERSE_MPI, folder, name="lens"))
     return folder
 
 
@@ -130,7 +132,7 @@ def test_a_step_that_is_not_finite_is_held(run: Callable[[str], str]) -> None:
 
 @needs_octave
 def test_a_controller_with_two_inputs(tmp_path: Path) -> None:
-    folder = compiled(hyst.export.mex(CONTROLLER, tmp_path / "loop", "loop"))
+    folder = compiled(hyst.export.mex(CONTROLLER, tmp_path / "loop", name="loop"))
     y_ref, y = rough_signal(N, 1), rough_signal(N, 2)
     y_ref.tofile(folder / "y_ref.bin")
     y.tofile(folder / "y.bin")
@@ -151,7 +153,7 @@ def test_a_controller_with_two_inputs(tmp_path: Path) -> None:
 @needs_octave
 def test_an_estimator(tmp_path: Path) -> None:
     estimator, *signals = estimation()
-    folder = compiled(hyst.export.mex(estimator, tmp_path / "adapt", "adapt"))
+    folder = compiled(hyst.export.mex(estimator, tmp_path / "adapt", name="adapt"))
     reading = ""
     for name, signal in zip(("u", "y", "y_ref"), signals, strict=True):
         signal.tofile(folder / f"{name}.bin")
@@ -217,7 +219,7 @@ def test_calls_that_are_wrong(run: Callable[[str], str]) -> None:
 
 @needs_octave
 def test_compilers_that_would_fuse_products_and_sums(tmp_path: Path) -> None:
-    written = hyst.export.mex(INVERSE_MPI, tmp_path / "fused", "fused")
+    written = hyst.export.mex(INVERSE_MPI, tmp_path / "fused", name="fused")
     compiled(written, "-march=native", "-ffp-contract=fast")
     u = rough_signal(N)
     u.tofile(written.path / "u.bin")
@@ -299,7 +301,7 @@ def test_the_same_model_gives_the_same_bytes(tmp_path: Path) -> None:
 )
 def test_names_that_cannot_be(name: str, tmp_path: Path) -> None:
     with pytest.raises(hyst.InputError, match="the name is"):
-        hyst.export.mex(PI, tmp_path / "a", name)
+        hyst.export.mex(PI, tmp_path / "a", name=name)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -307,5 +309,5 @@ def test_a_folder_that_exists(tmp_path: Path) -> None:
     hyst.export.mex(PI, tmp_path / "a")
     with pytest.raises(hyst.InputError, match="exists"):
         hyst.export.mex(INVERSE_MPI, tmp_path / "a")
-    again = hyst.export.mex(INVERSE_MPI, tmp_path / "a", "other", force=True)
+    again = hyst.export.mex(INVERSE_MPI, tmp_path / "a", name="other", force=True)
     assert {each.name for each in (tmp_path / "a").iterdir()} == set(again.files)

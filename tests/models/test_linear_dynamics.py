@@ -167,6 +167,10 @@ def test_lipschitz_constant_is_the_sum_of_the_impulse_response() -> None:
         (lambda: LinearDynamics([[np.nan]], [1.0], [1.0], 0.0, 0.1), "finite"),
         (lambda: LinearDynamics([[0.5]], [1.0], [1.0], 0.0, 0.0), "dt is 0.0"),
         (lambda: LinearDynamics([[0.5]], [1.0], [1.0], 0.0, 0.1, delay=-1), "whole number"),
+        (
+            lambda: LinearDynamics([[0.5]], [1.0], [1.0], 0.0, 0.1, delay=1000001),
+            "delay is 1000001; give a whole number from 0 to 1000000",
+        ),
         (lambda: LinearDynamics(np.eye(65), np.ones(65), np.ones(65), 0.0, 0.1), "at most 64"),
         (lambda: LinearDynamics.from_transfer_function([1, 0, 0], [1, 0], 1.0), "future"),
         (lambda: LinearDynamics.from_zeros_poles_gain([], [0.3j], 1.0, 1.0), "conjugate"),

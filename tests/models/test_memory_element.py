@@ -124,6 +124,10 @@ def test_theorem_4_in_rates() -> None:
         (lambda: MemoryFunction.polynomial([1.0, 1.0]), "0 at p = -1"),
         (lambda: MemoryFunction.polynomial([0.0, 1.0]), "positive a_0"),
         (lambda: MemoryFunction.polynomial([1.0, -2.0, 1.0]), "0 at p = 1"),
+        (
+            lambda: MemoryFunction.polynomial([1.0, 0.2, 1e-309]),
+            r"\[2\] is 1e-309, too small",
+        ),
         (lambda: MemoryFunction.table([0.0, 0.0], [1.0, 1.0]), "sort the points"),
         (lambda: MemoryFunction.table([0.0, 1.0], [1.0, 0.0]), r"values\[1\] is 0"),
         (lambda: MemoryFunction.table([0.0], [1.0, 2.0]), "as many"),

@@ -11,7 +11,7 @@ import pytest
 
 import hyst
 from hyst import _engine
-from hyst.online import AdaptiveInverse, JointEstimator, load_estimator
+from hyst.online import AdaptiveInverse, JointEstimator
 from online.plants import DT, P, R
 
 P0 = 0.3
@@ -100,7 +100,7 @@ def test_saved_and_restored_it_continues_with_the_same_bits(tmp_path: Path) -> N
         u = inverse.command(y_ref[k])
         inverse.update(u, plant(u) + scatter[k])
     inverse.save(tmp_path / "inverse.json")
-    restored = load_estimator(tmp_path / "inverse.json")
+    restored = hyst.load(tmp_path / "inverse.json")
     assert isinstance(restored, AdaptiveInverse)
     assert not restored.trusts_estimate
     assert restored.fallbacks == inverse.fallbacks > 0
@@ -130,7 +130,7 @@ def test_a_saved_inverse_that_cannot_be_is_refused(tmp_path: Path) -> None:
     ):
         path.write_text(json.dumps({**content, **changes}))
         with pytest.raises(hyst.InputError, match=message):
-            load_estimator(path)
+            hyst.load(path)
 
 
 def test_an_estimate_in_doubt_does_not_become_the_last_good_model() -> None:

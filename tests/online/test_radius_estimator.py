@@ -10,7 +10,7 @@ import pytest
 
 import hyst
 from hyst import _engine
-from hyst.online import RadiusEstimator, load_estimator
+from hyst.online import RadiusEstimator
 from online.plants import DT, FIVE_PLAYS, P, R, random_signals, record, sine, usable
 
 
@@ -248,7 +248,7 @@ def test_saved_and_restored_it_continues_with_the_same_bits(tmp_path: Path) -> N
     whole.run(record(u, y))
     part.run(record(u[:444], y[:444]))
     part.save(tmp_path / "estimator.json")
-    restored = load_estimator(tmp_path / "estimator.json")
+    restored = hyst.load(tmp_path / "estimator.json")
     assert isinstance(restored, RadiusEstimator)
     for u_k, y_k in zip(u[444:], y[444:], strict=True):
         restored.update(u_k, y_k)
@@ -270,4 +270,4 @@ def test_saved_radii_out_of_order_are_refused(tmp_path: Path) -> None:
         state[first + place] = value
         path.write_text(json.dumps({**content, "state": state}))
         with pytest.raises(hyst.InputError, match=message):
-            load_estimator(path)
+            hyst.load(path)

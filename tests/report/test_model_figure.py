@@ -12,11 +12,13 @@ from hyst import (
     Affine,
     DeadZone,
     GeneralizedPrandtlIshlinskii,
+    LinearDynamics,
     ModifiedPrandtlIshlinskii,
     Operator,
     PrandtlIshlinskii,
     RambergOsgood,
     RateDependentPrandtlIshlinskii,
+    Stop,
 )
 from hyst.report.model_figure import Labels, draw_model
 
@@ -89,3 +91,25 @@ def test_a_power_law_is_drawn_as_its_loading_curve(monkeypatch: pytest.MonkeyPat
     draw_model(RambergOsgood(1.0, 3.0, 1.0), u, Labels("u", "", "y", ""), {}, "")
     # From rest to 2 the curve is c1 p + 2 c2 p^2 / 2 = 2 + 12, as the coefficient is 2^c3 c2.
     assert drawn == [("Loading curve", pytest.approx(14.0, rel=1e-12))]
+
+
+def test_an_operator_without_a_portrait_of_its_own_is_drawn_as_its_loop(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert Stop(1.0).portrait().panels == ("loop",)
+    # Alone, or between gains, the whole says more: its axes have the user's names and units.
+    for model in (Stop(1.0), Affine(2.0, 1.0) @ Stop(1.0)):
+        assert labels_of(model, monkeypatch) == [("drive [V]", "position [um]")]
+    # Beside what shows something by itself it has its own panel.
+    loop, (bend, _) = labels_of(MAP @ Stop(1.0), monkeypatch)
+    assert loop == ("drive [V]", "its output [um]")
+    assert bend == "its input [um]"
+
+
+def test_dynamics_and_gains_leave_the_picture_to_the_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    lag = LinearDynamics.from_transfer_function([0.5], [1.0, -0.5], dt=1e-3)
+    assert [x for x, _ in labels_of(lag @ PLAYS, monkeypatch)] == [
+        "radius r [V]",
+        "rise of their input from rest [V]",
+    ]
+    assert labels_of(lag, monkeypatch) == [("drive [V]", "position [um]")]

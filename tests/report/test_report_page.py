@@ -78,7 +78,8 @@ def stage_record(stage: Operator = STAGE, samples: int = 600, seed: int = 1) -> 
 
 
 def found_in(record: hyst.Record, family: str = "pi", plays: object = 2) -> Identified:
-    return hyst.identify(record, family=family, plays=plays, delay=0)  # type: ignore[arg-type]
+    options = {"plays": plays} if "plays" in hyst.families[family].options() else {}
+    return hyst.identify(record, family=family, delay=0, **options)
 
 
 @pytest.fixture(scope="module")

@@ -122,25 +122,23 @@ def test_bounds_of_scaled_inverses_by_hand() -> None:
 
 
 def test_figures_are_drawn() -> None:
-    loops = {}
     exact = s1.PLAYS.inverse()
     factors = {f"{each:g}": Affine(each) @ exact for each in (*s1.FACTORS, *s1.FIG_12)}
-    for name in ("PI", "GPI"):
-        loops[name] = compare_inverses(
-            s1.reference(1e-3, 0.3),
-            1e-3,
-            {"exact": exact, "none": None, **factors},
-            observer=None,
-            plant=s1.PLANT,
-            controller=1.0,
-            hysteresis=s1.PLAYS,
-        )
+    loop = compare_inverses(
+        s1.reference(1e-3, 0.3),
+        1e-3,
+        {"exact": exact, "none": None, **factors},
+        observer=None,
+        plant=s1.PLANT,
+        controller=1.0,
+        hysteresis=s1.PLAYS,
+    )
     drawn = s1.draw_all(
         s1.designs(repaired=True).best,
         s1.TRUE_PLANT,
         s1.reference(1e-3, 1.0),
-        {"PI": s1.PLAYS, "GPI": s1.GENERALIZED},
-        loops,
+        (s1.PLAYS, s1.GENERALIZED),
+        (loop, loop),
     )
     assert set(drawn) == {f"s1-fig-{k}.png" for k in (5, 7, 8, 9, 10, 11, 12)}
     assert all(each.startswith(b"\x89PNG") for each in drawn.values())

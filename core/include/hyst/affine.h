@@ -5,7 +5,7 @@
 #include "hyst/kind.h"
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -18,7 +18,7 @@ hyst_real hyst_affine_step(const hyst_affine *map, hyst_real u);
 
 extern const hyst_kind hyst_affine_kind; /* of a hyst_affine */
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

@@ -9,7 +9,7 @@
 #include "hyst/kind.h"
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -38,7 +38,7 @@ void hyst_stage_run(const hyst_stage *stage, hyst_real *state, const hyst_real *
 void hyst_chain_run(const hyst_chain *chain, hyst_real *state, const hyst_real *u, hyst_real *y,
                     size_t samples);
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

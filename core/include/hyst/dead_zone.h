@@ -12,7 +12,7 @@
 #include "hyst/kind.h"
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -30,7 +30,7 @@ hyst_real hyst_direction_dead_zone_step(const hyst_dead_zone *map, hyst_real *u_
 extern const hyst_kind hyst_dead_zone_kind; /* of a hyst_dead_zone */
 extern const hyst_kind hyst_direction_dead_zone_kind; /* of a hyst_dead_zone */
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

@@ -9,7 +9,7 @@
 #error "compile without -ffast-math and -ffinite-math-only: they remove the checks for NaN"
 #endif
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -21,7 +21,7 @@ static inline int hyst_is_finite(hyst_real value)
     return difference >= HYST_REAL(0.0) && difference <= HYST_REAL(0.0);
 }
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

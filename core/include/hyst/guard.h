@@ -10,7 +10,7 @@
 #include "hyst/finite.h"
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -22,7 +22,7 @@ typedef struct {
 hyst_real hyst_guarded_step(const hyst_chain *chain, hyst_real *state, hyst_guard *guard,
                             hyst_real u);
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

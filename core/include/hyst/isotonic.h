@@ -6,7 +6,7 @@
 
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -21,7 +21,7 @@ void hyst_isotonic(size_t count, hyst_real *x, hyst_real lower, hyst_real upper)
 void hyst_isotonic_weighted(size_t count, hyst_real *x, const hyst_real *gain, hyst_real lower,
                             hyst_real upper);
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

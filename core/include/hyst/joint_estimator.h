@@ -28,7 +28,7 @@
 
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -113,7 +113,7 @@ hyst_joint_end hyst_joint_step(const hyst_joint *joint, hyst_real *state, hyst_r
  * 12 operations for each play. */
 hyst_real hyst_joint_command(const hyst_joint *joint, const hyst_real *state, hyst_real y_ref);
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

@@ -5,7 +5,7 @@
 #include "hyst/joint_estimator.h"
 #include "hyst/joint_search.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -54,7 +54,7 @@ void hyst_cells_begin_merging(const hyst_search *search, const hyst_search_layou
                               hyst_real *state);
 void hyst_cells_merge(const hyst_search_layout *at, hyst_real *state);
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

@@ -27,7 +27,7 @@
 
 #include "hyst/joint_estimator.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -89,7 +89,7 @@ void hyst_search_follow(const hyst_search *search, hyst_real *state, hyst_real u
 /* Correlation of successive errors of the estimate, from -1 to 1. */
 hyst_real hyst_search_correlation(const hyst_search *search, const hyst_real *state);
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

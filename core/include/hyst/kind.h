@@ -1,11 +1,11 @@
-/* What a chain asks of a kind of stage: one row, which stands at the end of the kind's own source.
+/* What a chain asks of a kind of stage: one row, which stands beside the kind's step.
  * `model` is the kind's structure of constants, as hyst_pi. */
 #ifndef HYST_KIND_H
 #define HYST_KIND_H
 
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -14,7 +14,7 @@ typedef struct {
     hyst_real (*step)(const void *model, hyst_real *state, hyst_real u);
 } hyst_kind;
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

@@ -11,7 +11,7 @@
 #include "hyst/kind.h"
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -42,7 +42,7 @@ hyst_real hyst_sections_step(const hyst_sections *sections, hyst_real *state, hy
 extern const hyst_kind hyst_state_space_kind; /* of a hyst_state_space */
 extern const hyst_kind hyst_sections_kind; /* of a hyst_sections */
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

@@ -13,7 +13,7 @@
 
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -57,7 +57,7 @@ hyst_real hyst_unloading(const hyst_loading_curve *curve, hyst_real w);
 /* f'(x) for x >= 0. */
 hyst_real hyst_loading_slope(const hyst_loading_curve *curve, hyst_real x);
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

@@ -27,7 +27,7 @@
 #include "hyst/loading_curve.h"
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -60,7 +60,7 @@ hyst_real hyst_masing_curve(const hyst_masing *model, hyst_real x);
 
 extern const hyst_kind hyst_masing_kind; /* of a hyst_masing */
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

@@ -14,7 +14,7 @@
 #include "hyst/kind.h"
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -45,7 +45,7 @@ hyst_real hyst_memory_element_step(const hyst_memory_element *model, hyst_real *
 
 extern const hyst_kind hyst_memory_element_kind; /* of a hyst_memory_element */
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

@@ -10,7 +10,7 @@
 #include "hyst/kind.h"
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -18,8 +18,8 @@ extern "C" {
  * times faster. */
 static inline hyst_real hyst_clamp(hyst_real low, hyst_real high, hyst_real z)
 {
-    const hyst_real below = z < high ? z : high;
-    return below > low ? below : low;
+    const hyst_real below = HYST_SELECT(z < high, z, high);
+    return HYST_SELECT(below > low, below, low);
 }
 
 /* The play's equation, for all files of the core: clamp z to [u - r, u + r]. */
@@ -37,7 +37,7 @@ hyst_real hyst_stop_step(hyst_real r, hyst_real *z, hyst_real u);
 extern const hyst_kind hyst_play_kind; /* of a threshold, hyst_real */
 extern const hyst_kind hyst_stop_kind; /* of a threshold, hyst_real */
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

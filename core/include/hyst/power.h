@@ -1,10 +1,12 @@
-/* x to the power e, the only function of the core that other libraries take from libm.
+/* x to the power e, and the base-2 logarithm and exponential it is made of: the only functions of
+ * the core that other libraries take from libm.
  *
  * It is written out here in plain arithmetic for two reasons: the core asks nothing of a target but
  * a compiler, and the libm of every platform rounds its own way, while these lines give the same
  * bits everywhere. A firmware that has something better names its header:
  *   -DHYST_POWER_HEADER='"my_power.h"'
- * which must define hyst_power for x >= 0 and any finite e.
+ * which must define hyst_power for x >= 0 and any finite e, hyst_log2 for x > 0, and hyst_exp2, 0 or an
+ * infinity where that is out of range.
  *
  * x = m 2^k with m in [sqrt(1/2), sqrt(2));  log2 m = 2 / ln 2 artanh((m - 1) / (m + 1)), a series in
  * t^2 <= 0.02945;  x^e = 2^n exp(r ln 2) with n + r = e log2 x, |r| <= 1/2, a series too.
@@ -20,7 +22,7 @@
 
 #include <stdint.h>
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -127,7 +129,7 @@ static inline hyst_real hyst_power(hyst_real x, hyst_real e)
     return x > HYST_REAL(0.0) ? result : HYST_REAL(0.0);
 }
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

@@ -6,7 +6,7 @@
 #include "hyst/kind.h"
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -22,7 +22,7 @@ hyst_real hyst_pi_step(const hyst_pi *pi, hyst_real *z, hyst_real u);
 
 extern const hyst_kind hyst_pi_kind; /* of a hyst_pi */
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

@@ -24,7 +24,7 @@
 
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -81,7 +81,7 @@ void hyst_radius_start(const hyst_radius *radius, hyst_real *state, const hyst_r
 /* One sample; 1 if it was used, 0 if it was not. */
 int hyst_radius_step(const hyst_radius *radius, hyst_real *state, hyst_real u, hyst_real y);
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

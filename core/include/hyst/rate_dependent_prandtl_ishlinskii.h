@@ -13,7 +13,7 @@
 #include "hyst/prandtl_ishlinskii.h"
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -35,7 +35,7 @@ hyst_real hyst_rate_dependent_pi_step(const hyst_rate_dependent_pi *model, hyst_
 
 extern const hyst_kind hyst_rate_dependent_pi_kind; /* of a hyst_rate_dependent_pi */
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

@@ -1,12 +1,19 @@
 /* The number type of the whole core: double, or float when HYST_SINGLE is defined.
- * One source serves both; a program links one of the two, never a mixture. */
+ * One source serves both; a program links one of the two, never a mixture.
+ *
+ * C++ may put another one in their place, say one that carries derivatives: HYST_REAL_HEADER names its
+ * header. The functions then are others, so their names are not those of C. */
 #ifndef HYST_REAL_H
 #define HYST_REAL_H
 
 #include <stddef.h>
 
+#ifdef HYST_REAL_HEADER
+#include HYST_REAL_HEADER
+#else
+
 #ifdef __cplusplus
-extern "C" {
+#define HYST_EXTERN_C
 #endif
 
 #ifdef HYST_SINGLE
@@ -17,8 +24,9 @@ typedef double hyst_real;
 #define HYST_REAL(literal) literal
 #endif
 
-#ifdef __cplusplus
-}
+/* a or b; a macro, so that C compiles what stands there. */
+#define HYST_SELECT(condition, a, b) ((condition) ? (a) : (b))
+
 #endif
 
 #endif

@@ -15,7 +15,7 @@
 #include "hyst/linear_dynamics.h"
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -43,7 +43,7 @@ hyst_real hyst_tracking_controller_step(const hyst_tracking_controller *controll
 hyst_real hyst_guarded_tracking_step(const hyst_tracking_controller *controller, hyst_real *state,
                                      hyst_guard *guard, hyst_real y_ref, hyst_real y);
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

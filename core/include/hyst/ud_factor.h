@@ -9,7 +9,7 @@
 
 #include "hyst/real.h"
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 extern "C" {
 #endif
 
@@ -35,7 +35,7 @@ hyst_real hyst_ud_times(size_t m, const hyst_real *u, const hyst_real *d, const 
 /* The diagonal of P. */
 void hyst_ud_variances(size_t m, const hyst_real *u, const hyst_real *d, hyst_real *variance);
 
-#ifdef __cplusplus
+#ifdef HYST_EXTERN_C
 }
 #endif
 

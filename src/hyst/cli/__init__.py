@@ -9,3 +9,7 @@ from __future__ import annotations
 from hyst.cli.app import main
 
 __all__ = ["main"]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -5,16 +5,24 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import typer
 from numpy.typing import NDArray
 
 import hyst
-from hyst.cli.arguments import InputColumn
+from hyst._files import replacing_files, require_folder
+from hyst.cli.arguments import (
+    InputColumn,
+    OutputColumn,
+    Rate,
+    Repair,
+    TimeColumn,
+    TimeUnit,
+    load_operator,
+)
 from hyst.cli.console import at_work, note, show_files, show_table
-from hyst.cli.identify import OutputColumn, Rate, Repair, TimeColumn, TimeUnit
 
 Files = Annotated[
     list[Path],
@@ -80,24 +88,18 @@ def adapt(
     resume: Resume = None,
 ) -> None:
     """Estimate a model's constants sample by sample along a record; write them over time."""
-    hyst.files.require_folder(folder)
+    require_folder(folder)
     model_file, data = _model_and_data(files, resume)
     estimator: hyst.online.JointEstimator | None = None
     if resume is not None:
         _refuse_options_of_a_start(resume, memory is not None, spread is not None, estimate_maps)
-        estimator, about = _resumed(resume, model_file)
+        estimator, model = _resumed(resume, model_file)
     else:
-        model, about = hyst.models.load_described(model_file or data)
-    record = hyst.read_record(
-        data,
-        input=input_column,
-        output=output_column,
-        time=time,
-        rate=rate,
-        time_unit=time_unit,
-        repair=repair,
-    )
-    record = _without_delay(record, about.delay)
+        model = load_operator(model_file or data)
+    about = model.description
+    how: dict[str, Any] = {"time": time, "rate": rate, "time_unit": time_unit, "repair": repair}
+    measured = hyst.read_record(data, input=input_column, output=output_column, **how)
+    record = _without_delay(measured, about.delay)
     history, record = _from_start(record, start)
     if estimator is None:
         estimator = hyst.online.JointEstimator(
@@ -117,14 +119,28 @@ def adapt(
         say("figure")
         picture = _picture(estimator.model, about, trajectory, _HEADING.format(data.name))
     names = ("model.json", "estimator.json", "parameters.csv", "parameters.png")
-    with hyst.files.replacing_files(folder) as temporary:
-        about = replace(about, dt=record.dt)
-        estimator.model.save(temporary / names[0], about)
-        estimator.save(temporary / names[1], about)
+    estimator.description = _described(estimator, about, measured)
+    with replacing_files(folder) as temporary:
+        estimator.model.save(temporary / names[0])
+        estimator.save(temporary / names[1])
         _write_parameters(temporary / names[2], trajectory)
         (temporary / names[3]).write_bytes(picture)
     _tell(estimator, before.tolist())
     show_files([folder / name for name in names])
+
+
+def _described(
+    estimator: hyst.online.JointEstimator,
+    about: hyst.operators.ModelDescription,
+    measured: hyst.Record,
+) -> hyst.operators.ModelDescription:
+    """Give the model's description with the origin of the estimate in the place of its own."""
+    asked = {name: each for name, each in estimator.settings.items() if name != "model"}
+    return replace(
+        about.of_other_constants(),
+        dt=measured.dt,
+        provenance=hyst.operators.provenance.provenance([measured], asked),
+    )
 
 
 def _refuse_if_few_used(estimator: hyst.online.JointEstimator, data: Path) -> None:
@@ -169,18 +185,20 @@ def _names(files: list[Path]) -> str:
 
 def _resumed(
     path: Path, model_file: Path | None
-) -> tuple[hyst.online.JointEstimator, hyst.operators.ModelDescription]:
-    estimator, about = hyst.online.load_described_estimator(path)
+) -> tuple[hyst.online.JointEstimator, hyst.operators.Operator]:
+    """Give the estimator, and the model that says what its numbers mean."""
+    estimator = hyst.load(path)
     if not isinstance(estimator, hyst.online.JointEstimator):
         raise hyst.InputError(f"{path} holds no joint estimator; give one that hyst adapt wrote")
-    if model_file is not None:
-        given, about = hyst.models.load_described(model_file)
-        if given.to_dict() not in (estimator.settings["model"], estimator.model.to_dict()):
-            raise hyst.InputError(
-                f"{model_file} is not the model that {path} started from or ended with; leave the "
-                "model out to go on, or --resume to start anew from it"
-            )
-    return estimator, about
+    if model_file is None:
+        return estimator, estimator.model
+    given = load_operator(model_file)
+    if given.to_dict() not in (estimator.settings["model"], estimator.model.to_dict()):
+        raise hyst.InputError(
+            f"{model_file} is not the model that {path} started from or ended with; leave the "
+            "model out to go on, or --resume to start anew from it"
+        )
+    return estimator, given
 
 
 def _without_delay(record: hyst.Record, delay: int) -> hyst.Record:

@@ -10,11 +10,14 @@ from typing import Annotated
 import typer
 
 import hyst
+from hyst._typed_command import carrying_out
 from hyst.cli.adapt import adapt
 from hyst.cli.compensate import compensate
 from hyst.cli.demo import demo
 from hyst.cli.excite import excite
 from hyst.cli.export import export
+from hyst.cli.family_options import FamilyCommand
+from hyst.cli.fit import fit
 from hyst.cli.identify import identify
 from hyst.cli.info import info
 from hyst.cli.observer import observer
@@ -30,9 +33,21 @@ app = typer.Typer(
     help="From a measured hysteresis loop to a model, its exact inverse and a command.",
     epilog="Exit code: 0 done, 2 bad input, 1 failure.",
 )
-VERBS = (excite, identify, adapt, simulate, compensate, observer, export, info, reproduce, demo)
+VERBS = (
+    excite,
+    identify,
+    fit,
+    adapt,
+    simulate,
+    compensate,
+    observer,
+    export,
+    info,
+    reproduce,
+    demo,
+)
 for verb in VERBS:
-    app.command(verb.__name__)(verb)
+    app.command(verb.__name__, cls=FamilyCommand if verb is identify else None)(verb)
 
 
 def _show_version(wanted: bool) -> None:
@@ -61,7 +76,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # Whoever repeats a failed command appends the option, so it may stand anywhere.
     given = [each for each in given if each != "--debug"]
     try:
-        status = app(args=given, prog_name="hyst", standalone_mode=False)
+        with carrying_out(given):
+            status = app(args=given, prog_name="hyst", standalone_mode=False)
     except typer.Abort:
         return _end("stopped", FAILURE)
     except Exception as error:

@@ -23,6 +23,24 @@ InputColumn = Annotated[
         help="Column of the input: name or index from 0.",
     ),
 ]
+OutputColumn = Annotated[
+    str,
+    typer.Option("--output", metavar="COL", show_default=False, help="Column of the output."),
+]
+Rate = Annotated[
+    float | None, typer.Option(metavar="HZ", show_default=False, help="Samples per second.")
+]
+TimeColumn = Annotated[
+    str | None,
+    typer.Option(metavar="COL", show_default=False, help="Or the column of time stamps."),
+]
+TimeUnit = Annotated[
+    str | None,
+    typer.Option(metavar="UNIT", show_default=False, help="Its unit: s, ms, us, ns, min or h."),
+]
+Repair = Annotated[
+    bool, typer.Option("--repair", help="Leave out bad rows and resample uneven time.")
+]
 
 SampleRate = Annotated[
     float | None,
@@ -35,6 +53,17 @@ SampleRate = Annotated[
 ]
 
 _STAMPS_ROUNDED = 1e-3
+
+
+def load_operator(path: Path) -> hyst.operators.Operator:
+    """Read a model file that holds an operator, and nothing else."""
+    found = hyst.load(path)
+    if not isinstance(found, hyst.operators.Operator):
+        raise hyst.InputError(
+            f"{path} holds a {type(found).__name__}, not one input's model; give a model file, as "
+            "hyst identify writes"
+        )
+    return found
 
 
 def whole_or_auto(text: str, name: str) -> int | Literal["auto"]:

@@ -11,6 +11,7 @@ import hyst
 from hyst.cli.arguments import (
     ModelFile,
     SampleRate,
+    load_operator,
     numbers,
     require_same_unit,
     sample_time_known,
@@ -99,7 +100,8 @@ def compensate(
     """Turn a wanted output into the input that produces it, and predict how well."""
     if method in hyst.compensation.METHODS:
         refuse_irrelevant(context, _BY_METHOD, [method], "--method")
-    model, about = hyst.models.load_described(model_file)
+    model = load_operator(model_file)
+    about = model.description
     y_ref, _, unit = hyst.io.read_column(reference, column)
     require_same_unit(unit, about.output_unit, "the reference")
     input_range = _input_range(limits, no_limits, about)

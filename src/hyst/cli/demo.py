@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-import hyst
+import hyst.demo
+from hyst._files import require_folder
 from hyst.cli.console import at_work, show_files, show_table
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ def demo(
     ] = Path("demo"),
 ) -> None:
     """Tell the whole story on a simulated stage: measure, identify, invert, track, compare."""
-    hyst.files.require_folder(folder)
+    require_folder(folder)
     with at_work("demo") as say:
         story = hyst.demo.tell(say=say)
         say("report")

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 import hyst
+from hyst._files import replacing
 from hyst.checks.numbers import as_positive, whole_number
 from hyst.cli.arguments import numbers
 from hyst.cli.console import note, show_files, show_table
@@ -135,7 +136,7 @@ def _write(drive: hyst.signals.Drive, out: Path, name: str) -> None:
     label, unit = hyst.io.split_unit(name)
     figure = out.with_suffix(".png")
     hyst.io.write_columns(out, ["time [s]", hyst.io.join_unit(label, unit)], (drive.time, drive.u))
-    with hyst.files.replacing(figure) as temporary:
+    with replacing(figure) as temporary:
         temporary.write_bytes(hyst.report.draw_drive(drive, label, unit))
     show_files([out, figure])
 

@@ -17,15 +17,13 @@ from hyst.cli.relevant_options import refuse_irrelevant
 
 if TYPE_CHECKING:
     from hyst.export.c.block import Model
-    from hyst.operators import ModelDescription
 
 
 @dataclass(frozen=True)
 class _Order:
-    """What is asked for: model and meaning, where to, and how."""
+    """What is asked for: which model, where to, and how."""
 
     model: Model
-    about: ModelDescription
     out: Path
     precision: str
     name: str
@@ -46,10 +44,9 @@ def _c(order: _Order) -> _Done:
     project = hyst.export.c_project(
         order.model,
         order.out,
-        order.precision,
-        order.name,
-        order.force,
-        description=order.about,
+        precision=order.precision,
+        name=order.name,
+        force=order.force,
     )
     zipped = order.out.suffix.lower() == ".zip"
     folder = order.name if zipped else str(order.out)
@@ -77,10 +74,9 @@ def _fmu(order: _Order) -> _Done:
     written = hyst.export.fmu(
         order.model,
         path,
-        order.fmi,
-        order.name,
-        order.force,
-        description=order.about,
+        version=order.fmi,
+        name=order.name,
+        force=order.force,
         binary=order.binary,
     )
     binaries = [each for each in written.files if each.startswith("binaries/")]
@@ -95,9 +91,7 @@ def _fmu(order: _Order) -> _Done:
 
 
 def _mex(order: _Order) -> _Done:
-    written = hyst.export.mex(
-        order.model, order.out, order.name, order.force, description=order.about
-    )
+    written = hyst.export.mex(order.model, order.out, name=order.name, force=order.force)
     rows = (
         ("files", ", ".join(written.files)),
         ("state", f"{written.saved_bytes} bytes, {written.state_length} numbers of memory"),
@@ -173,14 +167,13 @@ def export(
     if target not in _TARGETS:
         raise hyst.InputError(f"--target is {target!r}; give {' or '.join(_TARGETS)}")
     refuse_irrelevant(context, _BY_TARGET, [target], "--target")
-    model, about = hyst.export.load_exportable(model_file)
+    model = hyst.load(model_file)
     if inverse or explicit:
         model = hyst.export.inverse_of(model, explicit)
-        about = hyst.export.reversed_description(about)
-    done = _TARGETS[target](_Order(model, about, out, precision, name, force, fmi, binary))
+    done = _TARGETS[target](_Order(model, out, precision, name, force, fmi, binary))
     what = "inverse of " if inverse or explicit else ""
     title = f"{what}{model_file.name} as {target}: {out}"
     show_table(hyst.report.Table(title, ("", ""), done.rows))
-    if about.delay:
-        print("\n" + hyst.report.delay_sentence(about.delay, about.dt))
+    if model.description.delay:
+        print("\n" + hyst.report.delay_sentence(model.description.delay, model.description.dt))
     print(f"\nnext: {done.next_step}")

@@ -1,6 +1,8 @@
-"""hyst info: what is in a model file."""
+"""hyst info: what is in a file that hyst saved."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import hyst
 from hyst.cli.arguments import ModelFile
@@ -8,9 +10,28 @@ from hyst.cli.console import show_table
 
 
 def info(model_file: ModelFile) -> None:
-    """Show what a model file holds: what it means, constants, traits, and whether it inverts."""
-    model, about = hyst.models.load_described(model_file)
+    """Show what a model file holds: meaning, errors, origin, constants, traits, invertibility."""
+    found = hyst.load(model_file)
+    about = found.description
     show_table(hyst.report.description_table(about))
-    show_table(hyst.report.constants_table(model))
-    show_table(hyst.report.traits_table(model))
-    print(f"\n{hyst.report.invertible_sentence(model)}")
+    for table in (hyst.report.errors_table(about), hyst.report.provenance_table(about)):
+        if table.rows:
+            show_table(table)
+    operator = _operator(found)
+    if operator is not None:
+        show_table(hyst.report.constants_table(operator))
+        show_table(hyst.report.traits_table(operator))
+        print(f"\n{hyst.report.invertible_sentence(operator)}")
+
+
+def _operator(found: Any) -> hyst.operators.Operator | None:
+    """Give the operator to tell of, and say whose it is if the file holds something else."""
+    if isinstance(found, hyst.operators.Operator):
+        return found
+    if isinstance(found, hyst.control.TrackingController):
+        what = "no inverse" if found.inverse is None else "an inverse, as follows"
+        print(f"tracking controller: {found.order} states, dt {found.dt:.6g} s, {what}")
+        return found.inverse
+    print(f"{type(found).__name__}: the model it has found so far is")
+    model: hyst.operators.Operator = found.model
+    return model

@@ -10,6 +10,7 @@ import numpy as np
 import typer
 
 import hyst
+from hyst._files import replacing_files, require_folder
 from hyst.cli.console import at_work, note, progress_bar, show_files, show_table
 from hyst.cli.observer_spec import read_spec
 from hyst.cli.observer_template import TEMPLATE
@@ -45,7 +46,7 @@ def observer(spec_file: SpecFile = None, folder: Folder = None, template: Templa
         raise hyst.InputError(
             "give a spec and -o DIR; hyst observer --template > spec.toml makes a spec"
         )
-    hyst.files.require_folder(folder)
+    require_folder(folder)
     spec = read_spec(spec_file)
     design = _design(spec)
     answer = _tried(spec, design)
@@ -58,7 +59,7 @@ def observer(spec_file: SpecFile = None, folder: Folder = None, template: Templa
         )
         page = answer.to_html(bode, loops)
     names = ["certificate.json", "report.html", "bode.png", "closed_loop.png", "signals.csv"]
-    with hyst.files.replacing_files(folder) as temporary:
+    with replacing_files(folder) as temporary:
         text = json.dumps(answer.to_dict(), indent=2, allow_nan=False)
         (temporary / names[0]).write_text(text + "\n", encoding="utf-8")
         (temporary / names[1]).write_text(page, encoding="utf-8")
@@ -69,10 +70,9 @@ def observer(spec_file: SpecFile = None, folder: Folder = None, template: Templa
             names.append("controller.json")
             answer.block.save(temporary / names[5])
     _tell(answer)
-    if spec.about is not None and spec.about.delay:
-        lag = f"{spec.about.delay} samples"
-        if spec.about.dt is not None:
-            lag = f"{spec.about.delay * spec.about.dt:g} s"
+    about = spec.hysteresis.description
+    if about.delay:
+        lag = f"{about.delay} samples" if about.dt is None else f"{about.delay * about.dt:g} s"
         note(f"the recorded output lagged the model by {lag}: put that lag into plant or Wu")
     show_files([folder / name for name in names])
 
@@ -169,8 +169,8 @@ def _sampled(
 
 def _identified(spec: ObserverSpec) -> tuple[float, float] | None:
     """Give the drives that the model was identified from, where its file tells."""
-    about = spec.about
-    if about is None or about.input_low is None or about.input_high is None:
+    about = spec.hysteresis.description
+    if about.input_low is None or about.input_high is None:
         return None
     return about.input_low, about.input_high
 

@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 
 import hyst
 from hyst.checks.numbers import as_not_negative, as_positive
+from hyst.cli.arguments import load_operator
 from hyst.cli.spec_section import Section
 
 if TYPE_CHECKING:
     from hyst.control import InternalModel, LinearSystem
     from hyst.control.discretization import Method
-    from hyst.operators import ModelDescription, Operator
+    from hyst.operators import Operator
 
 Array = NDArray[np.float64]
 
@@ -29,10 +30,9 @@ class ObserverSpec:
     """A loop, what is asked of its observer, and how to try it.
 
     ``plant``, ``true_plant`` (or None), ``controller``, weights ``Wu`` and ``Wp`` and
-    ``internal_model`` are what is designed with; ``hysteresis`` (``about`` is what its model file
-    tells of it, or None), ``inverse`` (or None, named ``inverse_name``), ``reference``, ``dt``,
-    ``settle``, ``noise``, ``disturbance`` and ``seed`` what is simulated; ``filter_dt`` and
-    ``filter_method`` say what is implemented.
+    ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
+    ``inverse_name``), ``reference``, ``dt``, ``settle``, ``noise``, ``disturbance`` and ``seed``
+    what is simulated; ``filter_dt`` and ``filter_method`` say what is implemented.
     """
 
     plant: LinearSystem
@@ -42,7 +42,6 @@ class ObserverSpec:
     Wp: LinearSystem
     internal_model: InternalModel
     hysteresis: Operator
-    about: ModelDescription | None
     inverse: Operator | None
     inverse_name: str
     reference: Array
@@ -80,7 +79,7 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     weights = spec.section("weights")
     simulation = spec.section("simulation")
     implemented = spec.section("filter")
-    hysteresis, about = _hysteresis(spec.section("hysteresis"), folder)
+    hysteresis = _hysteresis(spec.section("hysteresis"), folder)
     dt = simulation.number("dt", positive=True)
     reference = _reference(spec.section("reference"), dt, folder)
     inverse, name = _inverse(spec.section("inverse"), hysteresis, folder)
@@ -108,7 +107,6 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         Wp=weights.section("Wp").system(),
         internal_model=_internal_model(spec.section("internal_model")),
         hysteresis=hysteresis,
-        about=about,
         inverse=inverse,
         inverse_name=name,
         reference=reference,
@@ -143,21 +141,21 @@ def _internal_model(given: Section) -> InternalModel:
     return model
 
 
-def _hysteresis(given: Section, folder: Path) -> tuple[Operator, ModelDescription | None]:
+def _hysteresis(given: Section, folder: Path) -> Operator:
     if given.has("file"):
         path = given.text("file")
         given.done()
-        return hyst.models.load_described(folder / path)
+        return load_operator(folder / path)
     p, r, p0 = given.numbers("p"), given.numbers("r"), given.number("p0")
     plays = hyst.PrandtlIshlinskii(p, r, p0)
     if not given.has("envelope"):
         given.done()
-        return plays, None
+        return plays
     envelope = given.section("envelope")
     weights, thresholds = envelope.numbers("weights"), envelope.numbers("thresholds")
     envelope.done()
     given.done()
-    return hyst.GeneralizedPrandtlIshlinskii(hyst.DeadZone.odd(weights, thresholds), plays), None
+    return hyst.GeneralizedPrandtlIshlinskii(hyst.DeadZone.odd(weights, thresholds), plays)
 
 
 def _inverse(given: Section, hysteresis: Operator, folder: Path) -> tuple[Operator | None, str]:
@@ -177,7 +175,7 @@ def _inverse(given: Section, hysteresis: Operator, folder: Path) -> tuple[Operat
         )
     elif kind == "file":
         path = given.text("file")
-        inverse, name = hyst.load(folder / path), path
+        inverse, name = load_operator(folder / path), path
     given.done()
     return inverse, name
 

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
+from hyst._files import replacing_files, require_folder
 from hyst.cli.console import at_work, show_files, show_table
-from hyst.files import replacing_files, require_folder
 from hyst.studies import keys, study
 
 Which = Annotated[str, typer.Argument(metavar="[s0|..|all]", help="Which study.")]

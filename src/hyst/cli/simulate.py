@@ -12,6 +12,7 @@ from hyst.cli.arguments import (
     InputColumn,
     ModelFile,
     SampleRate,
+    load_operator,
     require_same_unit,
     sample_time_known,
 )
@@ -41,7 +42,8 @@ def simulate(
     rate: SampleRate = None,
 ) -> None:
     """Compute the output of a model for an input, sample by sample."""
-    model, about = hyst.models.load_described(model_file)
+    model = load_operator(model_file)
+    about = model.description
     sample_time_known(model, data, rate, "the record")
     u, _, unit = hyst.io.read_column(data, input_column)
     require_same_unit(unit, about.input_unit, "the input")

@@ -7,6 +7,7 @@ from hyst.compensation.error_of_inverse.inverse_reduction import reduce_inverse
 from hyst.compensation.error_of_inverse.inverse_slopes import slope_range
 from hyst.compensation.invert import METHODS, invert_trajectory
 from hyst.compensation.result import Compensation, error_parts
+from hyst.compensation.suited_methods import methods_for
 
 __all__ = [
     "METHODS",
@@ -15,6 +16,11 @@ __all__ = [
     "error_bound",
     "error_parts",
     "invert_trajectory",
+    "methods_for",
     "reduce_inverse",
     "slope_range",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

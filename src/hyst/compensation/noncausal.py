@@ -63,7 +63,7 @@ def invert_noncausally(
     >>> bool(np.abs(done.predicted_error[:-1]).max() < 1e-10)
     True
     """
-    before, dynamics, after = _split(model)
+    before, dynamics, after = stages_around_dynamics(model)
     reference = finite_vector(y_ref, "y_ref")
     past = None if history is None else finite_vector(history, "history")
     start = model.initial_state() if past is None else model.run(past)[1]
@@ -104,7 +104,26 @@ def _settled_after(dynamics: LinearDynamics) -> int:
     return int(np.searchsorted(grown, (1.0 - _FORGOTTEN) * grown[-1]))
 
 
-def _split(model: Operator) -> tuple[Operator | None, LinearDynamics, Operator | None]:
+def stages_around_dynamics(
+    model: Operator,
+) -> tuple[Operator | None, LinearDynamics, Operator | None]:
+    """Split a model at its one stage of linear dynamics.
+
+    Parameters
+    ----------
+    model
+        Any operator.
+
+    Returns
+    -------
+    before, dynamics, after
+        What stands before and after the dynamics is None where nothing does.
+
+    Raises
+    ------
+    InputError
+        If there is not exactly one such stage.
+    """
     stages = list(model.parts) if isinstance(model, Composition) else [model]
     places = [i for i, stage in enumerate(stages) if isinstance(stage, LinearDynamics)]
     if len(places) != 1:

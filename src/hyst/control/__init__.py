@@ -48,3 +48,7 @@ __all__ = [
     "slope_margin",
     "uncertainty_used",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -17,7 +17,8 @@ from hyst.control.controller_parts import disturbance_observer_of, feedback_cont
 from hyst.control.discretization import Method, discretize
 from hyst.errors import InputError
 from hyst.operators import Operator
-from hyst.operators.model_file import ModelDescription, read_model, write_model
+from hyst.operators.description import Described, ModelDescription
+from hyst.operators.model_file import MODEL, write_file
 from hyst.operators.registry import entries, operator_from_dict
 
 Array = NDArray[np.float64]
@@ -28,7 +29,7 @@ _LARGEST_ORDER = 64  # HYST_LARGEST_ORDER of the core
 
 @final
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class TrackingController:
+class TrackingController(Described):
     """Drive from reference and measured output, sample by sample.
 
     ``v_k = C x_k + D [y_ref_k, y_k]``, ``x_{k+1} = A x_k + B [y_ref_k, y_k]``,
@@ -298,7 +299,7 @@ class TrackingController:
         """
         if not isinstance(data, dict) or data.get("kind") != KIND:
             kind = data.get("kind") if isinstance(data, dict) else data
-            raise InputError(f"the kind is {kind!r}, not {KIND!r}; read operators with hyst.load")
+            raise InputError(f"the kind is {kind!r}; give the dictionary of a {KIND}")
         given = entries(data, ("dt", "A", "B", "C", "D"), ("E", "F", "x0", "inverse"))
         if "inverse" in given:
             given["inverse"] = operator_from_dict(given["inverse"])
@@ -307,47 +308,22 @@ class TrackingController:
     def save(
         self, path: str | os.PathLike[str], description: ModelDescription | None = None
     ) -> None:
-        """Write a model file, every double exact; ``TrackingController.load`` reads it.
+        """Write a model file, every double exact; ``hyst.load`` reads it.
 
         Parameters
         ----------
         path
             The file to create or replace; it is written whole or not at all.
         description
-            What the numbers mean.
+            What the numbers mean; that of the controller itself if left out.
 
         Raises
         ------
         InputError
             If the folder does not exist.
         """
-        write_model(path, self.to_dict(), description)
-
-    @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> TrackingController:
-        """Read a model file that ``save`` wrote.
-
-        Parameters
-        ----------
-        path
-            The file.
-
-        Returns
-        -------
-        TrackingController
-            Equal to the one saved.
-
-        Raises
-        ------
-        InputError
-            If the file is not there, holds something else, or an entry is missing, unknown or not
-            allowed.
-        """
-        model, _ = read_model(path)
-        try:
-            return cls.from_dict(model)
-        except InputError as error:
-            raise InputError(f"{path}: {error}") from None
+        about = self.description if description is None else description
+        write_file(path, MODEL, {"model": self.to_dict()}, about)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, TrackingController) and self.to_dict() == other.to_dict()
@@ -356,7 +332,7 @@ class TrackingController:
         return hash((KIND, self.dt, *self.A.ravel().tolist(), *self.C.tolist()))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return TrackingController.from_dict, (self.to_dict(),)
+        return TrackingController.from_dict, (self.to_dict(),), self._carried()
 
     def __repr__(self) -> str:
         return f"TrackingController(order={self.order}, dt={self.dt!r}, inverse={self.inverse!r})"

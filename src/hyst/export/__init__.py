@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from hyst.export.c.firmware import CProject, c_project
 from hyst.export.fmi.archive import Fmu, fmu
-from hyst.export.inverses import explicit_inverse, inverse_of, reversed_description
-from hyst.export.loading import load_exportable
+from hyst.export.inverses import explicit_inverse, inverse_of
 from hyst.export.mex_folder import MexFolder, mex
 
 __all__ = [
@@ -16,7 +15,9 @@ __all__ = [
     "explicit_inverse",
     "fmu",
     "inverse_of",
-    "load_exportable",
     "mex",
-    "reversed_description",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

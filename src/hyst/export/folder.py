@@ -10,8 +10,8 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
+from hyst._files import replacing
 from hyst.errors import InputError
-from hyst.files import replacing
 
 MANIFEST = "manifest.json"
 FORMAT = "hyst export"

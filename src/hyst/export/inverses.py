@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from hyst.errors import InputError
 from hyst.export.c.block import Model
 from hyst.models import RateDependentPrandtlIshlinskii
-from hyst.operators import ModelDescription, Operator
+from hyst.operators import Operator
 from hyst.operators.composition import leaves_of
 from hyst.operators.registry import compose
 
 
 def explicit_inverse(model: Operator) -> Operator:
     """Give the inverse with the explicit inverses of rate-dependent plays in it: causal, not exact.
+
+    Its description is that of the model, input and output exchanged.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def explicit_inverse(model: Operator) -> Operator:
         raise InputError(
             f"{model.kind} has no rate-dependent plays; export its exact inverse with --inverse"
         )
-    return compose(
+    inverse = compose(
         tuple(
             leaf.explicit_inverse()
             if isinstance(leaf, RateDependentPrandtlIshlinskii)
@@ -48,6 +48,7 @@ def explicit_inverse(model: Operator) -> Operator:
             for leaf in reversed(leaves)
         )
     )
+    return inverse.with_description(model.description.of_inverse())
 
 
 def inverse_of(model: Model, explicit: bool = False) -> Operator:
@@ -74,28 +75,3 @@ def inverse_of(model: Model, explicit: bool = False) -> Operator:
     if not isinstance(model, Operator):
         raise InputError(f"a {type(model).__name__} has no inverse; export it as it is")
     return explicit_inverse(model) if explicit else model.inverse()
-
-
-def reversed_description(about: ModelDescription) -> ModelDescription:
-    """Give the description of an inverse: input and output change places.
-
-    Parameters
-    ----------
-    about
-        That of the model.
-
-    Returns
-    -------
-    ModelDescription
-    """
-    return replace(
-        about,
-        input_name=about.output_name,
-        input_unit=about.output_unit,
-        input_low=about.output_low,
-        input_high=about.output_high,
-        output_name=about.input_name,
-        output_unit=about.input_unit,
-        output_low=about.input_low,
-        output_high=about.input_high,
-    )

@@ -12,7 +12,7 @@ from typing import final
 
 import hyst
 from hyst.errors import InputError
-from hyst.export.c.block import Block, Model
+from hyst.export.c.block import Block, Model, described
 from hyst.export.c.c_sources import header, places, source
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.names import as_c_name, plain_text
@@ -69,9 +69,9 @@ class MexFolder:
 def mex(
     model: Model,
     folder: str | os.PathLike[str],
+    *,
     name: str = "stage",
     force: bool = False,
-    *,
     description: ModelDescription | None = None,
 ) -> MexFolder:
     """Write a model as one C file that MATLAB and Octave compile, with wrappers in their language.
@@ -87,7 +87,7 @@ def mex(
     force
         Whether an earlier export of that path is replaced, as a whole.
     description
-        Names and units of input and output, for comments.
+        Names and units of input and output, for comments; that of the model itself if left out.
 
     Returns
     -------
@@ -109,8 +109,8 @@ def mex(
     ('README.md', 'lens.m', 'lens_mex.c', 'lens_stepper.m', 'manifest.json')
     """
     _as_function_name(name)
-    about = description or ModelDescription()
     tool = tool_block(model)
+    about = described(model, description)
     files = mex_files(tool, name, about)
     path = write_export(folder, files, name, force=force)
     return MexFolder(

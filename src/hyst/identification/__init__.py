@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hyst.identification.families.registry import chosen_families, names_of, require_taken
 from hyst.identification.identify_records import identify
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.identified import Candidate, Identified
@@ -12,6 +13,13 @@ __all__ = [
     "Identified",
     "Slopes",
     "UsedSamples",
+    "chosen_families",
     "identify",
     "identify_weights_from_slopes",
+    "names_of",
+    "require_taken",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

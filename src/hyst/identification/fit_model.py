@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, final
 
 import numpy as np
@@ -19,9 +19,10 @@ from hyst.identification.options import Options, as_delay, listed, require_sampl
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data, prepare, require_same_units
 from hyst.identification.result.identified import Identified
-from hyst.identification.result.identified_from_fit import identified_from_fit
+from hyst.identification.result.identified_from_fit import identified_from_fit, traced
 from hyst.operators import Operator
 from hyst.operators.parameters import Parameters
+from hyst.operators.provenance import options_asked
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
@@ -131,18 +132,23 @@ def fit(
     """
     if not isinstance(model, Operator):
         raise InputError(f"the model is of type {type(model).__name__}; give an operator")
+    asked = options_asked(fit, locals())
     given, judged = listed(records), listed(validation)
     require_same_units((*given, *judged))
     parametrization, theta = parametrize_own(model, free, bounds or {})
     options = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
     data = prepare(given, start, 0, fewest_turns=0)
-    data = data.delayed(as_delay(delay, data))
+    data = data.delayed(as_delay(delay, data, ""))
     for record in (*given, *judged):
         model.require_sample_time(record.dt)
     with threadpool_limits(1, user_api="blas"):
         found = _fitted(OwnModel(parametrization, theta), data, options)
         require_sample_time(judged, data)
-        return identified_from_fit(data, found, (), judged, ())
+        told = identified_from_fit(data, found, (), judged, ())
+    # With other constants it is of the family it was of.
+    family = model.description.family
+    about = replace(told.description, family=family)
+    return traced(replace(told, family=family, description=about), given, asked)
 
 
 def parametrize_own(

@@ -13,8 +13,9 @@ from hyst.identification.options import Options, listed, require_sample_time, si
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import require_same_units
 from hyst.identification.result.identified import Identified
-from hyst.identification.result.identified_from_fit import identified_from_fit
+from hyst.identification.result.identified_from_fit import identified_from_fit, traced
 from hyst.identification.search import find
+from hyst.operators.provenance import options_asked
 from hyst.signals import Record
 
 
@@ -88,6 +89,7 @@ def identify(
     >>> bool(np.abs(found.model(u) - true(u))[500:].max() < 1e-6)
     True
     """
+    asked = options_asked(identify, locals()) | options
     given, judged = listed(records), listed(validation)
     require_same_units((*given, *judged))
     wanted = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
@@ -101,4 +103,5 @@ def identify(
         identified = identified_from_fit(
             found.data, found.fit, found.candidates, judged, found.notes
         )
-        return found.fit.family.result(identified, found.fit, Overview(found.data, delay))
+        told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
+    return traced(told, given, asked)

@@ -8,9 +8,10 @@ from typing import Literal
 
 import numpy as np
 
+from hyst.checks.numbers import whole_number
 from hyst.errors import InputError, SolverError
 from hyst.identification.families.family import Fit
-from hyst.identification.families.option import AUTO, as_whole_number
+from hyst.identification.families.option import AUTO
 from hyst.identification.fit.bounded_least_squares import CONVERGED
 from hyst.identification.record_use.used_samples import Data
 from hyst.signals import Record
@@ -68,7 +69,7 @@ def silent(_: str) -> None:
     """Report progress to nobody."""
 
 
-def as_delay(delay: int | str, data: Data) -> int:
+def as_delay(delay: int | str, data: Data, more: str = ", or 'auto'") -> int:
     """Check a delay that is given.
 
     Parameters
@@ -77,6 +78,8 @@ def as_delay(delay: int | str, data: Data) -> int:
         As of ``identify``, not ``"auto"``.
     data
         The records.
+    more
+        What else may be given, for the message.
 
     Raises
     ------
@@ -84,7 +87,7 @@ def as_delay(delay: int | str, data: Data) -> int:
         If it is no number of samples a record has.
     """
     shortest = min(len(r) - s for r, s in zip(data.records, data.starts, strict=True))
-    return as_whole_number(delay, "delay", 0, shortest - 1, " samples, or 'auto'")
+    return whole_number(delay, "delay", 0, shortest - 1, f" samples{more}")
 
 
 def require_sample_time(validation: Sequence[Record], data: Data) -> None:

@@ -19,3 +19,7 @@ __all__ = [
     "split_unit",
     "write_columns",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

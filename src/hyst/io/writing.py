@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.files import replacing
+from hyst._files import replacing
 
 
 def write_columns(

@@ -1,47 +1,18 @@
-"""Models: named compositions and banks of operators."""
+"""Models: named compositions and banks of operators.
+
+The stub ``__init__.pyi`` lists them, one line a model; ``hyst`` offers the same names.
+"""
 
 from __future__ import annotations
 
-from hyst.models.given_thresholds import GivenThresholds
-from hyst.models.linear_dynamics import LinearDynamics
-from hyst.models.loading_curve import InverseCurve
-from hyst.models.mapped_prandtl_ishlinskii import (
-    GeneralizedPrandtlIshlinskii,
-    ModifiedPrandtlIshlinskii,
-)
-from hyst.models.masing import MasingOperator
-from hyst.models.memory_element import InverseMemoryElement, MemoryElement
-from hyst.models.memory_function import MemoryFunction
-from hyst.models.model_loading import load, load_described
-from hyst.models.piecewise_linear import PiecewiseLinear
-from hyst.models.polynomial_curve import PolynomialCurve
-from hyst.models.power_law import PowerLaw
-from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii
-from hyst.models.ramberg_osgood import RambergOsgood
-from hyst.models.rate_curve import RateCurve
-from hyst.models.rate_dependent import RateDependentPrandtlIshlinskii
-from hyst.models.second_order_sections import SecondOrderSections
-from hyst.models.stable_inverse import StableInverse
+from hyst._lazy import attach
 
-__all__ = [
-    "GeneralizedPrandtlIshlinskii",
-    "GivenThresholds",
-    "InverseCurve",
-    "InverseMemoryElement",
-    "LinearDynamics",
-    "MasingOperator",
-    "MemoryElement",
-    "MemoryFunction",
-    "ModifiedPrandtlIshlinskii",
-    "PiecewiseLinear",
-    "PolynomialCurve",
-    "PowerLaw",
-    "PrandtlIshlinskii",
-    "RambergOsgood",
-    "RateCurve",
-    "RateDependentPrandtlIshlinskii",
-    "SecondOrderSections",
-    "StableInverse",
-    "load",
-    "load_described",
-]
+__getattr__, __all__ = attach(__name__, __file__)
+
+
+def __dir__() -> list[str]:
+    return __all__
+
+
+for _each in __all__:  # a class is known to model files once it is imported
+    __getattr__(_each)

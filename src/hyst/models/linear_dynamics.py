@@ -21,11 +21,12 @@ from hyst.models.linear_properties import (
     values_at,
     zeros_of,
 )
-from hyst.models.matrices import checked_matrices
+from hyst.models.matrices import LARGEST_DELAY, checked_matrices
 from hyst.models.python_control import matrices_of, state_space_of
 from hyst.models.realizations import cascade, companion, sections_of, zero_order_hold
 from hyst.operators.base import Operator
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
+from hyst.operators.portrait import NOTHING, Portrait
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
 from hyst.operators.traits import Degree, Traits
@@ -50,14 +51,14 @@ class LinearDynamics(Operator):
     dt
         Sample time, s, > 0. It says what a sample means; the equations do not need it.
     delay
-        Whole samples >= 0.
+        Whole samples, 0 to 10^6.
     x0
         Shape (n,), state before the first sample; zeros if left out. The delay line starts at 0.
 
     Raises
     ------
     InputError
-        If shapes do not fit, a number is not finite, or n is above 64.
+        If shapes do not fit, a number is not finite, n is above 64 or the delay too long.
 
     Examples
     --------
@@ -90,19 +91,10 @@ class LinearDynamics(Operator):
         start = as_constants(np.zeros(b.size) if x0 is None else x0, "x0")
         if start.size != b.size:
             raise InputError(f"x0 has {start.size} entries; the order is {b.size}")
-        for name, value in zip(
-            ("A", "B", "C", "D", "_dt", "delay", "x0"),
-            (
-                a,
-                b,
-                c,
-                feedthrough,
-                as_sample_time(dt),
-                whole_number(delay, "delay", 0),
-                as_constants(start + 0.0, ""),
-            ),
-            strict=True,
-        ):
+        names = ("A", "B", "C", "D", "_dt", "delay", "x0")
+        numbers = (as_sample_time(dt), whole_number(delay, "delay", 0, LARGEST_DELAY))
+        values = (a, b, c, feedthrough, *numbers, as_constants(start + 0.0, ""))
+        for name, value in zip(names, values, strict=True):
             object.__setattr__(self, name, value)
 
     @property
@@ -282,17 +274,17 @@ class LinearDynamics(Operator):
         return np.repeat([1.0, ratio], [n * n + n, n + 1])
 
     def in_units(self, input_scale: float, output_scale: float) -> LinearDynamics:
-        """Give the system in other units, its initial state too."""
-        ratio = output_scale / input_scale
-        return LinearDynamics(
-            self.A,
-            self.B,
-            self.C * ratio,
-            self.D * ratio,
-            self.dt,
-            self.delay,
-            self.x0 * input_scale,
-        )
+        """Give the system, and its initial state, in other units."""
+        C, D = (each * (output_scale / input_scale) for each in (self.C, self.D))
+        return LinearDynamics(self.A, self.B, C, D, self.dt, self.delay, self.x0 * input_scale)
+
+    def keeps_unit(self) -> bool:
+        """Tell whether the gain at rest is 1."""
+        return bool(np.isclose(self.dc_gain(), 1.0, rtol=1e-6))
+
+    def portrait(self) -> Portrait:
+        """Show nothing: dynamics are seen over frequency, not over the input."""
+        return NOTHING
 
     def lipschitz_constant(self) -> float:
         """Give the sum of the absolute impulse response; infinity if G is not stable."""
@@ -387,18 +379,6 @@ class LinearDynamics(Operator):
         angle = 2.0 * np.pi * self.dt * np.atleast_1d(np.asarray(frequency, dtype=np.float64))
         points = np.exp(1j * angle)
         return np.asarray(values_at(points, self.A, self.B, self.C, self.D) / points**self.delay)
-
-    def scaled(self, factor: float) -> LinearDynamics:
-        """Give the system with its output multiplied by a number.
-
-        Parameters
-        ----------
-        factor
-            The number.
-        """
-        return LinearDynamics(
-            self.A, self.B, factor * self.C, factor * self.D, self.dt, self.delay, self.x0
-        )
 
     def __repr__(self) -> str:
         late = f", delay={self.delay}" if self.delay else ""

@@ -19,6 +19,7 @@ from hyst.models.loading_curve import (
 )
 from hyst.operators.base import Operator
 from hyst.operators.parameters import Parameters
+from hyst.operators.portrait import Portrait
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
 from hyst.operators.traits import Asked, Degree, Traits
@@ -216,6 +217,10 @@ class MasingOperator(Operator):
         """Give the operator of another curve of the same kind."""
         curve = self.curve.with_parameters(theta)
         return MasingOperator(curve, self.memory, self.depth, self.dead_band)
+
+    def portrait(self) -> Portrait:
+        """Show the loading curve."""
+        return Portrait(("curve",), self.curve)
 
     def lipschitz_constant(self) -> float:
         """Give the curve's bound; infinity where only the last reversal is remembered."""

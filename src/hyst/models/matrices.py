@@ -11,6 +11,7 @@ from hyst.errors import InputError
 Array = NDArray[np.float64]
 
 LARGEST_ORDER = 64
+LARGEST_DELAY = 10**6  # every sample moves the whole delay line
 
 
 def checked_matrices(

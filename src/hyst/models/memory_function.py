@@ -194,7 +194,14 @@ class MemoryFunction:
         a = np.trim_zeros(self.values, "b")
         if a.size == 0 or a[0] <= 0.0:
             raise InputError("the polynomial is not positive at p = 0; give a positive a_0")
-        roots = np.polynomial.polynomial.polyroots(a) if a.size > 1 else np.empty(0)
+        with np.errstate(over="ignore"):
+            ratios = a / a[-1]
+        if not np.isfinite(ratios).all():
+            raise InputError(
+                f"values[{a.size - 1}] is {a[-1]:.6g}, too small beside the largest, "
+                f"{np.abs(a).max():.6g}, to find the roots; give 0 for it, or choose other units"
+            )
+        roots = np.polynomial.polynomial.polyroots(ratios) if a.size > 1 else np.empty(0)
         real = roots.real[np.abs(roots.imag) <= 1e-7 * (1.0 + np.abs(roots.real))]
         if real.size:
             raise InputError(

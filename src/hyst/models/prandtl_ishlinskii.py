@@ -16,6 +16,7 @@ from hyst.errors import InputError, NotInvertibleError
 from hyst.operators.base import Operator
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
+from hyst.operators.portrait import Portrait
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
 from hyst.operators.traits import Degree, Traits
@@ -170,6 +171,11 @@ class PrandtlIshlinskii(Operator):
         return PrandtlIshlinskii(
             self.p * ratio, self.r * input_scale, self.p0 * ratio, self.z0 * input_scale
         )
+
+    def portrait(self) -> Portrait:
+        """Show the weights over the radii, and the loading curve they make."""
+        curve = self.initial_loading_curve
+        return Portrait(("weights", "curve"), curve, self.p, self.r, self.p0)
 
     def lipschitz_constant(self) -> float:
         """Give the sum of the absolute weights."""

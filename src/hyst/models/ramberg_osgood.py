@@ -24,6 +24,7 @@ from hyst.models.masing import (
 from hyst.models.power_law import PowerLaw
 from hyst.operators.base import Operator
 from hyst.operators.parameters import Parameters, as_parameter_vector
+from hyst.operators.portrait import Portrait
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
 from hyst.operators.traits import Traits
@@ -265,6 +266,10 @@ class RambergOsgood(Operator):
         c1, c2, c3 = self.parameter_scales(input_scale, output_scale) * [self.c1, self.c2, self.c3]
         dead_band = self.dead_band * input_scale
         return RambergOsgood(c1, c2, c3, self.memory, self.depth, dead_band)
+
+    def portrait(self) -> Portrait:
+        """Show the loading curve."""
+        return Portrait(("curve",), self.curve)
 
     def lipschitz_constant(self) -> float:
         """Give infinity, for the slope grows without bound; c1 where c2 is 0."""

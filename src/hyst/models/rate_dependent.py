@@ -18,6 +18,7 @@ from hyst.models.rate_curve import RateCurve
 from hyst.operators.base import Operator
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
+from hyst.operators.portrait import Portrait
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
 from hyst.operators.traits import Degree, Traits
@@ -284,6 +285,10 @@ class RateDependentPrandtlIshlinskii(Operator):
             float(plays[0]),
             self.z0 * input_scale,
         )
+
+    def portrait(self) -> Portrait:
+        """Show the plays at rest."""
+        return self.at_rest().portrait()
 
     def lipschitz_constant(self) -> float:
         """Give ``|p0| + sum |p_i| (1 + 2 g'/dt)``, g' the steepest slope of the rate curve."""

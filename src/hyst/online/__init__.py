@@ -7,7 +7,6 @@ from hyst.online.joint.excitation import Excitation, PlayExcitation
 from hyst.online.joint.innovation import Innovation
 from hyst.online.joint.joint_estimator import JointEstimator
 from hyst.online.joint.parts import units_of_plays
-from hyst.online.loading import load_described_estimator, load_estimator
 from hyst.online.radius_estimator import RadiusEstimator
 from hyst.online.trajectory import Trajectory
 
@@ -19,7 +18,9 @@ __all__ = [
     "PlayExcitation",
     "RadiusEstimator",
     "Trajectory",
-    "load_described_estimator",
-    "load_estimator",
     "units_of_plays",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

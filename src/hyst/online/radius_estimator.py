@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-import os
-from typing import Any, Literal, final
+from typing import Any, ClassVar, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,8 +17,9 @@ from hyst.online.checks import memory_from, memory_or_none, sample, samples_of
 from hyst.online.joint.excitation import Excitation, watch
 from hyst.online.joint.prior import covariance_of
 from hyst.online.saved import check_saved_radii
-from hyst.online.saving import restored_state, save_estimator
+from hyst.online.saving import Saved, restored_state
 from hyst.online.trajectory import Trajectory
+from hyst.operators import ModelDescription
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
@@ -30,7 +30,7 @@ _TOLERANCES = {"gradient": 1.0, "least-squares": 0.25}
 
 
 @final
-class RadiusEstimator:
+class RadiusEstimator(Saved):
     """Estimate the radii of plays of known weights: the law of S2 as one linear regression.
 
     ``phi' r = s (sum_envelope p u + sum_interior p u_m - y)`` with s the direction of the input,
@@ -98,6 +98,8 @@ class RadiusEstimator:
     array([2.])
     """
 
+    kind: ClassVar[str] = "radius"
+
     def __init__(
         self,
         p: ArrayLike,
@@ -123,6 +125,8 @@ class RadiusEstimator:
                 f"p[{worst + 1}] is {start.p[worst]:.6g}; slopes tell regimes apart only where "
                 "every weight is positive, so use the joint estimator"
             )
+        self.description = ModelDescription()
+        """What the numbers of its model mean."""
         self.dt = as_sample_time(dt)
         gains = one_each(gain, n, "gain", "play")
         if (gains < 0.0).any():
@@ -165,7 +169,7 @@ class RadiusEstimator:
     @property
     def model(self) -> PrandtlIshlinskii:
         """The estimate as a model, without memory."""
-        return PrandtlIshlinskii(self._p, self.radii, self._p0)
+        return PrandtlIshlinskii(self._p, self.radii, self._p0).with_description(self.description)
 
     @property
     def standard_errors(self) -> Array:
@@ -264,30 +268,13 @@ class RadiusEstimator:
         names = tuple(f"r[{i}]" for i in range(1, n + 1))
         return Trajectory(time, names, r, np.full(r.shape, np.nan), error)
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write settings and state, every double exact; ``load_estimator`` continues from them.
-
-        Parameters
-        ----------
-        path
-            The file to create or replace.
-        """
-        save_estimator(path, "radius", self._settings, self.state)
+    def saved(self) -> tuple[dict[str, Any], Array]:
+        """Give settings and state, from which ``restore`` rebuilds the estimator."""
+        return dict(self._settings), self.state.copy()
 
     @classmethod
-    def restore(cls, settings: dict[str, Any], state: list[float]) -> RadiusEstimator:
-        """Rebuild an estimator from what ``save`` wrote.
-
-        Parameters
-        ----------
-        settings, state
-            As in the file.
-
-        Raises
-        ------
-        InputError
-            If the state does not fit the settings, or holds inadmissible radii.
-        """
+    def restore(cls, settings: dict[str, Any], state: ArrayLike) -> RadiusEstimator:
+        """Rebuild it from what ``saved`` gave, or the same read from a file."""
         given = dict(settings)
         estimator = cls(memory=memory_from(given), **given)
         restored_state(estimator.state, state)

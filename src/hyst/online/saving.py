@@ -2,73 +2,92 @@
 
 from __future__ import annotations
 
-import json
 import os
-from dataclasses import asdict
-from typing import Any
+from abc import ABC, abstractmethod
+from typing import Any, ClassVar, Self, final
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from hyst.errors import InputError
-from hyst.files import replacing
 from hyst.operators import ModelDescription
+from hyst.operators.model_file import ESTIMATOR, write_file
 
 Array = NDArray[np.float64]
 
-FORMAT = "hyst estimator"
-# 2: a search beside the joint estimate.
-VERSION = 2
 
+class Saved(ABC):
+    """An estimator that can be saved, copied and sent to another process as it is.
 
-def save_estimator(
-    path: str | os.PathLike[str],
-    kind: str,
-    settings: dict[str, Any],
-    state: Array,
-    description: ModelDescription | None = None,
-) -> None:
-    """Write an estimator to a file of JSON, whole or not at all.
-
-    Parameters
-    ----------
-    path
-        The file to create or replace.
-    kind
-        ``joint``, ``radius`` or ``inverse``.
-    settings
-        Arguments of the constructor.
-    state
-        The state.
-    description
-        What the numbers of the model mean, if that is known.
-
-    Raises
-    ------
-    InputError
-        If the folder does not exist, or the state has an entry that is not finite.
+    ``description`` says what the numbers of its model mean.
     """
-    if not np.isfinite(state).all():
-        raise InputError(
-            f"{path} cannot hold the state, in which the last samples led to an overflow; "
-            "save it after more samples of ordinary size"
-        )
-    content = {
-        "format": FORMAT,
-        "version": VERSION,
-        "kind": kind,
-        "settings": settings,
-        "state": state.tolist(),
-    }
-    if description is not None:
-        content["description"] = asdict(description)
-    with replacing(path) as temporary:
-        temporary.write_text(
-            json.dumps(content, indent=1, allow_nan=False) + "\n", encoding="utf-8"
-        )
+
+    kind: ClassVar[str]
+    description: ModelDescription
+
+    @abstractmethod
+    def saved(self) -> tuple[dict[str, Any], Array]:
+        """Give settings and state, from which ``restore`` rebuilds the estimator."""
+
+    @classmethod
+    @abstractmethod
+    def restore(cls, settings: dict[str, Any], state: ArrayLike) -> Self:
+        """Rebuild an estimator from what ``saved`` gave.
+
+        Parameters
+        ----------
+        settings, state
+            As in the file.
+
+        Raises
+        ------
+        InputError
+            If the state does not fit the settings, or holds an inadmissible estimate.
+        """
+
+    @final
+    def save(
+        self, path: str | os.PathLike[str], description: ModelDescription | None = None
+    ) -> None:
+        """Write settings and state, every double exact; ``hyst.load`` goes on with the same bits.
+
+        Parameters
+        ----------
+        path
+            The file to create or replace; it is written whole or not at all.
+        description
+            What the model's numbers mean; that of the estimator itself if left out.
+
+        Raises
+        ------
+        InputError
+            If the folder does not exist, or the state has an entry that is not finite.
+        """
+        settings, state = self.saved()
+        if not np.isfinite(state).all():
+            raise InputError(
+                f"{path} cannot hold the state, in which the last samples led to an overflow; "
+                "save it after more samples of ordinary size"
+            )
+        content = {"kind": self.kind, "settings": settings, "state": state.tolist()}
+        about = self.description if description is None else description
+        write_file(path, ESTIMATOR, content, about)
+
+    @final
+    def __reduce__(self) -> tuple[Any, ...]:
+        return restored, (type(self), *self.saved(), self.description)
 
 
-def restored_state(live: Array, saved: list[float]) -> None:
+def restored(
+    kind: type[Saved], settings: dict[str, Any], state: ArrayLike, description: ModelDescription
+) -> Any:
+    """Give an estimator of a ``kind`` back, with ``settings``, ``state`` and ``description``."""
+    estimator = kind.restore(settings, state)
+    estimator.description = description
+    return estimator
+
+
+def restored_state(live: Array, saved: ArrayLike) -> None:
     """Copy a saved state into the live one.
 
     Parameters

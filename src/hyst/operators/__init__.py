@@ -6,9 +6,11 @@ from hyst.operators.affine import Affine
 from hyst.operators.base import Operator
 from hyst.operators.composition import Chained, Composition
 from hyst.operators.dead_zone import DeadZone
-from hyst.operators.model_file import ModelDescription
+from hyst.operators.description import ModelDescription
 from hyst.operators.parameters import Parameters
 from hyst.operators.play import Play
+from hyst.operators.portrait import Portrait
+from hyst.operators.provenance import Provenance, data_hash
 from hyst.operators.registry import operator_from_dict
 from hyst.operators.stepper import Stepper
 from hyst.operators.stop import Stop
@@ -24,8 +26,15 @@ __all__ = [
     "Operator",
     "Parameters",
     "Play",
+    "Portrait",
+    "Provenance",
     "Stepper",
     "Stop",
     "Traits",
+    "data_hash",
     "operator_from_dict",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -14,6 +14,7 @@ from hyst.checks.numbers import as_number
 from hyst.errors import NotInvertibleError
 from hyst.operators.base import Operator
 from hyst.operators.parameters import Parameters, as_parameter_vector
+from hyst.operators.portrait import NOTHING, Portrait
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
 from hyst.operators.traits import Degree, Traits
@@ -100,6 +101,14 @@ class Affine(Operator):
     def parameter_scales(self, input_scale: float, output_scale: float) -> NDArray[np.float64]:
         """Give the factors of gain and offset."""
         return np.array([output_scale / input_scale, output_scale])
+
+    def keeps_unit(self) -> bool:
+        """Tell whether the gain is 1 or -1."""
+        return abs(self.gain) == 1.0
+
+    def portrait(self) -> Portrait:
+        """Show nothing: a line is seen in the numbers."""
+        return NOTHING
 
     def lipschitz_constant(self) -> float:
         """Give the absolute gain."""

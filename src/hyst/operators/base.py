@@ -5,8 +5,8 @@ from __future__ import annotations
 import functools
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from typing import Any, ClassVar, final
+from collections.abc import Callable
+from typing import Any, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,9 +14,11 @@ from numpy.typing import ArrayLike, NDArray
 from hyst import _engine
 from hyst.checks.arrays import as_signal, as_state, refuse_sample
 from hyst.errors import InputError, NotInvertibleError
+from hyst.operators.constants import Constants
+from hyst.operators.description import Described, ModelDescription
 from hyst.operators.engine_name import EngineName, as_engine, as_threads
-from hyst.operators.model_file import ModelDescription, write_model
-from hyst.operators.parameters import Parameters
+from hyst.operators.model_file import MODEL, write_file
+from hyst.operators.portrait import LOOP, Portrait
 from hyst.operators.registry import compose
 from hyst.operators.stage import Stage
 from hyst.operators.stepper import Stepper
@@ -25,16 +27,17 @@ from hyst.operators.traits import Traits
 Array = NDArray[np.float64]
 
 
-class Operator(ABC):
+class Operator(Described, Constants, ABC):
     """A causal operator with a finite state; ``y = operator(u)``.
 
     Concrete operators are frozen dataclasses that say what they are (constants, traits, state,
     inverse); how records, samples and derivatives are computed is written here, once, for all.
     """
 
-    kind: ClassVar[str]
-    is_map: ClassVar[bool] = False
-    """Whether it is a memoryless map, which may keep the unit of its signal."""
+    def __init_subclass__(cls) -> None:
+        # An inverse means what its operator means, the signals changed; no class has to say so.
+        if "inverse" in vars(cls):
+            cls.inverse = _described_inverse(cls.inverse)  # type: ignore[method-assign]
 
     @abstractmethod
     def traits(self) -> Traits:
@@ -82,85 +85,13 @@ class Operator(ABC):
             If there is none; the message names the condition that fails.
         """
 
-    @abstractmethod
-    def parameters(self) -> Parameters:
-        """Give the constants as one flat vector with names and bounds."""
+    def keeps_unit(self) -> bool:
+        """Tell whether a signal keeps its unit, as what is only bent, shifted or delayed does."""
+        return False
 
-    def nearest_parameters(self, theta: Array) -> Array:
-        """Give the nearest parameter vector that keeps an order the constructor demands.
-
-        Parameters
-        ----------
-        theta
-            Shape (m,), within the bounds of ``parameters()``.
-
-        Returns
-        -------
-        numpy.ndarray
-            ``theta`` itself where the order of the constants is free.
-        """
-        return theta
-
-    @abstractmethod
-    def with_parameters(self, theta: Sequence[float] | Array) -> Operator:
-        """Give the same operator with other constants.
-
-        Parameters
-        ----------
-        theta
-            Shape (m,), in the order and the units of ``parameters()``.
-
-        Raises
-        ------
-        InputError
-            If the length is wrong or a value is not allowed.
-        """
-
-    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
-        """Give the factors of the parameters in units in which signals have larger numbers.
-
-        The operator of these parameters, ``in_units``, gives ``output_scale f(u / input_scale)``.
-
-        Parameters
-        ----------
-        input_scale, output_scale
-            By which the numbers of input and output grow; powers of two keep all bits.
-
-        Returns
-        -------
-        numpy.ndarray
-            Shape (m,).
-
-        Raises
-        ------
-        InputError
-            If this kind of operator has no constants that could take the change.
-        """
-        raise InputError(
-            f"a {self.kind} cannot be brought to other units by its constants; compose it with "
-            "Affine operators that do"
-        )
-
-    def in_units(self, input_scale: float, output_scale: float) -> Operator:
-        """Give the same operator in units in which signals have larger numbers.
-
-        Parameters
-        ----------
-        input_scale, output_scale
-            By which the numbers of input and output grow.
-
-        Returns
-        -------
-        Operator
-            ``output_scale f(u / input_scale)``, of the same kind.
-
-        Raises
-        ------
-        InputError
-            As ``parameter_scales``.
-        """
-        scales = self.parameter_scales(input_scale, output_scale)
-        return self.with_parameters(scales * self.parameters().values)
+    def portrait(self) -> Portrait:
+        """Say how the operator is best drawn: by its loop, unless it knows better."""
+        return LOOP
 
     @abstractmethod
     def lipschitz_constant(self) -> float:
@@ -390,14 +321,15 @@ class Operator(ABC):
         path
             The file to create or replace; it is written whole or not at all.
         description
-            What the numbers mean: names, units, sample time, delay.
+            What the numbers mean; that of the operator itself if left out.
 
         Raises
         ------
         InputError
             If the folder does not exist.
         """
-        write_model(path, self.to_dict(), description)
+        about = self.description if description is None else description
+        write_file(path, MODEL, {"model": self.to_dict()}, about)
 
     @final
     def is_invertible(self) -> bool:
@@ -427,4 +359,13 @@ class Operator(ABC):
     @final
     def __reduce__(self) -> tuple[Any, ...]:
         # The compiled chain is rebuilt, not carried, when an operator goes to another process.
-        return type(self).from_dict, (self.to_dict(),)
+        return type(self).from_dict, (self.to_dict(),), self._carried()
+
+
+def _described_inverse(inverse: Callable[..., Operator]) -> Callable[..., Operator]:
+    @functools.wraps(inverse)
+    def described(self: Operator) -> Operator:
+        found, about = inverse(self), self.description
+        return found if about == ModelDescription() else found.with_description(about.of_inverse())
+
+    return described

@@ -14,6 +14,7 @@ from hyst.errors import InputError, NotInvertibleError
 from hyst.operators.base import Operator
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
+from hyst.operators.portrait import MAP, Portrait
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
 from hyst.operators.traits import Degree, Traits
@@ -193,6 +194,14 @@ class DeadZone(Operator):
     def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
         """Give the factors of weights and thresholds."""
         return np.repeat([output_scale / input_scale, input_scale], self.weights.size)
+
+    def keeps_unit(self) -> bool:
+        """Tell whether the slope around 0 is 1."""
+        return bool(np.isclose(self.weights[self.thresholds == 0.0].sum(), 1.0, rtol=1e-9))
+
+    def portrait(self) -> Portrait:
+        """Show the map."""
+        return MAP
 
     def lipschitz_constant(self) -> float:
         """Give the steepest slope; infinity for the form by direction, which jumps."""

@@ -1,4 +1,4 @@
-"""Model files: versioned JSON that a person can read and that gives back every double exactly.
+"""Files of models and estimators: versioned JSON that a person can read, every double exact.
 
 Nothing in a model file is executed or unpickled. An unknown version or entry is refused, because
 guessing what a newer file means would move an actuator by the wrong amount.
@@ -10,103 +10,99 @@ import json
 import math
 import os
 import re
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NoReturn, final
 
-from hyst.checks.numbers import as_number, as_sample_time, said, whole_number
+from hyst._files import replacing
 from hyst.errors import InputError
-from hyst.files import replacing
-
-FORMAT = "hyst model"
-VERSION = 1
+from hyst.operators.description import ModelDescription, as_description
 
 
+@final
 @dataclass(frozen=True)
-class ModelDescription:
-    """What the numbers of a model mean; kept in the model file beside the model.
+class Format:
+    """A kind of file.
 
     Parameters
     ----------
-    input_name, output_name
-        Names of the signals.
-    input_unit, output_unit
-        Their units, as text.
-    input_low, input_high, output_low, output_high
-        Ranges of the record the model was identified from, if it was.
-    dt
-        Sample time of that record in seconds.
-    delay
-        Whole samples by which the measured output lagged the model's output in that record. The
-        model itself has no delay, so that it has an exact inverse.
-    family
-        Family the model was identified in.
-
-    Raises
-    ------
-    InputError
-        If a name or unit is no text, a number is not finite or, for the delay, not whole, the delay
-        is negative, dt is not positive, or a range is upside down.
+    name
+        Its entry ``format``.
+    holds
+        What messages call it.
+    versions
+        Those that can be read, by the version their descriptions have; the last one is written.
+    entries
+        What it must have beside format, version and description.
     """
 
-    input_name: str = "u"
-    output_name: str = "y"
-    input_unit: str = ""
-    output_unit: str = ""
-    input_low: float | None = None
-    input_high: float | None = None
-    output_low: float | None = None
-    output_high: float | None = None
-    dt: float | None = None
-    delay: int = 0
-    family: str = ""
-
-    def __post_init__(self) -> None:
-        for field in fields(self):
-            value = _checked(field.name, getattr(self, field.name), str(field.type))
-            object.__setattr__(self, field.name, value)
-        if self.dt is not None:
-            as_sample_time(self.dt)
-        for signal in ("input", "output"):
-            low, high = getattr(self, f"{signal}_low"), getattr(self, f"{signal}_high")
-            if low is not None and high is not None and low > high:
-                raise InputError(
-                    f"{signal}_low is {low} and {signal}_high is {high}; give the lower end first"
-                )
+    name: str
+    holds: str
+    versions: Mapping[int, int]
+    entries: tuple[str, ...]
 
 
-def write_model(
-    path: str | os.PathLike[str], model: dict[str, Any], description: ModelDescription | None = None
+# Version 2 of a description: errors and provenance. A model file must have one, an estimator's
+# file of version 2 may; version 1 of those knew no search beside the estimate and is not read.
+MODEL = Format("hyst model", "model", {1: 1, 2: 2}, ("model",))
+ESTIMATOR = Format("hyst estimator", "estimator", {2: 1, 3: 2}, ("kind", "settings", "state"))
+_FORMATS = {each.name: each for each in (MODEL, ESTIMATOR)}
+
+
+@final
+@dataclass(frozen=True)
+class SavedFile:
+    """What was read from a file.
+
+    Parameters
+    ----------
+    format
+        Which kind of file it is.
+    content
+        Its entries, those of ``format.entries``.
+    description
+        What the numbers mean.
+    """
+
+    format: Format
+    content: dict[str, Any]
+    description: ModelDescription
+
+
+def write_file(
+    path: str | os.PathLike[str],
+    form: Format,
+    content: dict[str, Any],
+    description: ModelDescription,
 ) -> None:
-    """Write a model file.
+    """Write a file that ``hyst.load`` reads.
 
     Parameters
     ----------
     path
         File to create or replace, whole or not at all.
-    model
-        ``Operator.to_dict()``.
+    form
+        The kind of file.
+    content
+        The entries of the format.
     description
         What the numbers mean.
 
     Raises
     ------
     InputError
-        If the folder does not exist or the path is a folder.
+        If the folder does not exist or the path is a folder, or the description is none.
     """
-    about = {
-        key: value
-        for key, value in asdict(description or ModelDescription()).items()
-        if value is not None
-    }
-    content = {"format": FORMAT, "version": VERSION, "description": about, "model": model}
-    text = json.dumps(content, indent=2, allow_nan=False, ensure_ascii=False)
+    about = as_description(description).to_dict()
+    whole = {"format": form.name, "version": max(form.versions), "description": about, **content}
+    text = json.dumps(whole, indent=2, allow_nan=False, ensure_ascii=False)
     with replacing(path) as temporary:
         temporary.write_text(_lists_on_one_line(text) + "\n", encoding="utf-8")
 
 
-def read_model(path: str | os.PathLike[str]) -> tuple[dict[str, Any], ModelDescription]:
-    """Read a model file as plain dictionaries; ``hyst.load`` gives the operator.
+def read_file(path: str | os.PathLike[str]) -> SavedFile:
+    """Read a file as plain dictionaries; ``hyst.load`` gives what it holds.
 
     Parameters
     ----------
@@ -115,31 +111,44 @@ def read_model(path: str | os.PathLike[str]) -> tuple[dict[str, Any], ModelDescr
 
     Returns
     -------
-    model : dict
-        For ``operator_from_dict``.
-    description : ModelDescription
+    SavedFile
 
     Raises
     ------
     InputError
         If the file is not there, is not JSON, holds a number that is not finite, has another
-        version, or a missing or unknown entry.
+        format or version, or a missing or unknown entry.
     """
     content = _parse(Path(path))
-    if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise InputError(f"{path}: not a model file; its entry 'format' must be {FORMAT!r}")
+    form = _FORMATS.get(str(content.get("format"))) if isinstance(content, dict) else None
+    if form is None:
+        known = " or ".join(repr(name) for name in _FORMATS)
+        raise InputError(f"{path}: not a model file; its entry 'format' must be {known}")
     version = content.get("version")
-    if type(version) is not int or version != VERSION:
+    if type(version) is not int or version not in form.versions:
+        known = " and ".join(str(each) for each in form.versions)
         raise InputError(
-            f"{path}: version {version!r} of the model file; this hyst reads version {VERSION}"
+            f"{path}: version {version!r} of the {form.holds} file; this hyst reads versions "
+            f"{known}; use the hyst that wrote it"
         )
-    for key in ("description", "model"):
+    is_optional = form is ESTIMATOR and version == 2
+    required = form.entries if is_optional else ("description", *form.entries)
+    for key in required:
         if key not in content:
             raise InputError(f"{path}: the entry {key!r} is missing")
-    unknown = sorted(set(content) - {"format", "version", "description", "model"})
+    unknown = sorted(set(content) - {"format", "version", "description", *form.entries})
     if unknown:
         raise InputError(f"{path}: unknown entry {unknown[0]!r}; remove it or update hyst")
-    return content["model"], _description(path, content["description"])
+    about = content.get("description", {})
+    if is_optional and isinstance(about, dict):  # they wrote null for what is not known
+        about = {key: value for key, value in about.items() if value is not None}
+    try:
+        description = ModelDescription.from_dict(about, form.versions[version])
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    except RecursionError:
+        raise InputError(f"{path}: lists or objects are nested too deeply") from None
+    return SavedFile(form, {key: content[key] for key in form.entries}, description)
 
 
 def _parse(path: Path) -> Any:
@@ -187,35 +196,6 @@ def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
             raise InputError(f"the entry {key!r} is there more than once")
         found[key] = value
     return found
-
-
-def _description(path: str | os.PathLike[str], data: Any) -> ModelDescription:
-    if not isinstance(data, dict):
-        raise InputError(f"{path}: 'description' must be an object")
-    known = {field.name for field in fields(ModelDescription)}
-    for key, value in data.items():
-        if key not in known:
-            raise InputError(f"{path}: unknown entry {key!r} in 'description'")
-        if value is None:
-            raise InputError(f"{path}: {key!r} in 'description' is null; leave the entry out")
-    try:
-        return ModelDescription(**data)
-    except InputError as error:
-        raise InputError(f"{path}: in 'description', {error}") from None
-
-
-def _checked(name: str, value: Any, wanted: str) -> Any:
-    """Give a value of a description as the plain Python type that JSON knows."""
-    if wanted == "str":
-        # A lone surrogate cannot be written as UTF-8.
-        if isinstance(value, str) and not re.search("[\ud800-\udfff]", value):
-            return value
-        raise InputError(f"{name} is {said(value)}; give text")
-    if wanted == "int":
-        # JSON has one kind of number: 2.0 counts as 2 does.
-        is_whole = isinstance(value, float) and value.is_integer()
-        return whole_number(int(value) if is_whole else value, name, 0)
-    return None if value is None else as_number(value, name)
 
 
 def _lists_on_one_line(text: str) -> str:

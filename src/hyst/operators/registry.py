@@ -12,12 +12,6 @@ if TYPE_CHECKING:
 
 _CLASSES: dict[str, type[Operator]] = {}
 
-# Kinds of model files that hold something else, and what reads them.
-_NO_OPERATORS = {
-    "tracking-controller": "a tracking controller has two inputs, so it is no operator; "
-    "read it with hyst.control.TrackingController.load",
-}
-
 OperatorClass = TypeVar("OperatorClass", bound="type[Operator]")
 
 
@@ -97,8 +91,6 @@ def operator_from_dict(data: Any) -> Operator:
     if not isinstance(data, dict) or not isinstance(data.get("kind"), str):
         raise InputError("a model is an object with an entry 'kind'; this one has none")
     kind = data["kind"]
-    if kind in _NO_OPERATORS:
-        raise InputError(_NO_OPERATORS[kind])
     if kind not in _CLASSES:
         known = ", ".join(sorted(_CLASSES))
         raise InputError(f"unknown kind of operator {kind!r}; this version knows {known}")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hyst.files import replacing_files
+from hyst._files import replacing_files
 from hyst.identification import Identified
 from hyst.report.error_figure import autocorrelation, draw_error
 from hyst.report.fitted_record import FittedRecord, fit_records
@@ -29,12 +29,10 @@ from hyst.report.tables import (
 )
 from hyst.report.words import (
     command_method,
-    equations_of,
     error_sentence,
-    explanations_of,
-    family_name,
     in_short,
     memory_sentence,
+    words_of,
 )
 from hyst.signals import Record
 
@@ -202,10 +200,11 @@ def _how_good(page: Page, findings: _Findings, figures: dict[str, bytes]) -> Non
 
 def _the_model(page: Page, findings: _Findings, figures: dict[str, bytes]) -> None:
     identified = findings.identified
-    page.heading(f"The model: {family_name(identified.family)}")
-    for each in equations_of(identified):
+    words = words_of(identified)
+    page.heading(f"The model: {words.full_name}")
+    for each in words.equations:
         page.equation(each)
-    for each in explanations_of(identified):
+    for each in words.explanations:
         page.text(each)
     page.picture(figures[PARTS], "What the model is made of.")
     page.table(parameters_table(identified))

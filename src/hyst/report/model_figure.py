@@ -1,9 +1,9 @@
-"""The model itself: weights over radii, the loading curve of the plays, and its map if any."""
+"""The model itself, as its operators say they are best drawn: weights, curves, maps or loops."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -12,14 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from hyst.models import (
-    LinearDynamics,
-    MasingOperator,
-    PrandtlIshlinskii,
-    RambergOsgood,
-    RateDependentPrandtlIshlinskii,
-)
-from hyst.operators import Affine, Chained, DeadZone, Operator
+from hyst.operators import Chained, Operator, Portrait
 from hyst.report.canvas import (
     FAINT,
     MEASURED,
@@ -52,6 +45,19 @@ class Labels:
     output_unit: str
 
 
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """One operator of a model with its portrait and the signals around it."""
+
+    portrait: Portrait
+    before: Array
+    after: Array
+    labels: Labels
+    standard_errors: Mapping[str, float]
+    memoryless: bool
+    is_first: bool
+
+
 @drawn
 def draw_model(
     model: Operator,
@@ -80,33 +86,44 @@ def draw_model(
     bytes
         PNG.
     """
-    stages = list(stages_with_signals(model, u))
-    units = _units([stage for stage, _, _ in stages], labels.input_unit, labels.output_unit)
-    parts = [
-        (_at_rest(stage), before, after, *pair)
-        for (stage, before, after), pair in zip(stages, pairwise(units), strict=True)
-    ]
-    parts = [part for part in parts if _is_drawn(part[0])]
-    count = sum(2 if isinstance(part[0], PrandtlIshlinskii) else 1 for part in parts)
-    figure, axes = blank(max(count, 1), 1, 10.0 if count > 1 else 5.0, 3.9)
-    free = iter(axes)
-    for stage, before, after, unit_before, unit_after in parts:
-        if isinstance(stage, PrandtlIshlinskii):
-            _draw_weights(next(free), stage, standard_errors, unit_before, unit_after)
-            _draw_loading_curve(next(free), stage, before, unit_before, unit_after)
-        elif isinstance(stage, RambergOsgood | MasingOperator):
-            _draw_curve(next(free), stage, before, unit_before, unit_after)
-        else:
-            axes_of_map = next(free)
-            axes_of_map.set_title("Envelope map" if before is u else "Output map")
-            name = labels.input_name if before is u else "output of the plays"
-            axes_of_map.set_xlabel(with_unit(name, unit_before))
-            _draw_map(axes_of_map, before, after, unit_after)
-    if not parts:
-        _draw_line(axes[0], u, model, labels)
+    parts = _parts(model, u, labels, standard_errors)
+    panels = [(part, panel) for part in parts for panel in part.portrait.panels]
+    if all(panel == "loop" for _, panel in panels):
+        # Nothing to see inside: the whole says more than its pieces.
+        whole = _Part(
+            Portrait(()), u, model(u), labels, {}, model.traits().memoryless, is_first=True
+        )
+        panels = [(whole, "loop")]
+    figure, axes = blank(len(panels), 1, 10.0 if len(panels) > 1 else 5.0, 3.9)
+    for (part, panel), free in zip(panels, axes, strict=True):
+        _BRUSHES[panel](free, part)
     if heading:
         figure.suptitle(heading)
     return figure
+
+
+def _parts(
+    model: Operator, u: Array, labels: Labels, standard_errors: Mapping[str, float]
+) -> list[_Part]:
+    """Take a model apart; a signal is called by what comes before it."""
+    stages = list(stages_with_signals(model, u))
+    units = _units([stage for stage, _, _ in stages], labels.input_unit, labels.output_unit)
+    name, parts = "its input", []
+    for (stage, before, after), (unit_before, unit_after) in zip(
+        stages, pairwise(units), strict=True
+    ):
+        portrait, is_first = stage.portrait(), before is u
+        called = Labels(
+            labels.input_name if is_first else name,
+            unit_before,
+            labels.output_name if after is stages[-1][2] else "its output",
+            unit_after,
+        )
+        memoryless = stage.traits().memoryless
+        parts.append(_Part(portrait, before, after, called, standard_errors, memoryless, is_first))
+        if "weights" in portrait.panels:
+            name = "output of the plays"
+    return parts
 
 
 def stages_with_signals(model: Operator, u: Array) -> Iterator[tuple[Operator, Array, Array]]:
@@ -143,47 +160,25 @@ def stages_with_signals(model: Operator, u: Array) -> Iterator[tuple[Operator, A
 
 def _units(stages: list[Operator], input_unit: str, output_unit: str) -> list[str]:
     """Units of the signals before and after every stage; empty where a gain has changed them."""
-    keeps = [_keeps_unit(stage) for stage in stages]
+    keeps = [stage.keeps_unit() for stage in stages]
     return [
         input_unit if all(keeps[:i]) else output_unit if all(keeps[i:]) else ""
         for i in range(len(stages) + 1)
     ]
 
 
-def _keeps_unit(stage: Operator) -> bool:
-    """Tell whether what goes through is only bent, turned over, shifted or delayed."""
-    if isinstance(stage, Affine):
-        return abs(stage.gain) == 1.0
-    if isinstance(stage, DeadZone):
-        return bool(np.isclose(stage.weights[stage.thresholds == 0.0].sum(), 1.0, rtol=1e-9))
-    return isinstance(stage, LinearDynamics) and bool(np.isclose(stage.dc_gain(), 1.0, rtol=1e-6))
-
-
-def _at_rest(stage: Operator) -> Operator:
-    """Take the plays that a rate-dependent bank becomes at low rates; others as they are."""
-    return stage.at_rest() if isinstance(stage, RateDependentPrandtlIshlinskii) else stage
-
-
-def _is_drawn(stage: Operator) -> bool:
-    return isinstance(stage, PrandtlIshlinskii | DeadZone | RambergOsgood | MasingOperator)
-
-
-def _draw_weights(
-    axes: Axes,
-    plays: PrandtlIshlinskii,
-    standard_errors: Mapping[str, float],
-    unit_before: str,
-    unit_after: str,
-) -> None:
-    errors = {"p": np.zeros(plays.p.size), "r": np.zeros(plays.p.size)}
-    for name, value in standard_errors.items():
+def _draw_weights(axes: Axes, part: _Part) -> None:
+    portrait, labels = part.portrait, part.labels
+    count = portrait.p.size
+    errors = {"p": np.zeros(count), "r": np.zeros(count)}
+    for name, value in part.standard_errors.items():
         entry = _ENTRY.fullmatch(name)
-        if entry and 1 <= int(entry[2]) <= plays.p.size and np.isfinite(value):
+        if entry and 1 <= int(entry[2]) <= count and np.isfinite(value):
             errors[entry[1]][int(entry[2]) - 1] = value
-    axes.vlines(plays.r, 0.0, plays.p, color=MODELLED, linewidth=1.6)
+    axes.vlines(portrait.r, 0.0, portrait.p, color=MODELLED, linewidth=1.6)
     axes.errorbar(
-        plays.r,
-        plays.p,
+        portrait.r,
+        portrait.p,
         xerr=errors["r"],
         yerr=errors["p"],
         fmt="o",
@@ -195,55 +190,55 @@ def _draw_weights(
     )
     axes.axhline(0.0, color=FAINT, zorder=0)
     axes.set_xlim(left=0.0)
-    axes.set_title(f"Weights over radii (p0 = {plays.p0:.3g})")
-    axes.set_xlabel(with_unit("radius r", unit_before))
-    what = "weight p, +- one standard error" if standard_errors else "weight p"
-    axes.set_ylabel(with_unit(what, ratio_unit(unit_after, unit_before)))
+    axes.set_title(f"Weights over radii (p0 = {portrait.p0:.3g})")
+    axes.set_xlabel(with_unit("radius r", labels.input_unit))
+    what = "weight p, +- one standard error" if part.standard_errors else "weight p"
+    axes.set_ylabel(with_unit(what, ratio_unit(labels.output_unit, labels.input_unit)))
 
 
-def _draw_loading_curve(
-    axes: Axes, plays: PrandtlIshlinskii, signal: Array, unit_before: str, unit_after: str
-) -> None:
-    end = max(0.5 * float(np.ptp(signal)), float(plays.r.max(initial=0.0)))
-    rising = np.unique(np.concatenate([np.linspace(0.0, end, 200), plays.r]))
-    axes.plot(rising, plays.initial_loading_curve(rising), color=MODELLED, label="plays")
-    axes.plot(rising, plays.p0 * rising, color=SECOND, linestyle="--", label="linear part p0")
-    axes.plot(plays.r, plays.initial_loading_curve(plays.r), ".", color=MODELLED)
-    axes.set_title("Loading curve of the plays")
-    axes.set_xlabel(with_unit("rise of their input from rest", unit_before))
-    axes.set_ylabel(with_unit("rise of their output", unit_after))
-    axes.legend(loc="upper left")
+def _draw_curve(axes: Axes, part: _Part) -> None:
+    portrait, labels = part.portrait, part.labels
+    assert portrait.curve is not None, "this panel comes with a curve"
+    has_plays = "weights" in portrait.panels
+    end = max(0.5 * float(np.ptp(part.before)), float(portrait.r.max(initial=0.0)))
+    rising = np.union1d(np.linspace(0.0, end, 200), portrait.r)
+    axes.plot(rising, portrait.curve(rising), color=MODELLED, label="plays")
+    if has_plays:
+        axes.plot(
+            rising, portrait.p0 * rising, color=SECOND, linestyle="--", label="linear part p0"
+        )
+        axes.plot(portrait.r, portrait.curve(portrait.r), ".", color=MODELLED)
+        axes.legend(loc="upper left")
+    axes.set_title("Loading curve of the plays" if has_plays else "Loading curve")
+    whose = "their" if has_plays else "the"
+    axes.set_xlabel(with_unit(f"rise of {whose} input from rest", labels.input_unit))
+    axes.set_ylabel(with_unit(f"rise of {whose} output", labels.output_unit))
 
 
-def _draw_curve(
-    axes: Axes,
-    stage: RambergOsgood | MasingOperator,
-    signal: Array,
-    unit_before: str,
-    unit_after: str,
-) -> None:
-    rising = np.linspace(0.0, 0.5 * float(np.ptp(signal)), 200)
-    axes.plot(rising, stage.curve(rising), color=MODELLED)
-    axes.set_title("Loading curve")
-    axes.set_xlabel(with_unit("rise of the input from rest", unit_before))
-    axes.set_ylabel(with_unit("rise of the output", unit_after))
-
-
-def _draw_map(axes: Axes, before: Array, after: Array, unit_after: str) -> None:
-    order = np.argsort(before)
-    x, y = before[order], after[order]
+def _draw_map(axes: Axes, part: _Part) -> None:
+    order = np.argsort(part.before)
+    x, y = part.before[order], part.after[order]
     slope = (y[-1] - y[0]) / (x[-1] - x[0]) if x[-1] > x[0] else 0.0
     axes.plot(x, y - y[0] - slope * (x - x[0]), color=MODELLED)
     axes.axhline(0.0, color=FAINT, zorder=0)
-    axes.set_ylabel(with_unit(f"its output minus {slope:.3g} times its input", unit_after))
+    axes.set_title("Envelope map" if part.is_first else "Output map")
+    axes.set_xlabel(with_unit(part.labels.input_name, part.labels.input_unit))
+    what = f"its output minus {slope:.3g} times its input"
+    axes.set_ylabel(with_unit(what, part.labels.output_unit))
 
 
-def _draw_line(axes: Axes, u: Array, model: Operator, labels: Labels) -> None:
-    y = model(u)
+def _draw_loop(axes: Axes, part: _Part) -> None:
     # Sorted by its input, the output of a model with memory would jump from branch to branch.
-    memoryless = model.traits().memoryless
-    order = np.argsort(u) if memoryless else np.arange(u.size)
-    axes.plot(u[order], y[order], color=MODELLED)
-    axes.set_title("The straight line" if memoryless else "Output over input")
-    axes.set_xlabel(with_unit(labels.input_name, labels.input_unit))
-    axes.set_ylabel(with_unit(labels.output_name, labels.output_unit))
+    order = np.argsort(part.before) if part.memoryless else np.arange(part.before.size)
+    axes.plot(part.before[order], part.after[order], color=MODELLED)
+    axes.set_title("The straight line" if part.memoryless else "Output over input")
+    axes.set_xlabel(with_unit(part.labels.input_name, part.labels.input_unit))
+    axes.set_ylabel(with_unit(part.labels.output_name, part.labels.output_unit))
+
+
+_BRUSHES: dict[str, Callable[[Axes, _Part], None]] = {
+    "weights": _draw_weights,
+    "curve": _draw_curve,
+    "map": _draw_map,
+    "loop": _draw_loop,
+}

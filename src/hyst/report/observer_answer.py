@@ -380,8 +380,8 @@ class ObserverAnswer:
             page.code("hyst export controller.json --target c -o firmware")
             page.text("In Python:")
             page.code(
-                "from hyst.control import TrackingController\n"
-                'step = TrackingController.load("controller.json").stepper()\n'
+                "import hyst\n"
+                'step = hyst.load("controller.json").stepper()\n'
                 f"u = step(y_ref, y)   # every {self.block.dt:g} s"
             )
         return page.to_html()

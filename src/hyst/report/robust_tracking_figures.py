@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,15 +13,13 @@ from hyst.report.panels import Panel, draw_panels
 
 Array = NDArray[np.float64]
 
-_PI, _GPI = "PI", "GPI"
-
 
 def draw_all(
     design: DisturbanceObserver,
     true_plant: LinearSystem,
     r: Array,
-    models: Mapping[str, Operator],
-    loops: Mapping[str, InverseComparison],
+    models: tuple[Operator, Operator],
+    loops: tuple[InverseComparison, InverseComparison],
 ) -> dict[str, bytes]:
     """Draw Figs. 5 and 7 to 12.
 
@@ -36,9 +32,9 @@ def draw_all(
     r
         Reference for the figures without a loop, shape (N,).
     models
-        Hysteresis by ``PI`` and ``GPI``.
+        The plays alone, and behind an envelope.
     loops
-        Loops by the same names.
+        The loop around each.
 
     Returns
     -------
@@ -46,14 +42,15 @@ def draw_all(
         PNG by file name.
     """
     responses = loop_responses(design, true_plant)
+    (plays, generalized), (loop_of_plays, generalized_loop) = models, loops
     return {
         "s1-fig-5.png": draw_observer_bode(responses, "Fig. 5, C = 4 + 8/s, best gain"),
-        "s1-fig-7.png": _open_loop(r, models[_PI]),
-        "s1-fig-8.png": _exact_and_none(loops[_PI], "Fig. 8, PI model"),
-        "s1-fig-9.png": _scaled(loops[_PI]),
-        "s1-fig-10.png": _generalized(r, models[_GPI]),
-        "s1-fig-11.png": _generalized_loops(loops[_GPI]),
-        "s1-fig-12.png": _all_factors(loops[_GPI]),
+        "s1-fig-7.png": _open_loop(r, plays),
+        "s1-fig-8.png": _exact_and_none(loop_of_plays, "Fig. 8, PI model"),
+        "s1-fig-9.png": _scaled(loop_of_plays),
+        "s1-fig-10.png": _generalized(r, generalized),
+        "s1-fig-11.png": _generalized_loops(generalized_loop),
+        "s1-fig-12.png": _all_factors(generalized_loop),
     }
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from hyst.compensation import Compensation, error_parts
 from hyst.identification import Identified
-from hyst.operators import ModelDescription, Operator
+from hyst.operators import Operator
 from hyst.operators.traits import Degree
 
 _TRAITS = {
@@ -258,33 +258,3 @@ def compensation_table(done: Compensation, unit: str) -> Table:
             for name, value in (("rms", part.rms), ("max", part.max_abs))
         ),
     )
-
-
-def description_table(about: ModelDescription) -> Table:
-    """List what the numbers of a model mean, as far as its file says.
-
-    Parameters
-    ----------
-    about
-        From the model file.
-
-    Returns
-    -------
-    Table
-    """
-
-    def signal(name: str, unit: str, low: float | None, high: float | None) -> str:
-        extent = "" if low is None or high is None else f", {number(low, 6)} to {number(high, 6)}"
-        return f"{name}{extent}" + (f" {unit}" if unit else "")
-
-    rows = [
-        ("family", about.family or "not identified"),
-        ("input", signal(about.input_name, about.input_unit, about.input_low, about.input_high)),
-        (
-            "output",
-            signal(about.output_name, about.output_unit, about.output_low, about.output_high),
-        ),
-        ("sample time", "any" if about.dt is None else f"{number(about.dt, 6)} s"),
-        ("delay of the output", f"{about.delay} samples"),
-    ]
-    return Table("Description", ("what", "value"), tuple(rows))

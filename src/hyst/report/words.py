@@ -6,112 +6,44 @@ import math
 
 import numpy as np
 
+from hyst.compensation import methods_for
 from hyst.errors import NotInvertibleError
 from hyst.identification import Identified
-from hyst.identification.families.hammerstein import IdentifiedHammerstein
+from hyst.identification.families.family import Words
+from hyst.identification.families.registry import families
+from hyst.models import LinearDynamics
 from hyst.operators import Operator
+from hyst.operators.composition import leaves_of
 from hyst.report.tables import number, with_unit
 from hyst.signals import Record
 
-FAMILY_NAMES = {
-    "linear": "straight line",
-    "ramberg-osgood": "Ramberg-Osgood model",
-    "pi": "Prandtl-Ishlinskii model",
-    "gpi": "generalized Prandtl-Ishlinskii model",
-    "mpi": "modified Prandtl-Ishlinskii model",
-    "rdpi": "rate-dependent Prandtl-Ishlinskii model",
-    "hammerstein": "Hammerstein model (hysteresis, then linear dynamics)",
-}
 
-_PLAYS = "P[w](t) = p0 w(t) + \u03a3 p\u1d62 F\u1d63\u1d62[w](t)"
-_EQUATIONS = {
-    "linear": ("y(t) = gain \u00b7 u(t) + offset",),
-    "ramberg-osgood": (
-        "y(t) = {sign}R[u](t) + offset",
-        "dR/du = c1 + c2 p^c3,  p = |u - u at the last reversal|",
-    ),
-    "pi": ("y(t) = {sign}P[u](t) + offset", _PLAYS),
-    "gpi": ("y(t) = {sign}P[\u03b3(u)](t) + offset", _PLAYS),
-    "mpi": ("y(t) = {sign}\u039b(P[u](t)) + offset", _PLAYS),
-    "rdpi": (
-        "y(t) = {sign}P[u](t) + offset",
-        "P[u](t) = p0 u(t) + \u03a3 p\u1d62 F\u1d68[u](t),  \u03c1 = r\u1d62 + \u03b2 |du/dt|",
-    ),
-}
-_DYNAMICS = "y(t) = G[v](t)"
-_PLAY_TEXT = (
-    "F with radius r is a play (backlash of half-width r): its output rests until its input has "
-    "come r away from it, and then follows at that distance. The sum of plays gives the loop and "
-    "its minor loops; p0 is the part without hysteresis."
-)
-_MAP_TEXT = {
-    "gpi": "\u03b3 is a piecewise linear map of the input before the plays; it bends the loop over "
-    "the input, so that it may be asymmetric and saturate.",
-    "mpi": "\u039b is a piecewise linear map after the plays; it bends the loop over the output, "
-    "so that it may be asymmetric.",
-    "rdpi": "The faster the input moves, the wider the plays: \u03b2 (beta) is the growth of their "
-    "radii with the rate of the input; the figure shows them at rest.",
-}
-_SLOPES_TEXT = (
-    "In the table below this map is called dead_zone: each of its weights is the change of slope "
-    "at a threshold; the thresholds are in the model file."
-)
-_DYNAMICS_TEXT = (
-    "v is the output of the hysteresis, which nobody measured. G is linear dynamics of gain 1 at "
-    "rest, in the table y_k = b[0] v_k + b[1] v_(k-1) + .. - a[1] y_(k-1) - ..; a delay comes on "
-    "top."
-)
-_LINEAR_TEXT = "This model has no hysteresis: the output depends on the present input alone."
+def words_of(identified: Identified) -> Words:
+    """Give the words of a result, its equations with the sign of its output.
 
-_POWER_LAW_TEXT = (
-    "Right after a reversal the output follows the input with the slope c1; the further the input "
-    "goes, the steeper it gets. With nested memory a branch that closes a loop goes on along the "
-    "branch the loop started from, so that minor loops close."
-)
+    Parameters
+    ----------
+    identified
+        Any result; also one of a family that this version does not know, or of none.
 
-
-def family_name(family: str) -> str:
-    """Give the full name of a family.
-
-    Examples
-    --------
-    >>> family_name("mpi"), family_name("new")
-    ('modified Prandtl-Ishlinskii model', 'new model')
+    Returns
+    -------
+    Words
     """
-    return FAMILY_NAMES.get(family, f"{family} model")
-
-
-def equations(family: str, model: Operator) -> tuple[str, ...]:
-    """Give the equations of a model of a family in plain characters; none for an unknown family."""
-    parameters = model.parameters()
-    gains = [v for n, v in zip(parameters.names, parameters.values, strict=True) if "gain" in n]
-    sign = "-" if family != "linear" and gains and gains[-1] < 0.0 else ""
-    return tuple(each.format(sign=sign) for each in _EQUATIONS.get(family, ()))
-
-
-def explanations(family: str) -> tuple[str, ...]:
-    """Say what the signs in the equations mean."""
-    if family == "linear":
-        return (_LINEAR_TEXT,)
-    if family == "ramberg-osgood":
-        return (_POWER_LAW_TEXT,)
-    slopes = _SLOPES_TEXT if family in ("gpi", "mpi") else ""
-    return tuple(text for text in (_PLAY_TEXT, _MAP_TEXT.get(family, ""), slopes) if text)
-
-
-def equations_of(identified: Identified) -> tuple[str, ...]:
-    """Give the equations of what was identified, those of the dynamics included."""
-    if not isinstance(identified, IdentifiedHammerstein):
-        return equations(identified.family, identified.model)
-    front = equations(identified.hysteresis_family, identified.hysteresis)
-    return (*(each.replace("y(t)", "v(t)", 1) for each in front), _DYNAMICS)
-
-
-def explanations_of(identified: Identified) -> tuple[str, ...]:
-    """Say what the signs in the equations of what was identified mean."""
-    if not isinstance(identified, IdentifiedHammerstein):
-        return explanations(identified.family)
-    return (*explanations(identified.hysteresis_family), _DYNAMICS_TEXT)
+    family = families.get(identified.family)
+    if family is None:
+        shape = f"{identified.family} model" if identified.family else "model of the given shape"
+        return Words(shape, (), ())
+    words = family.words_for(identified)
+    parameters = identified.model.parameters()
+    gains = [
+        value
+        for name, value in zip(parameters.names, parameters.values, strict=True)
+        if name.rpartition(".")[2] == "gain"
+    ]
+    sign = "-" if gains and gains[-1] < 0.0 else ""
+    equations = tuple(each.format(sign=sign) for each in words.equations)
+    return Words(words.full_name, equations, words.explanations)
 
 
 def command_method(identified: Identified) -> str:
@@ -125,13 +57,13 @@ def command_method(identified: Identified) -> str:
     Returns
     -------
     str
-        ``"exact"`` where there is an exact inverse.
+        ``"exact"`` where there is an exact inverse; else what suits the family best and the model
+        can.
     """
-    if identified.model.is_invertible():
-        return "exact"
-    if isinstance(identified, IdentifiedHammerstein):
-        return "noncausal" if identified.inverse_of_dynamics is not None else ""
-    return "trajectory" if identified.family == "rdpi" else ""
+    able = methods_for(identified.model)
+    family = families.get(identified.family)
+    wanted = ("exact", *(() if family is None else family.methods), *able)
+    return next((each for each in wanted if each in able), "")
 
 
 def straight_line_rms(record: Record, start: int) -> float:
@@ -175,7 +107,7 @@ def in_short(identified: Identified, records: tuple[Record, ...]) -> tuple[str, 
     -------
     tuple of str
     """
-    sentences = [f"The model is a {family_name(identified.family)}{_plays_of(identified)}."]
+    sentences = [f"The model is a {words_of(identified).full_name}{_plays_of(identified.model)}."]
     unit = identified.description.output_unit
     training = identified.metrics.get("training")
     if training is not None:
@@ -218,12 +150,13 @@ def lag_sentence(identified: Identified) -> str:
     -------
     str
     """
-    if not isinstance(identified, IdentifiedHammerstein):
+    inside = [each for each in leaves_of(identified.model) if isinstance(each, LinearDynamics)]
+    if identified.delay or not inside:
         return delay_sentence(identified.delay, identified.description.dt)
-    delay = identified.dynamics.delay
+    delay = sum(each.delay for each in inside)
     if delay == 0:
         return "The dynamics have no delay beside their own lag."
-    time = number(delay * identified.dynamics.dt)
+    time = number(delay * inside[0].dt)
     return f"The dynamics contain a delay of {delay} sample{'s' * (delay > 1)} ({time} s)."
 
 
@@ -304,8 +237,8 @@ def memory_sentence(record: Record) -> str:
     )
 
 
-def _plays_of(identified: Identified) -> str:
-    count = sum(name.rpartition(".")[2].startswith("r[") for name in identified.parameter_names)
+def _plays_of(model: Operator) -> str:
+    count = sum(each.portrait().r.size for each in leaves_of(model))
     if count == 0:
         return ""
     return f" with {count} play{'s' * (count > 1)}"

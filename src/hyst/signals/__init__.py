@@ -38,3 +38,7 @@ __all__ = [
     "triangle",
     "units_differ",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -18,6 +18,8 @@ from hyst.errors import InputError
 if TYPE_CHECKING:
     from hyst.report import Table
 
+__all__ = ["Study", "keys", "study"]
+
 _NAME = re.compile(r"(s\d+)_\w+")
 
 
@@ -90,3 +92,7 @@ def study(key: str) -> Study:
 def _modules() -> dict[str, str]:
     names = (each.name for each in pkgutil.iter_modules(__path__))
     return {found.group(1): name for name in names if (found := _NAME.fullmatch(name))}
+
+
+def __dir__() -> list[str]:
+    return __all__

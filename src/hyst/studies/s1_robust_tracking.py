@@ -200,9 +200,9 @@ def figures() -> dict[str, bytes]:
         PNG by file name.
     """
     r = reference(2e-4, 2.0)
-    models: dict[str, Operator] = {"PI": PLAYS, "GPI": GENERALIZED}
-    loops = {name: tracked(name == "GPI") for name in models}
-    return draw_all(designs(repaired=True).best, TRUE_PLANT, r, models, loops)
+    loops = tracked(generalized=False), tracked(generalized=True)
+    best = designs(repaired=True).best
+    return draw_all(best, TRUE_PLANT, r, (PLAYS, GENERALIZED), loops)
 
 
 def inverse_constants() -> Table:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,9 +13,10 @@ from hyst.identification.families.hammerstein import (
     average_periods,
     best_linear_approximation,
     fit_markov,
+    markov,
     realize,
 )
-from hyst.identification.families.hammerstein.markov import choose_markov
+from hyst.identification.families.hammerstein.markov import MarkovParameters, choose_markov
 from hyst.models import LinearDynamics
 from hyst.signals import Record, multisine
 from hyst.signals.lagged import lagged_factor, lagged_gram
@@ -70,6 +72,26 @@ def test_what_does_not_excite_is_told_with_its_rank() -> None:
     u = np.sin(0.3 * np.arange(3000))
     with pytest.raises(NotIdentifiableError, match=r"rank 2 of 21.*more frequencies"):
         fit_markov(Record(u, G(u), 0.01), 20)
+
+
+def test_a_response_that_leaves_a_residual_of_exactly_zero_is_kept(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # Whether a residual rounds to 0 is up to the BLAS: here every estimate says so.
+    def exact(*arguments: object) -> MarkovParameters:
+        found = fit_markov(*arguments)  # type: ignore[arg-type]
+        return replace(found, standard_errors=np.zeros(found.values.size), residual_rms=0.0)
+
+    # 23 lines and a constant excite 46 + 1 lags: 32 can be told apart, 64 cannot.
+    period, phases = 6000, np.random.default_rng(3).uniform(0.0, 2.0 * np.pi, 23)
+    lines = np.linspace(1, 2999, 23).astype(int)
+    k = np.arange(2 * period)[:, None]
+    u = np.cos(2.0 * np.pi * k * lines / period + phases).sum(axis=1)
+    fast = LinearDynamics.from_transfer_function([0.0, 0.6], [1.0, -0.4], 0.01)
+    monkeypatch.setattr(markov, "fit_markov", exact)
+    found, doubts = choose_markov([Record(u, fast(u), 0.01)], "auto")
+    assert found.order == 32
+    assert "32 lags were taken" in doubts[0]
 
 
 def test_short_records_and_live_tails_are_refused() -> None:

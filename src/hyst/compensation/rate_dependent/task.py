@@ -111,6 +111,45 @@ def prepare_task(
     NotInvertibleError
         If a map before or after the plays cannot be inverted, or p0 is not positive.
     """
+    before, plays, after = stages_around_plays(model)
+    reference = finite_vector(y_ref, "y_ref")
+    target = reference if after is None else after.inverse()(reference)
+    start = (
+        model.initial_state()
+        if history is None
+        else model.run(finite_vector(history, "history"))[1]
+    )
+    low, high = -np.inf, np.inf
+    if input_range is not None:
+        ends = np.array(range_of_input(input_range))
+        low, high = np.sort(ends if before is None else before(ends)).tolist()
+        if not clip:
+            _require_reach(plays, target, low, high)
+    return RateDependentTask(model, plays, before, start, reference, target, low, high, clip)
+
+
+def stages_around_plays(
+    model: Operator,
+) -> tuple[Operator | None, RateDependentPrandtlIshlinskii, Operator | None]:
+    """Split a model at its one bank of rate-dependent plays.
+
+    Parameters
+    ----------
+    model
+        Any operator.
+
+    Returns
+    -------
+    before, plays, after
+        The maps before and after the plays are None where there are none.
+
+    Raises
+    ------
+    InputError
+        If there is not exactly one bank, or another stage has memory.
+    NotInvertibleError
+        If p0 is not positive.
+    """
     leaves = leaves_of(model)
     banks = [i for i, each in enumerate(leaves) if isinstance(each, RateDependentPrandtlIshlinskii)]
     others = [each for i, each in enumerate(leaves) if i not in banks]
@@ -129,20 +168,7 @@ def prepare_task(
         )
     before = Composition(leaves[: banks[0]]) if banks[0] else None
     after = Composition(leaves[banks[0] + 1 :]) if banks[0] + 1 < len(leaves) else None
-    reference = finite_vector(y_ref, "y_ref")
-    target = reference if after is None else after.inverse()(reference)
-    start = (
-        model.initial_state()
-        if history is None
-        else model.run(finite_vector(history, "history"))[1]
-    )
-    low, high = -np.inf, np.inf
-    if input_range is not None:
-        ends = np.array(range_of_input(input_range))
-        low, high = np.sort(ends if before is None else before(ends)).tolist()
-        if not clip:
-            _require_reach(plays, target, low, high)
-    return RateDependentTask(model, plays, before, start, reference, target, low, high, clip)
+    return before, plays, after
 
 
 def _require_reach(

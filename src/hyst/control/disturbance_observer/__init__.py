@@ -21,3 +21,7 @@ __all__ = [
     "evaluate_gain",
     "observer_problem",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -16,7 +16,7 @@ from hyst.export.core_stage import CoreStage, core_stages
 from hyst.export.stage_code import StageCode
 from hyst.models.stable_inverse import StableInverse
 from hyst.online import JointEstimator
-from hyst.operators import Affine, Operator
+from hyst.operators import Affine, ModelDescription, Operator
 from hyst.operators.registry import compose
 
 Model = Operator | TrackingController | StableInverse | JointEstimator
@@ -145,8 +145,8 @@ def block_of(model: Model, precision: Precision) -> Block:
         )
     if not isinstance(model, Operator):
         raise InputError(
-            f"{type(model).__name__} cannot be exported; give an operator, a tracking controller "
-            "or a joint estimator"
+            f"{type(model).__name__} cannot be exported; give an operator, a tracking controller, "
+            "a joint estimator, or the model that an estimator has found"
         )
     code = StageCode(core_stages(model), precision)
     return Block(
@@ -164,6 +164,13 @@ def block_of(model: Model, precision: Precision) -> Block:
         chain=model,
         stepper=model.stepper,
     )
+
+
+def described(model: Model, description: ModelDescription | None) -> ModelDescription:
+    """Give the ``description`` asked for, or that of the ``model``, which can be exported."""
+    if description is not None or isinstance(model, StableInverse):
+        return description or ModelDescription()
+    return model.description
 
 
 def _controller(model: TrackingController, precision: Precision) -> Block:

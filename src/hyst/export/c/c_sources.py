@@ -10,7 +10,7 @@ from hyst.export.c.numbers import Precision, literal, table
 from hyst.export.c.readme import signals
 from hyst.export.c.selftest import BAD, SEEDS, SelfTest
 from hyst.export.c.templating import filled, indented
-from hyst.operators.model_file import ModelDescription
+from hyst.operators import ModelDescription
 
 WORD_BYTES = {"double": 8, "single": 4}
 

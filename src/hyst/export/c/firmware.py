@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, final
 
 from hyst import __version__
-from hyst.export.c.block import Block, Model, block_of
+from hyst.export.c.block import Block, Model, block_of, described
 from hyst.export.c.c_sources import WORD_BYTES, header, places, selftest_source, source, vectors
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.drive import SAMPLES
@@ -63,10 +63,10 @@ class CProject:
 def c_project(
     model: Model,
     folder: str | os.PathLike[str],
+    *,
     precision: str = "double",
     name: str = "stage",
     force: bool = False,
-    *,
     description: ModelDescription | None = None,
 ) -> CProject:
     """Write a model as C99 for firmware, with the core's sources it needs and a self-test.
@@ -85,7 +85,8 @@ def c_project(
     force
         Whether an earlier export of that path is replaced, as a whole.
     description
-        Names, units and ranges of input and output, for comments and the self-test's range.
+        Names, units and ranges of input and output, for comments and the self-test's range; that of
+        the model itself if left out.
 
     Returns
     -------
@@ -108,11 +109,11 @@ def c_project(
     """
     as_c_name(name)
     exact = as_precision(precision)
-    about = description or ModelDescription()
     if isinstance(model, JointEstimator):
         block = estimator_block(model, exact)
     else:
         block = block_of(model, exact)
+    about = described(model, description)
     test = SelfTest.of(block, exact, about)
     files = project_files(block, test, name, exact, about)
     length = max(len(block.start), 1)

@@ -11,7 +11,7 @@ from typing import final
 
 import hyst
 from hyst.errors import InputError
-from hyst.export.c.block import Model
+from hyst.export.c.block import Model, described
 from hyst.export.c.names import as_c_name
 from hyst.export.fmi.binary import binary_path, compiled
 from hyst.export.fmi.description import (
@@ -70,10 +70,10 @@ class Fmu:
 def fmu(
     model: Model,
     path: str | os.PathLike[str],
+    *,
     version: str = "2.0",
     name: str = "stage",
     force: bool = False,
-    *,
     description: ModelDescription | None = None,
     binary: bool = True,
     compiler: str | None = None,
@@ -93,7 +93,7 @@ def fmu(
     force
         Whether an earlier export of that path is replaced.
     description
-        Names and units of input and output.
+        Names and units of input and output; that of the model itself if left out.
     binary
         Whether to compile a binary; without one, an importer compiles the sources.
     compiler
@@ -124,8 +124,8 @@ def fmu(
     fmi = _as_version(version)
     if Path(path).suffix.lower() != ".fmu":
         raise InputError(f"{path} is not the name of an FMU; give one that ends in .fmu")
-    about = description or ModelDescription()
-    files, said = _contents(fmu_model(model), name, about, fmi)
+    exported = fmu_model(model)
+    files, said = _contents(exported, name, described(model, description), fmi)
     if binary:
         library = compiled(_below_sources(files), compiler)
         files[binary_path(name, fmi)] = library

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
+from hyst.identification.families.estimates import Estimates
 from hyst.identification.families.option import AUTO, Option
 from hyst.identification.fit.bounded_least_squares import Problem, Solution, minimize
 from hyst.identification.fit.parametrization import Parametrization
@@ -50,23 +51,6 @@ class Words:
     full_name: str
     equations: tuple[str, ...]
     explanations: tuple[str, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class Estimates:
-    """Values that follow from the free parameters of a fit.
-
-    Parameters
-    ----------
-    names, values
-        Of each, shape (q,).
-    by_theta
-        Shape (q, m): their derivative by theta.
-    """
-
-    names: tuple[str, ...]
-    values: Array
-    by_theta: Array
 
 
 @dataclass(frozen=True)
@@ -214,7 +198,17 @@ class Family(ABC):
     def solve(
         self, problem: Problem, theta: Array, max_iterations: int, tolerance: float = 1e-3
     ) -> Solution:
-        """Minimise the squared error from a start."""
+        """Minimise the squared error from a start.
+
+        Parameters
+        ----------
+        problem
+            What to minimise.
+        theta
+            The start.
+        max_iterations, tolerance
+            As of ``minimize``.
+        """
         return minimize(problem, theta, max_iterations, tolerance)
 
     def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
@@ -333,7 +327,15 @@ class Fit:
         return self.parametrization.operator(self.solution.theta)
 
     def problem(self, data: Data, chosen: NDArray[np.bool_] | None = None) -> Problem:
-        """Pose the problem of this fit over other records or some samples."""
+        """Pose the problem of this fit over other records or some samples.
+
+        Parameters
+        ----------
+        data
+            The records.
+        chosen
+            Shape (samples used,): which samples count; all if left out.
+        """
         return problem_of(data, self.parametrization, chosen, self.family.root_weights(data))
 
 

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from hyst.identification.choice.selection import best_of_starts
 from hyst.identification.families.family import Fit, Start
 from hyst.identification.families.play_layout import PlayLayout, PlayParametrization
-from hyst.identification.families.plays import PrandtlIshlinskii, layout_of
+from hyst.identification.families.plays import layout_of
+from hyst.identification.families.prandtl_ishlinskii import PrandtlIshlinskii
 from hyst.identification.fit.parametrization import selection
 from hyst.identification.fit.weight_rules import NON_NEGATIVE
 from hyst.identification.record_use.overview import Overview

@@ -16,23 +16,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst import models
+from hyst.checks.numbers import whole_number as as_whole_number
 from hyst.errors import InputError
 from hyst.identification.families.family import Fit, Start, Words
 from hyst.identification.families.free_envelope import free_envelope_starts, with_plays_left_out
 from hyst.identification.families.option import (
     Option,
-    as_whole_number,
     choice,
     option,
     read_numbers,
-    whole_number,
 )
 from hyst.identification.families.play_layout import (
     FirstGuess,
     PlayParametrization,
     parametrize_plays,
 )
-from hyst.identification.families.plays import PLAY_TEXT, PLAYS, Plays
+from hyst.identification.families.plays import PLAY_TEXT, Plays
+from hyst.identification.families.prandtl_ishlinskii import PLAYS
 from hyst.identification.fit.weight_rules import INVERTIBLE
 from hyst.identification.fit.weights import Weights
 from hyst.identification.record_use.overview import Overview
@@ -71,10 +71,9 @@ def _read_knots(text: str, name: str) -> Any:
     return int(text) if text.isdecimal() else text
 
 
-KNOTS_OPTION = whole_number(1, MOST_KNOTS, "Knots of the map.")
-PLACES_OPTION = Option(
+KNOTS_OPTION = Option(
     _as_knots,
-    "Knots of the map; their places, as -5,4, if it comes before the plays.",
+    "Knots of the map; of one before the plays also their places, as -5,4.",
     _read_knots,
     "N|K1,K2,..",
 )
@@ -89,6 +88,8 @@ class MappedPlays(Plays):
 
     Parameters
     ----------
+    plays, radii, weights
+        See ``Plays``.
     knots
         Number of knots of the map, 1 to 50, evenly spaced over the signal it acts on.
     """
@@ -129,6 +130,8 @@ class GeneralizedPrandtlIshlinskii(MappedPlays):
 
     Parameters
     ----------
+    plays, radii, weights
+        Number of plays or ``"auto"``, radii to keep, and what weights may be: see ``Plays``.
     knots
         Number of knots of the envelope, 1 to 50, evenly spaced over the input; or their places,
         input units.
@@ -150,7 +153,6 @@ class GeneralizedPrandtlIshlinskii(MappedPlays):
     )
     compared = True
 
-    knots: Any = option(6, PLACES_OPTION)
     envelope: Any = option(MONOTONE, ENVELOPE_OPTION)
 
     def __post_init__(self) -> None:
@@ -210,7 +212,15 @@ class GeneralizedPrandtlIshlinskii(MappedPlays):
 @final
 @dataclass(frozen=True)
 class ModifiedPrandtlIshlinskii(MappedPlays):
-    """``y = sign Lambda(P[u]) + offset`` with a map Lambda after the plays (S4 sec. III-D)."""
+    """``y = sign Lambda(P[u]) + offset`` with a map Lambda after the plays (S4 sec. III-D).
+
+    Parameters
+    ----------
+    plays, radii, weights
+        Number of plays or ``"auto"``, radii to keep, and what weights may be: see ``Plays``.
+    knots
+        Number of knots of the map, evenly spaced over the signal it acts on.
+    """
 
     name = "mpi"
     words = Words(
@@ -224,6 +234,14 @@ class ModifiedPrandtlIshlinskii(MappedPlays):
         ),
     )
     compared = True
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not isinstance(self.knots, int):
+            raise InputError(
+                f"knots are {list(self.knots)}; give their number, for places of knots behind the "
+                "plays follow from the output"
+            )
 
     def parametrize(self, guess: FirstGuess) -> tuple[PlayParametrization, Array]:
         """Give weights, radii, slopes of the output map and offset."""

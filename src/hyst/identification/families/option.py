@@ -6,8 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
+from hyst.checks.numbers import whole_number as as_whole_number
 from hyst.errors import InputError
 
 AUTO = "auto"
@@ -37,12 +36,28 @@ class Option:
 
 
 def option(default: Any, what: Option) -> Any:
-    """Give the field of a family for an option."""
+    """Give the field of a family for an option.
+
+    Parameters
+    ----------
+    default
+        Its default.
+    what
+        The option.
+    """
     return field(default=default, metadata={"option": what})
 
 
 def whole_number_or_auto(least: int, most: int, help: str) -> Option:
-    """Give an option that is a count or ``"auto"``."""
+    """Give an option that is a count or ``"auto"``.
+
+    Parameters
+    ----------
+    least, most
+        Ends of the range.
+    help
+        One sentence.
+    """
 
     def check(value: Any, name: str) -> Any:
         if isinstance(value, str) and value == AUTO:
@@ -53,7 +68,15 @@ def whole_number_or_auto(least: int, most: int, help: str) -> Option:
 
 
 def whole_number(least: int, most: int, help: str) -> Option:
-    """Give an option that is a count."""
+    """Give an option that is a count.
+
+    Parameters
+    ----------
+    least, most
+        Ends of the range.
+    help
+        One sentence.
+    """
 
     def check(value: Any, name: str) -> int:
         return as_whole_number(value, name, least, most)
@@ -62,7 +85,15 @@ def whole_number(least: int, most: int, help: str) -> Option:
 
 
 def choice(choices: tuple[str, ...], help: str) -> Option:
-    """Give an option that is one of a few words."""
+    """Give an option that is one of a few words.
+
+    Parameters
+    ----------
+    choices
+        The words.
+    help
+        One sentence.
+    """
 
     def check(value: Any, name: str) -> str:
         if not isinstance(value, str) or value not in choices:
@@ -72,33 +103,19 @@ def choice(choices: tuple[str, ...], help: str) -> Option:
     return Option(check, help, lambda text, _: text, "|".join(choices))
 
 
-def as_whole_number(value: Any, name: str, least: int, most: int, more: str = "") -> int:
-    """Check a number that counts something.
+def read_numbers(text: str, name: str) -> Any:
+    """Read numbers with commas between them.
 
     Parameters
     ----------
-    value
-        A whole number from ``least`` to ``most``.
-    name
-        What messages call it.
-    least, most
-        Ends of the range.
-    more
-        What messages add after the range: a unit, or a word that is taken in its place.
+    text, name
+        What was typed, and the option's name.
 
     Raises
     ------
     InputError
         If it is something else.
     """
-    is_whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-    if not is_whole or not least <= value <= most:
-        raise InputError(f"{name} is {value!r}; give {least} to {most}{more}")
-    return int(value)
-
-
-def read_numbers(text: str, name: str) -> Any:
-    """Read numbers with commas between them."""
     try:
         return [float(each) for each in text.split(",")]
     except ValueError:
@@ -108,7 +125,18 @@ def read_numbers(text: str, name: str) -> Any:
 
 
 def read_number(text: str, name: str) -> float:
-    """Read one number."""
+    """Read one number.
+
+    Parameters
+    ----------
+    text, name
+        What was typed, and the option's name.
+
+    Raises
+    ------
+    InputError
+        If it is something else.
+    """
     try:
         return float(text)
     except ValueError:

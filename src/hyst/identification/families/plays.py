@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError, NotIdentifiableError
-from hyst.identification.families.family import Family, Fit, Start, Words
+from hyst.identification.families.family import Family, Fit, Start
 from hyst.identification.families.option import (
     AUTO,
     Option,
@@ -28,14 +28,12 @@ from hyst.identification.families.play_layout import (
     PlayLayout,
     PlayParametrization,
     half_swings,
-    parametrize_plays,
 )
 from hyst.identification.fit.radius_search import search_radii
 from hyst.identification.fit.weight_rules import INVERTIBLE, NON_NEGATIVE, RULES
 from hyst.identification.fit.weights import Weights, fit_weights
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data
-from hyst.operators import Affine
 
 Array = NDArray[np.float64]
 
@@ -49,7 +47,6 @@ FINE_BANK = 60
 NEGATIVE_WEIGHTS_PAY = 0.9
 """Negative weights are allowed where they lower the residual of a fine bank below this share."""
 
-PLAYS = "P[w](t) = p0 w(t) + \u03a3 p\u1d62 F\u1d63\u1d62[w](t)"
 PLAY_TEXT = (
     "F with radius r is a play (backlash of half-width r): its output rests until its input has "
     "come r away from it, and then follows at that distance. The sum of plays gives the loop and "
@@ -270,33 +267,6 @@ class Plays(Family):
         fit = replace(fit, parametrization=parametrization)
         solution = self.solve(fit.problem(overview.data), refitted, max_iterations)
         return replace(fit, solution=solution)
-
-
-@final
-@dataclass(frozen=True)
-class PrandtlIshlinskii(Plays):
-    """``y = sign (p0 u + sum_i p_i z_i) + offset``."""
-
-    name = "pi"
-    words = Words(
-        full_name="Prandtl-Ishlinskii model",
-        equations=("y(t) = {sign}P[u](t) + offset", PLAYS),
-        explanations=(PLAY_TEXT,),
-    )
-    compared = True
-
-    def least_parameters(self, size: int) -> int:
-        """Give the number of weights, radii and the offset."""
-        return 2 * size + 2
-
-    def parametrize(self, guess: FirstGuess) -> tuple[PlayParametrization, Array]:
-        """Give weights, radii and offset."""
-        template = Affine(guess.sign, guess.offset) @ guess.plays
-        return parametrize_plays(template, guess, map_at=None)
-
-    def knots_over(self, overview: Overview, weights: Weights) -> Array:
-        """Give none: there is no map."""
-        return np.empty(0)
 
 
 def fine_weights(overview: Overview, rule: str) -> Weights:

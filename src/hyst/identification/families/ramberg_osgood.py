@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst import models
+from hyst.checks.numbers import as_not_negative
 from hyst.errors import InputError
 from hyst.identification.families.family import Family, Fit, Start, Words
 from hyst.identification.families.option import Option, choice, option, read_number
@@ -29,12 +30,7 @@ Array = NDArray[np.float64]
 
 OUTPUT, SLOPE = "output", "slope"
 
-
-def _as_ratio(value: Any, name: str) -> float:
-    is_number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-    if not (is_number and np.isfinite(value) and value >= 0.0):
-        raise InputError(f"{name} is {value}; give a finite number, 0 or more")
-    return float(value)
+_SIGNAL_TO_NOISE = 3.0
 
 
 @final
@@ -76,9 +72,19 @@ class RambergOsgood(Family):
         OUTPUT, choice((OUTPUT, SLOPE), "Fit the output, or its slope over the input.")
     )
     signal_to_noise: Any = option(
-        3.0,
-        Option(_as_ratio, "With slopes: what a step must be over its noise.", read_number, "X"),
+        _SIGNAL_TO_NOISE,
+        Option(
+            as_not_negative, "With slopes: what a step must be over its noise.", read_number, "X"
+        ),
     )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.regression != SLOPE and self.signal_to_noise != _SIGNAL_TO_NOISE:
+            raise InputError(
+                f"signal_to_noise is {self.signal_to_noise:g}, which regression "
+                f"{self.regression!r} does not use; leave it out, or choose regression {SLOPE!r}"
+            )
 
     def least_parameters(self, size: int) -> int:
         """Give 4: c1, c2, c3 and the offset."""

@@ -1,35 +1,34 @@
-"""All families, from the simplest to the richest. A new one is one line here."""
+"""All families that ``families/__init__.pyi`` lists, from the simplest to the richest."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from hyst.errors import InputError
+from hyst.identification import families as listed
 from hyst.identification.families.family import Family, require_this_version
-from hyst.identification.families.hammerstein.hammerstein import Hammerstein
-from hyst.identification.families.linear import Linear
-from hyst.identification.families.mapped_plays import (
-    GeneralizedPrandtlIshlinskii,
-    ModifiedPrandtlIshlinskii,
-)
 from hyst.identification.families.option import Option
-from hyst.identification.families.plays import PrandtlIshlinskii
-from hyst.identification.families.ramberg_osgood import RambergOsgood
-from hyst.identification.families.rate_dependent import RateDependent
-
-_CLASSES: tuple[type[Family], ...] = (
-    Linear,
-    RambergOsgood,
-    PrandtlIshlinskii,
-    GeneralizedPrandtlIshlinskii,
-    ModifiedPrandtlIshlinskii,
-    RateDependent,
-    Hammerstein,
-)
 
 AUTO = "auto"
+
+
+def _richness(family: type[Family]) -> tuple[int, bool, str]:
+    """Order families by the parameters of their smallest size, those asked for by name first.
+
+    A family around another one is richer than any.
+    """
+    if family.wraps:
+        return sys.maxsize, family.compared, family.name
+    smallest = family()
+    return smallest.least_parameters(smallest.sizes()[0]), family.compared, family.name
+
+
+_CLASSES: tuple[type[Family], ...] = tuple(
+    sorted((getattr(listed, each) for each in dir(listed)), key=_richness)
+)
 
 
 class Families(Mapping[str, Family]):

@@ -83,7 +83,8 @@ class Parametrization:
 
     def operator(self, theta: Array) -> Operator:
         """Give the operator for canonical theta."""
-        return self.template.with_parameters(self.constants(theta))
+        made: Operator = self.template.with_parameters(self.constants(theta))
+        return made
 
     def inside(self, theta: Array) -> NDArray[np.bool_]:
         """Tell which parameters lie on neither of their bounds."""
@@ -92,7 +93,13 @@ class Parametrization:
     def in_units(self, theta: Array, input_scale: float, output_scale: float) -> Self:
         """Give the same free parameters for signals that are larger by these factors.
 
-        Theta keeps its values: the scales go into ``transform`` and ``fixed``.
+        Parameters
+        ----------
+        theta
+            Where the scales are taken, which may depend on it; it keeps its values, for the scales
+            go into ``transform`` and ``fixed``.
+        input_scale, output_scale
+            By which the numbers of input and output grow.
         """
         operator = self.operator(theta)
         scales = operator.parameter_scales(input_scale, output_scale)

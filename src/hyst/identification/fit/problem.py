@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -84,8 +86,6 @@ class Evaluation:
         self._parametrization = parametrization
         self._chain = _engine.Chain(parametrization.template.stages())
         self._start = parametrization.template.initial_state()
-        self._free = np.flatnonzero(parametrization.free)
-        self._by_theta = parametrization.transform[self._free]
         self._passes = [
             (np.ascontiguousarray(record.u[: window.stop]), window)
             for record, window in zip(data.records, data.windows(), strict=True)
@@ -109,12 +109,20 @@ class Evaluation:
         result = np.empty((sum(lengths), theta.size))
         row = 0
         for (u, window), length in zip(self._passes, lengths, strict=True):
-            rows = np.empty((u.size, self._chain.parameter_count))
-            self._chain.jacobian(self._start.copy(), u, rows)
-            used = rows[window][:, self._free]
-            np.matmul(used, self._by_theta, out=result[row : row + length])
+            by_constants = self._rows[: u.size]
+            self._chain.jacobian(self._start.copy(), u, by_constants)
+            np.matmul(
+                by_constants[window],
+                self._parametrization.transform,
+                out=result[row : row + length],
+            )
             row += length
         return result
+
+    @functools.cached_property
+    def _rows(self) -> Array:
+        """Room for the derivatives by all constants; fresh memory costs more than to fill it."""
+        return np.empty((max(u.size for u, _ in self._passes), self._chain.parameter_count))
 
 
 def problem_of(

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.numbers import whole_number
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.signals import Record, reversals, units_differ
 
@@ -99,7 +100,13 @@ class Data:
         return [window.stop - window.start for window in self.windows()]
 
     def in_units(self, input_scale: float, output_scale: float) -> Data:
-        """Give the same records in units smaller by these factors: their numbers are larger."""
+        """Give the same records in smaller units, in which their numbers are larger.
+
+        Parameters
+        ----------
+        input_scale, output_scale
+            By which the numbers of input and output grow.
+        """
         records = tuple(
             replace(each, u=each.u * input_scale, y=each.y * output_scale) for each in self.records
         )
@@ -217,9 +224,4 @@ def _first_settled(u: Array, span: float) -> int:
 
 def _as_start(start: int, records: tuple[Record, ...]) -> int:
     shortest = min(len(record) for record in records)
-    whole = isinstance(start, int | np.integer) and not isinstance(start, bool)
-    if not whole or not 0 <= start < shortest:
-        raise InputError(
-            f"start is {start!r}; give a whole number between 0 and {shortest - 1}, or 'auto'"
-        )
-    return int(start)
+    return whole_number(start, "start", 0, shortest - 1, ", or 'auto'")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,8 @@ from hyst.identification.record_use.used_samples import Data, prepare
 from hyst.identification.result.identified import Candidate, Identified
 from hyst.identification.result.standard_errors import Spread, spread_of_estimates
 from hyst.operators import ModelDescription, Operator
+from hyst.operators.description import errors_of
+from hyst.operators.provenance import provenance
 from hyst.signals import Metrics, Record, error_metrics
 
 Array = NDArray[np.float64]
@@ -65,6 +68,30 @@ def identified_from_fit(
         used=data.used(),
         description=describe(data, fit.family.name),
     )
+
+
+def traced(found: Identified, records: Sequence[Record], options: Mapping[str, Any]) -> Identified:
+    """Give a result whose model tells what it means, how good it is and where it comes from.
+
+    Parameters
+    ----------
+    found
+        As identified, with the description of its signals.
+    records
+        What it was identified from.
+    options
+        What was asked for otherwise than by default.
+
+    Returns
+    -------
+    Identified
+    """
+    about = replace(
+        found.description,
+        errors=errors_of(found.metrics),
+        provenance=provenance(records, options),
+    )
+    return replace(found, description=about, model=found.model.with_description(about))
 
 
 @dataclass(frozen=True, eq=False)

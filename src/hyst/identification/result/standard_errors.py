@@ -74,7 +74,7 @@ class Spread:
         size = np.ldexp(1.0, np.frexp(size)[1])
         plain = plain / size[:, None]
         variance = np.einsum("ij,jk,ik->i", plain, self.covariance, plain)
-        errors = np.sqrt(np.maximum(variance, 0.0)) * self.noise * size
+        errors: Array = np.sqrt(np.maximum(variance, 0.0)) * self.noise * size
         if self.open_directions.size:
             parts = np.abs(rows) @ np.abs(self.open_directions)
             moved = np.abs(rows @ self.open_directions)
@@ -91,7 +91,7 @@ class Spread:
             Its column in ``open_directions``, counted from 0.
         """
         share = self.shares[:, direction]
-        return np.flatnonzero(share > INVOLVED * share.max())
+        return np.asarray(np.flatnonzero(share > INVOLVED * share.max()), dtype=np.intp)
 
 
 def spread_of_estimates(

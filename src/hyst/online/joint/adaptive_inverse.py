@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-import os
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.numbers import as_positive
 from hyst.errors import InputError
 from hyst.online.joint.joint_estimator import JointEstimator
-from hyst.online.saving import restored_state, save_estimator
+from hyst.online.saving import Saved, restored_state
 from hyst.operators import ModelDescription, Operator
 from hyst.operators.registry import operator_from_dict
+
+Array = NDArray[np.float64]
 
 _BOUNDS = ("least_slope", "most_slope", "most_radius")
 # Share of the mean square of the output below which errors are not worth a judgement.
@@ -21,7 +23,7 @@ _NEGLIGIBLE = 1e-6
 
 
 @final
-class AdaptiveInverse:
+class AdaptiveInverse(Saved):
     """Compensate with the inverse of the running estimate.
 
     ``command(y_ref)`` solves ``model(u) = y_ref`` with the parameters and the memory the estimator
@@ -63,6 +65,8 @@ class AdaptiveInverse:
     True
     """
 
+    kind: ClassVar[str] = "inverse"
+
     def __init__(self, estimator: JointEstimator, window: float, margin: float = 4.0) -> None:
         if not isinstance(estimator, JointEstimator):
             raise InputError(f"estimator is a {type(estimator).__name__}; give a JointEstimator")
@@ -87,14 +91,23 @@ class AdaptiveInverse:
         """How many windows in a row the estimate's errors could not be noise."""
 
     @property
+    def description(self) -> ModelDescription:
+        """What the numbers of its models mean; that of its estimator."""
+        return self.estimator.description
+
+    @description.setter
+    def description(self, description: ModelDescription) -> None:
+        self.estimator.description = description
+
+    @property
     def model(self) -> Operator:
         """The model commands come from, with its memory."""
-        return self._source().model
+        return self._source().model.with_description(self.description)
 
     @property
     def good_model(self) -> Operator:
         """The last good model, with the memory it was taken with."""
-        return self._good
+        return self._good.with_description(self.description)
 
     @property
     def status(self) -> str:
@@ -135,18 +148,8 @@ class AdaptiveInverse:
             self._judge(adaptive, good, _NEGLIGIBLE * output)
             self._powers, self._samples = [0.0, 0.0, 0.0], 0
 
-    def save(
-        self, path: str | os.PathLike[str], description: ModelDescription | None = None
-    ) -> None:
-        """Write everything, every double exact; ``load_estimator`` continues with the same bits.
-
-        Parameters
-        ----------
-        path
-            The file to create or replace.
-        description
-            What the model's numbers mean.
-        """
+    def saved(self) -> tuple[dict[str, Any], Array]:
+        """Give settings and state, from which ``restore`` rebuilds the inverse."""
         parts = {}
         for name, each in (("estimator", self.estimator), ("fallback", self._fallback)):
             settings, state = each.saved()
@@ -155,22 +158,11 @@ class AdaptiveInverse:
         settings = {"window": self._seconds, "margin": self._margin, "usual": usual}
         settings |= {"good": self._good.to_dict(), **parts}
         counts = [self._samples, float(self.trusts_estimate), self.fallbacks, self.doubts]
-        save_estimator(path, "inverse", settings, np.array([*self._powers, *counts]), description)
+        return settings, np.array([*self._powers, *counts])
 
     @classmethod
-    def restore(cls, settings: dict[str, Any], state: list[float]) -> AdaptiveInverse:
-        """Rebuild an inverse from what ``save`` wrote.
-
-        Parameters
-        ----------
-        settings, state
-            As in the file.
-
-        Raises
-        ------
-        InputError
-            If the state does not fit the settings, or holds an inadmissible estimate.
-        """
+    def restore(cls, settings: dict[str, Any], state: ArrayLike) -> AdaptiveInverse:
+        """Rebuild it from what ``saved`` gave, or the same read from a file."""
         inverse = cls(
             JointEstimator.restore(**settings["estimator"]), settings["window"], settings["margin"]
         )

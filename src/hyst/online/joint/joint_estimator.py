@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Iterable
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,9 +26,9 @@ from hyst.online.joint.parts import take_apart
 from hyst.online.joint.prior import covariance_of, factors
 from hyst.online.joint.start import checked_start, complete_scales
 from hyst.online.saved import check_saved
-from hyst.online.saving import restored_state, save_estimator
+from hyst.online.saving import Saved, restored_state
 from hyst.online.trajectory import Trajectory
-from hyst.operators import ModelDescription, Operator
+from hyst.operators import Operator
 from hyst.operators.registry import operator_from_dict
 from hyst.signals import Record
 
@@ -44,7 +43,7 @@ _TRIALS, _REPLACEMENTS, _SQUARE = 5, 6, 15
 
 
 @final
-class JointEstimator:
+class JointEstimator(Saved):
     """Estimate a Prandtl-Ishlinskii model sample by sample: recursive prediction error method.
 
     With theta the parameters, ``e = y - model(u)`` and ``psi = dy/dtheta`` along the estimate's own
@@ -114,6 +113,8 @@ class JointEstimator:
     array([1.])
     """
 
+    kind: ClassVar[str] = "joint"
+
     def __init__(
         self,
         model: Operator,
@@ -132,6 +133,8 @@ class JointEstimator:
         search: bool = True,
     ) -> None:
         self._parts = take_apart(model)
+        self.description = model.description.of_other_constants()
+        """What the numbers of its model mean; those of the start, as far as they still hold."""
         self.dt = as_sample_time(dt)
         self.settings: dict[str, Any] = {
             "model": model.to_dict(),
@@ -185,7 +188,7 @@ class JointEstimator:
     def model(self) -> Operator:
         """The estimate as a model, with the memory that the input has left."""
         z = self.state[self._at["z"] : self._at["side"]]
-        return self._parts.assemble(self.parameters, z)
+        return self._parts.assemble(self.parameters, z).with_description(self.description)
 
     @property
     def error(self) -> float:
@@ -330,21 +333,6 @@ class JointEstimator:
             self.state[first:last] = kept[first:last]
         self.core.remember(self.state)
 
-    def save(
-        self, path: str | os.PathLike[str], description: ModelDescription | None = None
-    ) -> None:
-        """Write settings and state, every double exact; ``load_estimator`` continues from them.
-
-        Parameters
-        ----------
-        path
-            The file to create or replace.
-        description
-            What the model's numbers mean; ``load_described_estimator`` gives it back.
-        """
-        settings, state = self.saved()
-        save_estimator(path, "joint", settings, state, description)
-
     def saved(self) -> tuple[dict[str, Any], Array]:
         """Give settings and state, from which ``restore`` rebuilds the estimator."""
         at, state = self._at, self.state.copy()
@@ -359,19 +347,8 @@ class JointEstimator:
         return {**self.settings, "start": self._theta_at_start.tolist()}, state
 
     @classmethod
-    def restore(cls, settings: dict[str, Any], state: list[float]) -> JointEstimator:
-        """Rebuild an estimator from what ``save`` wrote.
-
-        Parameters
-        ----------
-        settings, state
-            As in the file.
-
-        Raises
-        ------
-        InputError
-            If the state does not fit the settings, or holds an inadmissible estimate.
-        """
+    def restore(cls, settings: dict[str, Any], state: ArrayLike) -> JointEstimator:
+        """Rebuild it from what ``saved`` gave, or the same read from a file."""
         given = dict(settings)
         model, start = operator_from_dict(given.pop("model")), given.pop("start", None)
         estimator = cls(model, memory=memory_from(given), **given)

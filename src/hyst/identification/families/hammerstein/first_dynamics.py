@@ -12,10 +12,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.numbers import whole_number as as_whole_number
 from hyst.errors import NotIdentifiableError, NotInvertibleError
 from hyst.identification.families.hammerstein.markov import MarkovParameters
 from hyst.identification.families.hammerstein.realization import Realization, realize
-from hyst.identification.families.option import AUTO, as_whole_number
+from hyst.identification.families.option import AUTO
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics, StableInverse
 from hyst.signals import Record
@@ -130,7 +131,7 @@ def of_gain_one(dynamics: LinearDynamics) -> LinearDynamics:
             f"{peak:.3g} in all; an actuator or sensor that does not pass constant values cannot "
             "be split into hysteresis and dynamics of DC gain 1"
         )
-    return dynamics.scaled(1.0 / gain)
+    return dynamics.in_units(1.0, 1.0 / gain)
 
 
 def inverse_of(dynamics: LinearDynamics) -> tuple[StableInverse | None, tuple[str, ...]]:

@@ -9,6 +9,7 @@ from typing import Any, Literal, Self, final
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.numbers import whole_number as as_whole_number
 from hyst.errors import InputError
 from hyst.identification.families.family import Estimates, Family, Fit, Start, Words
 from hyst.identification.families.hammerstein.coefficients import (
@@ -32,7 +33,6 @@ from hyst.identification.families.hammerstein.words import WORDS, words_behind
 from hyst.identification.families.option import (
     AUTO,
     Option,
-    as_whole_number,
     option,
     whole_number_or_auto,
 )

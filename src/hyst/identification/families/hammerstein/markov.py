@@ -220,7 +220,10 @@ def _weakly_excited(records: Sequence[Record], order: int, start: int, least: fl
 def _usable(found: MarkovParameters, why: str) -> tuple[MarkovParameters, tuple[str, ...]]:
     """Keep a shorter response if it has died out; refuse it otherwise."""
     last = slice(-max(found.values.size // 4, 1), None)
-    errors = np.maximum(found.standard_errors[last], np.finfo(np.float64).tiny)
+    # A residual of exactly 0 says no more than that it is below the rounding of the response.
+    real = np.finfo(np.float64)
+    rounding = max(float(real.eps * np.abs(found.values).max()), float(real.tiny))
+    errors = np.maximum(found.standard_errors[last], rounding)
     by_chance = float(np.mean(np.square(found.values[last] / errors))) < _BY_CHANCE
     if found.tail >= _DEAD_TAIL and not (by_chance and found.tail <= _LIVE_TAIL):
         raise NotIdentifiableError(

@@ -1,0 +1,81 @@
+#include "derivative.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "../simd/kernels.hpp"
+#include "hyst/power.h"
+
+// What CMakeLists.txt compiles for each number of tangents, and for each instruction set with it.
+#define HYST_PASS(name)             \
+    namespace name {                \
+    extern const Pass run_pass; \
+    }
+#if defined(HYST_X86)
+#define HYST_WIDER(name) HYST_PASS(name##_avx2) HYST_PASS(name##_avx512)
+#define HYST_PASSES(name) name##_avx512::run_pass, name##_avx2::run_pass, name::run_pass
+#else
+#define HYST_WIDER(name)
+#define HYST_PASSES(name) nullptr, nullptr, name::run_pass
+#endif
+#define HYST_WIDTH(name)                                                                       \
+    HYST_PASS(name)                                                                            \
+    HYST_WIDER(name)                                                                           \
+    namespace name {                                                                           \
+    void run_columns(const Said &said, const double *state, const Columns &columns, Pass run); \
+    }
+
+namespace hyst {
+
+HYST_WIDTH(tangents_4)
+HYST_WIDTH(tangents_8)
+HYST_WIDTH(tangents_16)
+
+namespace {
+
+struct Width {
+    std::size_t tangents;
+    void (*run_columns)(const Said &, const double *, const Columns &, Pass);
+    Pass avx512, avx2, baseline;
+
+    Pass in_use() const {
+        const char *name = kernels().name;
+        return std::strcmp(name, "avx512") == 0 ? avx512
+               : std::strcmp(name, "avx2") == 0 ? avx2
+                                                : baseline;
+    }
+};
+
+// Narrow ones first: what is left takes the first that holds it.
+const Width kWidths[] = {{4, tangents_4::run_columns, HYST_PASSES(tangents_4)},
+                         {8, tangents_8::run_columns, HYST_PASSES(tangents_8)},
+                         {16, tangents_16::run_columns, HYST_PASSES(tangents_16)}};
+
+const Width &width_for(std::size_t columns) {
+    for (const Width &each : kWidths) {
+        if (columns <= each.tangents) return each;
+    }
+    return kWidths[2];
+}
+
+}  // namespace
+
+double core_power(double x, double e) { return hyst_power(x, e); }
+double core_log2(double x) { return hyst_log2(x); }
+double core_exp2(double v) { return hyst_exp2(v); }
+
+void kernel_jacobian(const Said &said, const double *state, const Tangents &t) {
+    const std::size_t columns = t.incoming + said.constants.size();
+    std::vector<double> y(t.samples);
+    std::size_t first = 0;
+    do {
+        const Width &width = width_for(columns - first);
+        const std::size_t count = std::min(width.tangents, columns - first);
+        const Columns at{t.signal, y.data(), t.rows, t.samples, t.stride, t.incoming, first, count};
+        width.run_columns(said, state, at, width.in_use());
+        first += count;
+    } while (first < columns);
+    std::copy(y.begin(), y.end(), t.signal);
+}
+
+}  // namespace hyst

@@ -1,0 +1,35 @@
+// Compiled once for every number of tangents: the rows of the kinds, which turn an operator's
+// constants into the core's, so that these carry their derivatives too; and the baseline's pass.
+#include "pass.hpp"
+
+#define HYST_OTHER_NUMBER
+#include "kinds.inc"  // made by CMakeLists.txt: the files of engine/kinds
+
+namespace hyst {
+namespace HYST_KINDS {
+
+extern const Pass run_pass;
+
+const Pass run_pass = pass;
+
+// Runs columns `at` of the Jacobian of the stage that is said.
+void run_columns(const Said &said, const double *state, const Columns &at, Pass run) {
+    Given given{said.kind, said.form, {}, said.fixed, said.choices, said.dt};
+    for (double constant : said.constants) given.constants.emplace_back(constant);
+    for (std::size_t c = 0; c < at.count; ++c) {
+        if (at.first + c < at.incoming) continue;
+        hyst_real &constant = given.constants[at.first + c - at.incoming];
+        reinterpret_cast<double *>(&constant.d)[c] = 1.0;
+    }
+    Constants made;
+    const Kind &kind = *kind_named(said.kind);
+    const void *model = build(kind, given, made);
+    const std::size_t length = kind.core->length(model);
+    std::vector<hyst_real> memory(state, state + length);
+    std::size_t place = 0;
+    while (core_kinds[place] != kind.core) ++place;
+    run(place, model, memory.data(), at);
+}
+
+}  // namespace HYST_KINDS
+}  // namespace hyst

@@ -1,0 +1,77 @@
+"""Read back whatever hyst saves; what reads a file is loaded when there is such a file."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from hyst.errors import InputError
+from hyst.operators.description import ModelDescription
+from hyst.operators.model_file import ESTIMATOR, read_file
+
+_TWO_INPUTS = "tracking-controller"
+
+
+def load(path: str | os.PathLike[str]) -> Any:
+    """Read back what ``save`` wrote: an operator, a tracking controller or an estimator.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    Operator, TrackingController, JointEstimator, RadiusEstimator or AdaptiveInverse
+        Equal to the one saved, every double exact; an estimator goes on with the same bits. What
+        its numbers mean is its ``description``.
+
+    Raises
+    ------
+    InputError
+        If the file is not there, is none of hyst's, is of another version, or an entry is missing,
+        unknown or not allowed.
+
+    Examples
+    --------
+    >>> import hyst, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     hyst.Play(0.5).save(f"{folder}/play.json", hyst.ModelDescription(input_unit="V"))
+    ...     found = load(f"{folder}/play.json")
+    >>> found == hyst.Play(0.5), found.description.input_unit
+    (True, 'V')
+    """
+    saved = read_file(path)
+    try:
+        if saved.format is ESTIMATOR:
+            return _estimator(saved.content, saved.description)
+        return _model(saved.content["model"]).with_description(saved.description)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    except RecursionError:
+        raise InputError(f"{path}: operators are nested too deeply; compose them flat") from None
+
+
+def _model(data: Any) -> Any:
+    if isinstance(data, dict) and data.get("kind") == _TWO_INPUTS:
+        from hyst.control import TrackingController
+
+        return TrackingController.from_dict(data)
+    import hyst.models  # noqa: F401  from here on its classes are known
+    from hyst.operators import operator_from_dict
+
+    return operator_from_dict(data)
+
+
+def _estimator(content: dict[str, Any], about: ModelDescription) -> Any:
+    from hyst.online import AdaptiveInverse, JointEstimator, RadiusEstimator
+    from hyst.online.saving import restored
+
+    classes = (AdaptiveInverse, JointEstimator, RadiusEstimator)
+    try:
+        kind = {each.kind: each for each in classes}[content["kind"]]
+        return restored(kind, content["settings"], content["state"], about)
+    except InputError:
+        raise
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        raise InputError(f"the estimator is damaged ({error}); save it again") from None

@@ -1,0 +1,130 @@
+"""hyst fit: the constants of any model file, fitted to records from their own values."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+import hyst
+from hyst._files import require_folder
+from hyst.cli.arguments import (
+    InputColumn,
+    ModelFile,
+    OutputColumn,
+    Rate,
+    Repair,
+    TimeColumn,
+    TimeUnit,
+    load_operator,
+    numbers,
+    require_same_unit,
+    whole_or_auto,
+)
+from hyst.cli.console import at_work, show_files
+from hyst.cli.fitted import (
+    AllowUnconverged,
+    Data,
+    Folder,
+    HowToRead,
+    InputLabel,
+    OutputLabel,
+    Validate,
+    ValidateInput,
+    ValidateOutput,
+    ValidateTime,
+    tell_fitted,
+    write_fitted,
+)
+
+Free = Annotated[
+    str | None,
+    typer.Option(
+        metavar="A,B,..",
+        show_default=False,
+        help="Constants that may move, as hyst info names them; a name without its index, or of a "
+        "stage, stands for all in it. All if left out.",
+    ),
+]
+Bound = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--bound",
+        metavar="NAME=LOW,HIGH",
+        show_default=False,
+        help="Keep a constant between two values; repeatable.",
+    ),
+]
+Delay = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N", show_default=False, help="Samples by which the output lags; the model's own."
+    ),
+]
+Start = Annotated[str, typer.Option(metavar="N|auto", help="First sample to use.")]
+
+
+def fit(
+    model: ModelFile,
+    data: Data,
+    input_column: InputColumn,
+    output_column: OutputColumn,
+    folder: Folder,
+    rate: Rate = None,
+    time: TimeColumn = None,
+    time_unit: TimeUnit = None,
+    repair: Repair = False,
+    free: Free = None,
+    bound: Bound = None,
+    delay: Delay = None,
+    start: Start = "auto",
+    validate: Validate = None,
+    validate_input: ValidateInput = None,
+    validate_output: ValidateOutput = None,
+    validate_time: ValidateTime = None,
+    input_label: InputLabel = None,
+    output_label: OutputLabel = None,
+    allow_unconverged: AllowUnconverged = False,
+) -> None:
+    """Fit the constants of a model to records, from its own values, and report as identify does."""
+    require_folder(folder)
+    guess = load_operator(model)
+    bounds = dict(_as_bound(each) for each in bound or [])
+    columns = {"input": input_column, "output": output_column, "time": time, "rate": rate}
+    columns |= {"time_unit": time_unit, "repair": repair}
+    others = {"input": validate_input, "output": validate_output, "time": validate_time}
+    files = HowToRead(columns, others, (input_label, output_label))
+    with at_work("fitting") as say:
+        say("reading")
+        records = files.records(data)
+        validation = files.validation(validate)
+        for record in (*records, *validation):
+            require_same_unit(record.input_unit, guess.description.input_unit, "the input")
+            require_same_unit(record.output_unit, guess.description.output_unit, "the output")
+        found = hyst.fit(
+            guess,
+            records,
+            free=None if free is None else [each.strip() for each in free.split(",")],
+            bounds=bounds,
+            delay=guess.description.delay if delay is None else delay,
+            start=whole_or_auto(start, "start"),
+            validation=validation,
+            allow_unconverged=allow_unconverged,
+            progress=say,
+        )
+        say("report")
+        sources = [*data, *(validate or [])]
+        written = write_fitted(found, records, validation, folder, sources)
+    tell_fitted(found, records)
+    show_files(written)
+
+
+def _as_bound(text: str) -> tuple[str, tuple[float, float]]:
+    """Read NAME=LOW,HIGH."""
+    name, _, values = text.partition("=")
+    low_high = numbers(values, "bound") if values else []
+    if not name or len(low_high) != 2:
+        raise hyst.InputError(
+            f"--bound is {text!r}; give a name and two numbers, as prandtl_ishlinskii.p0=0.5,2"
+        )
+    return name.strip(), (low_high[0], low_high[1])

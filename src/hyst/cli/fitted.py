@@ -1,0 +1,146 @@
+"""What the verbs that fit models share: records in, model, numbers, figures and a report out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+import hyst
+from hyst.cli.console import show_table
+
+Data = Annotated[
+    list[Path], typer.Argument(metavar="DATA", show_default=False, help="Measured records.")
+]
+Folder = Annotated[
+    Path, typer.Option("-o", "--out", metavar="DIR", show_default=False, help="Where to write.")
+]
+Validate = Annotated[
+    list[Path] | None,
+    typer.Option(metavar="DATA", show_default=False, help="A record to judge by; repeatable."),
+]
+ValidateInput = Annotated[
+    str | None,
+    typer.Option(metavar="COL", show_default=False, help="Their input, where it is called other."),
+]
+ValidateOutput = Annotated[
+    str | None, typer.Option(metavar="COL", show_default=False, help="Their output, likewise.")
+]
+ValidateTime = Annotated[
+    str | None, typer.Option(metavar="COL", show_default=False, help="Their time, likewise.")
+]
+InputLabel = Annotated[
+    str | None,
+    typer.Option(metavar="LABEL", show_default=False, help='Call the input so, as "drive [V]".'),
+]
+OutputLabel = Annotated[
+    str | None, typer.Option(metavar="LABEL", show_default=False, help="Call the output so.")
+]
+AllowUnconverged = Annotated[
+    bool, typer.Option("--allow-unconverged", help="Accept a fit that did not converge.")
+]
+
+
+@dataclass(frozen=True)
+class HowToRead:
+    """Where the signals stand in the files.
+
+    Parameters
+    ----------
+    columns
+        Arguments of ``hyst.read_record``.
+    validation_columns
+        Columns of validation records that are called otherwise, by role; None where they are not.
+    labels
+        What input and output are to be called, with their units; None as in the file.
+    """
+
+    columns: dict[str, Any]
+    validation_columns: dict[str, str | None]
+    labels: tuple[str | None, str | None]
+
+    def records(self, paths: Sequence[Path]) -> list[hyst.Record]:
+        """Read the records to fit to."""
+        return [_read(path, self.columns, self.labels) for path in paths]
+
+    def validation(self, paths: Sequence[Path] | None) -> list[hyst.Record]:
+        """Read the records to judge by."""
+        how = _otherwise(self.columns, self.validation_columns, paths)
+        return [_read_validation(path, how, self.labels) for path in paths or []]
+
+
+def _read(path: Path, how: dict[str, Any], labels: tuple[str | None, str | None]) -> hyst.Record:
+    return _labelled(hyst.read_record(path, **how), *labels)
+
+
+def _otherwise(
+    how: dict[str, Any], columns: dict[str, str | None], validate: Sequence[Path] | None
+) -> dict[str, Any]:
+    """Read validation records like the others, but from their own columns where those are named."""
+    named = {role: column for role, column in columns.items() if column is not None}
+    if named and not validate:
+        raise hyst.InputError(
+            f"--validate-{min(named)} names a column of validation records, and there are none; "
+            "give --validate too"
+        )
+    return how | named
+
+
+def _read_validation(
+    path: Path, how: dict[str, Any], labels: tuple[str | None, str | None]
+) -> hyst.Record:
+    try:
+        return _read(path, how, labels)
+    except hyst.InputError as error:
+        if "has no column" not in str(error):
+            raise
+        raise hyst.InputError(
+            f"{error}; columns of validation records are called as those of DATA unless "
+            "--validate-input, --validate-output or --validate-time say otherwise"
+        ) from error
+
+
+def write_fitted(
+    found: hyst.Identified,
+    records: Sequence[hyst.Record],
+    validation: Sequence[hyst.Record],
+    folder: Path,
+    sources: list[Path],
+    told: tuple[hyst.report.Section, ...] = (),
+) -> tuple[Path, ...]:
+    """Write model file, numbers, figures and report."""
+    return hyst.report.write_report(
+        found,
+        records,
+        validation,
+        folder,
+        sources=[str(path) for path in sources],
+        sections=[*hyst.report.dynamics_sections(found), *told],
+    )
+
+
+def tell_fitted(found: hyst.Identified, records: Sequence[hyst.Record]) -> None:
+    """Print what was found and how good it is."""
+    for sentence in hyst.report.in_short(found, tuple(records)):
+        print(sentence)
+    if found.candidates:
+        show_table(hyst.report.candidates_table(found))
+    show_table(hyst.report.metrics_table(found))
+    show_table(hyst.report.parameters_table(found))
+    for sentence in found.undetermined:
+        print(f"note: {sentence}")
+
+
+def _labelled(
+    record: hyst.Record, input_label: str | None, output_label: str | None
+) -> hyst.Record:
+    if input_label is not None:
+        name, unit = hyst.io.split_unit(input_label)
+        record = replace(record, input_name=name, input_unit=unit)
+    if output_label is not None:
+        name, unit = hyst.io.split_unit(output_label)
+        record = replace(record, output_name=name, output_unit=unit)
+    return record

@@ -1,0 +1,7 @@
+# The one list of what the demonstration offers, for type checkers and for hyst/_lazy.py.
+
+from hyst.demo.stage import SimulatedStage as SimulatedStage
+from hyst.demo.story import BANNER as BANNER
+from hyst.demo.story import Story as Story
+from hyst.demo.story import Tracking as Tracking
+from hyst.demo.story import tell as tell

@@ -1,0 +1,26 @@
+# The one list of models, for type checkers and for hyst/_lazy.py.
+
+from hyst.models.given_thresholds import GivenThresholds as GivenThresholds
+from hyst.models.linear_dynamics import LinearDynamics as LinearDynamics
+from hyst.models.loading_curve import InverseCurve as InverseCurve
+from hyst.models.mapped_prandtl_ishlinskii import (
+    GeneralizedPrandtlIshlinskii as GeneralizedPrandtlIshlinskii,
+)
+from hyst.models.mapped_prandtl_ishlinskii import (
+    ModifiedPrandtlIshlinskii as ModifiedPrandtlIshlinskii,
+)
+from hyst.models.masing import MasingOperator as MasingOperator
+from hyst.models.memory_element import InverseMemoryElement as InverseMemoryElement
+from hyst.models.memory_element import MemoryElement as MemoryElement
+from hyst.models.memory_function import MemoryFunction as MemoryFunction
+from hyst.models.piecewise_linear import PiecewiseLinear as PiecewiseLinear
+from hyst.models.polynomial_curve import PolynomialCurve as PolynomialCurve
+from hyst.models.power_law import PowerLaw as PowerLaw
+from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii as PrandtlIshlinskii
+from hyst.models.ramberg_osgood import RambergOsgood as RambergOsgood
+from hyst.models.rate_curve import RateCurve as RateCurve
+from hyst.models.rate_dependent import (
+    RateDependentPrandtlIshlinskii as RateDependentPrandtlIshlinskii,
+)
+from hyst.models.second_order_sections import SecondOrderSections as SecondOrderSections
+from hyst.models.stable_inverse import StableInverse as StableInverse

@@ -1,0 +1,229 @@
+"""What the numbers of a model mean, how good they are, and where they come from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
+from typing import Any, ClassVar, Self, final
+
+from hyst.errors import InputError
+from hyst.operators.plain_data import (
+    as_finite,
+    as_finite_or_none,
+    as_mapping,
+    as_text,
+    as_whole,
+)
+from hyst.operators.provenance import Provenance
+
+ERRORS = ("rms", "rms_percent", "max_abs")
+
+
+@final
+@dataclass(frozen=True)
+class ModelDescription:
+    """What the numbers of a model mean; kept in the model file beside the model.
+
+    Parameters
+    ----------
+    input_name, output_name
+        Names of the signals.
+    input_unit, output_unit
+        Their units, as text.
+    input_low, input_high, output_low, output_high
+        Ranges of the record the model was identified from, if it was.
+    dt
+        Sample time of that record in seconds.
+    delay
+        Whole samples by which the measured output lagged the model's output in that record. The
+        model itself has no delay, so that it has an exact inverse.
+    family
+        Family the model was identified in.
+    errors
+        How good the model is, by record: ``training``, ``validation``, ... Each has ``rms`` and
+        ``max_abs`` in output units, and ``rms_percent`` of the output's range.
+    provenance
+        Where the model comes from, if it was identified.
+
+    Raises
+    ------
+    InputError
+        If a name or unit is no text, a number is not finite or, for the delay, not whole, the delay
+        is negative, dt is not positive, a range is upside down, or an error has another name.
+    """
+
+    input_name: str = "u"
+    output_name: str = "y"
+    input_unit: str = ""
+    output_unit: str = ""
+    input_low: float | None = None
+    input_high: float | None = None
+    output_low: float | None = None
+    output_high: float | None = None
+    dt: float | None = None
+    delay: int = 0
+    family: str = ""
+    errors: Mapping[str, Mapping[str, float]] = field(default_factory=dict, hash=False)
+    provenance: Provenance | None = None
+
+    # Of the file format: entries that files of a version may have are those of it and before.
+    ADDED: ClassVar[dict[str, int]] = {"errors": 2, "provenance": 2}
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            value = _CHECKS[each.name](each.name, getattr(self, each.name))
+            object.__setattr__(self, each.name, value)
+        if self.delay < 0:
+            raise InputError(f"delay is {self.delay}; give zero or more samples")
+        if self.dt is not None and self.dt <= 0.0:
+            raise InputError(f"dt is {self.dt}; give a sample time above 0, in seconds")
+        for signal in ("input", "output"):
+            low, high = getattr(self, f"{signal}_low"), getattr(self, f"{signal}_high")
+            if low is not None and high is not None and low > high:
+                raise InputError(
+                    f"{signal}_low is {low} and {signal}_high is {high}; give the lower end first"
+                )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give what there is to say as values of JSON; what is not known is left out."""
+        return {key: value for key, value in asdict(self).items() if value not in (None, {})}
+
+    @classmethod
+    def from_dict(cls, data: Any, version: int = 2) -> ModelDescription:
+        """Rebuild a description from ``to_dict()``.
+
+        Parameters
+        ----------
+        data
+            What ``to_dict()`` gave, or the same read from a file.
+        version
+            Of the description: 1 has neither errors nor provenance.
+
+        Raises
+        ------
+        InputError
+            If an entry is unknown, null or not allowed.
+        """
+        if not isinstance(data, dict):
+            raise InputError("'description' must be an object")
+        known = {each.name for each in fields(cls) if cls.ADDED.get(each.name, 1) <= version}
+        for key, value in data.items():
+            if key not in known:
+                raise InputError(
+                    f"unknown entry {key!r} in 'description'; remove it or update hyst"
+                )
+            if value is None:
+                raise InputError(f"{key!r} in 'description' is null; leave the entry out")
+        try:
+            return cls(**data)
+        except InputError as error:
+            raise InputError(f"in 'description', {error}") from None
+
+    def of_inverse(self) -> ModelDescription:
+        """Give the description of the inverse: input and output change places, without errors."""
+        return replace(
+            self,
+            input_name=self.output_name,
+            input_unit=self.output_unit,
+            input_low=self.output_low,
+            input_high=self.output_high,
+            output_name=self.input_name,
+            output_unit=self.input_unit,
+            output_low=self.input_low,
+            output_high=self.input_high,
+            errors={},
+        )
+
+    def of_other_constants(self) -> ModelDescription:
+        """Give what still holds when the constants change: no errors, and no provenance."""
+        return replace(self, errors={}, provenance=None)
+
+
+class Described:
+    """What is frozen and carries a description, which is no part of what it equals."""
+
+    @final
+    @property
+    def description(self) -> ModelDescription:
+        """What the numbers mean; nothing but defaults if that is not known."""
+        about: ModelDescription = vars(self).get(_CARRIED, _NOTHING_SAID)
+        return about
+
+    @final
+    def with_description(self, description: ModelDescription) -> Self:
+        """Give the same thing with another description.
+
+        Parameters
+        ----------
+        description
+            What the numbers mean.
+
+        Raises
+        ------
+        InputError
+            If it is something else.
+        """
+        other = object.__new__(type(self))
+        vars(other).update(vars(self), **{_CARRIED: as_description(description)})
+        return other
+
+    def _carried(self) -> dict[str, ModelDescription]:
+        """Give what pickling has to keep beside the constants."""
+        return {name: about for name, about in vars(self).items() if name == _CARRIED}
+
+
+def errors_of(metrics: Mapping[str, Any]) -> dict[str, dict[str, float]]:
+    """Give the errors that a description keeps of ``metrics`` by record; finite ones only."""
+    return {
+        record: {
+            name: value for name in ERRORS if math.isfinite(value := float(getattr(each, name)))
+        }
+        for record, each in metrics.items()
+    }
+
+
+def as_description(description: ModelDescription) -> ModelDescription:
+    """Give a description as it is.
+
+    Raises
+    ------
+    InputError
+        If it is something else.
+    """
+    if not isinstance(description, ModelDescription):
+        raise InputError(
+            f"the description is a {type(description).__name__}; give a ModelDescription"
+        )
+    return description
+
+
+def _as_errors(name: str, value: Any) -> dict[str, dict[str, float]]:
+    checked = {}
+    for record, figures in as_mapping(name, value).items():
+        given = as_mapping(f"{name} of {record!r}", figures)
+        for key in given:
+            if key not in ERRORS:
+                known = ", ".join(ERRORS)
+                raise InputError(f"unknown error {key!r} of {record!r} in {name}; give {known}")
+        checked[record] = {
+            key: as_finite(f"{key} of {record!r} in {name}", each) for key, each in given.items()
+        }
+    return checked
+
+
+def _as_provenance(name: str, value: Any) -> Provenance | None:
+    return value if value is None or isinstance(value, Provenance) else Provenance.from_dict(value)
+
+
+# How each entry is checked; one that has a structure gives back what is plain and its own.
+_CHECKS: dict[str, Callable[[str, Any], Any]] = {
+    **dict.fromkeys(("input_name", "output_name", "input_unit", "output_unit", "family"), as_text),
+    **dict.fromkeys(("input_low", "input_high", "output_low", "output_high"), as_finite_or_none),
+    "dt": as_finite_or_none,
+    "delay": as_whole,
+    "errors": _as_errors,
+    "provenance": _as_provenance,
+}
+_NOTHING_SAID = ModelDescription()
+_CARRIED = "_description"

@@ -1,0 +1,44 @@
+"""How an operator is best drawn. It says what there is to see; the report has the brush."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Panel = Literal["weights", "curve", "map", "loop"]
+
+
+@dataclass(frozen=True, eq=False)
+class Portrait:
+    """What shows an operator best.
+
+    Parameters
+    ----------
+    panels
+        One picture each: ``"weights"`` over radii; the ``"curve"`` along which the output rises
+        while the input first rises from rest; a ``"map"``, how the output bends over the input; or
+        the ``"loop"``, the output over the input it is given. None for what shows nothing by
+        itself, as a gain.
+    curve
+        Rise of the output over the rise of the input, both shape (N,).
+    p, r
+        Shape (n,): weights, output units per input unit, and radii, input units.
+    p0
+        Weight of the part without memory, output units per input unit.
+    """
+
+    panels: tuple[Panel, ...]
+    curve: Callable[[Array], Array] | None = None
+    p: Array = field(default_factory=lambda: np.empty(0))
+    r: Array = field(default_factory=lambda: np.empty(0))
+    p0: float = 0.0
+
+
+LOOP = Portrait(("loop",))
+MAP = Portrait(("map",))
+NOTHING = Portrait(())

@@ -1,0 +1,84 @@
+"""hyst fit: a model file and a record give the model file of other constants, and a report."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_runs import drive, snapshot, write_csv
+
+import hyst
+
+COLUMNS = ["--input", "u", "--output", "y", "--rate", 1000]
+DYNAMICS = hyst.LinearDynamics.from_transfer_function([0.2], [1.0, -0.8], dt=1e-3)
+TRUE = DYNAMICS @ hyst.PrandtlIshlinskii([0.4, 0.2], [1.0, 3.0], p0=0.8)
+GUESS = DYNAMICS @ hyst.PrandtlIshlinskii([0.3, 0.3], [1.2, 2.5], p0=1.0)
+
+
+@pytest.fixture
+def files(folder: Path) -> tuple[Path, Path]:
+    u = drive()
+    record = write_csv(folder / "record.csv", "u,y", u, TRUE(u))
+    model = folder / "guess.json"
+    GUESS.save(model)
+    return model, record
+
+
+def test_constants_are_fitted_and_written(files: tuple[Path, Path], run: Callable, folder: Path):
+    model, record = files
+    ended = run("fit", model, record, *COLUMNS, "--free", "prandtl_ishlinskii", "-o", "out")
+    assert ended.code == 0
+    assert "prandtl_ishlinskii.p[1]" in ended.out
+    assert "composition" in ended.out or "model of" in ended.out
+    found = hyst.load(folder / "out" / "model.json")
+    np.testing.assert_allclose(
+        found.parameters().values, TRUE.parameters().values, rtol=1e-6, atol=1e-6
+    )
+    assert found.description.provenance.options["free"] == ["prandtl_ishlinskii"]
+    told = json.loads((folder / "out" / "metrics.json").read_text())
+    assert [each["name"] for each in told["parameters"]] == list(GUESS.parameters().names[:5])
+    assert (folder / "out" / "report.html").stat().st_size > 0
+
+
+def test_bounds_and_validation(files: tuple[Path, Path], run: Callable, folder: Path):
+    model, record = files
+    bound = ["--bound", "prandtl_ishlinskii.p0=0.9,2", "--free", "prandtl_ishlinskii"]
+    ended = run("fit", model, record, *COLUMNS, *bound, "--validate", record, "-o", "out")
+    assert ended.code == 0
+    assert "validation" in ended.out
+    assert hyst.load(folder / "out" / "model.json").parameters().values[0] == 0.9
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--free", "zz"], "no constant 'zz'"),
+        (["--bound", "x"], "--bound is 'x'; give a name and two numbers"),
+        (["--bound", "prandtl_ishlinskii.p0=3,4"], "outside its bounds 3 to 4"),
+        (["--delay", "-1"], "delay is -1"),
+        (["--plays", "3"], "--plays"),
+    ],
+)
+def test_what_cannot_be_used_is_refused(
+    files: tuple[Path, Path], refused: Callable, folder: Path, arguments: list[str], said: str
+):
+    model, record = files
+    before = snapshot(folder)
+    assert said in refused("fit", model, record, *COLUMNS, *arguments, "-o", "out")
+    assert snapshot(folder) == before
+
+
+def test_a_record_in_another_unit_or_rate_is_refused(
+    files: tuple[Path, Path], refused: Callable, folder: Path
+):
+    model, record = files
+    at_another_rate = ["--input", "u", "--output", "y", "--rate", 500]
+    assert "the model 0.001 s" in refused("fit", model, record, *at_another_rate, "-o", "out")
+    described = folder / "volts.json"
+    GUESS.save(described, hyst.ModelDescription(input_unit="V"))
+    label = ["--input-label", "drive [mm]"]
+    told = refused("fit", described, record, *COLUMNS, *label, "-o", "out")
+    assert "is in 'mm' but the model's in 'V'" in told
