@@ -38,6 +38,21 @@ def test_two_equal_columns_leave_their_sum_determined() -> None:
     np.testing.assert_array_equal(spread.involved(0), [0, 2])
 
 
+def test_a_gauge_determines_what_the_records_do_not() -> None:
+    """Of two equal columns the records know the sum; a gauge that holds the difference, halves."""
+    matrix, noise = regressors(1)
+    a, b = matrix.T
+    jacobian, gauge = np.column_stack([a, b, a]), np.array([[1.0, 0.0, -1.0]])
+    spread = spread_of_estimates(jacobian, noise, [SAMPLES], np.ones(3), gauge)
+    assert spread.open_directions.shape == (3, 0)
+    reduced = spread_of_estimates(matrix, noise, [SAMPLES], np.ones(2)).of(np.eye(2))
+    expected = [reduced[0] / 2.0, reduced[1], reduced[0] / 2.0]
+    # One free parameter less in N - m, and nothing else.
+    np.testing.assert_allclose(spread.of(np.eye(3)), expected, rtol=1e-3)
+    held = spread.of(np.array([[1.0, 0.0, -1.0]]))
+    assert held[0] < 1e-9 * reduced[0]
+
+
 def test_a_column_of_zeros_is_named_alone() -> None:
     matrix, noise = regressors(2)
     jacobian = np.column_stack([matrix[:, 0], np.zeros(SAMPLES)])

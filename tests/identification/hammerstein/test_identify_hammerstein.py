@@ -205,10 +205,8 @@ def test_dynamics_that_explain_something_are_not_called_nothing(noise: float) ->
     assert not any("explain nothing" in each for each in found.undetermined)
 
 
-def test_options_that_name_nothing_are_refused_whatever_the_family() -> None:
+def test_a_start_that_is_none_is_refused_whatever_the_family() -> None:
     record = record_of(PI, 0.01)
-    with pytest.raises(InputError, match="hysteresis is 'foo'; choose one of"):
-        hyst.identify(record, family="pi", hysteresis="foo")
     for start in (1.5, True, "late", None):
         for family in ("pi", "hammerstein"):
             with pytest.raises(InputError, match=f"start is {start!r}; give a whole number"):
@@ -233,8 +231,14 @@ def test_a_period_that_cannot_be_used_is_refused() -> None:
         identified(record, period=1000)
     with pytest.raises(InputError, match="leave out start"):
         identified(record, period=1000, start=5)
-    with pytest.raises(InputError, match="family 'pi' averages none"):
+    with pytest.raises(InputError, match="period is for family hammerstein, not for pi"):
         hyst.identify(record, family="pi", period=1000)
+
+
+def test_averages_of_periods_are_not_compared_with_the_periods_themselves() -> None:
+    u = multisine(DT, 1500, amplitude=10.0, periods=3).u
+    with pytest.raises(InputError, match="'pi' and 'hammerstein' would be compared by other"):
+        hyst.identify(Record(u, (G @ PI)(u), DT), family="pi,hammerstein", period=1500)
 
 
 def test_the_example_of_the_documentation_runs() -> None:

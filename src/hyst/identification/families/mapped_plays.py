@@ -54,10 +54,11 @@ def _as_knots(knots: Any, name: str) -> int | tuple[float, ...]:
     if isinstance(knots, int | float | str | np.number):
         return as_whole_number(knots, name, 1, MOST_KNOTS, ", or a list of their places")
     try:
-        places = np.unique(np.asarray(knots, dtype=np.float64))
+        given = np.asarray(knots, dtype=np.float64)
     except (TypeError, ValueError):
-        places = np.empty(0)
-    if not 1 <= places.size <= MOST_KNOTS or not np.isfinite(places).all():
+        given = np.empty(0)
+    places = np.unique(given)
+    if given.ndim != 1 or not 1 <= places.size <= MOST_KNOTS or not np.isfinite(places).all():
         raise InputError(
             f"{name} are {knots!r}; give a number from 1 to {MOST_KNOTS}, or a list of finite "
             "places, input units"

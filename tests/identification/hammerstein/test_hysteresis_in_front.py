@@ -1,0 +1,122 @@
+"""Any family may be in front of the dynamics, with its own options and sizes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from test_identify_hammerstein import DT, PI, G, U, identified, record_of
+
+import hyst
+from hyst.errors import InputError
+from hyst.signals import Record
+
+FIVE = hyst.PrandtlIshlinskii([0.3, 0.2, 0.15, 0.1, 0.1], [0.5, 1.5, 3.0, 4.5, 6.0], 1.0)
+
+
+def error_percent(model: hyst.Operator, front: hyst.Operator) -> float:
+    """Rms error against the noiseless output, percent of its range."""
+    clean = (G @ front)(U)
+    return float(100.0 * (model(U) - clean)[200:].std() / np.ptp(clean))
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-3])
+def test_the_number_of_plays_is_chosen(noise: float) -> None:
+    """A fixed number of four, as in 0.1.0, leaves 0.18 % here."""
+    found = identified(record_of(FIVE, noise), hysteresis="pi")
+    assert error_percent(found.model, FIVE) < 0.05
+    sizes = {each.plays for each in found.candidates}
+    assert {1, 2, 3, 4, 6} <= sizes
+    assert sum(each.chosen for each in found.candidates) == 1
+
+
+def test_a_rate_dependent_hysteresis_may_be_in_front() -> None:
+    plays = hyst.RateDependentPrandtlIshlinskii([0.5, 0.3], [1.5, 3.0], 4e-4, DT, p0=1.0)
+    found = identified(record_of(plays, 0.0), hysteresis="rdpi", plays=2, state_order=2)
+    values = dict(zip(found.parameter_names, found.parameter_values, strict=True))
+    assert values["rate_dependent_prandtl_ishlinskii.beta"] == pytest.approx(4e-4, rel=1e-6)
+    assert found.poles == pytest.approx(np.sort_complex(G.poles()), abs=1e-9)
+
+
+def test_the_hysteresis_may_be_an_object() -> None:
+    front = hyst.RambergOsgood(1.0, 0.1, 0.8)
+    record = record_of(front, 0.01)
+    family = hyst.families.Hammerstein(
+        hysteresis=hyst.families.RambergOsgood(memory="masing"), state_order=2
+    )
+    by_object = hyst.identify(record, family=family)
+    by_name = identified(record, hysteresis="ramberg-osgood", memory="masing", state_order=2)
+    assert by_object.model == by_name.model
+    by_both = identified(record, hysteresis=family.hysteresis, state_order=2)
+    assert by_both.model == by_name.model
+    assert by_name.front == family.hysteresis
+    assert error_percent(by_object.model, front) < 0.05
+
+
+def test_options_reach_the_hysteresis() -> None:
+    found = identified(record_of(PI, 0.0), hysteresis="pi", radii=[0.5, 1.5, 3.0], state_order=2)
+    values = dict(zip(found.parameter_names, found.parameter_values, strict=True))
+    assert [values[f"prandtl_ishlinskii.r[{i}]"] for i in (1, 2, 3)] == [0.5, 1.5, 3.0]
+    assert values["prandtl_ishlinskii.p[2]"] == pytest.approx(0.2, rel=1e-6)
+
+
+def test_what_the_hysteresis_does_not_take_is_refused() -> None:
+    record = record_of(PI, 0.01)
+    with pytest.raises(InputError, match="knots is for hysteresis gpi or mpi, not for pi; leave"):
+        identified(record, hysteresis="pi", knots=3)
+    with pytest.raises(InputError, match=r"plays is for hysteresis pi, .*, not for ramberg-osgood"):
+        identified(record, hysteresis="ramberg-osgood", plays=3)
+    with pytest.raises(InputError, match="memory is given beside a family object"):
+        identified(record, hysteresis=hyst.families.RambergOsgood(), memory="masing")
+    with pytest.raises(InputError, match="hysteresis is of type int; give the name"):
+        identified(record, hysteresis=3)
+
+
+def test_an_option_that_another_family_takes_is_used_there() -> None:
+    record = Record(U[:2000], PI(U[:2000]), DT)
+    found = hyst.identify(record, family="mpi,hammerstein", hysteresis="pi", knots=2, plays=3)
+    assert {each.family for each in found.candidates} == {"mpi", "hammerstein"}
+
+
+@pytest.mark.parametrize("name", ["preisach", "hammerstein"])
+def test_what_cannot_be_in_front_is_answered_with_all_that_can(name: str) -> None:
+    with pytest.raises(InputError, match=f"hysteresis is '{name}'; choose one of ") as said:
+        identified(record_of(PI, 0.01), hysteresis=name)
+    assert all(each in str(said.value) for each in hyst.families if each != "hammerstein")
+
+
+def test_dynamics_are_compared_with_hysteresis_alone_in_one_table() -> None:
+    found = hyst.identify(record_of(PI, 0.01), family="pi,mpi,hammerstein", hysteresis="pi")
+    assert found.family == "hammerstein"
+    assert {each.family for each in found.candidates} == {"pi", "mpi", "hammerstein"}
+    best = {
+        name: min(each.score for each in found.candidates if each.family == name)
+        for name in ("pi", "mpi", "hammerstein")
+    }
+    # Neither hysteresis alone can follow a resonance: most of the output is left.
+    assert best["hammerstein"] < 0.05 * min(best["pi"], best["mpi"])
+
+
+def test_dynamics_that_explain_nothing_lose_against_hysteresis_alone() -> None:
+    y = PI(U) + 0.02 * np.random.default_rng(0).normal(size=U.size)
+    found = hyst.identify(Record(U, y, DT), family="pi,hammerstein", hysteresis="pi")
+    assert found.family == "pi"
+    assert {each.family for each in found.candidates} == {"pi", "hammerstein"}
+
+
+def test_long_records_are_searched_in_part_and_fitted_in_whole() -> None:
+    u = np.concatenate([U] * 5)
+    y = (G @ PI)(u)
+    y[20_000:] *= 1.03  # beyond what is searched, so that the gain of a fit to all is 1.01
+    found = identified(Record(u, y, DT), hysteresis="pi", plays=3, state_order=2)
+    v, true = found.hysteresis(u), PI(u)
+    gain = float(v @ true) / float(true @ true)
+    assert gain == pytest.approx(1.01, abs=0.002)
+
+
+def test_several_records_are_identified_together() -> None:
+    record = record_of(PI, 0.0)
+    rest = np.zeros(300)  # each record starts from rest
+    parts = [np.concatenate([rest, record.u[:3000]]), np.concatenate([rest, record.u[3000:]])]
+    records = [Record(u, (G @ PI)(u), DT) for u in parts]
+    found = hyst.identify(records, family="hammerstein", hysteresis="pi", plays=3, state_order=2)
+    assert error_percent(found.model, PI) < 1e-4
