@@ -175,12 +175,8 @@ def signal_behind(data: Data, dynamics: LinearDynamics) -> Data:
     Returns
     -------
     Data
-        Of the beginning of each record. Without an inverse the delayed output serves as a guess.
-
-    Raises
-    ------
-    NotIdentifiableError
-        If the records are too short for the inverse.
+        Of the beginning of each record. Where there is no inverse, or the records are too short for
+        it, the delayed output serves as a guess.
     """
     data = shortened(data, max(LONGEST_START // len(data.records), 1))
     inverse, _ = inverse_of(dynamics)
@@ -194,11 +190,7 @@ def signal_behind(data: Data, dynamics: LinearDynamics) -> Data:
             records.append(Record(record.u[: valid.stop], v[: valid.stop], record.dt))
             starts.append(max(valid.start, start))
     if not records:
-        longest = max(len(record) for record in data.records)
-        raise NotIdentifiableError(
-            f"the longest record has {longest} samples but the inverse of the dynamics needs "
-            f"{inverse.h.size}; give a longer record"
-        )
+        return data.delayed(dynamics.delay)
     return replace(data, records=tuple(records), starts=tuple(starts), delay=0)
 
 
