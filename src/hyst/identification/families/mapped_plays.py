@@ -25,6 +25,7 @@ from hyst.identification.families.option import (
     choice,
     option,
     read_numbers,
+    read_whole,
 )
 from hyst.identification.families.play_layout import (
     FirstGuess,
@@ -67,9 +68,7 @@ def _as_knots(knots: Any, name: str) -> int | tuple[float, ...]:
 
 
 def _read_knots(text: str, name: str) -> Any:
-    if "," in text:
-        return read_numbers(text, name)
-    return int(text) if text.isdecimal() else text
+    return read_numbers(text, name) if "," in text else read_whole(text, name)
 
 
 KNOTS_OPTION = Option(

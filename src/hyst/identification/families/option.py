@@ -64,7 +64,7 @@ def whole_number_or_auto(least: int, most: int, help: str) -> Option:
             return AUTO
         return as_whole_number(value, name, least, most, ", or 'auto'")
 
-    return Option(check, help, _read_whole, "N|auto")
+    return Option(check, help, read_whole, "N|auto")
 
 
 def whole_number(least: int, most: int, help: str) -> Option:
@@ -81,7 +81,7 @@ def whole_number(least: int, most: int, help: str) -> Option:
     def check(value: Any, name: str) -> int:
         return as_whole_number(value, name, least, most)
 
-    return Option(check, help, _read_whole, "N")
+    return Option(check, help, read_whole, "N")
 
 
 def choice(choices: tuple[str, ...], help: str) -> Option:
@@ -143,7 +143,14 @@ def read_number(text: str, name: str) -> float:
         raise InputError(f"{name} is {text!r}; give a number") from None
 
 
-def _read_whole(text: str, _: str) -> int | str:
+def read_whole(text: str, _: str) -> int | str:
+    """Read a whole number; what is none, as a word, is given as it is.
+
+    Parameters
+    ----------
+    text
+        What was typed.
+    """
     try:
         return int(text)
     except ValueError:

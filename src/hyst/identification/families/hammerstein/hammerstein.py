@@ -34,6 +34,7 @@ from hyst.identification.families.option import (
     AUTO,
     Option,
     option,
+    read_whole,
     whole_number_or_auto,
 )
 from hyst.identification.fit.bounded_least_squares import CONVERGED, Problem, Solution, minimize
@@ -69,10 +70,6 @@ def _as_period(value: Any, name: str) -> int | None:
     if value is None:
         return None
     return as_whole_number(value, name, 2, LONGEST_PERIOD, " samples")
-
-
-def _read_whole(text: str, _: str) -> int | str:
-    return int(text) if text.isdecimal() else text
 
 
 @final
@@ -116,7 +113,7 @@ class Hammerstein(Family):
         Option(
             _as_period,
             "Samples of a period of the drive; all but the first are averaged.",
-            _read_whole,
+            read_whole,
             "N",
         ),
     )
