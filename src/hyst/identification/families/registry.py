@@ -1,12 +1,14 @@
-"""All families that ``families/__init__.pyi`` lists, from the simplest to the richest."""
+"""All families in this folder, from the simplest to the richest: nothing has to list them."""
 
 from __future__ import annotations
 
+import importlib
+import pkgutil
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 from hyst.errors import InputError
-from hyst.identification import families as listed
+from hyst.identification import families as room
 from hyst.identification.families.family import Family, require_this_version
 
 AUTO = "auto"
@@ -18,9 +20,18 @@ def _richness(family: type[Family]) -> tuple[int, bool, str]:
     return smallest.least_parameters(smallest.sizes()[0]), family.compared, family.name
 
 
-_CLASSES: tuple[type[Family], ...] = tuple(
-    sorted((getattr(listed, each) for each in dir(listed)), key=_richness)
-)
+def _classes() -> tuple[type[Family], ...]:
+    """Give every family that a file of this folder defines."""
+    for module in pkgutil.walk_packages(room.__path__, f"{room.__name__}."):
+        importlib.import_module(module.name)
+    found, unseen = set(), {Family}
+    while unseen:
+        found |= unseen
+        unseen = {each for parent in unseen for each in parent.__subclasses__()} - found
+    named = [
+        each for each in found if each.__module__.startswith(room.__name__) and "name" in vars(each)
+    ]
+    return tuple(sorted(named, key=_richness))
 
 
 class Families(Mapping[str, Family]):
@@ -93,6 +104,8 @@ class Families(Mapping[str, Family]):
         its_own = self._by_name[name].options()
         return self._by_name[name](**{key: options[key] for key in options if key in its_own})
 
+
+_CLASSES = _classes()
 
 families = Families(_CLASSES)
 """``hyst.families``."""
