@@ -33,6 +33,8 @@ class FamilyExample:
         Relative error to which the constants come back without noise.
     unit_of_its_own
         How the names of constants end whose unit depends on another constant; nothing by default.
+    told
+        What the family tells beside constants of its model, which has no unit, with its true value.
     """
 
     model: Operator
@@ -41,6 +43,7 @@ class FamilyExample:
     noise: float = 0.005
     exactly: float = 1e-6
     unit_of_its_own: str = "?"
+    told: dict[str, float] = field(default_factory=dict)
 
     def records(self, noise: float = 0.0, seed: int = 0) -> list[Record]:
         """Give the records of the actuator with noise of a share of the output's range."""
@@ -77,6 +80,19 @@ def _rate_dependent() -> Operator:
     return Affine(1.0, 0.3) @ plays
 
 
+def _hammerstein() -> FamilyExample:
+    """Plays before a resonance, ``(0.2 q^-1 + 0.1 q^-2) / (1 + a1 q^-1 + a2 q^-2)``: gain 1."""
+    a1, a2 = -1.4, 0.7
+    dynamics = hyst.LinearDynamics.from_transfer_function([0.2, 0.1], [1.0, a1, a2], DT)
+    told = {"a[1]": a1, "a[2]": a2, "b[0]": 0.0, "b[1]": 0.2, "b[2]": 0.1}
+    return FamilyExample(
+        dynamics @ (Affine(1.0, 0.3) @ _plays()),
+        (hyst.signals.multisine(DT, 3000, amplitude=1.0).u,),
+        {"hysteresis": "pi", "plays": 2, "state_order": 2},
+        told={f"dynamics.{name}": value for name, value in told.items()},
+    )
+
+
 _MAKE: dict[str, Callable[[], FamilyExample]] = {
     "linear": lambda: FamilyExample(Affine(-1.3, 0.4), (decaying(),)),
     "dahl": lambda: FamilyExample(Affine(-1.0, 0.3) @ hyst.Dahl(4.0, 1.5), (decaying(),)),
@@ -100,6 +116,7 @@ _MAKE: dict[str, Callable[[], FamilyExample]] = {
     "rdpi": lambda: FamilyExample(
         _rate_dependent(), (sine(1.0, 1700), sine(20.0, 300), sine(60.0, 300)), {"plays": 2}
     ),
+    "hammerstein": _hammerstein,
 }
 
 

@@ -57,7 +57,7 @@ def options_given(context: typer.Context, family: str) -> dict[str, Any]:
         said = _as_typed(name)
         hyst.identification.require_taken(name, names, said=said, of="--family")
         for each in names:
-            option = hyst.families[each].options().get(name)
+            option = hyst.families.option(each, name)
             if option is not None:
                 values[name] = option.read(text, said)
                 option.check(values[name], said)
@@ -97,8 +97,9 @@ def _options_of_families() -> tuple[Any, ...]:
 
 
 def _option(name: str) -> Any:
-    takers = {each: hyst.families[each] for each in hyst.families.takers(name)}
-    first = next(iter(takers.values())).options()[name]
+    takers = hyst.families.takers(name)
+    first = hyst.families.option(takers[0], name)
+    assert first is not None, "its takers have it"
     return typer.Option(
         _as_typed(name),
         metavar=first.metavar,
@@ -110,13 +111,17 @@ def _option(name: str) -> Any:
     )
 
 
-def _default_in_words(name: str, takers: dict[str, Any]) -> str | bool:
+def _default_in_words(name: str, takers: tuple[str, ...]) -> str | bool:
     """Give the default, or those of single families where they differ; nothing for None."""
-    defaults = {each: getattr(family, name) for each, family in takers.items()}
+    families = {each: hyst.families[each] for each in takers}
+    defaults = {
+        each: getattr(family, name) for each, family in families.items() if name in family.options()
+    }
     most = next(iter(defaults.values()))
     if most is None:
         return False
     others = [f"{each}: {value}" for each, value in defaults.items() if value != most]
+    most = getattr(most, "name", most)  # of a family that is in front by default
     return "; ".join([str(most), *others])
 
 

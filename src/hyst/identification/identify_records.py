@@ -98,6 +98,8 @@ def identify(
         # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
         found = find(given, families, wanted)
         require_sample_time(judged, found.data)
+        for number, record in enumerate(judged, 1):
+            found.fit.operator.require_sample_time(record.dt, f"validation record {number}")
         identified = identified_from_fit(
             found.data, found.fit, found.candidates, judged, found.notes
         )

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hyst.errors import NotIdentifiableError
+from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.delay import estimate_delay, refine_delay
 from hyst.identification.choice.selection import (
     Contender,
@@ -28,7 +28,6 @@ from hyst.identification.fit.bounded_least_squares import CONVERGED
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.options import Options, as_delay
 from hyst.identification.record_use.overview import Overview
-from hyst.identification.record_use.thinning import thinned
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.identified import Candidate
 from hyst.signals import Record
@@ -73,8 +72,8 @@ class _Task:
         return replace(self, given=self.given.delayed(delay), data=self.data.delayed(delay))
 
     def searched(self) -> Data:
-        """Give fewer samples of long records, where that does not change the model."""
-        return self.data if self.family.depends_on_rate else thinned(self.data)
+        """Give what the search fits to."""
+        return self.family.searched(self.data)
 
 
 def find(records: tuple[Record, ...], families: Sequence[Family], options: Options) -> Found:
@@ -104,6 +103,7 @@ def find(records: tuple[Record, ...], families: Sequence[Family], options: Optio
     """
     tasks = [_task(family, records, options) for family in families]
     _require_samples(tasks)
+    _require_same_records(tasks)
     if any(not task.family.answers_late for task in tasks):
         options.say("delay")
     tasks = _with_delay(tasks, options)
@@ -147,6 +147,18 @@ def _require_samples(tasks: Sequence[_Task]) -> None:
             f"{samples} samples can be used but the model has {needed} parameters; give a longer "
             "record or fewer plays"
         )
+
+
+def _require_same_records(tasks: Sequence[_Task]) -> None:
+    """Refuse to compare what was judged by other records, as by averages of periods."""
+    first = tasks[0]
+    for task in tasks[1:]:
+        if any(a is not b for a, b in zip(task.given.records, first.given.records, strict=True)):
+            raise InputError(
+                f"families {first.family.name!r} and {task.family.name!r} would be compared by "
+                "other records, since one of them averages periods; leave out period, and give "
+                "averages of the periods as the records"
+            )
 
 
 def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
@@ -224,9 +236,9 @@ def _final_fit(family: Family, overview: Overview, size: int, options: Options) 
 def _polished(fit: Fit, task: _Task, options: Options) -> Fit:
     """Go on with all samples."""
     options.say("final fit: all samples")
-    problem = fit.problem(task.data)
+    overview = Overview(fit.family.fitted(task.data), options.delay)
+    problem = fit.problem(overview.data)
     found = fit.family.solve(problem, fit.solution.theta, options.max_iterations)
-    overview = Overview(task.data)
     polished = settled(replace(fit, solution=found), overview, options.max_iterations)
     return options.converged(fit.family.simplified(polished, overview, options.max_iterations))
 

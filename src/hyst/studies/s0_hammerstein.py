@@ -110,7 +110,8 @@ def refined(record: Record) -> IdentifiedHammerstein:
         family="hammerstein",
         hysteresis="gpi",
         plays=4,
-        knots=KNOTS,  # type: ignore[arg-type]
+        knots=KNOTS,
+        envelope="free",
         fir_order=FIR_ORDER,
         state_order=3,
         delay=0,

@@ -15,11 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
+from hyst.identification.families.estimates import Estimates
 from hyst.identification.families.option import AUTO, Option
 from hyst.identification.fit.bounded_least_squares import Problem, Solution, minimize
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.fit.problem import problem_of
 from hyst.identification.record_use.overview import Overview
+from hyst.identification.record_use.thinning import thinned
 from hyst.identification.record_use.used_samples import Data, prepare
 from hyst.operators import Operator
 from hyst.signals import Record
@@ -72,6 +74,8 @@ class Family(ABC):
     """Whether the delay of the output is part of the model, so that none is looked for before."""
     depends_on_rate: ClassVar[bool] = False
     """Whether samples left out of a record would change the model."""
+    wraps: ClassVar[str] = ""
+    """The option that holds a family this one is made around; empty where there is none."""
 
     def __post_init__(self) -> None:
         for name, what in self.options().items():
@@ -82,6 +86,11 @@ class Family(ABC):
     def options(cls) -> dict[str, Option]:
         """Give the options of the family by name."""
         return {each.name: each.metadata["option"] for each in fields(cls)}
+
+    @classmethod
+    def can_wrap(cls, other: type[Family]) -> bool:
+        """Tell whether a family can be the one inside this one."""
+        return False
 
     def records_to_use(
         self, records: tuple[Record, ...], start: Literal["auto"] | int
@@ -119,6 +128,26 @@ class Family(ABC):
             Sentences for the user.
         """
         return self, ()
+
+    def searched(self, data: Data) -> Data:
+        """Give what families and sizes are compared on: fewer samples, where that changes no model.
+
+        Parameters
+        ----------
+        data
+            The records.
+        """
+        return data if self.depends_on_rate else thinned(data)
+
+    def fitted(self, data: Data) -> Data:
+        """Give what the last fit and its standard errors take: all samples, if memory allows.
+
+        Parameters
+        ----------
+        data
+            The records.
+        """
+        return data
 
     def in_units(self, input_scale: float, output_scale: float) -> Self:
         """Give the family with options in units smaller by these factors.
@@ -226,6 +255,21 @@ class Family(ABC):
     def estimates_noise(self) -> bool:
         """Whether the fit's residual tells how sure its constants are."""
         return True
+
+    def estimates(self, fit: Fit) -> Estimates:
+        """Give what the table of parameters tells: the constants that are free.
+
+        Parameters
+        ----------
+        fit
+            The final fit, in the user's units.
+        """
+        constants, free = fit.operator.parameters(), np.flatnonzero(fit.parametrization.free)
+        return Estimates(
+            tuple(constants.names[i] for i in free),
+            constants.values[free],
+            fit.parametrization.transform[free],
+        )
 
     def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
         """Add what only this family can say to the result.
@@ -338,4 +382,13 @@ def require_choice(value: Any, choices: tuple[str, ...], name: str) -> None:
         raise InputError(f"{name} is {value!r}; choose one of {', '.join(choices)}")
 
 
-__all__ = ["AUTO", "Family", "Fit", "Start", "Words", "require_choice", "require_this_version"]
+__all__ = [
+    "AUTO",
+    "Estimates",
+    "Family",
+    "Fit",
+    "Start",
+    "Words",
+    "require_choice",
+    "require_this_version",
+]

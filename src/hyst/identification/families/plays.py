@@ -1,7 +1,6 @@
-"""Prandtl-Ishlinskii models: plays alone, behind an envelope, or in front of an output map.
+"""Prandtl-Ishlinskii models: what all models of plays have in common, and plays alone.
 
-Scales that only shift a factor from one stage to the next are fixed: the slope of a map around 0
-is 1. Cumulative weights and slopes of maps are bounded from below, so every iterate is invertible.
+Cumulative weights are bounded from below, so every iterate is invertible.
 """
 
 from __future__ import annotations
@@ -158,7 +157,6 @@ class Plays(Family):
         )
         return replace(self, plays=AUTO, radii=reached), notes
 
-    @final
     def in_units(self, input_scale: float, output_scale: float) -> Self:
         """Give the family with scaled radii."""
         if self.radii is None:
@@ -172,7 +170,6 @@ class Plays(Family):
             return (len(self.radii),)
         return SIZES if self.plays == AUTO else (self.plays,)
 
-    @final
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
         """Start from radii of equal shares of the curvature, evenly spaced, and denser near 0."""
         return [self._start_from(overview, r) for r in self._first_radii(overview, size)[:most]]

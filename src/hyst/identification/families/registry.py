@@ -4,18 +4,26 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-from collections.abc import Iterator, Mapping
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from hyst.errors import InputError
 from hyst.identification import families as room
 from hyst.identification.families.family import Family, require_this_version
+from hyst.identification.families.option import Option
 
 AUTO = "auto"
 
 
 def _richness(family: type[Family]) -> tuple[int, bool, str]:
-    """Order families by the parameters of their smallest size, those asked for by name first."""
+    """Order families by the parameters of their smallest size, those asked for by name first.
+
+    A family around another one is richer than any.
+    """
+    if family.wraps:
+        return sys.maxsize, family.compared, family.name
     smallest = family()
     return smallest.least_parameters(smallest.sizes()[0]), family.compared, family.name
 
@@ -51,7 +59,7 @@ class Families(Mapping[str, Family]):
         self._by_class = {each.__name__: each for each in classes}
 
     def __getitem__(self, name: str) -> Family:
-        return self._by_name[name]()
+        return self.make(name, {})
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._by_name)
@@ -81,18 +89,48 @@ class Families(Mapping[str, Family]):
         """Give the names that ``family="auto"`` compares."""
         return tuple(name for name, each in self._by_name.items() if each.compared)
 
+    def inner(self, name: str) -> tuple[str, ...]:
+        """Give the names of the families that may be inside another one; none inside most.
+
+        Parameters
+        ----------
+        name
+            Of the family around them.
+        """
+        around = self._by_name[name]
+        if not around.wraps:
+            return ()
+        return tuple(
+            other
+            for other, each in self._by_name.items()
+            if not each.wraps and around.can_wrap(each)
+        )
+
+    def option(self, name: str, option: str) -> Option | None:
+        """Give an option of a family or of those that may be inside it, or None.
+
+        Parameters
+        ----------
+        name
+            Of the family.
+        option
+            Its name.
+        """
+        possible = (self._by_name[each].options() for each in (name, *self.inner(name)))
+        return next((each[option] for each in possible if option in each), None)
+
     def takers(self, option: str) -> tuple[str, ...]:
-        """Give the names of the families that have an option.
+        """Give the names of the families that have an option, or may have one with it inside.
 
         Parameters
         ----------
         option
             Its name.
         """
-        return tuple(name for name, each in self._by_name.items() if option in each.options())
+        return tuple(name for name in self._by_name if self.option(name, option) is not None)
 
     def make(self, name: str, options: Mapping[str, Any]) -> Family:
-        """Give a family with those of the options that it has.
+        """Give a family with those of the options that it, or the one inside it, has.
 
         Parameters
         ----------
@@ -100,9 +138,54 @@ class Families(Mapping[str, Family]):
             Of the family.
         options
             Values by name; those of other families are passed over.
+
+        Raises
+        ------
+        InputError
+            If a value cannot be used, or the family inside is given as an object and its options
+            beside it.
         """
         its_own = self._by_name[name].options()
-        return self._by_name[name](**{key: options[key] for key in options if key in its_own})
+        made = self._by_name[name](**{key: options[key] for key in options if key in its_own})
+        of_inner = {
+            key: options[key]
+            for key in options
+            if key not in its_own and self.option(name, key) is not None
+        }
+        return self.complete(made, of_inner)
+
+    def complete(self, family: Family, options: Mapping[str, Any]) -> Family:
+        """Give a family with the family inside it as an object, if it has one inside.
+
+        Parameters
+        ----------
+        family
+            Whose family inside may be a name.
+        options
+            Of the family inside, those it does not have are passed over.
+
+        Raises
+        ------
+        InputError
+            If the family inside is unknown or cannot be there, or is an object and has options
+            beside it.
+        """
+        if not family.wraps:
+            return family
+        inside, known = getattr(family, family.wraps), self.inner(family.name)
+        if isinstance(inside, Family):
+            _require_no_options(inside, options)
+            inside, name = _of_this_hyst(inside), inside.name
+        else:
+            name = inside
+        if name not in known:
+            raise InputError(
+                f"{family.wraps} is {name!r}; choose one of {', '.join(known)}, or one of them as "
+                "an object of hyst.families"
+            )
+        if isinstance(inside, str):
+            inside = self.make(inside, options)
+        return replace(family, **{family.wraps: inside})
 
 
 _CLASSES = _classes()
@@ -162,7 +245,29 @@ def chosen_families(family: str | Family, options: Mapping[str, Any]) -> tuple[F
     names = names_of(family)
     for option in options:
         require_taken(option, names)
-    return tuple(families.make(name, options) for name in names)
+    made = tuple(families.make(name, options) for name in names)
+    for option in options:
+        _require_used(option, made)
+    return made
+
+
+def _require_used(option: str, made: tuple[Family, ...]) -> None:
+    """Refuse an option that the families could have had, but not as they were chosen."""
+    inside = [each for each in map(_inside, made) if each is not None]
+    if any(option in each.options() for each in (*made, *inside)):
+        return
+    around = next(each for each in made if each.wraps)
+    takers = [name for name in families.inner(around.name) if option in families[name].options()]
+    raise InputError(
+        f"{option} is for {around.wraps} {_listed(takers)}, not for "
+        f"{_listed([each.name for each in inside])}; leave it out, or choose another "
+        f"{around.wraps}"
+    )
+
+
+def _inside(family: Family) -> Family | None:
+    """Give the family inside another one."""
+    return getattr(family, family.wraps) if family.wraps else None
 
 
 def require_taken(option: str, names: tuple[str, ...], said: str = "", of: str = "family") -> None:
@@ -186,7 +291,12 @@ def require_taken(option: str, names: tuple[str, ...], said: str = "", of: str =
     """
     takers = families.takers(option)
     if not takers:
-        known = dict.fromkeys(each for name in names for each in families[name].options())
+        known = dict.fromkeys(
+            each
+            for name in names
+            for part in (name, *families.inner(name))
+            for each in families[part].options()
+        )
         has = f"has {', '.join(known)}" if known else "has none"
         raise InputError(f"{said or option!r} is no option of family {_listed(names)}, which {has}")
     if not set(takers) & set(names):
@@ -197,11 +307,19 @@ def require_taken(option: str, names: tuple[str, ...], said: str = "", of: str =
 
 
 def _family_object(family: Family, options: Mapping[str, Any]) -> Family:
+    _require_no_options(family, options)
+    return families.complete(_of_this_hyst(family), {})
+
+
+def _require_no_options(family: Family, options: Mapping[str, Any]) -> None:
     if options:
         raise InputError(
             f"{next(iter(options))} is given beside a family object; give its options to "
             f"hyst.families.{type(family).__name__}"
         )
+
+
+def _of_this_hyst(family: Family) -> Family:
     if type(family) not in _CLASSES:
         raise InputError(
             f"the family object {type(family).__name__} is none of this hyst; choose one of "
@@ -211,5 +329,5 @@ def _family_object(family: Family, options: Mapping[str, Any]) -> Family:
     return family
 
 
-def _listed(names: tuple[str, ...]) -> str:
+def _listed(names: Sequence[str]) -> str:
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} or {names[-1]}"

@@ -45,6 +45,8 @@ class Parametrization:
     gauges
         Gives what must be zero, shape (g,), and its derivative by theta, shape (g, m): scales that
         no record can determine. None where there are none.
+    gauge_count
+        How many there are, g.
     is_allowed
         Tells whether theta makes an operator at all, where bounds alone do not say it.
     """
@@ -56,6 +58,7 @@ class Parametrization:
     upper: Array
     canonical: Callable[[Array], Array] = unchanged
     gauges: Callable[[Array], tuple[Array, Array]] | None = None
+    gauge_count: int = 0
     is_allowed: Callable[[Array], bool] | None = None
 
     @property
@@ -65,8 +68,8 @@ class Parametrization:
 
     @property
     def free_count(self) -> int:
-        """Number of parameters that can move."""
-        return int((self.lower < self.upper).sum())
+        """Number of parameters that can move, less those the gauges hold."""
+        return int((self.lower < self.upper).sum()) - self.gauge_count
 
     @property
     def free(self) -> NDArray[np.bool_]:

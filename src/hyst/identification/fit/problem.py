@@ -158,8 +158,7 @@ def problem_of(
 
     def residual(theta: Array) -> Array:
         if is_allowed is not None and not is_allowed(theta):
-            count = 0 if gauges is None else gauges(theta)[0].size
-            return np.full(target.size + count, NO_STEP_TO * spread)
+            return np.full(target.size + parametrization.gauge_count, NO_STEP_TO * spread)
         errors = evaluation.output(theta)[rows] - target
         errors = errors if root is None else root * errors
         if gauges is None:

@@ -2,7 +2,8 @@
 
 The output bends where a radius passes half a swing of the input, so the cost has a kink at every
 half swing, some of them local minima that a derivative cannot leave. Each radius in turn is moved
-across the next kinks, and some way towards its neighbours, and a short fit is tried from there.
+across the next kinks, and some way towards its neighbours, that of a play with next to no weight
+between any others, and a short fit is tried from there.
 """
 
 from __future__ import annotations
@@ -21,6 +22,12 @@ SHARES = (-0.5, -0.25, -0.1, -0.03, 0.03, 0.1, 0.25, 0.5)
 
 NEXT_INTERVALS = 2
 """How many intervals between kinks are tried on either side of a radius."""
+
+IDLE = 1e-2
+"""Share of all weights up to which a play is tried in every gap between the others."""
+
+REVIVED = 5e-2
+"""Share of all weights it gets there: with next to none it would not know where to move."""
 
 TRIAL_ITERATIONS = 2
 MOST_ROUNDS = 5
@@ -78,6 +85,18 @@ def _moves(problem: Problem, theta: Array, plays: int, kinks: Array) -> Iterator
             moved = theta.copy()
             moved[plays + 1 + i] = place
             yield moved
+        total = float(np.abs(theta[: plays + 1]).sum())
+        if theta[1 + i] <= IDLE * total:
+            for place in _gaps(np.delete(r, i), lower[i], upper[i]):
+                moved = theta.copy()
+                moved[plays + 1 + i], moved[1 + i] = place, REVIVED * total
+                yield moved
+
+
+def _gaps(others: Array, lower: float, upper: float) -> Array:
+    """Give the middles between the other radii, and beyond them: anywhere but where they are."""
+    fence = np.concatenate([[lower], np.sort(others), [upper]])
+    return np.asarray(0.5 * (fence[1:] + fence[:-1]))
 
 
 def _next_intervals(r: float, kinks: Array) -> Array:

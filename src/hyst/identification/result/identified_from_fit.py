@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.families.family import Fit
-from hyst.identification.fit.parametrization import Parametrization
+from hyst.identification.families.family import Estimates, Fit
 from hyst.identification.fit.problem import Evaluation, model_output
 from hyst.identification.record_use.used_samples import Data, prepare
 from hyst.identification.result.identified import Candidate, Identified
@@ -49,16 +48,18 @@ def identified_from_fit(
     -------
     Identified
     """
-    parametrization, operator = fit.parametrization, fit.operator
-    free, constants = parametrization.free, operator.parameters()
-    errors, not_told_apart = constant_errors(data, fit)
+    operator, estimates = fit.operator, fit.family.estimates(fit)
+    errors, not_told_apart = np.full(len(estimates.names), np.nan), tuple[str, ...]()
+    if fit.family.estimates_noise:
+        spread = spread_of_fit(data, fit)
+        errors, not_told_apart = spread.of(estimates.by_theta), spread.not_told_apart(estimates)
     return Identified(
         model=operator,
         family=fit.family.name,
         delay=data.delay,
-        parameter_names=tuple(str(name) for name in np.array(constants.names)[free]),
-        parameter_values=constants.values[free],
-        standard_errors=errors[free],
+        parameter_names=estimates.names,
+        parameter_values=estimates.values,
+        standard_errors=errors,
         undetermined=notes + fit.family.notes(fit, data) + not_told_apart,
         metrics=metrics_by_record(data, operator, validation),
         candidates=candidates,
@@ -93,52 +94,85 @@ def traced(found: Identified, records: Sequence[Record], options: Mapping[str, A
     return replace(found, description=about, model=found.model.with_description(about))
 
 
-def constant_errors(data: Data, fit: Fit) -> tuple[Array, tuple[str, ...]]:
-    """Give standard errors of the constants, and sentences on those that are not determined.
+@dataclass(frozen=True, eq=False)
+class FitSpread:
+    """How sure the free parameters of a fit are.
 
     Parameters
     ----------
-    data
-        The records.
-    fit
-        The final fit, in their units.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (constants,), NaN where a constant is held, lies on a bound or is not determined.
-    tuple of str
-        One sentence for each combination that is not determined.
-    """
-    parametrization = fit.parametrization
-    if not fit.family.estimates_noise:
-        return np.full(parametrization.transform.shape[0], np.nan), ()
-    spread, inside = spread_of_fit(data, fit)
-    transform = parametrization.transform
-    errors = np.full(transform.shape[0], np.nan)
-    known = transform[:, inside].any(axis=1) & ~transform[:, ~inside].any(axis=1)
-    errors[known] = spread.of(transform[np.ix_(known, inside)])
-    sentences = not_told_apart(fit.operator, parametrization, spread, np.flatnonzero(inside))
-    return errors, sentences
-
-
-def spread_of_fit(data: Data, fit: Fit) -> tuple[Spread, NDArray[np.bool_]]:
-    """Give how sure the free parameters of a fit are that lie on no bound.
-
-    Parameters
-    ----------
-    data
-        The records.
-    fit
-        The final fit, in their units.
-
-    Returns
-    -------
-    Spread
-        Of the parameters inside.
-    numpy.ndarray
+    spread
+        Of the parameters that lie on no bound.
+    inside
         Shape (m,), which they are.
+    noise_rms
+        Of the residual, output units, the free parameters allowed for.
     """
+
+    spread: Spread
+    inside: NDArray[np.bool_]
+    noise_rms: float
+
+    def of(self, by_theta: Array) -> Array:
+        """Give the standard errors of functions of theta.
+
+        Parameters
+        ----------
+        by_theta
+            Shape (q, m), their derivative.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (q,), NaN where a function is held, depends on a parameter on its bound or is not
+            determined.
+        """
+        errors = np.full(len(by_theta), np.nan)
+        moves = by_theta[:, self.inside].any(axis=1)
+        known = moves & ~by_theta[:, ~self.inside].any(axis=1)
+        errors[known] = self.spread.of(by_theta[np.ix_(known, self.inside)])
+        return errors
+
+    def not_told_apart(self, estimates: Estimates) -> tuple[str, ...]:
+        """Name the estimates in every combination that the records do not determine.
+
+        Parameters
+        ----------
+        estimates
+            With their names.
+
+        Returns
+        -------
+        tuple of str
+            Sentences, none twice.
+        """
+        places, sentences = np.flatnonzero(self.inside), []
+        for direction in range(self.spread.open_directions.shape[1]):
+            involved = places[self.spread.involved(direction)]
+            which = np.flatnonzero(estimates.by_theta[:, involved].any(axis=1))
+            names = ", ".join(estimates.names[i] for i in which)
+            sentences.append(
+                f"the records do not tell apart {names}; their values are one choice of many"
+                if which.size > 1
+                else f"the records do not determine {names}; its value is one choice of many"
+            )
+        return tuple(dict.fromkeys(sentences))
+
+
+def spread_of_fit(data: Data, fit: Fit) -> FitSpread:
+    """Find how sure the free parameters of a fit are.
+
+    Parameters
+    ----------
+    data
+        The records.
+    fit
+        The final fit, in their units.
+
+    Returns
+    -------
+    FitSpread
+    """
+    data = fit.family.fitted(data)
     theta, parametrization = fit.solution.theta, fit.parametrization
     evaluation = Evaluation(data, parametrization)
     inside = parametrization.inside(theta)
@@ -147,42 +181,11 @@ def spread_of_fit(data: Data, fit: Fit) -> tuple[Spread, NDArray[np.bool_]]:
     root = fit.family.root_weights(data)
     if root is not None:
         jacobian, residual = root[:, None] * jacobian, root * residual
-    return spread_of_estimates(jacobian, residual, data.lengths(), theta[inside]), inside
-
-
-def not_told_apart(
-    operator: Operator, parametrization: Parametrization, spread: Spread, places: NDArray[np.intp]
-) -> tuple[str, ...]:
-    """Name the constants in every combination that the records do not determine.
-
-    Parameters
-    ----------
-    operator
-        Its constants have the names.
-    parametrization
-        How they follow from theta.
-    spread
-        Of the parameters inside their bounds.
-    places
-        Which of theta they are.
-
-    Returns
-    -------
-    tuple of str
-        Sentences, none twice.
-    """
-    names = operator.parameters().names
-    sentences = []
-    for direction in range(spread.open_directions.shape[1]):
-        involved = places[spread.involved(direction)]
-        constants = np.flatnonzero(parametrization.transform[:, involved].any(axis=1))
-        listed = ", ".join(names[i] for i in constants)
-        sentences.append(
-            f"the records do not tell apart {listed}; their values are one choice of many"
-            if constants.size > 1
-            else f"the records do not determine {listed}; its value is one choice of many"
-        )
-    return tuple(dict.fromkeys(sentences))
+    gauges = parametrization.gauges
+    held = np.empty((0, theta.size)) if gauges is None else gauges(theta)[1]
+    spread = spread_of_estimates(jacobian, residual, data.lengths(), theta[inside], held[:, inside])
+    freedom = max(residual.size - int(inside.sum()) + len(held), 1)
+    return FitSpread(spread, inside, float(np.linalg.norm(residual) / np.sqrt(freedom)))
 
 
 def metrics_by_record(

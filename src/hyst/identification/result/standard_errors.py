@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg
 from numpy.typing import NDArray
 
 from hyst.identification.result.covariance import robust_covariance
@@ -79,7 +80,7 @@ class Spread:
             moved = np.abs(rows @ self.open_directions)
             moved[moved <= ROUNDING_OF_DIRECTIONS * parts] = 0.0
             errors[moved.max(axis=1) > NOT_DISTURBED * errors] = np.nan
-        return errors
+        return np.asarray(errors)
 
     def involved(self, direction: int) -> NDArray[np.intp]:
         """Give the parameters that take part in a direction that is not determined.
@@ -94,7 +95,11 @@ class Spread:
 
 
 def spread_of_estimates(
-    jacobian: Array, residual: Array, lengths: Sequence[int], theta: Array
+    jacobian: Array,
+    residual: Array,
+    lengths: Sequence[int],
+    theta: Array,
+    gauges: Array | None = None,
 ) -> Spread:
     """Estimate how sure least squares estimates are.
 
@@ -109,6 +114,9 @@ def spread_of_estimates(
     theta
         Shape (m,), the estimates: a direction whose standard error is as large as all of them is
         not determined.
+    gauges
+        Shape (g, m): rows that a change of theta must not move, for scales that are held because no
+        record can determine them; none if left out.
 
     Returns
     -------
@@ -121,7 +129,10 @@ def spread_of_estimates(
     scaled = jacobian / unit
     noise = float(np.ldexp(1.0, np.frexp(np.abs(residual).max(initial=0.0))[1]))
     errors = residual / noise
-    eigenvalues, vectors = np.linalg.eigh(scaled.T @ scaled)
+    within = _within(gauges, unit)
+    reduced = scaled if gauges is None else scaled @ within
+    eigenvalues, vectors = np.linalg.eigh(reduced.T @ reduced)
+    vectors = within @ vectors
     size = float(np.abs(theta * scale).max(initial=0.0)) or 1.0
     known = eigenvalues >= SMALLEST_EIGENVALUE
     inner = np.zeros((count, count))
@@ -136,3 +147,13 @@ def spread_of_estimates(
         inner = np.zeros((count, count))
     open_ones = vectors[:, ~known]
     return Spread(unit, noise, inner, open_ones * (size / unit)[:, None], np.abs(open_ones))
+
+
+def _within(gauges: Array | None, unit: Array) -> Array:
+    """Give an orthonormal basis of the changes of scaled parameters that keep the gauges."""
+    if gauges is None or len(gauges) == 0:
+        return np.eye(unit.size)
+    rows = gauges / unit
+    size = np.linalg.norm(rows, axis=1, keepdims=True)
+    rows = rows / np.where(size > 0.0, size, 1.0)
+    return np.asarray(scipy.linalg.null_space(rows))

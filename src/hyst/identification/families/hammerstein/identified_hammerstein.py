@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.identification.families.family import Family
 from hyst.identification.families.hammerstein.markov import MarkovParameters
 from hyst.identification.result.identified import Identified
 from hyst.models import LinearDynamics, StableInverse
@@ -61,8 +62,8 @@ class IdentifiedHammerstein(Identified):
         Stable noncausal inverse of G, or None with the reason in ``undetermined``.
     loop
         Step 4.
-    hysteresis_family
-        ``pi``, ``mpi``, ...
+    front
+        Family of the hysteresis, with its options.
     noise_rms
         Residual after the refinement, output units.
     """
@@ -77,8 +78,13 @@ class IdentifiedHammerstein(Identified):
     pole_standard_errors: NDArray[np.complex128]
     inverse_of_dynamics: StableInverse | None
     loop: Loop
-    hysteresis_family: str
+    front: Family
     noise_rms: float
+
+    @property
+    def hysteresis_family(self) -> str:
+        """Name of the family of the hysteresis: ``pi``, ``mpi``, ..."""
+        return self.front.name
 
     def to_dict(self) -> dict[str, Any]:
         """Give everything but the model as plain numbers and text.

@@ -1,0 +1,104 @@
+"""What people are told of dynamics, with its exact derivative: coefficients and poles.
+
+With ``A = A0 + B0 k'`` the numerator ``adj(z - A) B0`` of the states does not depend on k, so the
+coefficients of ``sum b_i q^-i / (1 + sum a_i q^-i)`` are affine in k, C and D a.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.models import LinearDynamics
+
+Array = NDArray[np.float64]
+
+
+def coefficients(dynamics: LinearDynamics) -> Array:
+    """Give ``a_1 .. a_n, b_0 .. b_n`` of ``sum b_i q^-i / (1 + sum a_i q^-i)``, without delay.
+
+    Parameters
+    ----------
+    dynamics
+        Of order n.
+    """
+    a = _denominator(dynamics)
+    return np.concatenate(
+        [a[1:], np.append(0.0, dynamics.C @ _numerators(dynamics)) + dynamics.D * a]
+    )
+
+
+def coefficients_by_theta(dynamics: LinearDynamics, feedthrough: bool) -> Array:
+    """Give the derivative of the coefficients by k, C and D.
+
+    Parameters
+    ----------
+    dynamics
+        Of order n.
+    feedthrough
+        Whether D is free.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (2 n + 1, 2 n), or one column more.
+    """
+    n, a, states = dynamics.order, _denominator(dynamics), _numerators(dynamics).T
+    result = np.zeros((2 * n + 1, 2 * n + 1))
+    result[:n, :n] = -states
+    result[n + 1 :, :n] = -dynamics.D * states
+    result[n + 1 :, n : 2 * n] = states
+    result[n:, -1] = a
+    return result if feedthrough else result[:, :-1]
+
+
+def poles_as_numbers(dynamics: LinearDynamics) -> Array:
+    """Give real parts, then imaginary parts, of the poles in a settled order.
+
+    Parameters
+    ----------
+    dynamics
+        Of order n.
+    """
+    poles = np.linalg.eigvals(dynamics.A)
+    poles = poles[np.lexsort((poles.imag, poles.real))]
+    return np.concatenate([poles.real, poles.imag])
+
+
+def poles_by_theta(dynamics: LinearDynamics, feedthrough: bool) -> Array:
+    """Give the derivative of ``poles_as_numbers`` by k, C and D.
+
+    Parameters
+    ----------
+    dynamics
+        Of order n.
+    feedthrough
+        Whether D is free.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (2 n, 2 n), or one column more; not finite where two poles are one.
+    """
+    n = dynamics.order
+    poles, right = np.linalg.eig(dynamics.A)
+    order = np.lexsort((poles.imag, poles.real))
+    # The rows of the inverse are the left eigenvectors, scaled so that w' v = 1.
+    left_b = np.linalg.solve(right, dynamics.B.astype(complex))
+    by_k = (left_b[:, None] * right.T)[order]
+    result = np.zeros((2 * n, 2 * n + int(feedthrough)))
+    result[:, :n] = np.concatenate([by_k.real, by_k.imag])
+    return result
+
+
+def _denominator(dynamics: LinearDynamics) -> Array:
+    return np.atleast_1d(np.poly(dynamics.A)).real
+
+
+def _numerators(dynamics: LinearDynamics) -> Array:
+    """Give the coefficients of ``adj(z - A) B``, falling powers from n - 1, shape (n, n)."""
+    a, columns, power = _denominator(dynamics), [], np.zeros(dynamics.order)
+    for each in a[:-1]:
+        power = dynamics.A @ power + each * dynamics.B
+        columns.append(power)
+    return np.array(columns).T.reshape(dynamics.order, dynamics.order)

@@ -1,0 +1,279 @@
+"""Hysteresis, then linear dynamics: a family made around any other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal, Self, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.checks.numbers import whole_number as as_whole_number
+from hyst.errors import InputError
+from hyst.identification.families.family import Estimates, Family, Fit, Start, Words
+from hyst.identification.families.hammerstein.coefficients import (
+    coefficients,
+    coefficients_by_theta,
+)
+from hyst.identification.families.hammerstein.distortion_levels import average_periods
+from hyst.identification.families.hammerstein.first_dynamics import shortened, signal_behind
+from hyst.identification.families.hammerstein.first_guess import (
+    FirstDynamics,
+    first_dynamics,
+    first_fronts,
+)
+from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
+from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
+from hyst.identification.families.hammerstein.markov import choose_markov
+from hyst.identification.families.hammerstein.record_checks import flat_tops
+from hyst.identification.families.hammerstein.result import identified_with_dynamics
+from hyst.identification.families.hammerstein.without_dynamics import dynamics_doubts
+from hyst.identification.families.hammerstein.words import WORDS, words_behind
+from hyst.identification.families.option import (
+    AUTO,
+    Option,
+    option,
+    whole_number_or_auto,
+)
+from hyst.identification.fit.bounded_least_squares import CONVERGED, Problem, Solution, minimize
+from hyst.identification.record_use.overview import Overview
+from hyst.identification.record_use.thinning import MOST_SAMPLES
+from hyst.identification.record_use.used_samples import Data, prepare
+from hyst.identification.result.identified import Identified
+from hyst.signals import Record
+
+Array = NDArray[np.float64]
+
+MOST_FITTED = 300_000
+"""Samples whose Jacobian is held in memory; of longer records the beginning is fitted to."""
+
+MOST_LAGS, MOST_STATES, LONGEST_PERIOD = 5000, 64, 10**9
+
+_WARM_UP = 8_000
+_BURST = 12
+_STALLED = 0.99
+_TOLERANCE = 2e-2  # of the residual variance: at most a seventh of a standard error is left
+
+
+def _as_hysteresis(value: Any, name: str) -> Any:
+    if isinstance(value, str | Family):
+        return value
+    raise InputError(
+        f"{name} is of type {type(value).__name__}; give the name of a family, or a family of "
+        "hyst.families with its options"
+    )
+
+
+def _as_period(value: Any, name: str) -> int | None:
+    if value is None:
+        return None
+    return as_whole_number(value, name, 2, LONGEST_PERIOD, " samples")
+
+
+def _read_whole(text: str, _: str) -> int | str:
+    return int(text) if text.isdecimal() else text
+
+
+@final
+@dataclass(frozen=True)
+class Hammerstein(Family):
+    """``y = G[v], v = H[u]``: a hysteresis H of any family, then linear dynamics G.
+
+    Parameters
+    ----------
+    hysteresis
+        Name of the family in front, or a family of ``hyst.families`` with its options. Options of a
+        family given by name may stand beside it, as
+        ``identify(record, family="hammerstein", hysteresis="gpi", plays=4)``.
+    fir_order
+        Last lag of the impulse response of the first step, 1 to 5000, or ``"auto"``.
+    state_order
+        Number of states of G, 1 to 64, or ``"auto"``: as many as lower the error noticeably.
+    period
+        Samples of a period of the drive: all but the first are averaged. None: there is none.
+    """
+
+    name = "hammerstein"
+    words = WORDS
+    methods = ("exact", "noncausal")
+    answers_late = True
+    depends_on_rate = True
+    wraps = "hysteresis"
+
+    hysteresis: Any = option(
+        "mpi",
+        Option(_as_hysteresis, "Family in front of the dynamics.", lambda text, _: text, "FAMILY"),
+    )
+    fir_order: Any = option(
+        AUTO, whole_number_or_auto(1, MOST_LAGS, "Last lag of the impulse response.")
+    )
+    state_order: Any = option(
+        AUTO, whole_number_or_auto(1, MOST_STATES, "Order of the linear dynamics.")
+    )
+    period: Any = option(
+        None,
+        Option(
+            _as_period,
+            "Samples of a period of the drive; all but the first are averaged.",
+            _read_whole,
+            "N",
+        ),
+    )
+
+    @classmethod
+    def can_wrap(cls, other: type[Family]) -> bool:
+        """Tell whether a family can be in front: one whose output is not late itself."""
+        return not other.answers_late
+
+    @property
+    def front(self) -> Family:
+        """The hysteresis."""
+        assert isinstance(self.hysteresis, Family), "the registry puts an object for a name"
+        return self.hysteresis
+
+    def records_to_use(
+        self, records: tuple[Record, ...], start: Literal["auto"] | int
+    ) -> tuple[Data, tuple[str, ...]]:
+        """Average periods; leave out what the unknown state of the dynamics may have disturbed."""
+        if self.period is not None:
+            if start != AUTO:
+                raise InputError(
+                    f"start is {start!r} and period {self.period!r}; leave out start, it is known"
+                )
+            records = tuple(average_periods(each, self.period) for each in records)
+            # The first of two equal periods is the past of the second, of both parts.
+            start = int(self.period)
+        data = prepare(records, start, 0)
+        markov, doubts = choose_markov(data.records, self.fir_order)
+        if start == AUTO:
+            starts = tuple(
+                max(each, min(markov.order, len(record) // 4))
+                for each, record in zip(data.starts, data.records, strict=True)
+            )
+            data = replace(data, starts=starts)
+        return data, flat_tops(data.records) + doubts
+
+    def suited(self, data: Data) -> tuple[Self, tuple[str, ...]]:
+        """Fit the options of the hysteresis to the records."""
+        front, notes = self.front.suited(data)
+        return replace(self, hysteresis=front), notes
+
+    def in_units(self, input_scale: float, output_scale: float) -> Self:
+        """Give the family with options of the hysteresis in other units."""
+        return replace(self, hysteresis=self.front.in_units(input_scale, output_scale))
+
+    def searched(self, data: Data) -> Data:
+        """Give the beginning of long records: the dynamics know of every sample."""
+        return shortened(data, max(MOST_SAMPLES // len(data.records), 1))
+
+    def fitted(self, data: Data) -> Data:
+        """Give as many samples as memory allows."""
+        return shortened(data, max(MOST_FITTED // len(data.records), 1))
+
+    def sizes(self) -> tuple[int, ...]:
+        """Give the sizes of the hysteresis."""
+        return self.front.sizes()
+
+    def least_parameters(self, size: int) -> int:
+        """Give those of the hysteresis and of dynamics of the least order without feedthrough."""
+        order = 1 if self.state_order == AUTO else int(self.state_order)
+        return self.front.least_parameters(size) + 2 * order - 1
+
+    def root_weights(self, data: Data) -> Array | None:
+        """Give the weights of the hysteresis' family."""
+        return self.front.root_weights(data)
+
+    def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
+        """Start from the dynamics found once, and the hysteresis before them of this size."""
+        first = self._first_dynamics(overview)
+        fronts = overview.once(
+            ("fronts", self, size), lambda: first_fronts(self.front, first.behind, size)
+        )
+        return [joint(each, first.dynamics) for each in fronts[:most]]
+
+    def _first_dynamics(self, overview: Overview) -> FirstDynamics:
+        orders = (self.fir_order, self.state_order)
+        return overview.once(
+            ("first dynamics", self), lambda: first_dynamics(self, self.front, overview, orders)
+        )
+
+    def solve(
+        self, problem: Problem, theta: Array, max_iterations: int, tolerance: float = _TOLERANCE
+    ) -> Solution:
+        """Minimise the simulated output error over hysteresis and dynamics.
+
+        A hysteresis richer or poorer than the actuator's leaves a long flat valley. So it has
+        converged, too, when a dozen steps lower the squared error by no more than a hundredth.
+        """
+        before, used = np.inf, 0
+        while True:
+            found = minimize(problem, theta, min(_BURST, max(max_iterations - used, 1)), tolerance)
+            used += found.iterations
+            if found.status == CONVERGED or found.cost > _STALLED * before:
+                return Solution(found.theta, found.cost, used, CONVERGED)
+            if used >= max_iterations:
+                return replace(found, iterations=used)
+            theta, before = found.theta, found.cost
+
+    def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Improve the hysteresis as its own family knows, the dynamics following."""
+        seen = replace(fit, family=self.front, parametrization=joint_of(fit).seen_by_front())
+        short = Overview(shortened(overview.data, _WARM_UP))
+        improved = self.front.finish(seen, short, _BURST)
+        if np.array_equal(improved.solution.theta, fit.solution.theta):
+            return fit
+        problem = fit.problem(overview.data)
+        again = self.solve(problem, improved.solution.theta, max_iterations)
+        return replace(fit, solution=again) if again.cost < fit.solution.cost else fit
+
+    def simplified(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Fit again without the parts of the hysteresis that came out idle."""
+        dynamics, before = dynamics_of(fit), self._front_fit(fit)
+        behind = Overview(signal_behind(overview.data, dynamics))
+        simpler = self.front.simplified(before, behind, max_iterations)
+        if simpler is before:
+            return fit
+        parametrization, theta = joint((simpler.parametrization, simpler.solution.theta), dynamics)
+        fit = replace(fit, parametrization=parametrization)
+        solution = self.solve(fit.problem(overview.data), theta, max_iterations)
+        return replace(fit, solution=solution)
+
+    def _front_fit(self, fit: Fit) -> Fit:
+        """Give the hysteresis of a fit as a fit of its own family."""
+        front = joint_of(fit).front
+        solution = replace(fit.solution, theta=fit.solution.theta[: front.size])
+        return Fit(self.front, fit.size, front, solution)
+
+    def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
+        """Say what the hysteresis' family says, and if the dynamics explain nothing."""
+        return self.front.notes(self._front_fit(fit), data) + dynamics_doubts(
+            fit, self.front, self.fitted(data)
+        )
+
+    def estimates(self, fit: Fit) -> Estimates:
+        """Give constants of the hysteresis and coefficients of the dynamics."""
+        parametrization, dynamics = joint_of(fit), dynamics_of(fit)
+        front = self.front.estimates(self._front_fit(fit))
+        n, first = dynamics.order, parametrization.front.size
+        by_dynamics = coefficients_by_theta(dynamics, parametrization.feedthrough)
+        by_theta = np.zeros((len(front.names) + len(by_dynamics), parametrization.size))
+        by_theta[: len(front.names), :first] = front.by_theta
+        by_theta[len(front.names) :, first:] = by_dynamics
+        names = [f"dynamics.a[{i}]" for i in range(1, n + 1)]
+        names += [f"dynamics.b[{i}]" for i in range(n + 1)]
+        return Estimates(
+            (*front.names, *names),
+            np.concatenate([front.values, coefficients(dynamics)]),
+            by_theta,
+        )
+
+    def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
+        """Add the parts, the impulse response, the poles and the loop."""
+        return identified_with_dynamics(identified, fit, self.front, overview, self.fir_order)
+
+    def words_for(self, identified: Identified) -> Words:
+        """Give the words of the hysteresis and of the dynamics behind it."""
+        if not isinstance(identified, IdentifiedHammerstein):
+            return self.words
+        return words_behind(identified.front.words)
