@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import whole_number as as_whole_number
-from hyst.errors import InputError
+from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.families.family import Estimates, Family, Fit, Start, Words
 from hyst.identification.families.hammerstein.coefficients import (
     coefficients,
@@ -230,7 +230,10 @@ class Hammerstein(Family):
     def simplified(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
         """Fit again without the parts of the hysteresis that came out idle."""
         dynamics, before = dynamics_of(fit), self._front_fit(fit)
-        behind = Overview(signal_behind(overview.data, dynamics))
+        try:
+            behind = Overview(signal_behind(overview.data, dynamics))
+        except NotIdentifiableError:  # the inverse is longer than the records: nothing is seen
+            return fit
         simpler = self.front.simplified(before, behind, max_iterations)
         if simpler is before:
             return fit
