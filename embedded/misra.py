@@ -44,6 +44,8 @@ def report(
         command = ["cppcheck", "--addon=misra", "--std=c99", "--quiet", "--inline-suppr"]
         command += ["--enable=warning,style,performance,portability", "--platform=unix32"]
         command += ["--template={file}:{line}:{id}", precision, "-UHYST_POWER_HEADER"]
+        # C++ is not what MISRA C speaks of.
+        command += ["-UHYST_REAL_HEADER", "-UHYST_EXTERN_C", "-U__cplusplus"]
         command += [*(f"-I{each}" for each in includes), *map(str, sources)]
         for each in FINDING.finditer(run(command, seconds=300.0)):
             found[each["what"]].add((each["file"], int(each["line"])))

@@ -65,7 +65,7 @@ def test_constants_of_the_core_are_derived_as_written() -> None:
 @pytest.mark.parametrize(
     ("stage", "what"),
     [
-        (Stage("dahl", (1.0,)), "unknown kind of stage 'dahl'"),
+        (Stage("no_kind", (1.0,)), "unknown kind of stage 'no_kind'"),
         (Stage("pi", (1.0, 2.0)), "kind 'pi' has 2 constants, which do not fit"),
         (Stage("dead_zone", (1.0,)), "kind 'dead_zone' has 1 constants"),
         (Stage("state_space", (1.0,), choices={"order": 1, "delay": 0}), "'state_space' has 1"),

@@ -15,6 +15,7 @@ from hyst import (
     Stop,
 )
 from hyst.models import (
+    Dahl,
     LinearDynamics,
     MasingOperator,
     MemoryElement,
@@ -119,6 +120,9 @@ OTHERS: dict[str, Operator] = {
         MemoryFunction.power_law(1.0, 0.5, 1.5), 0.1, "absolute", "sign-change"
     ),
     "inverse memory element": MemoryElement(CHARGE, 0.1).inverse(),
+    "dahl": Dahl(1.5, 200.0),
+    "dahl ductile": Dahl(1.5, 2.0, 0.5, z0=-0.25, u0=0.5),
+    "inverse dahl": Dahl(0.5, 400.0, 1.5).inverse(),
     "hysteresis before dynamics": LAG @ PI,
 }
 

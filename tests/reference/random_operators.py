@@ -27,6 +27,7 @@ from hyst import (
     Stop,
 )
 from hyst.models import (
+    Dahl,
     LinearDynamics,
     MasingOperator,
     MemoryElement,
@@ -197,6 +198,11 @@ RANDOM: dict[str, Operators] = {
     "ramberg-osgood": st.builds(RambergOsgood, few, few, few, memories),
     "memory-element": elements,
     "inverse-memory-element": elements.map(lambda element: element.inverse()),
+    "dahl": st.builds(Dahl, few, few, st.floats(0.3, 3.0), numbers(-1.0, 1.0)),
+    # A Coulomb force beyond every input of the contracts.
+    "inverse-dahl": st.builds(Dahl, few, st.floats(1e3, 1e4), st.floats(1.0, 3.0)).map(
+        lambda friction: friction.inverse()
+    ),
     "inverse": invertible.map(lambda operator: operator.inverse()),
 }
 

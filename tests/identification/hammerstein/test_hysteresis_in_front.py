@@ -37,6 +37,14 @@ def test_a_rate_dependent_hysteresis_may_be_in_front() -> None:
     assert found.poles == pytest.approx(np.sort_complex(G.poles()), abs=1e-9)
 
 
+def test_friction_may_be_in_front() -> None:
+    front = hyst.models.Dahl(2.0, 5.0, 1.0)
+    found = identified(record_of(front, 0.0), hysteresis="dahl", state_order=2)
+    values = dict(zip(found.parameter_names, found.parameter_values, strict=True))
+    assert values["dahl.sigma"] == pytest.approx(2.0, rel=1e-6)
+    assert found.poles == pytest.approx(np.sort_complex(G.poles()), abs=1e-7)
+
+
 def test_the_hysteresis_may_be_an_object() -> None:
     front = hyst.RambergOsgood(1.0, 0.1, 0.8)
     record = record_of(front, 0.01)
@@ -50,6 +58,13 @@ def test_the_hysteresis_may_be_an_object() -> None:
     assert by_both.model == by_name.model
     assert by_name.front == family.hysteresis
     assert error_percent(by_object.model, front) < 0.05
+
+
+def test_plays_that_come_out_idle_are_left_out() -> None:
+    found = identified(record_of(PI, 0.0), hysteresis="pi", plays=5, state_order=2)
+    assert sum(".r[" in name for name in found.parameter_names) == 3
+    assert any("2 of 5 plays came out with no weight" in each for each in found.undetermined)
+    assert error_percent(found.model, PI) < 1e-4
 
 
 def test_options_reach_the_hysteresis() -> None:

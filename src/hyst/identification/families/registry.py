@@ -1,14 +1,16 @@
-"""All families that ``families/__init__.pyi`` lists, from the simplest to the richest."""
+"""All families in this folder, from the simplest to the richest: nothing has to list them."""
 
 from __future__ import annotations
 
+import importlib
+import pkgutil
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from hyst.errors import InputError
-from hyst.identification import families as listed
+from hyst.identification import families as room
 from hyst.identification.families.family import Family, require_this_version
 from hyst.identification.families.option import Option
 
@@ -26,9 +28,18 @@ def _richness(family: type[Family]) -> tuple[int, bool, str]:
     return smallest.least_parameters(smallest.sizes()[0]), family.compared, family.name
 
 
-_CLASSES: tuple[type[Family], ...] = tuple(
-    sorted((getattr(listed, each) for each in dir(listed)), key=_richness)
-)
+def _classes() -> tuple[type[Family], ...]:
+    """Give every family that a file of this folder defines."""
+    for module in pkgutil.walk_packages(room.__path__, f"{room.__name__}."):
+        importlib.import_module(module.name)
+    found, unseen = set(), {Family}
+    while unseen:
+        found |= unseen
+        unseen = {each for parent in unseen for each in parent.__subclasses__()} - found
+    named = [
+        each for each in found if each.__module__.startswith(room.__name__) and "name" in vars(each)
+    ]
+    return tuple(sorted(named, key=_richness))
 
 
 class Families(Mapping[str, Family]):
@@ -176,6 +187,8 @@ class Families(Mapping[str, Family]):
             inside = self.make(inside, options)
         return replace(family, **{family.wraps: inside})
 
+
+_CLASSES = _classes()
 
 families = Families(_CLASSES)
 """``hyst.families``."""

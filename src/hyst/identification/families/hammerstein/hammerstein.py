@@ -232,9 +232,12 @@ class Hammerstein(Family):
         if simpler is before:
             return fit
         parametrization, theta = joint((simpler.parametrization, simpler.solution.theta), dynamics)
-        fit = replace(fit, parametrization=parametrization)
-        solution = self.solve(fit.problem(overview.data), theta, max_iterations)
-        return replace(fit, solution=solution)
+        left = replace(fit, parametrization=parametrization)
+        problem = left.problem(overview.data)
+        solution = self.solve(problem, theta, max_iterations)
+        # Where the signal behind it is hardly seen, a new fit may end elsewhere, and worse.
+        as_good = solution.cost * _STALLED <= max(fit.solution.cost, problem.negligible)
+        return replace(left, solution=solution) if as_good else fit
 
     def _front_fit(self, fit: Fit) -> Fit:
         """Give the hysteresis of a fit as a fit of its own family."""
