@@ -9,7 +9,7 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst.checks.arrays import as_constants, refuse_overflow
+from hyst.checks.arrays import as_constants, as_reals, refuse_overflow
 from hyst.checks.numbers import as_sample_time
 from hyst.errors import InputError, NotInvertibleError
 from hyst.models.linear_dynamics import LinearDynamics
@@ -59,7 +59,7 @@ class SecondOrderSections(Operator):
     kind = "second-order-sections"
 
     def __init__(self, coefficients: ArrayLike, dt: float) -> None:
-        flat = as_constants(np.ravel(np.asarray(coefficients)), "coefficients")
+        flat = as_constants(as_reals(coefficients, "coefficients").ravel(), "coefficients")
         if flat.size == 0 or flat.size % 5:
             raise InputError(f"there are {flat.size} coefficients; give b0 b1 b2 a1 a2 a section")
         table = flat.reshape(-1, 5)
