@@ -16,6 +16,7 @@ import scipy.optimize
 from numpy.typing import NDArray
 
 from hyst.errors import NotIdentifiableError
+from hyst.identification.fit.non_negative import non_negative
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import MasingOperator, PowerLaw
 from hyst.models.masing import as_mode
@@ -240,8 +241,8 @@ def _solve(matrix: Array, target: Array) -> tuple[Array, float]:
     q, r = np.linalg.qr(matrix / scale)
     moment = q.T @ target
     beyond = float(target @ target - moment @ moment)
-    coefficients, residual = scipy.optimize.nnls(r, moment)
-    return coefficients / scale, max(beyond, 0.0) + float(residual) ** 2
+    coefficients, residual = non_negative(r, moment)
+    return coefficients / scale, max(beyond, 0.0) + residual**2
 
 
 def _least(cost: Callable[[float], float], largest: float) -> tuple[float, int]:

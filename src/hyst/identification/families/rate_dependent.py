@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 from typing import Any, Self, final
 
 import numpy as np
-import scipy.optimize
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
@@ -28,6 +27,7 @@ from hyst.identification.families.option import (
     whole_number_or_auto,
 )
 from hyst.identification.families.plays import PLAY_TEXT, SIZES, radii_option
+from hyst.identification.fit.non_negative import non_negative
 from hyst.identification.fit.parametrization import SMALLEST_SLOPE, Parametrization, unchanged
 from hyst.identification.fit.problem import model_jacobian
 from hyst.identification.record_use.overview import Overview
@@ -256,13 +256,11 @@ class RateDependent(Family):
         # The derivative by p0 and p is the input and the play outputs.
         columns = overview.sign * model_jacobian(data, bank)[:, : n + 1] * root[:, None]
         matrix = np.column_stack([columns, root, -root])
-        weights, miss = scipy.optimize.nnls(matrix, root * data.measured())
+        weights, miss = non_negative(matrix, root * data.measured())
         # A weight that starts on its bound would give its radius no derivative.
         slopes = np.maximum(weights[: n + 1], 0.01 * overview.mean_slope)
         places = radii[: self._radius_count(n)]
-        return float(miss), np.concatenate(
-            [slopes, places, [beta, float(weights[-2] - weights[-1])]]
-        )
+        return miss, np.concatenate([slopes, places, [beta, float(weights[-2] - weights[-1])]])
 
 
 def _sorted_plays(n: int) -> Any:

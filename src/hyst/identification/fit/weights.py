@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
-import scipy.optimize
 from numpy.typing import NDArray
 
-from hyst.errors import SolverError
+from hyst.identification.fit.non_negative import non_negative
 from hyst.identification.fit.play_bank import bank_gram, bank_matrix
 from hyst.identification.fit.weight_rules import NON_NEGATIVE, basis
 from hyst.identification.record_use.used_samples import Data
@@ -71,7 +70,7 @@ def fit_weights(data: Data, r: Array, sign: float = 1.0, rule: str = NON_NEGATIV
     Raises
     ------
     SolverError
-        If the active-set iteration does not end.
+        If the weights cannot be found.
     """
     # Raw counts of a converter vary little around a large mean, whose square would swamp them.
     u_origin = float(np.mean([each.u.mean() for each in data.records]))
@@ -91,7 +90,7 @@ def fit_weights(data: Data, r: Array, sign: float = 1.0, rule: str = NON_NEGATIV
         target = scipy.linalg.solve_triangular(factor, moment / scale, trans="T")
     else:
         factor, target = _by_qr(data, r, sign, coefficients / scale)
-    free = _non_negative(factor, target) / scale
+    free = non_negative(factor, target)[0] / scale
     weights = coefficients @ free
     residual = max(float(centred[-1, -1] - 2.0 * free @ moment + free @ normal @ free), 0.0)
     return Weights(
@@ -108,11 +107,3 @@ def _by_qr(data: Data, r: Array, sign: float, scaled_basis: Array) -> tuple[Arra
     y = sign * data.measured()
     q, factor = np.linalg.qr((matrix - matrix.mean(axis=0)) @ scaled_basis)
     return factor, q.T @ (y - y.mean())
-
-
-def _non_negative(factor: Array, target: Array) -> Array:
-    try:
-        solution: Array = scipy.optimize.nnls(factor, target, maxiter=10 * factor.shape[1] + 100)[0]
-    except RuntimeError as error:
-        raise SolverError(f"non-negative least squares for the weights: {error}") from None
-    return solution

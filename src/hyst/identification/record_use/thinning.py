@@ -1,10 +1,10 @@
 """Fewer samples of a long record, with the memory they need.
 
-A play remembers extremes of its input, so a record may be thinned if the extremes stay: of each
-stretch the first sample, the lowest and the highest are kept, in their order. Only loops smaller
-than the input's range within one stretch are lost, and with them what plays of such small radii
-would remember of them. Long records are searched and compared in this form; the last fit always
-takes every sample.
+Plays remember extremes of their input and forget what happens between two of them, so every turning
+point is kept, and of each branch a few samples on the way. Where turning points alone are too many,
+some stretches of the record are kept as they are, spread evenly over it, and before each of them
+only the extremes that it remembers (those that no later one has wiped out). Long records are
+searched and compared in this form; the last fit always takes every sample.
 """
 
 from __future__ import annotations
@@ -13,11 +13,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.record_use.used_samples import Data
-from hyst.signals import Record
+from hyst.signals import Record, reversals
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
 
 MOST_SAMPLES = 20_000
+
+FEWEST_ON_A_BRANCH = 4
+"""Samples between two turns, if there are as many: fewer would not show how the branch bends."""
+
+STRETCHES = 8
+"""Of a record whose turning points are too many: the amplitude may change along it."""
+
+SMALLEST_TURN = 1e-3
+"""Of the input's range: smaller turns count as noise of the drive and are passed over."""
 
 
 def thinned(data: Data, most: int = MOST_SAMPLES) -> Data:
@@ -39,20 +49,67 @@ def thinned(data: Data, most: int = MOST_SAMPLES) -> Data:
     total = sum(window.stop for window in data.windows())
     if total <= most:
         return data
-    stretch = int(np.ceil(3.0 * total / most))
     records, starts = [], []
     for record, window in zip(data.records, data.windows(), strict=True):
-        kept = _extremes(record.u[: window.stop], stretch)
-        records.append(Record(record.u[kept], record.y[kept + data.delay], record.dt * stretch))
-        starts.append(int(np.searchsorted(kept, window.start)))
+        share = max(int(most * window.stop / total), 2 * STRETCHES)
+        u, y = record.u[: window.stop], record.y[data.delay : data.delay + window.stop]
+        for kept, first in _pieces(u, window.start, share, 2.0 * data.half_range):
+            records.append(Record(u[kept], y[kept], record.dt * total / most))
+            starts.append(first)
     return Data(tuple(records), tuple(starts), 0, data.half_range, data.settled)
 
 
-def _extremes(u: Array, stretch: int) -> NDArray[np.intp]:
-    """Give the indices of the first, lowest and highest sample of every stretch, ascending."""
-    whole = u.size // stretch
-    rows = u[: whole * stretch].reshape(whole, stretch)
-    first = np.arange(whole) * stretch
-    rest = np.arange(whole * stretch, u.size)
-    lowest, highest = first + rows.argmin(axis=1), first + rows.argmax(axis=1)
-    return np.unique(np.concatenate([first, lowest, highest, rest]))
+def _pieces(u: Array, start: int, most: int, span: float) -> list[tuple[Indices, int]]:
+    """Give the samples of each piece, and which of them is the first to be compared."""
+    turns = _turns(u, span)
+    per_branch = most // (turns.size + 1) - 1
+    if per_branch >= FEWEST_ON_A_BRANCH:
+        kept = _along_branches(u.size, turns, per_branch)
+        return [(kept, int(np.searchsorted(kept, start)))]
+    length = most // STRETCHES
+    firsts = np.linspace(start, u.size - length, STRETCHES).astype(np.intp)
+    pieces = []
+    for first in firsts:
+        past = _remembered(u[: first + 1], SMALLEST_TURN * span)
+        stretch = np.arange(first, first + length)
+        pieces.append((np.unique(np.concatenate([past, stretch])), int(np.sum(past < first))))
+    return pieces
+
+
+def _turns(u: Array, span: float) -> Indices:
+    """Give the turning points, those of noise on the drive passed over."""
+    return np.asarray(reversals(u, SMALLEST_TURN * span), dtype=np.intp)
+
+
+def _along_branches(samples: int, turns: Indices, per_branch: int) -> Indices:
+    """Give both ends of every branch and so many samples evenly spaced between them."""
+    ends = np.unique(np.concatenate([[0], turns, [samples - 1]]))
+    shares = np.arange(per_branch + 1) / (per_branch + 1)
+    places = ends[:-1, None] + shares * np.diff(ends)[:, None]
+    return np.unique(np.append(np.round(places).astype(np.intp), samples - 1))
+
+
+def _remembered(u: Array, tolerance: float) -> Indices:
+    """Give the extremes of an input that later ones have not wiped out, and its last sample.
+
+    A loop inside another is passed over while it is smaller by less than the tolerance.
+    """
+    highest, lowest = int(u.argmax()), int(u.argmin())
+    kept = sorted({highest, lowest})
+    rises = kept[-1] == lowest
+    while kept[-1] < u.size - 1:
+        after = kept[-1] + 1
+        rest = u[after:]
+        kept.append(after + int(rest.argmax() if rises else rest.argmin()))
+        rises = not rises
+    places = np.array(kept, dtype=np.intp)
+    values = u[places]
+    chosen, last = [0, 1][: places.size], 1
+    for i in range(2, places.size - 1, 2):
+        shrunk = abs(values[i] - values[last - 1]) + abs(values[i + 1] - values[last])
+        if shrunk > tolerance and i + 1 < places.size - 1:
+            chosen += [i, i + 1]
+            last = i + 1
+    # The way from the last whole loop to the present: one branch, or a turn and the branch after it.
+    open_end = places[-1:] if places.size % 2 else places[-2:]
+    return np.unique(np.concatenate([places[chosen], open_end]))
