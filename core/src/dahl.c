@@ -1,6 +1,7 @@
 /* Dahl's model, one sample at a time. */
 #include "hyst/dahl.h"
 
+#include "hyst/finite.h"
 #include "hyst/power.h"
 
 /* Below this size of v the logarithm of 1 + v is summed, since 1 + v has lost digits of v. */
@@ -41,52 +42,67 @@ static hyst_real dahl_exponential(hyst_real m, hyst_real l)
     return (hyst_exp2(DAHL_LOG2_E * v) - HYST_REAL(1.0)) / m;
 }
 
-/* w after a way of x > 0. */
-static hyst_real dahl_after(hyst_real m, hyst_real w, hyst_real x)
+/* z after a way of x >= 0 towards sign. */
+static hyst_real dahl_after(hyst_real m, hyst_real z, hyst_real sign, hyst_real x)
 {
+    const hyst_real one = HYST_REAL(1.0);
+    const hyst_real w = one - sign * z;
     if (!(w > HYST_REAL(0.0))) {
-        return w; /* the force is at its end */
+        return z; /* the force is at its end */
     }
     const hyst_real t = x * hyst_power(w, m);
-    if (!(HYST_REAL(1.0) + m * t > HYST_REAL(0.0))) {
-        return HYST_REAL(0.0); /* n < 1 reaches the end in a finite way */
+    if (!(one + m * t > HYST_REAL(0.0))) {
+        return sign; /* n < 1 reaches the end in a finite way */
     }
-    return w * hyst_exp2(-DAHL_LOG2_E * dahl_logarithm(m, t));
+    /* What w loses, not what is left of it: a small way keeps its digits. */
+    const hyst_real after = z - sign * w * dahl_exponential(one, -dahl_logarithm(m, t));
+    return sign * after > one ? sign : after;
+}
+
+/* Towards a force of z, from where the branch began: the way, which may be no number. */
+static hyst_real dahl_way(hyst_real m, hyst_real from, hyst_real sign, hyst_real z)
+{
+    const hyst_real left = HYST_REAL(1.0) - sign * z;
+    if (!(left > HYST_REAL(0.0))) {
+        return hyst_exp2(DAHL_BEYOND); /* an infinity: no way leads there */
+    }
+    const hyst_real l = dahl_logarithm(HYST_REAL(1.0), sign * (z - from) / left);
+    return dahl_exponential(m, l) / hyst_power(HYST_REAL(1.0) - sign * from, m);
 }
 
 hyst_real hyst_dahl_step(const hyst_dahl *model, hyst_real *state, hyst_real input)
 {
     const hyst_real zero = HYST_REAL(0.0);
-    const hyst_real one = HYST_REAL(1.0);
-    const hyst_real z = state[1];
-    const hyst_real target = input / model->force;
-    const hyst_real change = model->inverse ? target - z : input - state[0];
-    if (!(change > zero || change < zero)) {
-        return model->inverse ? state[0] : model->force * z;
+    const hyst_real value = model->inverse ? input / model->force : input;
+    const size_t at = model->inverse ? 1u : 0u; /* position or force decides where a turn is */
+    const hyst_real last = state[at];
+    const hyst_real began = state[2u + at];
+    const int turned = (value > last && last < began) || (value < last && last > began);
+    const hyst_real u_turn = turned ? state[0] : state[2];
+    const hyst_real z_turn = turned ? state[1] : state[3];
+    const hyst_real way = value - (model->inverse ? z_turn : u_turn);
+    const hyst_real sign = way < zero ? HYST_REAL(-1.0) : HYST_REAL(1.0);
+    hyst_real u = value;
+    hyst_real z = value;
+    if (model->inverse) {
+        u = u_turn + sign * dahl_way(model->excess, z_turn, sign, z) / model->rate;
+        if (!hyst_is_finite(u)) {
+            return u; /* a force that nothing reaches leaves the memory as it is */
+        }
+    } else {
+        z = dahl_after(model->excess, z_turn, sign, model->rate * (sign * way));
     }
-    const hyst_real sign = change > zero ? one : -one;
-    const hyst_real w = one - sign * z;
-    if (!model->inverse) {
-        const hyst_real size = sign * change;
-        state[0] = input;
-        state[1] = sign * (one - dahl_after(model->excess, w, model->rate * size));
-        return model->force * state[1];
-    }
-    const hyst_real w_next = one - sign * target;
-    if (!(w_next > zero)) {
-        return sign * hyst_exp2(DAHL_BEYOND); /* an infinity: no way leads there */
-    }
-    const hyst_real l = DAHL_LN2 * hyst_log2(w / w_next);
-    const hyst_real way = dahl_exponential(model->excess, l) / hyst_power(w, model->excess);
-    state[0] += sign * way / model->rate;
-    state[1] = target;
-    return state[0];
+    state[0] = u;
+    state[1] = z;
+    state[2] = u_turn;
+    state[3] = z_turn;
+    return model->inverse ? u : model->force * z;
 }
 
 static size_t dahl_length(const void *model)
 {
     (void)model;
-    return 2;
+    return 4;
 }
 
 static hyst_real dahl_step(const void *model, hyst_real *state, hyst_real u)

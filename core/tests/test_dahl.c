@@ -26,7 +26,7 @@ static void closed_forms_by_hand(void)
                {R(0.5), 0.75, -0.32287565553229525}};
     for (size_t i = 0; i < COUNT(row); ++i) {
         const hyst_dahl model = friction(row[i].n, 0), inverse = friction(row[i].n, 1);
-        hyst_real there[2] = {R(0.0), R(0.0)}, home[2] = {R(0.0), R(0.0)};
+        hyst_real there[4] = {R(0.0), R(0.0), R(0.0), R(0.0)}, home[4] = {R(0.0), R(0.0), R(0.0), R(0.0)};
         const hyst_real out = hyst_dahl_step(&model, there, R(0.5));
         CHECK_NEAR((double)out, 3.0 * row[i].out, CLOSE);
         CHECK_NEAR((double)hyst_dahl_step(&inverse, home, out), 0.5, CLOSE);
@@ -36,23 +36,28 @@ static void closed_forms_by_hand(void)
     }
 }
 
-/* Half a way twice is the way once. */
-static void samples_in_between_change_rounding_only(void)
+/* Half a way twice is the way once, to the bit, and so are many ways too small to be seen in z. */
+static void samples_in_between_change_nothing(void)
 {
     const hyst_real shape[] = {R(0.7), R(1.0), R(1.3), R(2.5)};
     for (size_t i = 0; i < COUNT(shape); ++i) {
         const hyst_dahl model = friction(shape[i], 0);
-        hyst_real once[2] = {R(0.0), R(-0.25)}, twice[2] = {R(0.0), R(-0.25)};
+        hyst_real once[4] = {R(0.0), R(-0.25), R(0.0), R(-0.25)}, twice[4] = {R(0.0), R(-0.25), R(0.0), R(-0.25)};
         const hyst_real whole = hyst_dahl_step(&model, once, R(0.6));
         hyst_dahl_step(&model, twice, R(0.3));
-        CHECK_NEAR((double)hyst_dahl_step(&model, twice, R(0.6)), (double)whole, CLOSE);
+        CHECK_EQUAL(hyst_dahl_step(&model, twice, R(0.6)), whole);
+        hyst_real slow[4] = {R(0.0), R(-0.25), R(0.0), R(-0.25)};
+        for (size_t k = 1; k < 1000u; ++k) {
+            hyst_dahl_step(&model, slow, (hyst_real)k * REAL_EPSILON / R(64.0));
+        }
+        CHECK_EQUAL(hyst_dahl_step(&model, slow, R(0.6)), whole);
     }
 }
 
 static void rest_changes_nothing(void)
 {
     const hyst_dahl model = friction(R(1.0), 0), inverse = friction(R(1.0), 1);
-    hyst_real state[2] = {R(0.5), R(0.25)};
+    hyst_real state[4] = {R(0.5), R(0.25), R(0.5), R(0.25)};
     CHECK_EQUAL(hyst_dahl_step(&model, state, R(0.5)), R(0.75));
     CHECK_EQUAL(hyst_dahl_step(&inverse, state, R(0.75)), R(0.5));
     CHECK_EQUAL(state[1], R(0.25));
@@ -62,7 +67,7 @@ static void rest_changes_nothing(void)
 static void sliding_keeps_the_force(void)
 {
     const hyst_dahl ductile = friction(R(0.5), 0), first = friction(R(1.0), 0);
-    hyst_real state[2] = {R(0.0), R(0.0)}, far[2] = {R(0.0), R(0.0)};
+    hyst_real state[4] = {R(0.0), R(0.0), R(0.0), R(0.0)}, far[4] = {R(0.0), R(0.0), R(0.0), R(0.0)};
     CHECK_EQUAL(hyst_dahl_step(&ductile, state, R(1.0)), R(3.0));
     CHECK_EQUAL(hyst_dahl_step(&ductile, state, R(7.0)), R(3.0));
     CHECK_EQUAL(hyst_dahl_step(&first, far, REAL_MAX), R(3.0));
@@ -75,7 +80,7 @@ static void the_inverse_refuses_what_no_way_reaches(void)
     const hyst_dahl inverse = friction(R(1.0), 1);
     const hyst_real force[] = {R(3.0), R(4.0), R(-3.0), R(-1e6)};
     for (size_t i = 0; i < COUNT(force); ++i) {
-        hyst_real state[2] = {R(0.5), R(0.25)};
+        hyst_real state[4] = {R(0.5), R(0.25), R(0.5), R(0.25)};
         const hyst_real answer = hyst_dahl_step(&inverse, state, force[i]);
         CHECK(!(answer - answer <= R(0.0)));
         CHECK_EQUAL(state[0], R(0.5));
@@ -83,12 +88,36 @@ static void the_inverse_refuses_what_no_way_reaches(void)
     }
 }
 
+/* 1 - z = 1e-6 and n = 70 ask for a way of about 1e6^69: a force within the limit, and no number. */
+static void an_overflow_leaves_the_state(void)
+{
+    const hyst_dahl inverse = friction(R(70.0), 1);
+    hyst_real state[4] = {R(0.5), R(0.25), R(0.5), R(0.25)};
+    const hyst_real answer = hyst_dahl_step(&inverse, state, R(2.999997));
+    CHECK(!(answer - answer <= R(0.0)));
+    CHECK_EQUAL(state[0], R(0.5));
+    CHECK_EQUAL(state[1], R(0.25));
+}
+
+/* Friction of a way of 1e-6 eps: sigma times the way, with all its digits. */
+static void a_small_way_keeps_its_digits(void)
+{
+    const hyst_dahl model = friction(R(2.0), 0), inverse = friction(R(2.0), 1);
+    hyst_real there[4] = {R(0.0), R(0.0), R(0.0), R(0.0)}, home[4] = {R(0.0), R(0.0), R(0.0), R(0.0)};
+    const hyst_real way = R(1e-6) * REAL_EPSILON;
+    const hyst_real force = hyst_dahl_step(&model, there, way);
+    CHECK_NEAR((double)(force / way), 6.0, CLOSE);
+    CHECK_NEAR((double)(hyst_dahl_step(&inverse, home, force) / way), 1.0, CLOSE);
+}
+
 int main(void)
 {
     closed_forms_by_hand();
-    samples_in_between_change_rounding_only();
+    samples_in_between_change_nothing();
     rest_changes_nothing();
     sliding_keeps_the_force();
     the_inverse_refuses_what_no_way_reaches();
+    an_overflow_leaves_the_state();
+    a_small_way_keeps_its_digits();
     return check_result();
 }

@@ -36,9 +36,8 @@ done
 while read -r source; do
     $cc -std=c99 $common -c "core/$source" -o "$to/core_$(basename "$source" .c).o"
 done < core/SOURCES
-for source in engine/simd/kernels.cpp engine/*.cpp engine/kinds/*.cpp engine/kinds/fast/*.cpp \
-    engine/dual/derivative.cpp; do
-    case $source in *module.cpp | *_binding.cpp | *stepper.cpp | */single.cpp) continue ;; esac
+for source in engine/simd/kernels.cpp engine/*.cpp engine/records/*.cpp engine/tasks/*.cpp \
+    engine/kinds/*.cpp engine/kinds/fast/*.cpp engine/dual/derivative.cpp; do
     $cxx $strict -c "$source" -o "$to/$(echo "$source" | tr / _).o"
 done
 # The kernel's own derivative, as engine/dual/CMakeLists.txt has it.

@@ -13,8 +13,8 @@
 #include <memory>
 #include <vector>
 
-#include "../evaluation.hpp"
-#include "../gradient.hpp"
+#include "../records/evaluation.hpp"
+#include "../records/gradient.hpp"
 #include "../simd/kernels.hpp"
 
 namespace {

@@ -65,7 +65,7 @@ def _model(data: Any) -> Any:
 
 def _estimator(content: dict[str, Any], about: ModelDescription) -> Any:
     from hyst.online import AdaptiveInverse, JointEstimator, RadiusEstimator
-    from hyst.online.saving import restored
+    from hyst.online.estimator_file import restored
 
     classes = (AdaptiveInverse, JointEstimator, RadiusEstimator)
     try:

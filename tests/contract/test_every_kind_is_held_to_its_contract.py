@@ -52,8 +52,8 @@ DECLARED = {
     "gpi after pi": "-RM-OI",
     "inverse of gpi": "-RM-OI",
     "inverse of mpi": "-RMCOI",
-    "dahl": "-r--OI",
-    "inverse dahl": "-r--OI",
+    "dahl": "-R--OI",
+    "inverse dahl": "-R--OI",
 }
 
 

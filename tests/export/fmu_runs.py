@@ -18,7 +18,7 @@ from fmpy.fmi3 import FMU3Slave
 import hyst
 from hyst import DeadZone, ModifiedPrandtlIshlinskii, Operator, PrandtlIshlinskii
 from hyst.control import TrackingController
-from hyst.export.core_stage import core_stages
+from hyst.export.c.core_stage import core_stages
 from hyst.online import JointEstimator
 from reference.examples import EXAMPLES, PI
 

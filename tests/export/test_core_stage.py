@@ -10,8 +10,8 @@ import pytest
 from hyst import _engine, _single
 from hyst.export.c.block import block_of
 from hyst.export.c.core_sources import core_files, core_folder
-from hyst.export.core_stage import core_stages
-from hyst.export.stage_code import StageCode
+from hyst.export.c.core_stage import core_stages
+from hyst.export.c.stage_code import StageCode
 from hyst.operators.stage import Stage
 from reference.examples import EXAMPLES
 

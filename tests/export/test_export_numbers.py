@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hyst import Affine, InputError, PrandtlIshlinskii
+from hyst.export.c.core_stage import core_stages
 from hyst.export.c.numbers import as_precision, literal, rounded, table
-from hyst.export.core_stage import core_stages
-from hyst.export.stage_code import StageCode
+from hyst.export.c.stage_code import StageCode
 from hyst.models import MasingOperator, PolynomialCurve
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)

@@ -10,10 +10,11 @@
  *
  *     w' = w exp(-L),   L = ln(1 + m t) / m,   t = x w^m    (L = x for m = 0),
  *
- * and back, x = w^-m (exp(m L) - 1) / m with L = ln(w / w'). So a sample costs a logarithm and an
- * exponential at most, and samples in between change the result by rounding only.
+ * and back, x = w^-m (exp(m L) - 1) / m with L = ln(w / w'). So a sample costs a logarithm and two
+ * exponentials at most. The way is taken from where the branch began, at the last turn: samples in
+ * between change no bit, and ways that are small beside the digits of z add up.
  *
- * State: the input (of the inverse: its output) of the last sample, and z. */
+ * State: position u and force z of the last sample, and both where the branch began. */
 #ifndef HYST_DAHL_H
 #define HYST_DAHL_H
 

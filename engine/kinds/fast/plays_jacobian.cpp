@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "../../evaluation.hpp"
+#include "../../records/evaluation.hpp"
 #include "../../simd/kernels.hpp"
 #include "hyst/play.h"
 #include "plays.hpp"

@@ -45,8 +45,8 @@ class _Friction(Operator):
             )
 
     def initial_state(self) -> Array:
-        """Give position and share of the Coulomb force before the first sample, shape (2,)."""
-        return np.array([self.u0, self.z0])
+        """Give position and share of Fc, before the first sample and at a turn, shape (4,)."""
+        return np.array([self.u0, self.z0, self.u0, self.z0])
 
     def parameters(self) -> Parameters:
         """Give sigma, Fc and n."""
@@ -138,10 +138,10 @@ class Dahl(_Friction):
     kind = "dahl"
 
     def traits(self) -> Traits:
-        """Give the traits: an exponential between samples cannot give the bits of one step."""
+        """Give the traits: the force is that of the way since the last turn, to the bit."""
         return Traits(
             memoryless=False,
-            rate_independent=Degree.TO_ROUNDING,
+            rate_independent=Degree.EXACTLY,
             return_point_memory=False,
             congruent_loops=False,
             monotone=True,
@@ -208,7 +208,7 @@ class InverseDahl(_Friction):
         """Give the traits of a position that a force within its limits determines."""
         return Traits(
             memoryless=False,
-            rate_independent=Degree.TO_ROUNDING,
+            rate_independent=Degree.EXACTLY,
             return_point_memory=False,
             congruent_loops=False,
             monotone=True,

@@ -14,10 +14,9 @@ from hyst.checks.numbers import as_not_negative, as_positive, as_sample_time, gi
 from hyst.errors import InputError
 from hyst.models import PrandtlIshlinskii
 from hyst.online.checks import memory_from, memory_or_none, sample, samples_of
+from hyst.online.estimator_file import Saved, check_saved_radii, restored_state
 from hyst.online.joint.excitation import Excitation, watch
 from hyst.online.joint.prior import covariance_of
-from hyst.online.saved import check_saved_radii
-from hyst.online.saving import Saved, restored_state
 from hyst.online.trajectory import Trajectory
 from hyst.operators import ModelDescription
 from hyst.signals import Record

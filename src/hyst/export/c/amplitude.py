@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from hyst.export.c.core_stage import CoreStage, core_stages
 from hyst.export.c.drive import Drive
-from hyst.export.core_stage import CoreStage, core_stages
 from hyst.operators import Operator
 from hyst.operators.composition import leaves_of
 

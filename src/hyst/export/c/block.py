@@ -11,9 +11,9 @@ from typing import Any, final
 from hyst import _single
 from hyst.control.tracking_controller import KIND, TrackingController
 from hyst.errors import InputError
+from hyst.export.c.core_stage import CoreStage, core_stages
 from hyst.export.c.numbers import Precision
-from hyst.export.core_stage import CoreStage, core_stages
-from hyst.export.stage_code import StageCode
+from hyst.export.c.stage_code import StageCode
 from hyst.models.stable_inverse import StableInverse
 from hyst.online import JointEstimator
 from hyst.operators import Affine, ModelDescription, Operator

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 import hyst
 from hyst.export.fmi.units import base_unit
-from hyst.export.fmu_variables import ParameterVariable, Rule
+from hyst.export.fmi.variables import ParameterVariable, Rule
 
 FmiVersion = Literal["2.0", "3.0"]
 Element = ElementTree.Element

@@ -13,15 +13,15 @@ from hyst.export.c.c_sources import header, places, source
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.numbers import table
 from hyst.export.c.one_file import renamed, shared_names
+from hyst.export.c.stage_code import StageCode
 from hyst.export.c.templating import filled, indented
 from hyst.export.fmi.description import FmiVersion
-from hyst.export.fmu_variables import (
+from hyst.export.fmi.variables import (
     ParameterVariable,
     constant_rules,
     direct_inputs,
     parameter_variables,
 )
-from hyst.export.stage_code import StageCode
 from hyst.export.tool_block import ToolBlock, tool_block
 from hyst.operators import ModelDescription
 

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.numbers import as_positive
 from hyst.errors import InputError
+from hyst.online.estimator_file import Saved, restored_state
 from hyst.online.joint.joint_estimator import JointEstimator
-from hyst.online.saving import Saved, restored_state
 from hyst.operators import ModelDescription, Operator
 from hyst.operators.registry import operator_from_dict
 

@@ -19,14 +19,13 @@ from hyst.online.checks import (
     sample,
     samples_of,
 )
+from hyst.online.estimator_file import Saved, check_saved, restored_state
 from hyst.online.joint.excitation import Excitation, watch
 from hyst.online.joint.innovation import Innovation
 from hyst.online.joint.joint_core import GROUPS, new_core, prior_of, search_cells
 from hyst.online.joint.parts import take_apart
 from hyst.online.joint.prior import covariance_of, factors
 from hyst.online.joint.start import checked_start, complete_scales
-from hyst.online.saved import check_saved
-from hyst.online.saving import Saved, restored_state
 from hyst.online.trajectory import Trajectory
 from hyst.operators import Operator
 from hyst.operators.registry import operator_from_dict

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import final
 
-from hyst.export.core_stage import CoreStage
-from hyst.export.stage_code import Constant, StageCode
+from hyst.export.c.core_stage import CoreStage
+from hyst.export.c.stage_code import Constant, StageCode
 
 
 @final

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "chain.hpp"
+#include "../chain.hpp"
 #include "cost_model.hpp"
 
 namespace hyst {

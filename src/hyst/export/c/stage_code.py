@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from textwrap import wrap
 from typing import final
 
+from hyst.export.c.core_stage import CoreStage
 from hyst.export.c.numbers import Precision, literal, refuse_vanishing, rounded, table
-from hyst.export.core_stage import CoreStage
 
 
 @final

@@ -12,14 +12,14 @@
 
 #include "chain_binding.hpp"
 #include "closed_loop_binding.hpp"
-#include "evaluation.hpp"
-#include "gradient.hpp"
-#include "gram.hpp"
-#include "jacobian.hpp"
+#include "../records/evaluation.hpp"
+#include "../records/gradient.hpp"
+#include "../records/gram.hpp"
+#include "../jacobian.hpp"
 #include "online_binding.hpp"
-#include "parallel.hpp"
+#include "../parallel.hpp"
 #include "rate_dependent_binding.hpp"
-#include "simd/kernels.hpp"
+#include "../simd/kernels.hpp"
 #include "stepper.hpp"
 
 namespace nb = nanobind;

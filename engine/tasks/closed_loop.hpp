@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "chain.hpp"
+#include "../chain.hpp"
 #include "hyst/tracking_controller.h"
 
 namespace hyst {

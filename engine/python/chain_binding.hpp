@@ -2,7 +2,7 @@
 
 #include <nanobind/nanobind.h>
 
-#include "chain.hpp"
+#include "../chain.hpp"
 
 namespace hyst {
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "chain.hpp"
+#include "../chain.hpp"
 #include "evaluation.hpp"
 
 namespace hyst {

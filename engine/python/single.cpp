@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "hyst/hyst.h"
-#include "kinds/kind.hpp"
+#include "../kinds/kind.hpp"
 
 namespace nb = nanobind;
 

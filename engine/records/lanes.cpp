@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "simd/kernels.hpp"
+#include "../simd/kernels.hpp"
 
 namespace hyst {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <Python.h>
 
-#include "chain.hpp"
+#include "../chain.hpp"
 #include "hyst/guard.h"
 
 namespace hyst {

@@ -6,8 +6,8 @@
 #include "hyst/guard.h"
 #include "lanes.hpp"
 #include "memory_curve.hpp"
-#include "parallel.hpp"
-#include "simd/kernels.hpp"
+#include "../parallel.hpp"
+#include "../simd/kernels.hpp"
 
 namespace hyst {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-#include "chain.hpp"
+#include "../chain.hpp"
 
 namespace hyst {
 

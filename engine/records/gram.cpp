@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "hyst/play.h"
-#include "simd/kernels.hpp"
+#include "../simd/kernels.hpp"
 
 namespace hyst {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simd/kernels.hpp"
+#include "../simd/kernels.hpp"
 
 namespace hyst {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "hyst/prandtl_ishlinskii.h"
-#include "simd/kernels.hpp"
+#include "../simd/kernels.hpp"
 
 namespace hyst {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "closed_loop.hpp"
+#include "../tasks/closed_loop.hpp"
 
 namespace nb = nanobind;
 

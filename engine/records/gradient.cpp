@@ -7,11 +7,11 @@
 
 #include "evaluation.hpp"
 #include "hyst/play.h"
-#include "jacobian.hpp"
+#include "../jacobian.hpp"
 #include "lanes.hpp"
 #include "memory_curve.hpp"
-#include "parallel.hpp"
-#include "simd/kernels.hpp"
+#include "../parallel.hpp"
+#include "../simd/kernels.hpp"
 
 namespace hyst {
 namespace {

@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "chain.hpp"
-#include "sample_exact.hpp"
-#include "trajectory_step.hpp"
+#include "../chain.hpp"
+#include "../tasks/sample_exact.hpp"
+#include "../tasks/trajectory_step.hpp"
 
 namespace nb = nanobind;
 
