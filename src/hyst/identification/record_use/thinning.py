@@ -110,6 +110,6 @@ def _remembered(u: Array, tolerance: float) -> Indices:
         if shrunk > tolerance and i + 1 < places.size - 1:
             chosen += [i, i + 1]
             last = i + 1
-    # The way from the last whole loop to the present: one branch, or a turn and the branch after it.
+    # From the last whole loop to the present: one branch, or a turn and the branch after it.
     open_end = places[-1:] if places.size % 2 else places[-2:]
     return np.unique(np.concatenate([places[chosen], open_end]))
