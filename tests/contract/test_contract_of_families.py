@@ -228,6 +228,14 @@ def test_it_can_be_compared_with_a_line(name: str) -> None:
     assert found.family == name
 
 
+def test_a_family_that_the_records_cannot_serve_is_left_out_and_told() -> None:
+    """A slow sine excites no dynamics; the other families are compared all the same."""
+    records = family_example("pi").records()
+    found = hyst.identify(records, family="linear,pi,hammerstein", plays=2, delay=0)
+    assert {each.family for each in found.candidates} == {"linear", "pi"}
+    assert any(each.startswith("hammerstein was left out") for each in found.undetermined)
+
+
 def test_an_unknown_family_is_answered_with_the_whole_list() -> None:
     records = family_example("linear").records()
     with pytest.raises(InputError) as caught:

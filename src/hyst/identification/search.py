@@ -17,6 +17,7 @@ from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.delay import estimate_delay, refine_delay
 from hyst.identification.choice.selection import (
     Contender,
+    Refusals,
     best_of_starts,
     compare,
     settled,
@@ -101,23 +102,42 @@ def find(records: tuple[Record, ...], families: Sequence[Family], options: Optio
     InputError, NotIdentifiableError, SolverError
         As ``identify``.
     """
-    tasks = [_task(family, records, options) for family in families]
+    tasks, refusals = _tasks(records, families, options)
     _require_samples(tasks)
     _require_same_records(tasks)
     if any(not task.family.answers_late for task in tasks):
         options.say("delay")
     tasks = _with_delay(tasks, options)
-    fit, task, candidates = _search(tasks, options)
+    fit, task, candidates = _search(tasks, options, refusals)
     if options.delay == AUTO and fit.family.has_memory and not fit.family.answers_late:
         delay = refine_delay(task.data, fit)
         if delay != task.data.delay:
             options.say("delay, judged by the family")
             shifted = [t if t.family.answers_late else t.delayed(delay) for t in tasks]
-            fit, task, candidates = _search(shifted, options)
+            fit, task, candidates = _search(shifted, options, refusals)
     if task.searched() is not task.data:
         fit = _polished(fit, task, options)
     fit = replace(fit, parametrization=_in_given_units(fit, task))
-    return Found(fit, task.given, candidates, task.notes)
+    left_out = tuple(
+        f"{name} was left out of the comparison: {why}" for name, why in refusals.items()
+    )
+    return Found(fit, task.given, candidates, task.notes + left_out)
+
+
+def _tasks(
+    records: tuple[Record, ...], families: Sequence[Family], options: Options
+) -> tuple[list[_Task], Refusals]:
+    """Give every family its task; of several, leave out those that the records cannot serve."""
+    tasks: list[_Task] = []
+    refusals: Refusals = {}
+    for family in families:
+        try:
+            tasks.append(_task(family, records, options))
+        except NotIdentifiableError as refusal:
+            refusals[family.name] = refusal
+    if not tasks:
+        raise next(iter(refusals.values()))
+    return tasks, refusals
 
 
 def _task(family: Family, records: tuple[Record, ...], options: Options) -> _Task:
@@ -180,7 +200,9 @@ def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
     return result
 
 
-def _search(tasks: Sequence[_Task], options: Options) -> tuple[Fit, _Task, tuple[Candidate, ...]]:
+def _search(
+    tasks: Sequence[_Task], options: Options, refusals: Refusals
+) -> tuple[Fit, _Task, tuple[Candidate, ...]]:
     """Choose family and size and fit it; the next best one if that fit does not converge."""
     if len(tasks) == 1 and len(tasks[0].family.sizes()) == 1:
         task = tasks[0]
@@ -188,7 +210,8 @@ def _search(tasks: Sequence[_Task], options: Options) -> tuple[Fit, _Task, tuple
         size = task.family.sizes()[0]
         fit = _final_fit(task.family, overview, size, options)
         return options.converged(fit), task, ()
-    contenders = compare(_with_overviews(tasks, options), options.say)
+    contenders, more = compare(_with_overviews(tasks, options), options.say)
+    refusals |= more
     remaining = list(contenders)
     while True:
         chosen = simplest_good(remaining, contenders[0].overview.output_range)

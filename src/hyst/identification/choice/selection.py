@@ -25,6 +25,9 @@ SAME_COST = 0.01
 
 LEAST_ITERATIONS = 20
 
+Refusals = dict[str, NotIdentifiableError]
+"""Why a family cannot be fitted to the records, by its name."""
+
 
 @dataclass(frozen=True, eq=False)
 class Contender:
@@ -104,7 +107,7 @@ def settled(fit: Fit, overview: Overview, max_iterations: int) -> Fit:
 
 def compare(
     families: Sequence[tuple[Family, Overview]], progress: Callable[[str], None]
-) -> tuple[Contender, ...]:
+) -> tuple[tuple[Contender, ...], Refusals]:
     """Score families and sizes by blocked cross-validation.
 
     Sizes of a family are tried upwards until two in a row have not lowered the score, or until
@@ -121,6 +124,8 @@ def compare(
     -------
     tuple of Contender
         From the simplest family to the richest, none of them chosen yet.
+    dict
+        Why families were left out, by name.
 
     Raises
     ------
@@ -128,21 +133,21 @@ def compare(
         If there are too few samples to judge any, or no family can be fitted.
     """
     contenders: list[Contender] = []
-    refusals: list[NotIdentifiableError] = []
+    refusals: Refusals = {}
     for family, overview in families:
         try:
             contenders += _grow(family, overview, progress)
         except NotIdentifiableError as refusal:  # one family less to compare
-            refusals.append(refusal)
+            refusals[family.name] = refusal
     if not contenders and refusals:
-        raise refusals[0]
+        raise next(iter(refusals.values()))
     if not contenders:
         samples = families[0][1].data.measured().size
         raise NotIdentifiableError(
             f"{samples} samples can be used, too few to choose the number of plays by "
             "cross-validation; give a longer record or the number of plays"
         )
-    return tuple(contenders)
+    return tuple(contenders), refusals
 
 
 def simplest_good(contenders: Sequence[Contender], output_range: float) -> Contender:
