@@ -74,19 +74,22 @@ hyst_real hyst_dahl_step(const hyst_dahl *model, hyst_real *state, hyst_real inp
 {
     const hyst_real zero = HYST_REAL(0.0);
     const hyst_real value = model->inverse ? input / model->force : input;
-    const size_t at = model->inverse ? 1u : 0u; /* position or force decides where a turn is */
-    const hyst_real last = state[at];
-    const hyst_real began = state[2u + at];
-    const int turned = (value > last && last < began) || (value < last && last > began);
-    const hyst_real u_turn = turned ? state[0] : state[2];
-    const hyst_real z_turn = turned ? state[1] : state[3];
+    /* The input turns, be it the position or the force. */
+    const hyst_real last = model->inverse ? state[1] : state[0];
+    const hyst_real began = model->inverse ? state[3] : state[2];
+    hyst_real u_turn = state[2];
+    hyst_real z_turn = state[3];
+    if ((value > last && last < began) || (value < last && last > began)) {
+        u_turn = state[0];
+        z_turn = state[1];
+    }
     const hyst_real way = value - (model->inverse ? z_turn : u_turn);
     const hyst_real sign = way < zero ? HYST_REAL(-1.0) : HYST_REAL(1.0);
     hyst_real u = value;
     hyst_real z = value;
-    if (model->inverse) {
+    if (model->inverse != 0) {
         u = u_turn + sign * dahl_way(model->excess, z_turn, sign, z) / model->rate;
-        if (!hyst_is_finite(u)) {
+        if (hyst_is_finite(u) == 0) {
             return u; /* a force that nothing reaches leaves the memory as it is */
         }
     } else {
