@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -104,7 +104,7 @@ def settled(fit: Fit, overview: Overview, max_iterations: int) -> Fit:
 
 def compare(
     families: Sequence[tuple[Family, Overview]], progress: Callable[[str], None]
-) -> tuple[Contender, ...]:
+) -> tuple[tuple[Contender, ...], tuple[str, ...]]:
     """Score families and sizes by blocked cross-validation.
 
     Sizes of a family are tried upwards until two in a row have not lowered the score, or until
@@ -121,6 +121,8 @@ def compare(
     -------
     tuple of Contender
         From the simplest family to the richest, none of them chosen yet.
+    tuple of str
+        Sentences about families that cannot be fitted.
 
     Raises
     ------
@@ -128,21 +130,26 @@ def compare(
         If there are too few samples to judge any, or no family can be fitted.
     """
     contenders: list[Contender] = []
-    refusals: list[NotIdentifiableError] = []
+    refusals: dict[str, NotIdentifiableError] = {}
     for family, overview in families:
         try:
             contenders += _grow(family, overview, progress)
         except NotIdentifiableError as refusal:  # one family less to compare
-            refusals.append(refusal)
+            refusals[family.name] = refusal
     if not contenders and refusals:
-        raise refusals[0]
+        raise next(iter(refusals.values()))
     if not contenders:
         samples = families[0][1].data.measured().size
         raise NotIdentifiableError(
             f"{samples} samples can be used, too few to choose the number of plays by "
             "cross-validation; give a longer record or the number of plays"
         )
-    return tuple(contenders)
+    return tuple(contenders), not_compared(refusals)
+
+
+def not_compared(refusals: Mapping[str, NotIdentifiableError]) -> tuple[str, ...]:
+    """Say which families are left out of a comparison, and why."""
+    return tuple(f"{name} is not compared: {why}" for name, why in refusals.items())
 
 
 def simplest_good(contenders: Sequence[Contender], output_range: float) -> Contender:
