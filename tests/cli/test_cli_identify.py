@@ -248,7 +248,10 @@ def test_bad_arguments_are_refused(
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (("--family", "ramberg-osgood", "--plays", 3), "--plays is for --family pi, gpi, mpi"),
+        (
+            ("--family", "ramberg-osgood", "--plays", 3),
+            "--plays is for --family pi, rdpi, gpi, mpi",
+        ),
         (("--family", "linear", "--plays", "auto"), "not for linear; leave it out"),
         (("--family", "pi", "--knots", 4), "--knots is for"),
         (("--family", "pi", "--hysteresis", "mpi"), "--hysteresis is for --family hammerstein"),
