@@ -43,6 +43,22 @@ def test_constants_are_fitted_and_written(files: tuple[Path, Path], run: Callabl
     assert (folder / "out" / "report.html").stat().st_size > 0
 
 
+def test_what_is_not_determined_has_a_dash_and_a_reason(
+    files: tuple[Path, Path], run: Callable, folder: Path
+):
+    model, record = files
+    ended = run("fit", model, record, *COLUMNS, "-o", "out")
+    assert ended.code == 0
+    assert "on a bound, or not determined by the records" in ended.out
+    assert "do not tell apart" in ended.out
+    assert any(
+        line.split()[::2] == ["prandtl_ishlinskii.p0", "-"] for line in ended.out.split("\n")
+    )
+    page = (folder / "out" / "report.html").read_text()
+    assert "A dash: on a bound, or not determined by the records" in page
+    assert not hyst.load(folder / "out" / "model.json").description.provenance.options
+
+
 def test_bounds_and_validation(files: tuple[Path, Path], run: Callable, folder: Path):
     model, record = files
     bound = ["--bound", "prandtl_ishlinskii.p0=0.9,2", "--free", "prandtl_ishlinskii"]

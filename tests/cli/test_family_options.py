@@ -77,7 +77,7 @@ def test_a_misspelled_option_is_refused_with_the_one_that_was_meant(
     ("arguments", "says"),
     [
         (("--radii", "0.5;1"), "--radii is '0.5;1'; give numbers with commas between them"),
-        (("--radii", "1,-1"), "--radii must be one or more positive"),
+        (("--radii", "1,-1"), "--radii is [1.0, -1.0]; give one or more finite numbers above 0"),
         (("--plays", 2.5), "--plays is '2.5'; give a whole number from 1 to 200"),
         (("--radii", "0.5,1", "--plays", 3), "plays is 3 but 2 radii are given"),
         (("--weights", "heavy"), "--weights is 'heavy'; choose one of auto, non-negative"),

@@ -115,6 +115,17 @@ def test_what_cannot_be_told_apart_is_named() -> None:
     assert any("do not tell apart" in each for each in found.undetermined)
 
 
+def test_all_that_has_no_standard_error_for_want_of_others_is_named() -> None:
+    """The gain is known but for a factor of all weights, also of the smallest."""
+    plays = hyst.PrandtlIshlinskii([0.2, 0.03, 0.02], [0.1, 0.3, 0.6], p0=1.0)
+    found = hyst.fit(Affine(2.0) @ plays, record(Affine(2.0) @ plays, noise=0.01), start=0)
+    unsure = np.flatnonzero(np.isnan(found.standard_errors))
+    assert unsure.size == 5
+    assert len(found.undetermined) == 1
+    for i in unsure:
+        assert found.parameter_names[i] in found.undetermined[0]
+
+
 def test_several_records_delay_and_validation() -> None:
     true, guess = PAIRS["a play between lines"]
     other = drive(500, seed=3)

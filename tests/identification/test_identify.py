@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from simulated_records import TRUE_PI, drive, record
 
 import hyst
+from hyst.identification.fit.radius_search import _moves
 
 ENVELOPE = hyst.DeadZone([1.0, -0.4, 0.5], [0.0, 0.25, -0.4])
 GPI = hyst.GeneralizedPrandtlIshlinskii(ENVELOPE, TRUE_PI)
@@ -118,6 +121,38 @@ def test_idle_plays_are_left_out_and_said() -> None:
     assert "of 6 plays" in found.undetermined[0]
     np.testing.assert_allclose(found.model(drive()), 0.0 * drive() + found.model(drive()))
     assert found.metrics["training"].rms < 1e-6
+
+
+def test_a_family_the_records_cannot_serve_is_left_out_of_a_comparison_and_said() -> None:
+    """A slow sweep tells nothing of dynamics; "is it hysteresis?" still has an answer."""
+    found = hyst.identify(record(TRUE_PI, noise=0.01), family="linear,pi,hammerstein", delay=0)
+    assert {each.family for each in found.candidates} == {"linear", "pi"}
+    assert found.family == "pi"
+    assert [each[:30] for each in found.undetermined] == ["hammerstein is not compared: th"[:30]]
+
+
+def test_a_family_the_records_cannot_serve_is_refused_where_it_is_alone() -> None:
+    with pytest.raises(hyst.NotIdentifiableError, match="impulse response"):
+        hyst.identify(record(TRUE_PI, noise=0.01), family="hammerstein")
+
+
+def test_a_record_too_short_for_dynamics_can_be_compared_without_them() -> None:
+    u = np.array([0.0, 1.0] * 8)
+    found = hyst.identify(hyst.Record(u, 2.0 * u, 1e-3), family="linear,hammerstein", delay=0)
+    assert found.family == "linear"
+    assert "16 usable samples" in found.undetermined[0]
+
+
+def test_many_idle_plays_make_no_more_moves_than_as_many_at_work() -> None:
+    """Plays without weight are as good as each other: one of them is tried in the gaps."""
+    plays = 40
+    bounds = SimpleNamespace(lower=np.zeros(2 * plays + 2), upper=np.full(2 * plays + 2, 2.0))
+    radii, kinks = np.linspace(0.1, 1.9, plays), np.linspace(0.0, 2.0, 9)
+    idle, at_work = (
+        sum(1 for _ in _moves(bounds, np.r_[1.0, np.full(plays, weight), radii, 0.0], plays, kinks))
+        for weight in (0.0, 1.0)
+    )
+    assert at_work < idle <= at_work + plays + 1
 
 
 def test_validation_records_are_judged_with_and_without_offset() -> None:

@@ -215,6 +215,7 @@ def test_a_family_that_does_not_fit_at_all_is_left_out_of_a_comparison() -> None
     noisy = Record(u, 3.0 * u + np.random.default_rng(0).normal(size=u.size), 1e-3)
     found = identify(noisy, family="linear,ramberg-osgood", delay=0)
     assert [each.family for each in found.candidates] == ["linear"]
+    assert any(each.startswith("ramberg-osgood is not compared: ") for each in found.undetermined)
 
 
 def test_an_exponent_at_its_limit_is_told_and_is_no_estimate() -> None:

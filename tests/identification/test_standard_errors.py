@@ -35,7 +35,7 @@ def test_two_equal_columns_leave_their_sum_determined() -> None:
     assert np.isnan(errors[[0, 2]]).all()
     reduced = spread_of_estimates(matrix, noise, [SAMPLES], np.ones(2)).of(np.eye(2))
     np.testing.assert_allclose(errors[[3, 1]], reduced, rtol=1e-3)
-    np.testing.assert_array_equal(spread.involved(0), [0, 2])
+    np.testing.assert_array_equal(np.flatnonzero(spread.disturbed(np.eye(3))[:, 0]), [0, 2])
 
 
 def test_a_gauge_determines_what_the_records_do_not() -> None:
@@ -60,7 +60,7 @@ def test_a_column_of_zeros_is_named_alone() -> None:
     errors = spread.of(np.eye(2))
     assert np.isfinite(errors[0])
     assert np.isnan(errors[1])
-    np.testing.assert_array_equal(spread.involved(0), [1])
+    np.testing.assert_array_equal(spread.disturbed(np.eye(2)), [[False], [True]])
 
 
 def test_a_direction_less_sure_than_the_model_is_large_is_not_determined() -> None:

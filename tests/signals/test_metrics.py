@@ -26,6 +26,15 @@ def test_a_case_worked_by_hand() -> None:
     assert (metrics.bias, metrics.samples, metrics.output_range) == (1.0, 4, 4.0)
 
 
+@pytest.mark.parametrize("exponent", [-1000, -40, 40, 1000])
+def test_a_unit_smaller_by_a_power_of_two_changes_no_percentage(exponent: int) -> None:
+    unit = math.ldexp(1.0, exponent)
+    scaled = error_metrics(unit * np.array(Y), unit * np.array(Y_MODEL))
+    plain = error_metrics(Y, Y_MODEL)
+    assert scaled.rms == unit * plain.rms
+    assert scaled.nrmse_fit_percent == plain.nrmse_fit_percent
+
+
 def test_a_free_offset_takes_the_mean_error_out_and_reports_it() -> None:
     metrics = error_metrics(Y, Y_MODEL, free_offset=True)  # errors 0, -1, -1, 2
     assert metrics.rms == pytest.approx(math.sqrt(6.0 / 4.0), rel=1e-15)

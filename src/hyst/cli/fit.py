@@ -105,7 +105,7 @@ def fit(
             guess,
             records,
             free=None if free is None else [each.strip() for each in free.split(",")],
-            bounds=bounds,
+            bounds=bounds or None,
             delay=guess.description.delay if delay is None else delay,
             start=whole_or_auto(start, "start"),
             validation=validation,

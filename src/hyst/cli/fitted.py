@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -130,6 +131,8 @@ def tell_fitted(found: hyst.Identified, records: Sequence[hyst.Record]) -> None:
         show_table(hyst.report.candidates_table(found))
     show_table(hyst.report.metrics_table(found))
     show_table(hyst.report.parameters_table(found))
+    if any(math.isnan(each) for each in found.standard_errors):
+        print("(-: on a bound, or not determined by the records)")
     for sentence in found.undetermined:
         print(f"note: {sentence}")
 

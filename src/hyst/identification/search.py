@@ -17,9 +17,9 @@ from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.delay import estimate_delay, refine_delay
 from hyst.identification.choice.selection import (
     Contender,
-    Refusals,
     best_of_starts,
     compare,
+    not_compared,
     settled,
     simplest_good,
 )
@@ -102,46 +102,42 @@ def find(records: tuple[Record, ...], families: Sequence[Family], options: Optio
     InputError, NotIdentifiableError, SolverError
         As ``identify``.
     """
-    tasks, refusals = _tasks(records, families, options)
+    tasks, left_out = _tasks(families, records, options)
     _require_samples(tasks)
     _require_same_records(tasks)
     if any(not task.family.answers_late for task in tasks):
         options.say("delay")
     tasks = _with_delay(tasks, options)
-    fit, task, candidates = _search(tasks, options, refusals)
+    fit, task, candidates, refusals = _search(tasks, options)
     if options.delay == AUTO and fit.family.has_memory and not fit.family.answers_late:
         delay = refine_delay(task.data, fit)
         if delay != task.data.delay:
             options.say("delay, judged by the family")
             shifted = [t if t.family.answers_late else t.delayed(delay) for t in tasks]
-            fit, task, candidates = _search(shifted, options, refusals)
+            fit, task, candidates, refusals = _search(shifted, options)
     if task.searched() is not task.data:
         fit = _polished(fit, task, options)
     fit = replace(fit, parametrization=_in_given_units(fit, task))
-    left_out = tuple(
-        f"{name} was left out of the comparison: {why}" for name, why in refusals.items()
-    )
-    return Found(fit, task.given, candidates, task.notes + left_out)
+    return Found(fit, task.given, candidates, task.notes + left_out + refusals)
 
 
 def _tasks(
-    records: tuple[Record, ...], families: Sequence[Family], options: Options
-) -> tuple[list[_Task], Refusals]:
-    """Give every family its task; of several, leave out those that the records cannot serve."""
-    tasks: list[_Task] = []
-    refusals: Refusals = {}
+    families: Sequence[Family], records: tuple[Record, ...], options: Options
+) -> tuple[list[_Task], tuple[str, ...]]:
+    """Prepare the families that the records can serve, and say why others are not compared."""
+    used = dict[Family, tuple[Data, tuple[str, ...]]]()
+    refusals = dict[str, NotIdentifiableError]()
     for family in families:
         try:
-            tasks.append(_task(family, records, options))
+            used[family] = family.records_to_use(records, options.start)
         except NotIdentifiableError as refusal:
             refusals[family.name] = refusal
-    if not tasks:
+    if not used:
         raise next(iter(refusals.values()))
-    return tasks, refusals
+    return [_task(family, *each) for family, each in used.items()], not_compared(refusals)
 
 
-def _task(family: Family, records: tuple[Record, ...], options: Options) -> _Task:
-    given, left_out = family.records_to_use(records, options.start)
+def _task(family: Family, given: Data, left_out: tuple[str, ...]) -> _Task:
     suited, notes = family.suited(given)
     scales = (
         _power_of_two(2.0 * given.half_range),
@@ -201,17 +197,16 @@ def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
 
 
 def _search(
-    tasks: Sequence[_Task], options: Options, refusals: Refusals
-) -> tuple[Fit, _Task, tuple[Candidate, ...]]:
+    tasks: Sequence[_Task], options: Options
+) -> tuple[Fit, _Task, tuple[Candidate, ...], tuple[str, ...]]:
     """Choose family and size and fit it; the next best one if that fit does not converge."""
     if len(tasks) == 1 and len(tasks[0].family.sizes()) == 1:
         task = tasks[0]
         overview = Overview(task.searched(), options.delay)
         size = task.family.sizes()[0]
         fit = _final_fit(task.family, overview, size, options)
-        return options.converged(fit), task, ()
-    contenders, more = compare(_with_overviews(tasks, options), options.say)
-    refusals |= more
+        return options.converged(fit), task, (), ()
+    contenders, refusals = compare(_with_overviews(tasks, options), options.say)
     remaining = list(contenders)
     while True:
         chosen = simplest_good(remaining, contenders[0].overview.output_range)
@@ -221,7 +216,8 @@ def _search(
         remaining.remove(chosen)
     task = next(each for each in tasks if each.family is chosen.family)
     scale = task.scales[1]
-    return options.converged(fit), task, tuple(_told(each, chosen, scale) for each in contenders)
+    told = tuple(_told(each, chosen, scale) for each in contenders)
+    return options.converged(fit), task, told, refusals
 
 
 def _with_overviews(tasks: Sequence[_Task], options: Options) -> list[tuple[Family, Overview]]:

@@ -210,7 +210,7 @@ def _the_model(page: Page, findings: _Findings, figures: dict[str, bytes]) -> No
     page.table(parameters_table(identified))
     page.faint(
         "Standard errors say how far a value may be off because of noise; they allow for errors "
-        "that last longer than one sample. A value on a bound has none."
+        "that last longer than one sample. A dash: on a bound, or not determined by the records."
     )
     if identified.undetermined:
         page.text("What the records leave open, or what makes them doubtful:")

@@ -169,7 +169,7 @@ def parameters_table(identified: Identified) -> Table:
         "Parameters",
         ("parameter", "value", "standard error"),
         tuple(
-            (name, number(value, 6), "on a bound" if math.isnan(error) else number(error, 2))
+            (name, number(value, 6), "-" if math.isnan(error) else number(error, 2))
             for name, value, error in zip(
                 identified.parameter_names,
                 identified.parameter_values.tolist(),

@@ -121,4 +121,6 @@ def error_metrics(
 
 
 def _rms(values: NDArray[np.float64]) -> float:
-    return math.sqrt(float(np.mean(np.square(values))))
+    # In units of a power of two, exact, so that squares of no unit overflow or vanish.
+    unit = math.ldexp(1.0, math.frexp(float(np.max(np.abs(values))))[1] - 1)
+    return unit * math.sqrt(float(np.mean(np.square(values / unit))))

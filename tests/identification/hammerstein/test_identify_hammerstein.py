@@ -207,6 +207,8 @@ def test_dynamics_that_explain_something_are_not_called_nothing(noise: float) ->
 
 def test_a_start_that_is_none_is_refused_whatever_the_family() -> None:
     record = record_of(PI, 0.01)
+    with pytest.raises(InputError, match="hysteresis is 'foo'; choose one of"):
+        hyst.identify(record, family="pi,hammerstein", hysteresis="foo")
     for start in (1.5, True, "late", None):
         for family in ("pi", "hammerstein"):
             with pytest.raises(InputError, match=f"start is {start!r}; give a whole number"):

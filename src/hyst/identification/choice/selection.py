@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,9 +24,6 @@ SAME_COST = 0.01
 """Costs that differ by this share of the residual variance are equal."""
 
 LEAST_ITERATIONS = 20
-
-Refusals = dict[str, NotIdentifiableError]
-"""Why a family cannot be fitted to the records, by its name."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +104,7 @@ def settled(fit: Fit, overview: Overview, max_iterations: int) -> Fit:
 
 def compare(
     families: Sequence[tuple[Family, Overview]], progress: Callable[[str], None]
-) -> tuple[tuple[Contender, ...], Refusals]:
+) -> tuple[tuple[Contender, ...], tuple[str, ...]]:
     """Score families and sizes by blocked cross-validation.
 
     Sizes of a family are tried upwards until two in a row have not lowered the score, or until
@@ -124,8 +121,8 @@ def compare(
     -------
     tuple of Contender
         From the simplest family to the richest, none of them chosen yet.
-    dict
-        Why families were left out, by name.
+    tuple of str
+        Sentences about families that cannot be fitted.
 
     Raises
     ------
@@ -133,7 +130,7 @@ def compare(
         If there are too few samples to judge any, or no family can be fitted.
     """
     contenders: list[Contender] = []
-    refusals: Refusals = {}
+    refusals: dict[str, NotIdentifiableError] = {}
     for family, overview in families:
         try:
             contenders += _grow(family, overview, progress)
@@ -147,7 +144,12 @@ def compare(
             f"{samples} samples can be used, too few to choose the number of plays by "
             "cross-validation; give a longer record or the number of plays"
         )
-    return tuple(contenders), refusals
+    return tuple(contenders), not_compared(refusals)
+
+
+def not_compared(refusals: Mapping[str, NotIdentifiableError]) -> tuple[str, ...]:
+    """Say which families are left out of a comparison, and why."""
+    return tuple(f"{name} is not compared: {why}" for name, why in refusals.items())
 
 
 def simplest_good(contenders: Sequence[Contender], output_range: float) -> Contender:

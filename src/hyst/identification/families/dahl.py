@@ -29,12 +29,14 @@ LEAST_SHAPE, LARGEST_SHAPE = 0.2, 5.0
 _TRAVELS = np.geomspace(0.03, 3.0, 13)
 """Fc / sigma of first guesses, over half the input range."""
 _SHAPES = (0.5, 1.0, 2.0)
+MOST_GIVEN = 100.0
+"""Of a shape n that is given: beyond, the force stays next to nothing."""
 
 
 def _as_exponent(value: Any, name: str) -> str | float:
     if isinstance(value, str) and value == FREE:
         return FREE
-    return as_positive(value, name, f"a number or {FREE!r}")
+    return as_positive(value, name, f"a number or {FREE!r}", most=MOST_GIVEN)
 
 
 def _read_exponent(text: str, name: str) -> Any:
@@ -49,7 +51,7 @@ class Dahl(Family):
     Parameters
     ----------
     exponent
-        n, > 0, kept; or ``"free"``, to be found between 0.2 and 5.
+        n, > 0 and at most 100, kept; or ``"free"``, to be found between 0.2 and 5.
     """
 
     name = "dahl"

@@ -22,10 +22,10 @@ from hyst.identification.families.family import Fit, Start, Words
 from hyst.identification.families.free_envelope import free_envelope_starts, with_plays_left_out
 from hyst.identification.families.option import (
     Option,
+    as_numbers,
     choice,
     option,
     read_numbers,
-    read_whole,
 )
 from hyst.identification.families.play_layout import (
     FirstGuess,
@@ -52,23 +52,19 @@ _SLOPES_TEXT = (
 
 def _as_knots(knots: Any, name: str) -> int | tuple[float, ...]:
     """Check a number of knots, or the places where they are."""
-    if isinstance(knots, int | float | str | np.number):
+    if isinstance(knots, int | float | str | np.generic):
         return as_whole_number(knots, name, 1, MOST_KNOTS, ", or a list of their places")
-    try:
-        given = np.asarray(knots, dtype=np.float64)
-    except (TypeError, ValueError):
-        given = np.empty(0)
-    places = np.unique(given)
-    if given.ndim != 1 or not 1 <= places.size <= MOST_KNOTS or not np.isfinite(places).all():
-        raise InputError(
-            f"{name} are {knots!r}; give a number from 1 to {MOST_KNOTS}, or a list of finite "
-            "places, input units"
-        )
+    what = f"a number from 1 to {MOST_KNOTS}, or a list of at most as many finite places"
+    places = np.unique(as_numbers(knots, name, what))
+    if places.size > MOST_KNOTS:
+        raise InputError(f"{name} are {places.size} places; give {what}")
     return tuple(places.tolist())
 
 
 def _read_knots(text: str, name: str) -> Any:
-    return read_numbers(text, name) if "," in text else read_whole(text, name)
+    if "," in text:
+        return read_numbers(text, name)
+    return int(text) if text.isdecimal() else text
 
 
 KNOTS_OPTION = Option(

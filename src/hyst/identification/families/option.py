@@ -6,6 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.checks.numbers import said
 from hyst.checks.numbers import whole_number as as_whole_number
 from hyst.errors import InputError
 
@@ -101,6 +105,40 @@ def choice(choices: tuple[str, ...], help: str) -> Option:
         return value
 
     return Option(check, help, lambda text, _: text, "|".join(choices))
+
+
+def as_numbers(values: Any, name: str, what: str, least: float = -np.inf) -> NDArray[np.float64]:
+    """Check a list of numbers, or one; texts and truth values are none.
+
+    Parameters
+    ----------
+    values, name
+        What was given, and the option's name.
+    what
+        What messages ask for, as "a list of numbers".
+    least
+        The smallest that is allowed.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (n,), in the order given.
+
+    Raises
+    ------
+    InputError
+        If it is something else, empty, or one is not finite or too small.
+    """
+    try:
+        given = np.asarray(values)
+    except ValueError:  # lists of lists of several lengths
+        given = np.asarray(None)
+    truths = isinstance(values, list | tuple) and any(isinstance(each, bool) for each in values)
+    if given.dtype.kind in "fiu" and given.ndim <= 1 and given.size and not truths:
+        numbers = given.astype(np.float64).reshape(-1)
+        if np.isfinite(numbers).all() and numbers.min() >= least:
+            return numbers
+    raise InputError(f"{name} is {said(values)}; give {what}")
 
 
 def read_numbers(text: str, name: str) -> Any:

@@ -18,6 +18,7 @@ from hyst.identification.families.family import Family, Fit, Start
 from hyst.identification.families.option import (
     AUTO,
     Option,
+    as_numbers,
     choice,
     option,
     read_numbers,
@@ -41,6 +42,7 @@ SIZES = (1, 2, 3, 4, 6, 8, 10)
 """Numbers of plays that ``"auto"`` compares."""
 
 MOST_PLAYS = 200
+SMALLEST_RADIUS = float(np.finfo(float).tiny)
 FINE_BANK = 60
 """Plays of a bank finer than any model."""
 
@@ -66,19 +68,9 @@ def radii_option(*, zero_too: bool = False) -> Option:
     def check(radii: Any, name: str) -> tuple[float, ...] | None:
         if radii is None:
             return None
-        try:
-            values = np.unique(np.asarray(radii, dtype=np.float64))
-        except (TypeError, ValueError):
-            values = np.empty(0)
-        least = values.min(initial=np.inf)
-        if (
-            values.size == 0
-            or not np.isfinite(values).all()
-            or least < 0.0
-            or (least == 0.0 and not zero_too)
-        ):
-            raise InputError(f"{name} must be one or more positive, finite numbers")
-        return tuple(values.tolist())
+        least = 0.0 if zero_too else SMALLEST_RADIUS
+        what = "one or more finite numbers " + ("from 0 on" if zero_too else "above 0")
+        return tuple(np.unique(as_numbers(radii, name, what, least)).tolist())
 
     return Option(check, "Radii to keep, input units, as 0.5,1,2.", read_numbers, "R1,R2,..")
 

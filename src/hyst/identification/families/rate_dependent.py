@@ -21,6 +21,7 @@ from hyst.identification.families.family import Family, Start, Words
 from hyst.identification.families.option import (
     AUTO,
     Option,
+    as_numbers,
     choice,
     option,
     read_numbers,
@@ -61,10 +62,8 @@ def _as_record_weights(given: Any, name: str) -> str | tuple[float, ...]:
         raise InputError(
             f"{name} is {given!r}; choose {EQUAL!r}, {HYSTERESIS!r} or a number a record"
         )
-    values = np.asarray(given, dtype=np.float64)
-    if values.ndim != 1 or not np.isfinite(values).all() or values.min(initial=0.0) < 0.0:
-        raise InputError(f"{name} are {values.tolist()}; give positive numbers, one a record")
-    return tuple(values.tolist())
+    what = f"positive numbers, one a record, or {EQUAL!r} or {HYSTERESIS!r}"
+    return tuple(as_numbers(given, name, what, 0.0).tolist())
 
 
 def _read_record_weights(text: str, name: str) -> Any:

@@ -326,7 +326,7 @@ def _of_this_hyst(family: Family) -> Family:
             f"hyst.families: {', '.join(each.__name__ for each in _CLASSES)}"
         )
     require_this_version(family)
-    return family
+    return replace(family)  # checks the values of an object that was stored
 
 
 def _listed(names: Sequence[str]) -> str:

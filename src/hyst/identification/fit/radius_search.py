@@ -2,8 +2,8 @@
 
 The output bends where a radius passes half a swing of the input, so the cost has a kink at every
 half swing, some of them local minima that a derivative cannot leave. Each radius in turn is moved
-across the next kinks, and some way towards its neighbours, that of a play with next to no weight
-between any others, and a short fit is tried from there.
+across the next kinks, and some way towards its neighbours, and that of the play with least weight
+between any others if it has next to none, and a short fit is tried from there.
 """
 
 from __future__ import annotations
@@ -24,7 +24,10 @@ NEXT_INTERVALS = 2
 """How many intervals between kinks are tried on either side of a radius."""
 
 IDLE = 1e-2
-"""Share of all weights up to which a play is tried in every gap between the others."""
+"""Share of all weights up to which the play with the least is tried in every gap between others.
+
+One, since plays without weight are as good as each other: trying all would take plays times gaps.
+"""
 
 REVIVED = 5e-2
 """Share of all weights it gets there: with next to none it would not know where to move."""
@@ -85,12 +88,21 @@ def _moves(problem: Problem, theta: Array, plays: int, kinks: Array) -> Iterator
             moved = theta.copy()
             moved[plays + 1 + i] = place
             yield moved
-        total = float(np.abs(theta[: plays + 1]).sum())
-        if theta[1 + i] <= IDLE * total:
-            for place in _gaps(np.delete(r, i), lower[i], upper[i]):
-                moved = theta.copy()
-                moved[plays + 1 + i], moved[1 + i] = place, REVIVED * total
-                yield moved
+    yield from _revivals(theta, plays, lower, upper)
+
+
+def _revivals(theta: Array, plays: int, lower: Array, upper: Array) -> Iterator[Array]:
+    """Put the play with least weight, if it has next to none, into every gap between the others."""
+    weights, r = theta[1 : plays + 1], theta[plays + 1 : 2 * plays + 1]
+    movable = np.flatnonzero(lower < upper)
+    total = float(np.abs(theta[: plays + 1]).sum())
+    if movable.size == 0 or weights[movable].min() > IDLE * total:
+        return
+    i = int(movable[np.argmin(weights[movable])])
+    for place in _gaps(np.delete(r, i), float(lower[i]), float(upper[i])):
+        moved = theta.copy()
+        moved[plays + 1 + i], moved[1 + i] = place, REVIVED * total
+        yield moved
 
 
 def _gaps(others: Array, lower: float, upper: float) -> Array:

@@ -52,7 +52,8 @@ def identified_from_fit(
     errors, not_told_apart = np.full(len(estimates.names), np.nan), tuple[str, ...]()
     if fit.family.estimates_noise:
         spread = spread_of_fit(data, fit)
-        errors, not_told_apart = spread.of(estimates.by_theta), spread.not_told_apart(estimates)
+        errors = spread.of(estimates.by_theta)
+        not_told_apart = spread.not_told_apart(estimates)
     return Identified(
         model=operator,
         family=fit.family.name,
@@ -145,10 +146,11 @@ class FitSpread:
         tuple of str
             Sentences, none twice.
         """
-        places, sentences = np.flatnonzero(self.inside), []
-        for direction in range(self.spread.open_directions.shape[1]):
-            involved = places[self.spread.involved(direction)]
-            which = np.flatnonzero(estimates.by_theta[:, involved].any(axis=1))
+        sentences = []
+        for disturbed in self.spread.disturbed(estimates.by_theta[:, self.inside]).T:
+            which = np.flatnonzero(disturbed)
+            if which.size == 0:
+                continue
             names = ", ".join(estimates.names[i] for i in which)
             sentences.append(
                 f"the records do not tell apart {names}; their values are one choice of many"

@@ -27,9 +27,6 @@ ROUNDING_OF_DIRECTIONS = 1e-6
 NOT_DISTURBED = 0.3
 """Standard errors by which what is not determined may move a quantity that is."""
 
-INVOLVED = 0.1
-"""Share of the largest part from which on a parameter is named."""
-
 
 @dataclass(frozen=True, eq=False)
 class Spread:
@@ -46,15 +43,12 @@ class Spread:
     open_directions
         Shape (m, k): changes of theta the records say nothing about, each as large as the whole
         model.
-    shares
-        Shape (m, k): how much each parameter takes part in them.
     """
 
     unit: Array
     noise: float
     covariance: Array
     open_directions: Array
-    shares: Array
 
     def of(self, rows: Array) -> Array:
         """Give the standard errors of linear functions of theta.
@@ -69,29 +63,37 @@ class Spread:
         numpy.ndarray
             Shape (q,), NaN where a function is not determined.
         """
+        errors = self._if_determined(rows)
+        errors[self.disturbed(rows).any(axis=1)] = np.nan
+        return errors
+
+    def disturbed(self, rows: Array) -> NDArray[np.bool_]:
+        """Tell which functions are not determined, and for want of which direction.
+
+        Parameters
+        ----------
+        rows
+            Shape (q, m), linear functions of theta.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (q, k): whether a change along each of ``open_directions`` moves the function by
+            more than the rest of its standard error.
+        """
+        parts = np.abs(rows) @ np.abs(self.open_directions)
+        moved = np.abs(rows @ self.open_directions)
+        moved[moved <= ROUNDING_OF_DIRECTIONS * parts] = 0.0
+        return np.asarray(moved > NOT_DISTURBED * self._if_determined(rows)[:, None])
+
+    def _if_determined(self, rows: Array) -> Array:
+        """Give the standard errors as if the open directions did not exist."""
         plain = rows / self.unit
         size = np.abs(plain).max(axis=1, initial=0.0)
         size = np.ldexp(1.0, np.frexp(size)[1])
         plain = plain / size[:, None]
         variance = np.einsum("ij,jk,ik->i", plain, self.covariance, plain)
-        errors: Array = np.sqrt(np.maximum(variance, 0.0)) * self.noise * size
-        if self.open_directions.size:
-            parts = np.abs(rows) @ np.abs(self.open_directions)
-            moved = np.abs(rows @ self.open_directions)
-            moved[moved <= ROUNDING_OF_DIRECTIONS * parts] = 0.0
-            errors[moved.max(axis=1) > NOT_DISTURBED * errors] = np.nan
-        return np.asarray(errors)
-
-    def involved(self, direction: int) -> NDArray[np.intp]:
-        """Give the parameters that take part in a direction that is not determined.
-
-        Parameters
-        ----------
-        direction
-            Its column in ``open_directions``, counted from 0.
-        """
-        share = self.shares[:, direction]
-        return np.asarray(np.flatnonzero(share > INVOLVED * share.max()), dtype=np.intp)
+        return np.asarray(np.sqrt(np.maximum(variance, 0.0)) * self.noise * size)
 
 
 def spread_of_estimates(
@@ -146,7 +148,7 @@ def spread_of_estimates(
         known[np.flatnonzero(known)[lost]] = False
         inner = np.zeros((count, count))
     open_ones = vectors[:, ~known]
-    return Spread(unit, noise, inner, open_ones * (size / unit)[:, None], np.abs(open_ones))
+    return Spread(unit, noise, inner, open_ones * (size / unit)[:, None])
 
 
 def _within(gauges: Array | None, unit: Array) -> Array:

@@ -176,6 +176,11 @@ def choose_markov(
         why = _weakly_excited(records, found.order, start, found.condition)
         return found, (f"{why}; trust G only where the input has power",)
     longest = min(len(record) for record in records) - start
+    if longest < 2 * (ORDERS[0] + 2):
+        raise NotIdentifiableError(
+            f"a record has {longest} usable samples, too few for an impulse response of order "
+            f"{ORDERS[0]}; give a longer record, or fir_order yourself"
+        )
     orders = [each for each in ORDERS if 8 * (each + 2) <= longest] or [ORDERS[0]]
     best, why = _excited(records, orders[0], start)
     if best is None:
