@@ -10,7 +10,7 @@ from simulated_records import drive
 
 from hyst.identification.families.family import Start
 from hyst.identification.families.play_layout import FirstGuess
-from hyst.identification.families.plays import Plays
+from hyst.identification.families.plays import Plays, weights_left
 from hyst.identification.families.registry import families
 
 PLAYS = ("pi", "gpi", "mpi")
@@ -83,3 +83,10 @@ def test_canonical_sorts_plays_with_their_weights() -> None:
     shuffled = theta.copy()
     shuffled[1:5] = [0.2, 0.5, 0.6, 0.2]
     np.testing.assert_array_equal(parametrization.canonical(shuffled), theta)
+
+
+def test_a_play_that_is_left_out_leaves_its_weight_to_the_one_before_it() -> None:
+    working = np.array([False, True, False, False, True])
+    kept = weights_left(np.array([1e-9, 7.0, -6.5, 0.25, 2.0]), working)
+    np.testing.assert_array_equal(kept, [0.75, 2.0])
+    assert weights_left(np.array([1e-9]), np.array([False])).shape == (0,)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from hyst.identification.choice.selection import best_of_starts
 from hyst.identification.families.family import Fit, Start
 from hyst.identification.families.play_layout import PlayLayout, PlayParametrization
-from hyst.identification.families.plays import layout_of
+from hyst.identification.families.plays import layout_of, weights_left
 from hyst.identification.families.prandtl_ishlinskii import PrandtlIshlinskii
 from hyst.identification.fit.parametrization import selection
 from hyst.identification.fit.weight_rules import NON_NEGATIVE
@@ -94,11 +94,12 @@ def with_plays_left_out(fit: Fit, working: NDArray[np.bool_]) -> Start:
     assert isinstance(affine, Affine), "then the offset"
     layout = layout_of(fit)
     radii = slice(layout.plays + 1, 2 * layout.plays + 1)
-    total = plays.p0 + float(plays.p[working].sum())
+    kept = weights_left(plays.p, working)
+    total = plays.p0 + float(kept.sum())
     count = fit.solution.theta.size - 2 * layout.plays - 2 - envelope.weights.size
     return _parametrize(
         DeadZone(envelope.weights * total, envelope.thresholds),
-        PlayModel(plays.p[working] / total, plays.r[working] * total, plays.p0 / total),
+        PlayModel(kept / total, plays.r[working] * total, plays.p0 / total),
         affine.offset,
         radius_limit=float(layout.upper[radii].max()) * total,
         knots_move=count > 0,

@@ -251,7 +251,10 @@ class Plays(Family):
         layout, theta = layout_of(fit), fit.solution.theta
         weights, r = layout.weights(theta), layout.radii(theta)
         guess = replace(
-            self._guess(overview, r), p0=float(weights[0]), p=weights[1:][working], r=r[working]
+            self._guess(overview, r[working]),
+            p0=float(weights[0]),
+            p=weights_left(weights[1:], working),
+            r=r[working],
         )
         parametrization, refitted = self.parametrize(guess)
         rest = theta.size - 2 * layout.plays - 1
@@ -281,6 +284,23 @@ def fine_weights(overview: Overview, rule: str) -> Weights:
     )
 
 
+def weights_left(p: Array, working: NDArray[np.bool_]) -> Array:
+    """Give the weights of the plays that are kept, each with those of the ones left out after it.
+
+    A play as wide as the one before it is left out, but not its weight: of two large ones of
+    opposite signs neither means anything alone.
+
+    Parameters
+    ----------
+    p
+        Shape (n,), weights in the order of the radii.
+    working
+        Shape (n,), which plays to keep.
+    """
+    owner = np.cumsum(working) - 1
+    return np.bincount(owner[owner >= 0], p[owner >= 0], minlength=int(working.sum()))
+
+
 def layout_of(fit: Fit) -> PlayLayout:
     """Give where the plays of a fit stand in its theta.
 
@@ -302,5 +322,6 @@ def _working_plays(fit: Fit, data: Data) -> NDArray[np.bool_]:
     """Tell which plays have a weight, and a radius of their own."""
     layout, theta = layout_of(fit), fit.solution.theta
     weights, r = layout.weights(theta), layout.radii(theta)
-    apart = np.diff(r, prepend=-np.inf) > 1e-4 * data.half_range
-    return np.asarray((np.abs(weights[1:]) > 1e-6 * np.abs(weights).max()) & apart)
+    working = np.abs(weights[1:]) > 1e-6 * np.abs(weights).max()
+    working[working] = np.diff(r[working], prepend=-np.inf) > 1e-4 * data.half_range
+    return np.asarray(working)

@@ -85,14 +85,17 @@ def fit_weights(data: Data, r: Array, sign: float = 1.0, rule: str = NON_NEGATIV
     scale = np.sqrt(np.maximum(np.diag(normal), np.finfo(float).tiny))
     correlation = normal / np.outer(scale, scale)
     condition = float(np.linalg.cond(correlation))
-    if condition < LARGEST_CONDITION:
-        factor = np.linalg.cholesky(correlation).T
+    factor = _cholesky(correlation) if condition < LARGEST_CONDITION else None
+    if factor is not None:
         target = scipy.linalg.solve_triangular(factor, moment / scale, trans="T")
     else:
         factor, target = _by_qr(data, r, sign, coefficients / scale)
-    free = non_negative(factor, target)[0] / scale
+    solution = non_negative(factor, target)[0]
+    free = solution / scale
     weights = coefficients @ free
-    residual = max(float(centred[-1, -1] - 2.0 * free @ moment + free @ normal @ free), 0.0)
+    # Large weights of opposite signs cancel in the factor, but not in products of sums.
+    outside = max(float(centred[-1, -1] - target @ target), 0.0)
+    residual = outside + float(np.sum(np.square(factor @ solution - target)))
     return Weights(
         p0=float(weights[0]),
         p=weights[1:],
@@ -100,6 +103,14 @@ def fit_weights(data: Data, r: Array, sign: float = 1.0, rule: str = NON_NEGATIV
         rms=float(np.sqrt(residual / count)),
         condition=condition,
     )
+
+
+def _cholesky(correlation: Array) -> Array | None:
+    """Give the upper factor; None where rounding of the sums leaves the matrix without one."""
+    try:
+        return np.asarray(np.linalg.cholesky(correlation).T)
+    except np.linalg.LinAlgError:
+        return None
 
 
 def _by_qr(data: Data, r: Array, sign: float, scaled_basis: Array) -> tuple[Array, Array]:
