@@ -298,7 +298,9 @@ def weights_left(p: Array, working: NDArray[np.bool_]) -> Array:
         Shape (n,), which plays to keep.
     """
     owner = np.cumsum(working) - 1
-    return np.bincount(owner[owner >= 0], p[owner >= 0], minlength=int(working.sum()))
+    kept: Array = np.zeros(int(working.sum()))
+    np.add.at(kept, owner[owner >= 0], p[owner >= 0])
+    return kept
 
 
 def layout_of(fit: Fit) -> PlayLayout:
