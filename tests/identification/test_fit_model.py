@@ -151,6 +151,8 @@ def test_a_memory_element_keeps_what_is_no_parameter() -> None:
     ("options", "said"),
     [
         ({"free": []}, "no constant is free"),
+        ({"free": 5}, "free is of type int"),
+        ({"bounds": [("stop.r", (0.0, 1.0))]}, "bounds is of type list"),
         ({"free": ["stop.q"]}, "no constant 'stop.q'; it has stop.r, affine.gain, affine.offset"),
         ({"bounds": {"stop.r": (0.5, 1.0)}}, "stop.r is 0.4 in the model, outside its bounds 0.5"),
         ({"bounds": {"stop.r": (1.0, 0.5)}}, "give the lower one first"),

@@ -298,7 +298,9 @@ def weights_left(p: Array, working: NDArray[np.bool_]) -> Array:
         Shape (n,), which plays to keep.
     """
     owner = np.cumsum(working) - 1
-    return np.bincount(owner[owner >= 0], p[owner >= 0], minlength=int(working.sum()))
+    left = np.zeros(int(working.sum()))
+    np.add.at(left, owner[owner >= 0], p[owner >= 0])
+    return left
 
 
 def layout_of(fit: Fit) -> PlayLayout:
