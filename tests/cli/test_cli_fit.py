@@ -59,6 +59,20 @@ def test_what_is_not_determined_has_a_dash_and_a_reason(
     assert not hyst.load(folder / "out" / "model.json").description.provenance.options
 
 
+def test_a_delay_counted_in_other_samples_is_refused(
+    files: tuple[Path, Path], run: Callable, folder: Path
+):
+    _, record = files
+    plays = hyst.PrandtlIshlinskii([0.4], [1.0], p0=0.8)
+    about = hyst.operators.ModelDescription(dt=5e-3, delay=4)
+    plays.with_description(about).save(folder / "late.json")
+    ended = run("fit", folder / "late.json", record, *COLUMNS, "-o", "out")
+    assert ended.code == 2
+    assert "4 samples of 0.005 s, the record's are of 0.001 s; give --delay" in ended.err
+    ended = run("fit", folder / "late.json", record, *COLUMNS, "--delay", 20, "-o", "out")
+    assert ended.code == 0
+
+
 def test_bounds_and_validation(files: tuple[Path, Path], run: Callable, folder: Path):
     model, record = files
     bound = ["--bound", "prandtl_ishlinskii.p0=0.9,2", "--free", "prandtl_ishlinskii"]

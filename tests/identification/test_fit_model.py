@@ -115,6 +115,14 @@ def test_what_cannot_be_told_apart_is_named() -> None:
     assert any("do not tell apart" in each for each in found.undetermined)
 
 
+def test_what_several_directions_share_is_named_once() -> None:
+    true = Affine(2.0) @ Affine(0.5, 0.1) @ hyst.PrandtlIshlinskii([0.4], [0.3], p0=1.0)
+    found = hyst.fit(true, record(true, noise=0.01), start=0)
+    assert len(found.undetermined) == 1
+    unsure = np.flatnonzero(np.isnan(found.standard_errors))
+    assert all(found.undetermined[0].count(found.parameter_names[i]) == 1 for i in unsure)
+
+
 def test_all_that_has_no_standard_error_for_want_of_others_is_named() -> None:
     """The gain is known but for a factor of all weights, also of the smallest."""
     plays = hyst.PrandtlIshlinskii([0.2, 0.03, 0.02], [0.1, 0.3, 0.6], p0=1.0)
@@ -151,6 +159,8 @@ def test_a_memory_element_keeps_what_is_no_parameter() -> None:
     ("options", "said"),
     [
         ({"free": []}, "no constant is free"),
+        ({"free": 5}, "free is of type int"),
+        ({"bounds": [("stop.r", (0.0, 1.0))]}, "bounds is of type list"),
         ({"free": ["stop.q"]}, "no constant 'stop.q'; it has stop.r, affine.gain, affine.offset"),
         ({"bounds": {"stop.r": (0.5, 1.0)}}, "stop.r is 0.4 in the model, outside its bounds 0.5"),
         ({"bounds": {"stop.r": (1.0, 0.5)}}, "give the lower one first"),

@@ -33,6 +33,10 @@ GIVEN = record(TRUE_PI)
         ({"delay": 1.5}, "delay is 1.5"),
         ({"start": 3000}, "start is 3000"),
         ({"start": -1}, "start is -1"),
+        ({"max_iterations": -1}, "max_iterations is -1"),
+        ({"max_iterations": None}, "max_iterations is None"),
+        ({"validation": None}, "validation record is of type NoneType"),
+        ({"validation": [GIVEN.u]}, "validation record 1 is ndarray"),
     ],
 )
 def test_arguments_that_cannot_be_used(arguments: dict[str, Any], said: str) -> None:
@@ -49,6 +53,22 @@ def test_no_record() -> None:
 def test_something_else_than_a_record() -> None:
     with pytest.raises(hyst.InputError, match="ndarray"):
         hyst.identify([GIVEN.u])  # type: ignore[list-item]
+
+
+def test_nothing_of_a_record() -> None:
+    with pytest.raises(hyst.InputError, match="record is of type NoneType"):
+        hyst.identify(None)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("family", ["auto", *hyst.families])
+@pytest.mark.parametrize("left", [1, 2, 3, 4, 5, 7, 10, 15])
+def test_a_start_that_leaves_next_to_nothing_is_used_or_refused(family: str, left: int) -> None:
+    """The delay is looked for among the samples that are used, and leaves some of them."""
+    try:
+        found = hyst.identify(GIVEN, family=family, start=len(GIVEN) - left)
+    except (hyst.NotIdentifiableError, hyst.SolverError):
+        return
+    assert found.delay <= left // 2
 
 
 def test_records_of_different_sample_times() -> None:

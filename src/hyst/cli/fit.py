@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 import typer
@@ -106,7 +107,7 @@ def fit(
             records,
             free=None if free is None else [each.strip() for each in free.split(",")],
             bounds=bounds or None,
-            delay=guess.description.delay if delay is None else delay,
+            delay=_own_delay(guess, records[0]) if delay is None else delay,
             start=whole_or_auto(start, "start"),
             validation=validation,
             allow_unconverged=allow_unconverged,
@@ -117,6 +118,17 @@ def fit(
         written = write_fitted(found, records, validation, folder, sources)
     tell_fitted(found, records)
     show_files(written)
+
+
+def _own_delay(guess: hyst.Operator, record: hyst.Record) -> int:
+    """Give the delay of the model file, whose samples are those of the record it was made from."""
+    about = guess.description
+    if about.delay and about.dt is not None and not math.isclose(about.dt, record.dt, rel_tol=1e-6):
+        raise hyst.InputError(
+            f"the model's delay is {about.delay} samples of {about.dt:.6g} s, the record's are of "
+            f"{record.dt:.6g} s; give --delay in samples of the record"
+        )
+    return about.delay
 
 
 def _as_bound(text: str) -> tuple[str, tuple[float, float]]:

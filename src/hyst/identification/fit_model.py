@@ -133,7 +133,7 @@ def fit(
     if not isinstance(model, Operator):
         raise InputError(f"the model is of type {type(model).__name__}; give an operator")
     asked = options_asked(fit, locals())
-    given, judged = listed(records), listed(validation)
+    given, judged = listed(records), listed(validation, "validation record")
     require_same_units((*given, *judged))
     parametrization, theta = parametrize_own(model, free, bounds or {})
     options = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
@@ -176,6 +176,10 @@ def parametrize_own(
     own = model.parameters()
     places = _free_places(own, free)
     lower, upper = own.lower.copy(), own.upper.copy()
+    if not isinstance(bounds, Mapping):
+        raise InputError(
+            f"bounds is of type {type(bounds).__name__}; give a dict of two numbers by name"
+        )
     for name, bound in bounds.items():
         low, high = _as_bound(name, bound)
         at = _places_of(own, name)
@@ -228,6 +232,8 @@ def _fitted(family: OwnModel, data: Data, options: Options) -> Fit:
 def _free_places(own: Parameters, free: Iterable[str] | None) -> list[int]:
     if free is None:
         places = list(range(len(own)))
+    elif not isinstance(free, Iterable):
+        raise InputError(f"free is of type {type(free).__name__}; give names of constants")
     else:
         names = [free] if isinstance(free, str) else list(free)
         places = sorted({int(place) for name in names for place in _places_of(own, name)})

@@ -90,7 +90,7 @@ def identify(
     True
     """
     asked = options_asked(identify, locals()) | options
-    given, judged = listed(records), listed(validation)
+    given, judged = listed(records), listed(validation, "validation record")
     require_same_units((*given, *judged))
     wanted = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
     families = chosen_families(family, options)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -28,7 +28,7 @@ class Options:
     say
         Told what is being done.
     delay, start, max_iterations, allow_unconverged
-        As of ``identify``, unchecked.
+        As of ``identify``; delay and start are checked with the records.
     """
 
     validation: tuple[Record, ...]
@@ -37,6 +37,9 @@ class Options:
     start: int | Literal["auto"] = "auto"
     max_iterations: int = 200
     allow_unconverged: bool = False
+
+    def __post_init__(self) -> None:
+        whole_number(self.max_iterations, "max_iterations", 0)
 
     def converged(self, fit: Fit) -> Fit:
         """Give a fit that converged, or one that need not have.
@@ -60,9 +63,30 @@ class Options:
         return fit
 
 
-def listed(records: Record | Sequence[Record]) -> tuple[Record, ...]:
-    """Give one or more records as a tuple."""
-    return (records,) if isinstance(records, Record) else tuple(records)
+def listed(records: Record | Sequence[Record], name: str = "record") -> tuple[Record, ...]:
+    """Give one or more records as a tuple.
+
+    Parameters
+    ----------
+    records, name
+        The records, and what messages call one.
+
+    Raises
+    ------
+    InputError
+        If they are something else.
+    """
+    if isinstance(records, Record):
+        return (records,)
+    if not isinstance(records, Iterable):
+        raise InputError(
+            f"{name} is of type {type(records).__name__}; give a hyst.Record or a list of them"
+        )
+    given = tuple(records)
+    for number, record in enumerate(given, 1):
+        if not isinstance(record, Record):
+            raise InputError(f"{name} {number} is {type(record).__name__}; give a hyst.Record")
+    return given
 
 
 def silent(_: str) -> None:

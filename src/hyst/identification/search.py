@@ -108,6 +108,7 @@ def find(records: tuple[Record, ...], families: Sequence[Family], options: Optio
     if any(not task.family.answers_late for task in tasks):
         options.say("delay")
     tasks = _with_delay(tasks, options)
+    _require_samples(tasks)
     fit, task, candidates, refusals = _search(tasks, options)
     if options.delay == AUTO and fit.family.has_memory and not fit.family.answers_late:
         delay = refine_delay(task.data, fit)

@@ -43,9 +43,10 @@ def estimate_delay(data: Data) -> int:
     Returns
     -------
     int
-        Samples, at least 0 and at most a quarter of the shortest usual stroke.
+        Samples, at least 0 and at most a quarter of the shortest usual stroke, or half of what of
+        the shortest record is used.
     """
-    longest = min(_longest_delay(record.u) for record in data.records)
+    longest = min(_half_of_used(data), *(_longest_delay(record.u) for record in data.records))
     if longest == 0:
         return 0
     general = _GeneralModel.of(data.delayed(longest))
@@ -85,9 +86,10 @@ def refine_delay(data: Data, fit: Fit) -> int:
     so_far = _mean_square(data, fit, data.delay)
     general = _GeneralModel.of(data).mean_square(data.delay)
     best, least = data.delay, so_far
+    most = _half_of_used(data)
     for step in (-1, 1):
         delay = data.delay + step
-        while delay >= 0:
+        while 0 <= delay <= most:
             error = _mean_square(data, fit, delay)
             if error >= least:
                 break
@@ -107,6 +109,11 @@ def _mean_square(data: Data, fit: Fit, delay: int) -> float:
     theta = fit.family.solve(fit.problem(searched), fit.solution.theta, REFIT_ITERATIONS).theta
     residual = fit.problem(shifted).residual(theta)
     return float(residual @ residual) / residual.size
+
+
+def _half_of_used(data: Data) -> int:
+    """Give half the samples used of the shortest record: a longer delay would leave too few."""
+    return min(len(r) - s for r, s in zip(data.records, data.starts, strict=True)) // 2
 
 
 def _longest_delay(u: Array) -> int:

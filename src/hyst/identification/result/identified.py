@@ -22,7 +22,7 @@ class Candidate:
     Parameters
     ----------
     family
-        ``linear``, ``pi``, ``gpi`` or ``mpi``.
+        Its name in ``hyst.families``; empty for a model of no family, as of ``hyst.fit``.
     plays
         Number of plays.
     parameters
@@ -53,7 +53,7 @@ class Identified:
     model
         The operator, without delay, so that it has an exact inverse.
     family
-        ``linear``, ``pi``, ``gpi`` or ``mpi``.
+        Its name in ``hyst.families``; empty for a model of no family, as of ``hyst.fit``.
     delay
         Whole samples by which the measured output lags the model's output.
     parameter_names, parameter_values, standard_errors

@@ -144,20 +144,33 @@ class FitSpread:
         Returns
         -------
         tuple of str
-            Sentences, none twice.
+            Sentences, none of which names what another does.
         """
+        disturbed = self.spread.disturbed(estimates.by_theta[:, self.inside])
         sentences = []
-        for disturbed in self.spread.disturbed(estimates.by_theta[:, self.inside]).T:
-            which = np.flatnonzero(disturbed)
-            if which.size == 0:
-                continue
-            names = ", ".join(estimates.names[i] for i in which)
+        for together in _joined(disturbed):
+            names = ", ".join(
+                name for name, one in zip(estimates.names, together, strict=True) if one
+            )
             sentences.append(
                 f"the records do not tell apart {names}; their values are one choice of many"
-                if which.size > 1
+                if together.sum() > 1
                 else f"the records do not determine {names}; its value is one choice of many"
             )
-        return tuple(dict.fromkeys(sentences))
+        return tuple(sentences)
+
+
+def _joined(disturbed: NDArray[np.bool_]) -> list[NDArray[np.bool_]]:
+    """Join directions that share an estimate, for any mixture of them is one, too.
+
+    Takes shape (q, k), which estimates each direction disturbs; gives shape (q,) for each group.
+    """
+    groups: list[NDArray[np.bool_]] = []
+    for column in disturbed.T[disturbed.any(axis=0)]:
+        shared = [each for each in groups if (each & column).any()]
+        groups = [each for each in groups if not (each & column).any()]
+        groups.append(np.logical_or.reduce([column, *shared]))
+    return groups
 
 
 def spread_of_fit(data: Data, fit: Fit) -> FitSpread:
