@@ -91,8 +91,8 @@ def same_branches(traces: list[Trace]) -> int:
     return len(traces[0].regimes)
 
 
-def compare(operator: Operator, u: Array, derivative: str) -> float:
-    """Compare all columns; give the share of entries that could be compared."""
+def assert_agrees(operator: Operator, u: Array, derivative: str) -> float | None:
+    """Compare all columns; give the share of entries that could be compared, if there are any."""
     model = operator.to_dict()
     jacobian = jacobian_by(operator, u, derivative)
     compared = entries = 0
@@ -115,7 +115,7 @@ def compare(operator: Operator, u: Array, derivative: str) -> float:
         )
         compared += count
         entries += u.size
-    return compared / max(entries, 1)
+    return compared / entries if entries else None
 
 
 def random_walk(seed: int, samples: int = 60) -> Array:
@@ -132,8 +132,10 @@ def test_examples(operator: Operator, seed: int, derivative: str) -> None:
         two_points(operator.to_dict(), place, derivative) for place in places(operator.to_dict())
     ):
         return  # a play or stop without width alone
+    share = assert_agrees(operator, random_walk(seed), derivative)
     # A step of 1e-5 changes the branch of few of 60 samples about 1 apart.
-    assert compare(operator, random_walk(seed), derivative) > 0.95
+    assert share is not None
+    assert share > 0.95
 
 
 @pytest.mark.parametrize("kind", sorted({each.kind for each in TWINS.values()} | {"inverse"}))
@@ -143,7 +145,8 @@ def test_examples(operator: Operator, seed: int, derivative: str) -> None:
 def test_random_operators(kind: str, data: st.DataObject, seed: int, derivative: str) -> None:
     operator = data.draw(RANDOM[kind])
     assume(not jumps_behind_rounding(operator.to_dict()))
-    compare(operator, random_walk(seed, samples=25), derivative)
+    share = assert_agrees(operator, random_walk(seed, samples=25), derivative)
+    assert share is None or share > 0.0, "nothing was compared"
 
 
 @pytest.mark.parametrize("operator", OTHERS.values(), ids=list(OTHERS))

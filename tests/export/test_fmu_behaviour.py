@@ -197,14 +197,19 @@ def test_a_parameter_that_cannot_be(start, name: str, value: float, word: str) -
 
 
 def test_output_fault_and_strangers_cannot_be_set(start) -> None:
-    run = start("pi")
-    with run.refusal(ERROR):
+    run = start("pi").initialize()
+    before = run.run(rough_signal(10), 1.0)
+    with run.refusal(ERROR) as said:
         run.set(y=1.0)
+    assert "only inputs and parameters can be set" in said[0]
     run.variables["stranger"] = SimpleNamespace(valueReference=1000)
-    with run.refusal(ERROR):
+    with run.refusal(ERROR) as said:
         run.set(stranger=1.0)
-    with run.refusal(ERROR):
+    assert "only inputs and parameters can be set" in said[0]
+    with run.refusal(ERROR) as said:
         run.get("stranger")
+    assert "no real variable of this value reference" in said[0]
+    assert run.get("y") == before[-1]
 
 
 def test_growth_of_rate_dependent_thresholds_is_fixed(start) -> None:
@@ -240,10 +245,13 @@ def test_damaged_states_are_refused(start, place: int) -> None:
 
 def test_states_of_another_model_are_refused(start) -> None:
     one, other = start("pi").initialize(), start("sampled").initialize()
+    before = other.run(np.array([3.0, -2.0]), 0.01)
     state = one.fmu.getFMUState()
     read = getattr(other.fmu, "deserializeFMUState", None) or other.fmu.deSerializeFMUstate
-    with other.refusal(ERROR):
+    with other.refusal(ERROR) as said:
         read(one.fmu.serializeFMUState(state))
+    assert "not those of a state of this FMU" in said[0]
+    assert other.get("y") == before[-1]
     one.fmu.freeFMUState(state)
 
 

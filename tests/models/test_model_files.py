@@ -39,7 +39,7 @@ def file(tmp_path: Path) -> Path:
     return tmp_path / "model.json"
 
 
-def refused(file: Path, what: str) -> None:
+def assert_refused(file: Path, what: str) -> None:
     with pytest.raises(InputError, match=what) as refusal:
         load(file)
     message = str(refusal.value)
@@ -125,9 +125,9 @@ def test_descriptions_that_are_none(entries: dict[str, Any], message: str) -> No
 
 
 def test_no_file(file: Path, tmp_path: Path) -> None:
-    refused(file, "cannot be read: No such file")
-    refused(tmp_path, "cannot be read: Is a directory")
-    refused(tmp_path / "model.json" / "deeper", "cannot be read")
+    assert_refused(file, "cannot be read: No such file")
+    assert_refused(tmp_path, "cannot be read: Is a directory")
+    assert_refused(tmp_path / "model.json" / "deeper", "cannot be read")
     with pytest.raises(InputError, match="cannot be read: embedded null"):
         load("model\0.json")
 
@@ -152,7 +152,7 @@ def test_no_file(file: Path, tmp_path: Path) -> None:
 )
 def test_no_model_file(file: Path, content: bytes, message: str) -> None:
     file.write_bytes(content)
-    refused(file, message)
+    assert_refused(file, message)
 
 
 def test_no_truncated_file_is_taken(file: Path) -> None:
@@ -160,7 +160,7 @@ def test_no_truncated_file_is_taken(file: Path) -> None:
     whole = file.read_bytes()
     for length in range(0, len(whole) - 2, 7):  # the last two bytes are the brace and a line feed
         file.write_bytes(whole[:length])
-        refused(file, "not JSON")
+        assert_refused(file, "not JSON")
 
 
 def changed(file: Path, change: Callable[[dict[str, Any]], None], model: Operator = MODEL) -> None:
@@ -228,7 +228,7 @@ def test_entries_of_the_file(
     file: Path, change: Callable[[dict[str, Any]], None], message: str
 ) -> None:
     changed(file, change)
-    refused(file, message)
+    assert_refused(file, message)
 
 
 @pytest.mark.parametrize(
@@ -261,10 +261,10 @@ def test_entries_of_the_file(
 )
 def test_entries_of_a_bank(file: Path, key: str, value: Any, message: str) -> None:
     changed(file, entry("model", key, value=value), BANK)
-    refused(file, message)
+    assert_refused(file, message)
     # The same inside other models, however deep.
     changed(file, entry("model", "stages", 1, "pi", key, value=value))
-    refused(file, message)
+    assert_refused(file, message)
 
 
 @pytest.mark.parametrize(
@@ -288,7 +288,7 @@ def test_entries_of_other_operators(
     file: Path, model: Operator, key: str, value: Any, message: str
 ) -> None:
     changed(file, entry("model", key, value=value), model)
-    refused(file, message)
+    assert_refused(file, message)
 
 
 @pytest.mark.parametrize(
@@ -301,7 +301,7 @@ def test_numbers_that_are_not_finite(file: Path, number: str, key: str) -> None:
     old = {"p0": '"p0": 0.3', "p": '"p": [0.5', "dt": '"dt": 0.3'}[key]
     assert old in text
     file.write_text(text.replace(old, re.sub(r"[\d.]+$", number, old)), encoding="utf-8")
-    refused(file, "the number .* is not finite in double precision")
+    assert_refused(file, "the number .* is not finite in double precision")
 
 
 def test_entries_given_twice(file: Path) -> None:
@@ -309,7 +309,7 @@ def test_entries_given_twice(file: Path) -> None:
     text = file.read_text(encoding="utf-8")
     for once in ('"version": 2', '"kind": "play"', '"r": 1.0'):
         file.write_text(text.replace(once, f"{once}, {once}"), encoding="utf-8")
-        refused(file, "the entry .* is there more than once")
+        assert_refused(file, "the entry .* is there more than once")
 
 
 def test_operators_nested_too_deeply(file: Path) -> None:
@@ -319,7 +319,7 @@ def test_operators_nested_too_deeply(file: Path) -> None:
     model += "]}" * depth
     frame = '{"format": "hyst model", "version": 1, "description": {}, "model": '
     file.write_text(frame + model + "}", encoding="utf-8")
-    refused(file, "nested too deeply")
+    assert_refused(file, "nested too deeply")
 
 
 def test_nested_compositions_are_flattened(file: Path) -> None:
@@ -337,7 +337,7 @@ def test_long_lists_and_many_entries_take_no_time(file: Path) -> None:
     assert load(file) == long
     many = {f"k{i}": 1.0 for i in range(n)}
     changed(file, lambda content: content["model"].update(many), Play(1.0))
-    refused(file, "unknown entry 'k0'")
+    assert_refused(file, "unknown entry 'k0'")
 
 
 def test_a_model_without_inverse_is_loaded(file: Path) -> None:
