@@ -1,8 +1,8 @@
 """From records and families to one final fit: units, delay, choice, fit.
 
 Everything between first sight of the records and the final fit is done on records in units of
-powers of two in which the ranges of both signals lie between 1 and 2. So results do not depend on
-the units of the records: scaling a record by powers of two scales the result, bit for bit.
+powers of two in which the ranges of both signals lie between 1 and 2. So scaling a
+record by powers of two scales the result, bit for bit; other factors change the rounding of it.
 """
 
 from __future__ import annotations
