@@ -3,6 +3,7 @@
 
 from hyst import compensation as compensation
 from hyst import control as control
+from hyst import diagnosis as diagnosis
 from hyst import export as export
 from hyst import identification as identification
 from hyst import io as io
@@ -12,6 +13,8 @@ from hyst import operators as operators
 from hyst import report as report
 from hyst import signals as signals
 from hyst._loading import load as load
+from hyst.diagnosis import Diagnosis as Diagnosis
+from hyst.diagnosis import diagnose as diagnose
 from hyst.errors import HystError as HystError
 from hyst.errors import InputError as InputError
 from hyst.errors import MissingExtraError as MissingExtraError

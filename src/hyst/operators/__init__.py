@@ -15,6 +15,7 @@ from hyst.operators.registry import operator_from_dict
 from hyst.operators.stepper import Stepper
 from hyst.operators.stop import Stop
 from hyst.operators.traits import Degree, Traits
+from hyst.operators.verdict import Verdict
 
 __all__ = [
     "Affine",
@@ -31,6 +32,7 @@ __all__ = [
     "Stepper",
     "Stop",
     "Traits",
+    "Verdict",
     "data_hash",
     "operator_from_dict",
 ]

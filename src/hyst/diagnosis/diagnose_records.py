@@ -1,0 +1,120 @@
+"""What records can tell, before any model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.diagnosis.evidence import Evidence
+from hyst.diagnosis.finding import NO_SAMPLES, SEVERITIES, Finding, Severity
+from hyst.diagnosis.registry import FINDERS
+from hyst.errors import InputError
+from hyst.signals import Record
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """What was found in records, the worst first.
+
+    Parameters
+    ----------
+    findings
+        Each with a name, a severity, a sentence and advice.
+    """
+
+    findings: tuple[Finding, ...]
+
+    def of(self, severity: Severity) -> tuple[Finding, ...]:
+        """Give the findings of one severity.
+
+        Parameters
+        ----------
+        severity
+            One of those a finding may have.
+        """
+        return tuple(each for each in self.findings if each.severity == severity)
+
+    def named(self, name: str) -> tuple[Finding, ...]:
+        """Give the findings of one name.
+
+        Parameters
+        ----------
+        name
+            In the registry of findings.
+        """
+        return tuple(each for each in self.findings if each.name == name)
+
+    def left_out(self, record: int) -> NDArray[np.intp]:
+        """Give the samples of a record that are no measurements, ascending.
+
+        Parameters
+        ----------
+        record
+            Which, counted from 1.
+        """
+        parts = [each.samples for each in self.of("left out") if each.record == record]
+        return np.unique(np.concatenate([NO_SAMPLES, *parts]))
+
+    def summary(self) -> str:
+        """Give all sentences, one paragraph for each severity, for people.
+
+        Returns
+        -------
+        str
+        """
+        lines = []
+        for severity in SEVERITIES:
+            found = self.of(severity)
+            if not found:
+                continue
+            lines.append(f"{severity}:")
+            for each in found:
+                advice = f" {each.advice}" if each.advice else ""
+                lines.append(f"  {each.name}: {each.sentence}{advice}")
+        return "\n".join(lines)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give everything as plain numbers and text."""
+        return {"findings": [each.to_dict() for each in self.findings]}
+
+
+def diagnose(records: Record | Sequence[Record]) -> Diagnosis:
+    """Say what records of one actuator can tell and what they cannot, before any model.
+
+    Parameters
+    ----------
+    records
+        One or more.
+
+    Returns
+    -------
+    Diagnosis
+        ``.findings``, each with ``.name``, ``.severity``, ``.sentence`` and ``.advice``, the worst
+        first; ``.summary()`` for people.
+
+    Raises
+    ------
+    InputError
+        If there is no record, or something is none.
+
+    Examples
+    --------
+    >>> import numpy as np, hyst
+    >>> u = np.sin(np.linspace(0.0, 20.0, 2000))
+    >>> found = hyst.diagnose(hyst.Record(u, 2.0 * u, dt=1e-3))
+    >>> found.of("refusal")
+    ()
+    """
+    given = (records,) if isinstance(records, Record) else tuple(records)
+    if not given:
+        raise InputError("there is no record; give at least one")
+    for number, record in enumerate(given, 1):
+        if not isinstance(record, Record):
+            raise InputError(f"record {number} is {type(record).__name__}; give a hyst.Record")
+    evidence = Evidence(given)
+    found = [each for find in FINDERS for each in find(evidence)]
+    return Diagnosis(tuple(sorted(found, key=lambda each: SEVERITIES.index(each.severity))))
