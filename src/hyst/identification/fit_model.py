@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from hyst.diagnosis import diagnose
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.selection import settled
 from hyst.identification.families.family import Family, Fit, Start, Words
@@ -142,9 +143,10 @@ def fit(
     for record in (*given, *judged):
         model.require_sample_time(record.dt)
     with threadpool_limits(1, user_api="blas"):
+        diagnosis = diagnose(given)
         found = _fitted(OwnModel(parametrization, theta), data, options)
         require_sample_time(judged, data)
-        told = identified_from_fit(data, found, (), judged, ())
+        told = identified_from_fit(data, found, (), judged, (), diagnosis)
     # With other constants it is of the family it was of.
     family = model.description.family
     about = replace(told.description, family=family)

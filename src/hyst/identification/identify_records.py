@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from threadpoolctl import threadpool_limits
 
+from hyst.diagnosis import diagnose
 from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families
 from hyst.identification.options import Options, listed, require_sample_time, silent
@@ -95,13 +96,14 @@ def identify(
     wanted = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
     families = chosen_families(family, options)
     with threadpool_limits(1, user_api="blas"):
+        diagnosis = diagnose(given)
         # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
         found = find(given, families, wanted)
         require_sample_time(judged, found.data)
         for number, record in enumerate(judged, 1):
             found.fit.operator.require_sample_time(record.dt, f"validation record {number}")
         identified = identified_from_fit(
-            found.data, found.fit, found.candidates, judged, found.notes
+            found.data, found.fit, found.candidates, judged, found.notes, diagnosis
         )
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
     return traced(told, given, asked)

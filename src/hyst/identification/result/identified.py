@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.diagnosis import Diagnosis
 from hyst.identification.record_use.used_samples import UsedSamples
-from hyst.operators import ModelDescription, Operator
+from hyst.operators import ModelDescription, Operator, Verdict
 from hyst.signals import Metrics
 
 Array = NDArray[np.float64]
@@ -74,6 +75,13 @@ class Identified:
         Samples of each training record that took part.
     description
         Names, units and ranges, for the model file.
+    verdict
+        How far the model can be trusted, and why.
+    delay_interval
+        Lowest and highest delay that the records do not exclude, samples; both the delay itself
+        where it was given.
+    diagnosis
+        What the records showed before any model.
     """
 
     model: Operator
@@ -89,6 +97,9 @@ class Identified:
     iterations: int
     used: tuple[UsedSamples, ...]
     description: ModelDescription
+    verdict: Verdict
+    delay_interval: tuple[float, float]
+    diagnosis: Diagnosis
 
     def predict(self, u: ArrayLike) -> Array:
         """Give the output as it would be measured: the model's output, delayed.

@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.diagnosis import Diagnosis
 from hyst.identification.families.family import Estimates, Fit
 from hyst.identification.fit.problem import Evaluation, model_output
+from hyst.identification.judgement.judge import judge
 from hyst.identification.record_use.used_samples import Data, prepare
 from hyst.identification.result.identified import Candidate, Identified
 from hyst.identification.result.standard_errors import Spread, spread_of_estimates
@@ -28,6 +30,7 @@ def identified_from_fit(
     candidates: tuple[Candidate, ...],
     validation: Sequence[Record],
     notes: tuple[str, ...],
+    diagnosis: Diagnosis,
 ) -> Identified:
     """Put the result of an identification together.
 
@@ -43,6 +46,8 @@ def identified_from_fit(
         Records that took no part.
     notes
         Sentences about what was left out before the fit.
+    diagnosis
+        What the records showed before any model.
 
     Returns
     -------
@@ -54,6 +59,7 @@ def identified_from_fit(
         spread = spread_of_fit(data, fit)
         errors = spread.of(estimates.by_theta)
         not_told_apart = spread.not_told_apart(estimates)
+    metrics = metrics_by_record(data, operator, validation)
     return Identified(
         model=operator,
         family=fit.family.name,
@@ -62,12 +68,15 @@ def identified_from_fit(
         parameter_values=estimates.values,
         standard_errors=errors,
         undetermined=notes + fit.family.notes(fit, data) + not_told_apart,
-        metrics=metrics_by_record(data, operator, validation),
+        metrics=metrics,
         candidates=candidates,
         status=fit.solution.status,
         iterations=fit.solution.iterations,
         used=data.used(),
         description=describe(data, fit.family.name),
+        verdict=judge(data, fit, diagnosis, metrics),
+        delay_interval=(data.delay, data.delay),
+        diagnosis=diagnosis,
     )
 
 
