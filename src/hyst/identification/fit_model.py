@@ -16,7 +16,7 @@ from hyst.identification.choice.selection import settled
 from hyst.identification.families.family import Family, Fit, Start, Words
 from hyst.identification.fit.bounded_least_squares import Solution
 from hyst.identification.fit.parametrization import Parametrization, selection
-from hyst.identification.options import Options, as_delay, listed, require_sample_time, silent
+from hyst.identification.options import Options, as_delay, listed, silent
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data, prepare, require_same_units
 from hyst.identification.result.identified import Identified
@@ -69,7 +69,7 @@ def fit(
     *,
     free: Iterable[str] | None = None,
     bounds: Mapping[str, Bound] | None = None,
-    delay: int = 0,
+    delay: float = 0,
     start: int | Literal["auto"] = "auto",
     validation: Record | Sequence[Record] = (),
     max_iterations: int = 200,
@@ -138,14 +138,13 @@ def fit(
     require_same_units((*given, *judged))
     parametrization, theta = parametrize_own(model, free, bounds or {})
     options = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
-    data = prepare(given, start, 0, fewest_turns=0)
+    data = prepare(given, start, fewest_turns=0)
     data = data.delayed(as_delay(delay, data, ""))
     for record in (*given, *judged):
         model.require_sample_time(record.dt)
     with threadpool_limits(1, user_api="blas"):
         diagnosis = diagnose(given)
         found = _fitted(OwnModel(parametrization, theta), data, options)
-        require_sample_time(judged, data)
         told = identified_from_fit(data, found, (), judged, (), diagnosis)
     # With other constants it is of the family it was of.
     family = model.description.family

@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 from hyst.diagnosis import diagnose
 from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families
-from hyst.identification.options import Options, listed, require_sample_time, silent
+from hyst.identification.options import Options, listed, silent
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import require_same_units
 from hyst.identification.result.identified import Identified
@@ -24,7 +24,7 @@ def identify(
     records: Record | Sequence[Record],
     *,
     family: str | Family = "auto",
-    delay: int | Literal["auto"] = "auto",
+    delay: float | Literal["auto"] = "auto",
     start: int | Literal["auto"] = "auto",
     validation: Record | Sequence[Record] = (),
     max_iterations: int = 200,
@@ -99,7 +99,6 @@ def identify(
         diagnosis = diagnose(given)
         # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
         found = find(given, families, wanted)
-        require_sample_time(judged, found.data)
         for number, record in enumerate(judged, 1):
             found.fit.operator.require_sample_time(record.dt, f"validation record {number}")
         identified = identified_from_fit(

@@ -69,7 +69,7 @@ class _Task:
     scales: tuple[float, float]
     notes: tuple[str, ...]
 
-    def delayed(self, delay: int) -> _Task:
+    def delayed(self, delay: float) -> _Task:
         return replace(self, given=self.given.delayed(delay), data=self.data.delayed(delay))
 
     def searched(self) -> Data:

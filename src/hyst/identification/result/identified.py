@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import finite_vector
 from hyst.diagnosis import Diagnosis
+from hyst.identification.record_use.part_of_a_sample import later
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.operators import ModelDescription, Operator, Verdict
 from hyst.signals import Metrics
@@ -56,7 +59,8 @@ class Identified:
     family
         Its name in ``hyst.families``; empty for a model of no family, as of ``hyst.fit``.
     delay
-        Whole samples by which the measured output lags the model's output.
+        Samples by which the measured output lags the model's output; parts of one count, and it is
+        negative where the output is ahead of the input.
     parameter_names, parameter_values, standard_errors
         The free parameters with their standard errors, which take the autocorrelation of the
         residual into account; NaN where a value lies on a bound or is not determined.
@@ -86,7 +90,7 @@ class Identified:
 
     model: Operator
     family: str
-    delay: int
+    delay: float
     parameter_names: tuple[str, ...]
     parameter_values: Array
     standard_errors: Array
@@ -112,12 +116,14 @@ class Identified:
         Returns
         -------
         numpy.ndarray
-            Shape (N,). The first ``delay`` samples repeat the first output.
+            Shape (N,). The first ``delay`` samples repeat the first output; where the output is
+            ahead of the input, the last ones repeat the last.
         """
-        y = self.model(u)
-        if self.delay == 0:
-            return y
-        return np.concatenate([np.full(min(self.delay, y.size), y[0]), y])[: y.size]
+        given = finite_vector(u, "u")
+        late = math.floor(self.delay)
+        y = self.model(later(given, self.delay - late))
+        places = np.clip(np.arange(y.size) - late, 0, y.size - 1)
+        return np.asarray(y[places])
 
     def to_dict(self) -> dict[str, Any]:
         """Give everything but the model as plain numbers and text, for metrics.json.

@@ -13,6 +13,7 @@ from hyst.diagnosis import Diagnosis
 from hyst.identification.families.family import Estimates, Fit
 from hyst.identification.fit.problem import Evaluation, model_output
 from hyst.identification.judgement.judge import judge
+from hyst.identification.record_use.part_of_a_sample import lag_in_samples
 from hyst.identification.record_use.used_samples import Data, prepare
 from hyst.identification.result.identified import Candidate, Identified
 from hyst.identification.result.standard_errors import Spread, spread_of_estimates
@@ -63,7 +64,7 @@ def identified_from_fit(
     return Identified(
         model=operator,
         family=fit.family.name,
-        delay=data.delay,
+        delay=data.lag,
         parameter_names=estimates.names,
         parameter_values=estimates.values,
         standard_errors=errors,
@@ -75,7 +76,7 @@ def identified_from_fit(
         used=data.used(),
         description=describe(data, fit.family.name),
         verdict=judge(data, fit, diagnosis, metrics),
-        delay_interval=(data.delay, data.delay),
+        delay_interval=(data.lag, data.lag),
         diagnosis=diagnosis,
     )
 
@@ -234,8 +235,14 @@ def metrics_by_record(
     metrics = _pair("training", data, operator)
     for number, record in enumerate(validation, 1):
         name = "validation" if len(validation) == 1 else f"validation {number}"
-        metrics |= _pair(name, prepare(record, "auto", data.delay), operator)
+        metrics |= _pair(name, _validation_data(record, data), operator)
     return metrics
+
+
+def _validation_data(record: Record, data: Data) -> Data:
+    """Prepare a record that takes no part: it lags by the same time as the others."""
+    lag = lag_in_samples(data.lag, data.records[0].dt, record.dt)
+    return prepare(record, "auto", lag)
 
 
 def _pair(name: str, data: Data, operator: Operator) -> dict[str, Metrics]:
@@ -275,6 +282,6 @@ def describe(data: Data, family: str) -> ModelDescription:
         output_low=float(data.measured().min()),
         output_high=float(data.measured().max()),
         dt=first.dt,
-        delay=data.delay,
+        delay=data.lag,
         family=family,
     )
