@@ -28,9 +28,8 @@ def with_gaps() -> tuple[hyst.Record, np.ndarray]:
 def test_sums_leave_out_what_does_not_count() -> None:
     given, kept = with_gaps()
     data = replace(prepare(given, 5, 3), kept=(kept,))
-    columns = np.column_stack(
-        [bank_matrix(data, R), np.ones(data.measured().size), data.measured()]
-    )
+    y = data.measured()
+    columns = np.column_stack([bank_matrix(data, R), np.ones(y.size), y])
     np.testing.assert_allclose(bank_gram(data, R), columns.T @ columns, rtol=1e-12)
     # 3000 samples, 5 before the start and 3 of the delay; 81 do not count, all after the start.
     assert y.size == sum(data.lengths()) == 3000 - 8 - 81
