@@ -64,6 +64,9 @@ class Data:
         Whether the memory is known at every start because the input has passed its range before.
     kept
         Shape (N,) for each record: which output samples count; None for all.
+    drifts
+        Shape (N,) for each record: slow drift that was taken out of its y; None where there was
+        none.
     measured_inputs
         The inputs as they were measured, where those of ``records`` are later by part of a sample.
     """
@@ -74,6 +77,7 @@ class Data:
     half_range: float
     settled: bool
     kept: tuple[NDArray[np.bool_] | None, ...] = ()
+    drifts: tuple[Array | None, ...] = ()
     measured_inputs: tuple[Array, ...] = ()
 
     @property
@@ -202,8 +206,19 @@ class Data:
             self,
             records=records,
             half_range=self.half_range * input_scale,
+            drifts=tuple(None if each is None else each * output_scale for each in self.drifts),
             measured_inputs=tuple(u * input_scale for u in self.measured_inputs),
         )
+
+    def with_drift(self) -> Data:
+        """Give the records with the drift that was taken out."""
+        if not self.drifts:
+            return self
+        records = tuple(
+            record if drift is None else replace(record, y=record.y + drift)
+            for record, drift in zip(self.records, self.drifts, strict=True)
+        )
+        return replace(self, records=records, drifts=())
 
 
 def prepare(
