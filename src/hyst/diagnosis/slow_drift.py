@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.special
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from hyst.diagnosis.repetition import Repetition, changes, repetition_of
 from hyst.signals import Record
@@ -129,7 +129,7 @@ def _block_means(record: Record, repeats: Repetition) -> tuple[Array, Array]:
     return matrix, output
 
 
-def _polynomials(at: Array | NDArray[np.intp], samples: int, degree: int) -> Array:
+def _polynomials(at: ArrayLike, samples: int, degree: int) -> Array:
     """Give Legendre polynomials of degree 1 and more over the record, shape (times, degree)."""
     t = 2.0 * np.asarray(at, dtype=np.float64) / max(samples - 1, 1) - 1.0
     return np.asarray(legendre.legvander(t, degree)[:, 1:])

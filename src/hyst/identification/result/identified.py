@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from hyst.checks.arrays import finite_vector
 from hyst.diagnosis import Diagnosis
 from hyst.identification.record_use.part_of_a_sample import later
 from hyst.identification.record_use.used_samples import UsedSamples
+from hyst.identification.result.bands import NEW, Bands, as_level
 from hyst.operators import ModelDescription, Operator, Verdict
 from hyst.signals import Metrics
 
@@ -86,6 +87,8 @@ class Identified:
         where it was given.
     diagnosis
         What the records showed before any model.
+    bands
+        What ``band`` is made of.
     """
 
     model: Operator
@@ -104,6 +107,7 @@ class Identified:
     verdict: Verdict
     delay_interval: tuple[float, float]
     diagnosis: Diagnosis
+    bands: Bands = field(repr=False)
 
     def predict(self, u: ArrayLike) -> Array:
         """Give the output as it would be measured: the model's output, delayed.
@@ -119,10 +123,64 @@ class Identified:
             Shape (N,). The first ``delay`` samples repeat the first output; where the output is
             ahead of the input, the last ones repeat the last.
         """
-        given = finite_vector(u, "u")
-        late = math.floor(self.delay)
-        y = self.model(later(given, self.delay - late))
-        places = np.clip(np.arange(y.size) - late, 0, y.size - 1)
+        return self._as_measured(self.model(self._input(u)))
+
+    def band(self, u: ArrayLike, level: float = 0.95) -> tuple[Array, Array]:
+        """Give between which outputs most samples will be measured, slow drift left aside.
+
+        The band holds the noise of the records, what the model leaves beside it, how sure its
+        constants are, how far rival models go apart that fit the records equally well, and, where
+        the drive leads the memory to states that no record contained, how much more may be wrong
+        there (``is_new``).
+
+        Parameters
+        ----------
+        u
+            Drive, shape (N,), input units, from the state of rest.
+        level
+            Share of the samples to hold, above 0 and below 1.
+
+        Returns
+        -------
+        low, high : numpy.ndarray
+            Shape (N,), output units.
+
+        Raises
+        ------
+        InputError
+            If the drive is no finite vector, or the level is not between 0 and 1.
+        """
+        share, given = as_level(level), self._input(u)
+        y = self.model(given)
+        half = self.bands.half_width(given, y, share)
+        return self._as_measured(y - half), self._as_measured(y + half)
+
+    def is_new(self, u: ArrayLike) -> NDArray[np.bool_]:
+        """Tell where a drive leads the memory to states that no record contained.
+
+        Parameters
+        ----------
+        u
+            Drive, shape (N,), input units, from the state of rest.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (N,): where the output is extrapolated.
+
+        Raises
+        ------
+        InputError
+            If the drive is no finite vector.
+        """
+        return np.asarray(self._as_measured(self.bands.distances(self._input(u))) > NEW)
+
+    def _input(self, u: ArrayLike) -> Array:
+        """Give an input later by the part of a sample that the delay has beyond whole ones."""
+        return later(finite_vector(u, "u"), self.delay - math.floor(self.delay))
+
+    def _as_measured(self, y: Array) -> Array:
+        places = np.clip(np.arange(y.size) - math.floor(self.delay), 0, y.size - 1)
         return np.asarray(y[places])
 
     def to_dict(self) -> dict[str, Any]:
