@@ -116,5 +116,9 @@ def diagnose(records: Record | Sequence[Record]) -> Diagnosis:
         if not isinstance(record, Record):
             raise InputError(f"record {number} is {type(record).__name__}; give a hyst.Record")
     evidence = Evidence(given)
-    found = [each for find in FINDERS for each in find(evidence)]
+    found: list[Finding] = []
+    for find in FINDERS:
+        new = tuple(find(evidence))
+        evidence.tell(new)
+        found += new
     return Diagnosis(tuple(sorted(found, key=lambda each: SEVERITIES.index(each.severity))))
