@@ -115,5 +115,3 @@ def _slope(record: Record) -> float:
     u, y = record.u - record.u.mean(), record.y - record.y.mean()
     energy = float(u @ u)
     return float(u @ y) / energy if energy > 0.0 else 0.0
-
-

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.diagnosis.memory_branches import turns_of
+from hyst.diagnosis.memory_branches import remembering_branches
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
@@ -15,10 +16,11 @@ Array = NDArray[np.float64]
 CELLS = 24
 # Near its ends a branch still shows how the drive turned round.
 _INNER = np.linspace(0.04, 0.96, CELLS + 1)
+INNER_SHARE = float(_INNER[-1] - _INNER[0])
 _MOST_LOOPS = 400
 _FEWEST_SAMPLES = 12  # of a branch
 _SAME_RANGE = 0.03
-_SHORTEST_SHARE = 0.02  # of the range of the drive
+_SHORTEST = 0.02  # of the range of the drive
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +41,11 @@ class Loop:
         ``|du/dt|`` there.
     samples
         Of a cell, on the mean.
+    closed
+        Whether it ends where it began.
+    memory
+        Turning levels that are remembered outside its range; None of a loop that starts where the
+        record does, for what came before is not known.
     """
 
     start: int
@@ -51,6 +58,8 @@ class Loop:
     up_rate: Array
     down_rate: Array
     samples: float
+    closed: bool
+    memory: tuple[float, ...] | None
 
     @property
     def middle(self) -> Array:
@@ -71,13 +80,27 @@ class Loop:
     def gain(self) -> float:
         """Slope of the line through the middle, output per input units."""
         t = np.linspace(-0.5, 0.5, CELLS)
-        step = (self.high - self.low) * float(_INNER[-1] - _INNER[0]) * (CELLS - 1) / CELLS
+        step = (self.high - self.low) * INNER_SHARE * (CELLS - 1) / CELLS
         return float(t @ self.middle) / float(t @ t) / step
 
     def like(self, other: Loop) -> bool:
         """Whether both have the same range."""
-        near = _SAME_RANGE * max(self.high - self.low, other.high - other.low)
+        near = self._near(other)
         return abs(self.low - other.low) <= near and abs(self.high - other.high) <= near
+
+    def comparable(self, other: Loop) -> bool:
+        """Whether an actuator without rates must run both alike: range and memory are the same."""
+        if not (self.closed and other.closed and self.like(other)):
+            return False
+        if self.memory is None or other.memory is None:
+            return self.memory is other.memory
+        return len(self.memory) == len(other.memory) and all(
+            abs(one - two) <= self._near(other)
+            for one, two in zip(self.memory, other.memory, strict=True)
+        )
+
+    def _near(self, other: Loop) -> float:
+        return _SAME_RANGE * max(self.high - self.low, other.high - other.low)
 
 
 def loops_of(record: Record, drift: float = 0.0) -> tuple[Loop, ...]:
@@ -90,20 +113,18 @@ def loops_of(record: Record, drift: float = 0.0) -> tuple[Loop, ...]:
     drift
         Of the output, output units per second; it is taken out.
     """
-    turns = turns_of(record.u)
-    ends = np.concatenate([[0], turns, [record.samples - 1]])
+    branches = remembering_branches(record.u)
     span = float(np.ptp(record.u))
-    # The first branch starts from rest and closes no loop, if there are others.
-    first = 1 if ends.size > 3 else 0
-    starts = range(first, ends.size - 2)
-    step = max(len(starts) // _MOST_LOOPS, 1)
+    pairs = list(pairwise(branches))
     found = []
-    for which in starts[::step]:
-        a, b, c = (int(each) for each in ends[which : which + 3])
-        loop = _loop(record, a, b, c, drift)
-        if loop is not None and loop.high - loop.low >= _SHORTEST_SHARE * span:
-            found.append(loop)
-    return tuple(found)
+    for (a, _, levels), (b, stop, _) in pairs[:: max(len(pairs) // _MOST_LOOPS, 1)]:
+        found.append(_loop(record, (a, b, stop - 1), levels, drift))
+    if len(branches) == 1:
+        # One loop from rest is all there is.
+        found.append(_loop(record, (0, branches[0][0], branches[0][1] - 1), None, drift))
+    return tuple(
+        each for each in found if each is not None and each.high - each.low >= _SHORTEST * span
+    )
 
 
 def mean_loop(loops: tuple[Loop, ...]) -> tuple[Array, Array]:
@@ -113,8 +134,11 @@ def mean_loop(loops: tuple[Loop, ...]) -> tuple[Array, Array]:
     return up, down
 
 
-def _loop(record: Record, a: int, b: int, c: int, drift: float) -> Loop | None:
+def _loop(
+    record: Record, ends: tuple[int, int, int], levels: tuple[float, ...] | None, drift: float
+) -> Loop | None:
     """Make a loop of the branches a to b and b to c; None if they share too little."""
+    a, b, c = ends
     if min(b - a, c - b) < _FEWEST_SAMPLES:
         return None
     u = record.u
@@ -131,11 +155,24 @@ def _loop(record: Record, a: int, b: int, c: int, drift: float) -> Loop | None:
         return None
     rising, falling = (first, second) if u[b] > u[a] else (second, first)
     rate = (abs(u[b] - u[a]) + abs(u[c] - u[b])) / ((c - a) * record.dt)
-    samples = 0.5 * (c - a) / CELLS
+    near = _SAME_RANGE * longer
+    outside = None
+    if levels is not None:
+        outside = tuple(each for each in levels if not low - near <= each <= high + near)
     return Loop(
-        a, c + 1, float(low), float(high), float(rate), rising[0], falling[0], rising[1],
-        falling[1], samples,
-    )  # fmt: skip
+        start=a,
+        stop=c + 1,
+        low=float(low),
+        high=float(high),
+        rate=float(rate),
+        up=rising[0],
+        down=falling[0],
+        up_rate=rising[1],
+        down_rate=falling[1],
+        samples=0.5 * (c - a) / CELLS,
+        closed=bool(abs(u[c] - u[a]) <= near),
+        memory=outside,
+    )
 
 
 def _cells(

@@ -10,7 +10,7 @@ from hyst.signals import estimate_noise, reversals
 
 Array = NDArray[np.float64]
 Segment = tuple[int, int, float]
-Stack = tuple[int, ...]
+Branch = tuple[int, int, tuple[float, ...]]
 
 # Of a long record the first branches tell enough.
 MOST_BRANCHES = 2000
@@ -25,34 +25,37 @@ def turns_of(u: Array) -> NDArray[np.intp]:
     return reversals(u, min(max(0.01 * span, 8.0 * estimate_noise(u)), 0.05 * span))
 
 
-def branches_of_equal_memory(u: Array) -> dict[Stack, list[tuple[int, int]]]:
-    """Sort branches, as ``(start, stop)``, by the turning levels remembered where they begin.
+def remembering_branches(u: Array) -> list[Branch]:
+    """Cut a drive into branches ``(start, stop, levels)`` with what is remembered where they begin.
 
-    A turning level is remembered until the drive reaches it again (Madelung's rules). The first
+    A turning level is remembered until the drive reaches it again (Madelung's rules); levels
+    within 1 % of the range are one. The last level is that of the beginning itself. The first
     branch, from wherever the record begins, is none of them.
     """
     turns = turns_of(u)[: MOST_BRANCHES + 1]
     if turns.size == 0:
-        return {}
-    ids = _numbered(u[turns], 0.01 * float(np.ptp(u)))
+        return []
+    levels = _rounded(u[turns], 0.01 * float(np.ptp(u)))
     ends = np.append(turns[1:], u.size - 1)
-    groups: dict[Stack, list[tuple[int, int]]] = {}
-    stack: list[int] = []
-    for number, start, end in zip(ids.tolist(), turns.tolist(), ends.tolist(), strict=True):
+    found = []
+    stack: list[float] = []
+    for level, start, end in zip(levels.tolist(), turns.tolist(), ends.tolist(), strict=True):
         rises = bool(u[end] > u[start])
-        while len(stack) >= 2 and (number <= stack[-2] if rises else number >= stack[-2]):
+        while len(stack) >= 2 and (level <= stack[-2] if rises else level >= stack[-2]):
             del stack[-2:]
-        stack.append(number)
-        key = (int(rises), *stack)
-        groups.setdefault(key, []).append((start, end + 1))
-    return groups
+        stack.append(level)
+        found.append((start, end + 1, tuple(stack)))
+    return found
 
 
 def repeated_segments(u: Array) -> list[Segment]:
     """Give ``(start, stop, lag)``: samples at which memory and drive are as they were a lag ago."""
     tolerance = 0.01 * float(np.ptp(u))
+    groups: dict[tuple[object, ...], list[tuple[int, int]]] = {}
+    for start, stop, levels in remembering_branches(u):
+        groups.setdefault((u[stop - 1] > u[start], *levels), []).append((start, stop))
     found = []
-    for members in branches_of_equal_memory(u).values():
+    for members in groups.values():
         for which, branch in enumerate(members):
             for before in reversed(members[max(which - 4, 0) : which]):
                 segment = _aligned(u, before, branch, tolerance)
@@ -62,16 +65,15 @@ def repeated_segments(u: Array) -> list[Segment]:
     return sorted(found)
 
 
-def _numbered(levels: Array, tolerance: float) -> NDArray[np.intp]:
-    """Number levels in their order, those within a tolerance alike."""
-    order = np.argsort(levels, kind="stable")
-    numbers = np.empty(levels.size, dtype=np.intp)
-    number, lowest = -1, -np.inf
-    for index in order.tolist():
+def _rounded(levels: Array, tolerance: float) -> Array:
+    """Make levels within a tolerance of the lowest of them equal to it."""
+    result = np.empty_like(levels)
+    lowest = -np.inf
+    for index in np.argsort(levels, kind="stable").tolist():
         if levels[index] - lowest > tolerance:
-            number, lowest = number + 1, float(levels[index])
-        numbers[index] = number
-    return numbers
+            lowest = float(levels[index])
+        result[index] = lowest
+    return result
 
 
 def _aligned(

@@ -85,7 +85,9 @@ def strongest(power: Array) -> int | None:
     ratio[1:-1] = np.where(peak, power[1:-1] / np.maximum(floor[1:-1], _tiny(power)), 0.0)
     candidates = np.flatnonzero(ratio[inner] > _OVER_FLOOR) + _FEWEST_CYCLES
     for index in candidates[np.argsort(-power[candidates], kind="stable")][:10].tolist():
-        near = np.concatenate([power[max(index - 10, 1) : index - 3], power[index + 4 : index + 11]])
+        near = np.concatenate(
+            [power[max(index - 10, 1) : index - 3], power[index + 4 : index + 11]]
+        )
         if near.size and power[index] > _OVER_NEAR * float(near.max()):
             return int(index)
     return None
