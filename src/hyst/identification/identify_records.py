@@ -59,8 +59,9 @@ def identify(
         because the input has passed its range; all samples with no memory before them if that would
         leave less than half of the record.
     drift
-        ``"auto"``: what an output does over time beside following its input is taken out before
-        the fit, where drive and memory come back often enough to show it; ``False``: it is left.
+        ``"auto"``: slow drift of the output, and sines in it that are none of its drive, as mains
+        hum, are taken out before the fit where ``hyst.diagnose`` finds them; ``False``: the output
+        is left as it is.
     validation
         Records to judge the model by; they do not take part in the fit.
     max_iterations

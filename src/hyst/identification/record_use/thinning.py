@@ -66,7 +66,7 @@ def thinned(data: Data, most: int = MOST_SAMPLES) -> Data:
         starts=tuple(starts),
         lag=0.0,
         kept=tuple(counted) if data.kept else (),
-        drifts=(),
+        disturbances=(),
         measured_inputs=(),
     )
 

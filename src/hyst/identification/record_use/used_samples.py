@@ -64,9 +64,9 @@ class Data:
         Whether the memory is known at every start because the input has passed its range before.
     kept
         Shape (N,) for each record: which output samples count; None for all.
-    drifts
-        Shape (N,) for each record: slow drift that was taken out of its y; None where there was
-        none.
+    disturbances
+        Shape (N,) for each record: slow drift and foreign sines that were taken out of its y; None
+        where there were none.
     measured_inputs
         The inputs as they were measured, where those of ``records`` are later by part of a sample.
     """
@@ -77,7 +77,7 @@ class Data:
     half_range: float
     settled: bool
     kept: tuple[NDArray[np.bool_] | None, ...] = ()
-    drifts: tuple[Array | None, ...] = ()
+    disturbances: tuple[Array | None, ...] = ()
     measured_inputs: tuple[Array, ...] = ()
 
     @property
@@ -206,19 +206,21 @@ class Data:
             self,
             records=records,
             half_range=self.half_range * input_scale,
-            drifts=tuple(None if each is None else each * output_scale for each in self.drifts),
+            disturbances=tuple(
+                None if each is None else each * output_scale for each in self.disturbances
+            ),
             measured_inputs=tuple(u * input_scale for u in self.measured_inputs),
         )
 
-    def with_drift(self) -> Data:
-        """Give the records with the drift that was taken out."""
-        if not self.drifts:
+    def with_disturbances(self) -> Data:
+        """Give the records with the drift and the sines that were taken out."""
+        if not self.disturbances:
             return self
         records = tuple(
             record if drift is None else replace(record, y=record.y + drift)
-            for record, drift in zip(self.records, self.drifts, strict=True)
+            for record, drift in zip(self.records, self.disturbances, strict=True)
         )
-        return replace(self, records=records, drifts=())
+        return replace(self, records=records, disturbances=())
 
 
 def prepare(

@@ -130,8 +130,8 @@ def metrics_by_record(
         By name: ``training``, ``validation 1``, ..., each with and without a free offset.
     """
     metrics = _pair("training", data, operator)
-    if data.drifts:
-        metrics |= _pair("training, drift left in", data.with_drift(), operator)
+    if data.disturbances:
+        metrics |= _pair("training, disturbances left in", data.with_disturbances(), operator)
     for number, record in enumerate(validation, 1):
         name = "validation" if len(validation) == 1 else f"validation {number}"
         metrics |= _pair(name, _validation_data(record, data), operator)

@@ -191,7 +191,9 @@ def signal_behind(data: Data, dynamics: LinearDynamics) -> Data:
             starts.append(max(valid.start, start))
     if not records:
         return data.delayed(dynamics.delay)
-    return replace(data, records=tuple(records), starts=tuple(starts), lag=0.0, kept=(), drifts=())
+    return replace(
+        data, records=tuple(records), starts=tuple(starts), lag=0.0, kept=(), disturbances=()
+    )
 
 
 def shortened(data: Data, samples: int) -> Data:
@@ -218,4 +220,4 @@ def shortened(data: Data, samples: int) -> Data:
         None if each is None else each[: len(r)]
         for each, r in zip(data.kept, records, strict=False)
     )
-    return replace(data, records=records, kept=kept, drifts=())
+    return replace(data, records=records, kept=kept, disturbances=())
