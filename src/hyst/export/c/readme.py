@@ -80,6 +80,12 @@ def lag_row(about: ModelDescription) -> dict[str, str]:
     if about.delay == 0:
         return {}
     time = "" if about.dt is None else f" of {about.dt!r} s"
+    if about.delay < 0:
+        ahead = f"the recorded output was {-about.delay} sample(s){time} ahead of the input, which"
+        return {"lag": f"{ahead} no actuator is: its channels were not aligned"}
+    low, _ = about.delay_interval or (about.delay, about.delay)
+    if low <= 0.0:
+        return {}  # the records would bear none
     return {"lag": f"the recorded output lagged {about.delay} sample(s){time}; this code does not"}
 
 

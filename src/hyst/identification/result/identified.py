@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.diagnosis import Diagnosis
+from hyst.identification.record_use.part_of_a_sample import later
 from hyst.identification.record_use.used_samples import UsedSamples
+from hyst.identification.result.record_errors import RecordErrors
 from hyst.operators import ModelDescription, Operator, Verdict
 from hyst.signals import Metrics
 
@@ -45,7 +48,7 @@ class Candidate:
     chosen: bool
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Identified:
     """A model identified from records, and how far it can be trusted.
 
@@ -56,7 +59,8 @@ class Identified:
     family
         Its name in ``hyst.families``; empty for a model of no family, as of ``hyst.fit``.
     delay
-        Whole samples by which the measured output lags the model's output.
+        Samples by which the measured output lags the model's output; may be a fraction, and is
+        negative where the output is ahead of the input, as channels that are not aligned show it.
     parameter_names, parameter_values, standard_errors
         The free parameters with their standard errors, which take the autocorrelation of the
         residual into account; NaN where a value lies on a bound or is not determined.
@@ -82,11 +86,13 @@ class Identified:
         where it was given.
     diagnosis
         What the records showed before any model.
+    per_record
+        Errors over each of the records it was identified from, in their order.
     """
 
     model: Operator
     family: str
-    delay: int
+    delay: float
     parameter_names: tuple[str, ...]
     parameter_values: Array
     standard_errors: Array
@@ -100,6 +106,16 @@ class Identified:
     verdict: Verdict
     delay_interval: tuple[float, float]
     diagnosis: Diagnosis
+    per_record: tuple[RecordErrors, ...]
+
+    def __repr__(self) -> str:
+        what = self.family or self.model.kind
+        training = self.metrics.get("training")
+        missed = "" if training is None else f", {training.rms_percent:.3g} % of range"
+        return (
+            f"{type(self).__name__}({self.verdict.level}: {self.verdict.sentences[0]!r}; "
+            f"{what}{missed}, delay {self.delay:.4g} samples, {self.status})"
+        )
 
     def predict(self, u: ArrayLike) -> Array:
         """Give the output as it would be measured: the model's output, delayed.
@@ -112,12 +128,10 @@ class Identified:
         Returns
         -------
         numpy.ndarray
-            Shape (N,). The first ``delay`` samples repeat the first output.
+            Shape (N,). The first ``delay`` samples repeat the first output; where the delay is
+            negative, the last ones the last.
         """
-        y = self.model(u)
-        if self.delay == 0:
-            return y
-        return np.concatenate([np.full(min(self.delay, y.size), y[0]), y])[: y.size]
+        return late_output(self.model, np.asarray(u, dtype=np.float64), self.delay)
 
     def to_dict(self) -> dict[str, Any]:
         """Give everything but the model as plain numbers and text, for metrics.json.
@@ -125,15 +139,18 @@ class Identified:
         Returns
         -------
         dict
-            NaN standard errors are given as None.
+            The verdict first; NaN standard errors are given as None.
         """
         errors = [None if np.isnan(each) else float(each) for each in self.standard_errors]
         return {
+            "verdict": self.verdict.to_dict(),
             "family": self.family,
             "status": self.status,
             "iterations": self.iterations,
             "delay": self.delay,
+            "delay_interval": list(self.delay_interval),
             "metrics": {name: each.to_dict() for name, each in self.metrics.items()},
+            "per_record": [each.to_dict() for each in self.per_record],
             "parameters": [
                 {"name": name, "value": float(value), "standard_error": error}
                 for name, value, error in zip(
@@ -143,10 +160,11 @@ class Identified:
             "undetermined": list(self.undetermined),
             "candidates": [vars(each) for each in self.candidates],
             "used_samples": [vars(each) for each in self.used],
+            **self.diagnosis.to_dict(),
         }
 
     def summary(self) -> str:
-        """Give a table of a page or less for people.
+        """Give a table of a page or less for people, the verdict first.
 
         Returns
         -------
@@ -154,12 +172,17 @@ class Identified:
         """
         unit = f" {self.description.output_unit}" if self.description.output_unit else ""
         what = f"family {self.family}" if self.family else self.model.kind
-        lines = [f"{what}, delay {self.delay} samples, {self.status}", ""]
+        lines = [f"verdict: {self.verdict.level} - {' '.join(self.verdict.sentences)}"]
+        low, high = self.delay_interval
+        open_to = "" if low == high else f" ({low:.3g} to {high:.3g})"
+        lines += [f"{what}, delay {self.delay:.4g}{open_to} samples, {self.status}", ""]
         for name, each in self.metrics.items():
             lines.append(
                 f"{name:28s} rms {each.rms:.4g}{unit} ({each.rms_percent:.3f} % of range)   "
                 f"max {each.max_abs:.4g}{unit}   fit {each.nrmse_fit_percent:.2f} %"
             )
+        if len(self.per_record) > 1:
+            lines += [_record_line(each, unit) for each in self.per_record]
         lines += ["", f"{'parameter':36s} {'value':>13s} {'standard error':>15s}"]
         for name, value, error in zip(
             self.parameter_names, self.parameter_values, self.standard_errors, strict=True
@@ -170,3 +193,38 @@ class Identified:
             lines.append("(-: on a bound, or not determined by the records)")
         lines += [f"note: {sentence}" for sentence in self.undetermined]
         return "\n".join(lines)
+
+
+def late_output(model: Operator, u: Array, delay: float) -> Array:
+    """Give a model's output as it comes ``delay`` samples later, held where there is none.
+
+    Parameters
+    ----------
+    model
+        Any operator.
+    u
+        Shape (N,), input units.
+    delay
+        Samples; whole ones shift the output, the part beyond them shifts the input, so that the
+        corners of loops stay corners.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (N,).
+    """
+    whole = math.floor(delay)
+    y = model(later(u, delay - whole))
+    if whole == 0:
+        return y
+    return np.asarray(y[np.clip(np.arange(y.size) - whole, 0, y.size - 1)])
+
+
+def _record_line(each: RecordErrors, unit: str) -> str:
+    named = f"record {each.number}" + (f", {each.name}" if each.name else "")
+    if each.metrics is None:
+        return f"{named:28s} no sample that moves was used"
+    return (
+        f"{named:28s} rms {each.metrics.rms:.4g}{unit} ({each.metrics.rms_percent:.3f} % of its "
+        f"own range)   max {each.metrics.max_abs:.4g}{unit}   {each.samples} samples"
+    )

@@ -15,11 +15,13 @@ from hyst.identification.fit.problem import Evaluation, model_output
 from hyst.identification.judgement.judge import judge
 from hyst.identification.record_use.used_samples import Data, prepare
 from hyst.identification.result.identified import Candidate, Identified
+from hyst.identification.result.record_errors import errors_by_record
 from hyst.identification.result.standard_errors import Spread, spread_of_estimates
 from hyst.operators import ModelDescription, Operator
 from hyst.operators.description import errors_of
 from hyst.operators.provenance import provenance
 from hyst.signals import Metrics, Record, error_metrics
+from hyst.signals.turning_points import swings_of
 
 Array = NDArray[np.float64]
 
@@ -77,11 +79,12 @@ def identified_from_fit(
         verdict=judge(data, fit, diagnosis, metrics),
         delay_interval=(data.delay, data.delay),
         diagnosis=diagnosis,
+        per_record=errors_by_record(data, operator),
     )
 
 
 def traced(found: Identified, records: Sequence[Record], options: Mapping[str, Any]) -> Identified:
-    """Give a result whose model tells what it means, how good it is and where it comes from.
+    """Give a result whose model tells what it means, how far it is to be trusted, and its origin.
 
     Parameters
     ----------
@@ -98,6 +101,9 @@ def traced(found: Identified, records: Sequence[Record], options: Mapping[str, A
     """
     about = replace(
         found.description,
+        delay=found.delay,
+        delay_interval=found.delay_interval,
+        verdict=found.verdict,
         errors=errors_of(found.metrics),
         provenance=provenance(records, options),
     )
@@ -277,4 +283,12 @@ def describe(data: Data, family: str) -> ModelDescription:
         dt=first.dt,
         delay=data.delay,
         family=family,
+        smallest_swing=_smallest_swing(data.records),
     )
+
+
+def _smallest_swing(records: Sequence[Record]) -> float | None:
+    """Give the least way of the inputs between two turns; None if none has two."""
+    extent = max(r.u.max() for r in records) - min(r.u.min() for r in records)
+    swings = [swings_of(record.u, float(extent)) for record in records]
+    return min((float(each.min()) for each in swings if each.size), default=None)

@@ -1,0 +1,51 @@
+"""Inputs that come later by a part of a sample."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.signals import reversals
+
+Array = NDArray[np.float64]
+
+SMALLEST_TURN = 1e-3
+"""Of the input's range: the corner of a larger turn stays, smaller ones are noise of the drive."""
+
+
+def lag_in_samples(lag: float, dt: float, own_dt: float) -> float:
+    """Give a lag in samples of ``dt`` in those of another record; the same number if they agree."""
+    return lag if math.isclose(dt, own_dt, rel_tol=1e-6) else lag * dt / own_dt
+
+
+def later(u: Array, part: float) -> Array:
+    """Give a signal as it would be sampled if it came later by a part of a sample.
+
+    Cubic interpolation between the four samples around, kept between the two next to it. The corner
+    of a turn stays, for the memory of plays is made of corners: it is at the sample next to it.
+
+    Parameters
+    ----------
+    u
+        Shape (N,).
+    part
+        Of a sample, 0 to below 1.
+    """
+    if part == 0.0 or u.size < 2:
+        return u
+    padded = np.concatenate([u[:1], u[:1], u, u[-1:]])
+    before, left, right, after = padded[:-3], padded[1:-2], padded[2:-1], padded[3:]
+    s = 1.0 - part  # the way from the earlier sample to the later one
+    moved = (
+        -s * (s - 1.0) * (s - 2.0) / 6.0 * before
+        + (s + 1.0) * (s - 1.0) * (s - 2.0) / 2.0 * left
+        - (s + 1.0) * s * (s - 2.0) / 2.0 * right
+        + (s + 1.0) * s * (s - 1.0) / 6.0 * after
+    )
+    moved = np.clip(moved, np.minimum(left, right), np.maximum(left, right))
+    turns = reversals(u, SMALLEST_TURN * float(np.ptp(u)))
+    corners = turns if part < 0.5 else np.minimum(turns + 1, u.size - 1)
+    moved[corners] = u[turns]
+    return np.asarray(moved)
