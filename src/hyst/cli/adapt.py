@@ -23,7 +23,6 @@ from hyst.cli.arguments import (
     load_operator,
 )
 from hyst.cli.console import at_work, note, show_files, show_table
-from hyst.identification.record_use.part_of_a_sample import later
 
 Files = Annotated[
     list[Path],
@@ -127,7 +126,7 @@ def adapt(
         _write_parameters(temporary / names[2], trajectory)
         (temporary / names[3]).write_bytes(picture)
     _tell(estimator, before.tolist())
-    if about.is_unfit:
+    if about.verdict is not None and about.is_unfit:
         note(
             "the model it started from is unfit, and the estimate has its shape: "
             f"{hyst.report.verdict_sentence(about.verdict)}"
@@ -218,7 +217,7 @@ def _without_delay(record: hyst.Record, delay: float) -> hyst.Record:
             "give a longer record"
         )
     ahead, behind = max(-whole, 0), max(whole, 0)
-    u = later(record.u, delay - whole)[ahead : record.samples - behind]
+    u = hyst.identification.later(record.u, delay - whole)[ahead : record.samples - behind]
     return replace(record, u=u, y=record.y[behind : record.samples - ahead])
 
 

@@ -123,11 +123,6 @@ def compensate(
             despite_verdict=despite_verdict,
             progress=progress,
         )
-    if history is None and model.initial_state().size:
-        note(
-            "the memory is taken as virgin, as of an actuator never driven; if it was, give the "
-            "turns of the drive just before with --history"
-        )
     if not known:
         note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
     headers = [
@@ -140,6 +135,11 @@ def compensate(
     ]
     hyst.io.write_columns(out, headers, (done.y_ref, done.u, done.y_predicted))
     _tell(done, about, input_range)
+    if history is None and model.initial_state().size:
+        print(
+            "memory taken as virgin, as of an actuator never driven; if it was driven, give the "
+            "turns of the drive just before with --history"
+        )
     show_files([out])
 
 

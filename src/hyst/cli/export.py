@@ -180,9 +180,8 @@ def export(
     model = hyst.load(model_file)
     if inverse or explicit:
         model = hyst.export.inverse_of(model, explicit)
-    done = _TARGETS[target](
-        _Order(model, out, precision, name, force, fmi, binary, despite_verdict)
-    )
+    order = _Order(model, out, precision, name, force, fmi, binary, despite_verdict)
+    done = _TARGETS[target](order)
     what = "inverse of " if inverse or explicit else ""
     title = f"{what}{model_file.name} as {target}: {out}"
     show_table(hyst.report.Table(title, ("", ""), done.rows))

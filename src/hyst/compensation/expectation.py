@@ -118,7 +118,8 @@ def beyond_the_records(about: ModelDescription, u: Array, y_ref: Array) -> tuple
             continue
         told.append(
             f"the {name} goes from {signal.min():.6g} to {signal.max():.6g}, the records showed "
-            f"the {side} from {low:.6g} to {high:.6g}{_behind(unit)}: beyond, the error is not known"
+            f"the {side} from {low:.6g} to {high:.6g}{_behind(unit)}; beyond that the error is not "
+            "known"
         )
     return (*told, *_smaller_loops(about, u))
 
@@ -137,14 +138,14 @@ def _smaller_loops(about: ModelDescription, u: Array) -> tuple[str, ...]:
     if not smaller.size:
         return ()
     return (
-        f"{smaller.size} swing{'s' * (smaller.size > 1)} of the command {_are(smaller.size)} smaller "
-        f"than any in the records, down to {smaller.min():.3g}{_behind(about.input_unit)} where "
-        f"those go down to {shown:.3g}: the error in such loops is not known",
+        f"{smaller.size} {_swings_are(smaller.size)} smaller than any in the records, down to "
+        f"{smaller.min():.3g}{_behind(about.input_unit)} where those go down to {shown:.3g}; the "
+        "error in such loops is not known",
     )
 
 
-def _are(count: int) -> str:
-    return "are" if count > 1 else "is"
+def _swings_are(count: int) -> str:
+    return "swings of the command are" if count > 1 else "swing of the command is"
 
 
 def _behind(unit: str) -> str:

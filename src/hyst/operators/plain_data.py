@@ -35,7 +35,7 @@ def as_finite_or_none(name: str, value: Any) -> float | None:
 
 
 def as_number(name: str, value: Any) -> float:
-    """Give a finite number, a whole one as an int; ``name`` is what a refusal calls it."""
+    """Give a finite ``value``, a whole one as an int; ``name`` is what a refusal calls it."""
     number = as_finite(name, value)
     return int(number) if number.is_integer() else number
 

@@ -229,10 +229,10 @@ def _what_was_compared(page: Page, findings: _Findings) -> None:
         return
     page.heading("What else was tried")
     page.text(
-        "Every candidate was identified without some blocks of the record and judged on those, each "
-        "block with its own offset, so that slow drift does not decide: errors here can be smaller "
-        "than those of the fit above. The simplest one within one standard error (+-) of the best "
-        "was taken."
+        "Every candidate was identified without some blocks of the record and judged on those, "
+        "each block with its own offset, so that slow drift does not decide: errors here can be "
+        "smaller than those of the fit above. The simplest one within one standard error (+-) of "
+        "the best was taken."
     )
     page.table(candidates_table(identified))
 

@@ -16,7 +16,7 @@ SMALLEST_TURN = 1e-3
 
 
 def lag_in_samples(lag: float, dt: float, own_dt: float) -> float:
-    """Give a lag in samples of ``dt`` in those of another record; the same number if they agree."""
+    """Give a ``lag`` in samples of ``dt`` in those of ``own_dt``; the same one if they agree."""
     return lag if math.isclose(dt, own_dt, rel_tol=1e-6) else lag * dt / own_dt
 
 
