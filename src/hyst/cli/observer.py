@@ -55,8 +55,9 @@ def observer(
         )
     require_folder(folder)
     spec = read_spec(spec_file)
-    judged = spec.hysteresis.description.verdict
-    refuse_if_unfit(judged, "no controller is designed", despite_verdict)
+    for each in (spec.hysteresis, spec.inverse):
+        judged = None if each is None else each.description.verdict
+        refuse_if_unfit(judged, "no controller is designed", despite_verdict)
     design = _design(spec)
     answer = _tried(spec, design)
     with at_work("drawing"):

@@ -17,7 +17,7 @@ from hyst.export.c.c_sources import header, places, source
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.names import as_c_name, plain_text
 from hyst.export.c.one_file import in_one_file
-from hyst.export.c.readme import lag_row
+from hyst.export.c.readme import lag_row, verdict_row
 from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, MANIFEST, write_export
 from hyst.export.tool_block import ToolBlock, tool_block
@@ -234,7 +234,7 @@ def _rows(block: Block, signals: str, about: ModelDescription) -> str:
         "sample time": "any" if block.dt is None else f"{block.dt!r} s, and no other",
     }
     rows |= dict(line.split(": ", 1) for line in _signal_lines(signals))
-    rows |= lag_row(about)
+    rows |= verdict_row(about) | lag_row(about)
     return "\n".join(f"| {key} | {value} |" for key, value in rows.items())
 
 

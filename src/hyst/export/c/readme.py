@@ -50,7 +50,7 @@ def readme(
             f"from {test.drive.low * test.drive.unit:.6g} to {test.drive.high:.6g}"
         )
     rows |= {signal: _signal(*meant) for signal, meant in signals(block, about).items()}
-    rows |= lag_row(about)
+    rows |= verdict_row(about) | lag_row(about)
     more = {
         "rows": "\n".join(f"| {key} | {value} |" for key, value in rows.items()),
         "usage": _ESTIMATOR_USAGE if block.is_estimator else _USAGE,
@@ -73,6 +73,19 @@ def signals(block: Block, about: ModelDescription) -> dict[str, tuple[str, str]]
     if len(block.inputs) == 1:
         return dict(zip((block.inputs[0], block.output), named, strict=True))
     return {}
+
+
+def verdict_row(about: ModelDescription) -> dict[str, str]:
+    """Give the row of a table that says that no command should come from what ``about`` tells of.
+
+    Parameters
+    ----------
+    about
+        Of the model.
+    """
+    if about.verdict is None or not about.is_unfit:
+        return {}
+    return {"verdict": f"{about.verdict.level}: {plain_text(about.verdict.sentences[0])}"}
 
 
 def lag_row(about: ModelDescription) -> dict[str, str]:

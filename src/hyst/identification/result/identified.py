@@ -14,6 +14,7 @@ from hyst.identification.record_use.part_of_a_sample import later
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.record_errors import RecordErrors
 from hyst.operators import ModelDescription, Operator, Verdict
+from hyst.operators.plain_data import as_number
 from hyst.signals import Metrics
 
 Array = NDArray[np.float64]
@@ -147,8 +148,8 @@ class Identified:
             "family": self.family,
             "status": self.status,
             "iterations": self.iterations,
-            "delay": self.delay,
-            "delay_interval": list(self.delay_interval),
+            "delay": as_number("delay", self.delay),
+            "delay_interval": [as_number("delay_interval", each) for each in self.delay_interval],
             "metrics": {name: each.to_dict() for name, each in self.metrics.items()},
             "per_record": [each.to_dict() for each in self.per_record],
             "parameters": [
