@@ -53,7 +53,7 @@ def test_a_zip_unpacks_compiles_and_tests_itself(run: Run, folder: Path, model_f
 def test_a_lag_of_the_record_is_said_and_paths_are_quoted(run: Run, folder: Path) -> None:
     STAGE.save(folder / "model.json", replace(describe(STAGE), delay=4, dt=0.005))
     ended = run("export", "model.json", "-o", "my stage")
-    assert "lags the model by 4 samples (0.02 s)" in ended.out
+    assert "lags the model by 4 samples, 20 ms" in ended.out
     assert "next: cd 'my stage' && cmake" in ended.out
     said = "| lag | the recorded output lagged 4 sample(s) of 0.005 s; this code does not |"
     assert said in (folder / "my stage" / "README.md").read_text()

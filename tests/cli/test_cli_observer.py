@@ -230,7 +230,7 @@ def test_a_model_file_other_forms_of_systems_and_a_reduced_inverse(run: Run, fol
     assert told["drive_range"][0] <= u.min() < -2.5
     assert told["drive_range"][1] >= u.max() > 3.5
     assert "identified from -2 to 3: beyond, all of this is a guess" in told["verdict"]
-    assert "lagged the model by 0.004 s: put that lag into plant or Wu" in ended.err
+    assert "lagged the model by 4 samples, 4 ms: put that lag into plant or Wu" in ended.err
 
 
 def test_without_the_solvers_the_descent_alone_designs(

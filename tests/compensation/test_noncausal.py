@@ -69,9 +69,9 @@ def test_the_error_table_splits_the_edges_from_the_interior() -> None:
     assert both == pytest.approx(2000 * whole.rms**2, rel=1e-12)
     rows = [row[0] for row in hyst.report.compensation_table(done, "um").rows]
     assert rows == [
-        "rms",
-        "max",
-        *(f"{each}, {part.name}" for part in (inside, edges) for each in ("rms", "max")),
+        "inversion, rms",
+        "inversion, max",
+        *(f"inversion, {each}, {part.name}" for part in (inside, edges) for each in ("rms", "max")),
     ]
 
 
@@ -79,4 +79,7 @@ def test_without_edges_the_table_is_of_all_samples() -> None:
     done = hyst.compensation.invert_trajectory(hyst.Affine(2.0), [1.0, 2.0])
     assert done.interior is None
     assert [part.name for part in hyst.compensation.error_parts(done)] == [""]
-    assert [row[0] for row in hyst.report.compensation_table(done, "").rows] == ["rms", "max"]
+    assert [row[0] for row in hyst.report.compensation_table(done, "").rows] == [
+        "inversion, rms",
+        "inversion, max",
+    ]

@@ -15,7 +15,7 @@ import hyst
 from hyst import InputError, ModelDescription
 from hyst.control import TrackingController
 from hyst.online import AdaptiveInverse, JointEstimator, RadiusEstimator
-from hyst.operators import Provenance
+from hyst.operators import Provenance, Verdict
 
 ORIGIN = Provenance(
     date="2026-01-31T12:00:00+00:00",
@@ -24,6 +24,7 @@ ORIGIN = Provenance(
     options={"family": "pi", "radii": [0.5, 1.0], "validation": None},
     command="hyst identify 'my data.csv' --input 0",
 )
+UNFIT = Verdict("unfit", ("A line is hardly worse.", "Record a loop."))
 ABOUT = ModelDescription(
     "drive",
     "position",
@@ -36,6 +37,9 @@ ABOUT = ModelDescription(
     family="pi",
     errors={"training": {"rms": 0.25, "rms_percent": 1.5, "max_abs": 0.75}},
     provenance=ORIGIN,
+    verdict=UNFIT,
+    delay_interval=(1.75, 2.5),
+    smallest_swing=5.0,
 )
 PLAYS = hyst.PrandtlIshlinskii([0.5], [1.0], p0=1.0)
 
@@ -114,6 +118,9 @@ def test_an_inverse_means_the_same_with_the_signals_exchanged() -> None:
     assert (about.output_name, about.output_low, about.output_high) == ("drive", 0.0, 100.0)
     assert about.provenance == ORIGIN
     assert about.errors == {}  # they are of the output, which is the input here
+    assert about.smallest_swing is None  # of what is the output here
+    assert about.verdict == UNFIT  # what is wrong about the model is wrong about its inverse
+    assert about.delay_interval == (1.75, 2.5)
     assert PLAYS.inverse().description == ModelDescription()
 
 
@@ -123,22 +130,91 @@ def test_what_is_estimated_anew_has_neither_the_errors_nor_the_origin_of_its_sta
         assert (about.input_unit, about.delay, about.dt) == ("V", 2, 0.001)
         assert about.errors == {}
         assert about.provenance is None
-    inverse = AdaptiveInverse(estimator, window=1.0)
+        assert about.verdict == UNFIT  # estimation changes constants, not the shape
+    inverse = AdaptiveInverse(estimator, window=1.0, despite_verdict=True)
     assert inverse.model.description == inverse.good_model.description == estimator.description
+
+
+def test_only_what_is_unfit_of_the_start_stays_with_an_estimate() -> None:
+    good = ModelDescription(verdict=Verdict("good", ("What is left is noise.",)))
+    assert JointEstimator(PLAYS.with_description(good)).description.verdict is None
+    assert good.of_other_constants().verdict is None
+    assert ABOUT.of_other_constants().verdict is None
+
+
+@pytest.mark.parametrize(
+    "command_from",
+    [
+        lambda model, **how: AdaptiveInverse(JointEstimator(model), 1.0, **how),
+        lambda model, **how: TrackingController(
+            [], [], [], [1.0, -1.0], 1.0, model.inverse(), **how
+        ),
+        lambda model, **how: TrackingController.from_continuous(
+            1.0, 1.0, inverse=model.inverse(), **how
+        ),
+        lambda model, **how: hyst.compensation.invert_trajectory(model, [0.0, 1.0], **how),
+    ],
+)
+def test_no_command_comes_from_what_is_unfit_unless_told(command_from: Callable[..., Any]) -> None:
+    unfit = PLAYS.with_description(ModelDescription(verdict=UNFIT))
+    with pytest.raises(InputError, match=r"unfit: A line is hardly worse; .*--despite-verdict"):
+        command_from(unfit)
+    command_from(unfit, despite_verdict=True)
+    for level in ("fair", "good"):
+        judged = Verdict(level, ("Something is left.",))  # type: ignore[arg-type]
+        command_from(PLAYS.with_description(ModelDescription(verdict=judged)))
+    command_from(PLAYS)  # nobody judged it
+
+
+def test_saved_and_copied_what_is_unfit_comes_back_as_it_is(tmp_path: Path) -> None:
+    unfit = PLAYS.with_description(ABOUT)
+    inverse = AdaptiveInverse(JointEstimator(unfit), 1.0, despite_verdict=True)
+    controller = TrackingController(
+        [], [], [], [1.0, -1.0], 1.0, unfit.inverse(), despite_verdict=True
+    )
+    for each in (inverse, controller):
+        each.save(tmp_path / "saved.json")
+        assert type(hyst.load(tmp_path / "saved.json")) is type(each)
+        assert type(copy.deepcopy(each)) is type(each)
+
+
+@pytest.mark.parametrize("description", [None, ModelDescription()])
+def test_exports_refuse_what_is_unfit(description: ModelDescription | None, tmp_path: Path) -> None:
+    inverse = PLAYS.with_description(ABOUT).inverse()
+    exports: dict[str, Callable[..., Any]] = {
+        "c": hyst.export.c_project,
+        "mex": hyst.export.mex,
+        "model.fmu": lambda *given, **how: hyst.export.fmu(*given, binary=False, **how),
+    }
+    for name, export in exports.items():
+        with pytest.raises(InputError, match=r"nothing is exported.*unfit: A line is hardly"):
+            export(inverse, tmp_path / name, description=description)
+        assert not (tmp_path / name).exists()
+        export(inverse, tmp_path / name, description=description, despite_verdict=True)
+        assert (tmp_path / name).exists()
+    with pytest.raises(InputError, match="nothing is exported"):
+        hyst.export.c_project(PLAYS, tmp_path / "told", description=ABOUT)
+    with pytest.raises(InputError, match="nothing is exported"):
+        hyst.export.c_project(JointEstimator(PLAYS.with_description(ABOUT)), tmp_path / "joint")
 
 
 def test_exports_take_it_from_the_model(tmp_path: Path) -> None:
     model = PLAYS.with_description(ABOUT)
-    told = hyst.export.c_project(model, tmp_path / "told")
-    given = hyst.export.c_project(PLAYS, tmp_path / "given", description=ABOUT)
+    told = hyst.export.c_project(model, tmp_path / "told", despite_verdict=True)
+    given = hyst.export.c_project(
+        PLAYS, tmp_path / "given", description=ABOUT, despite_verdict=True
+    )
     for file in told.files:
         assert (told.path / file).read_bytes() == (given.path / file).read_bytes()
     assert "drive in V" in (told.path / "stage.h").read_text()
     other = hyst.export.c_project(
-        model, tmp_path / "other", description=ModelDescription(input_unit="A")
+        model,
+        tmp_path / "other",
+        description=ModelDescription(input_unit="A"),
+        despite_verdict=True,
     )
     assert "u in A" in (other.path / "stage.h").read_text()
-    inverse = hyst.export.mex(model.inverse(), tmp_path / "inverse")
+    inverse = hyst.export.mex(model.inverse(), tmp_path / "inverse", despite_verdict=True)
     assert "position" in (inverse.path / "stage.m").read_text()
 
 

@@ -61,7 +61,7 @@ def test_an_estimator_without_a_description(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "changes", "message"),
     [
-        ("operator", {"version": 0}, "version 0 of the model file; this hyst reads versions 1 and"),
+        ("operator", {"version": 0}, "version 0 of the model file; this hyst reads versions 1, 2"),
         ("joint_estimator", {"version": 1}, "version 1 of the estimator file"),
         ("joint_estimator", {"author": "me"}, "unknown entry 'author'"),
         ("operator", {"description": {"errors": {}}}, "unknown entry 'errors' in 'description'"),

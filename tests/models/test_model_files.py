@@ -23,7 +23,7 @@ from hyst import (
     PrandtlIshlinskii,
     load,
 )
-from hyst.operators import ModelDescription
+from hyst.operators import ModelDescription, Verdict
 
 BANK = PrandtlIshlinskii([0.5, 0.25], [1.0, 2.0], p0=0.3, z0=[0.5, 0.25])
 ZONE = DeadZone([1.0, 0.5], [0.0, 1.5])
@@ -52,7 +52,7 @@ def test_a_person_can_read_it(file: Path) -> None:
     assert file.read_text(encoding="utf-8") == (
         "{\n"
         '  "format": "hyst model",\n'
-        '  "version": 2,\n'
+        '  "version": 3,\n'
         '  "description": {\n'
         '    "input_name": "drive",\n'
         '    "output_name": "y",\n'
@@ -95,6 +95,8 @@ def test_where_no_file_can_be(tmp_path: Path) -> None:
         ModelDescription("U/V", "x [ 1 2 ]", "µm", "日本 \"'\\\n[\n 1\n]", family="mpi"),
         ModelDescription(input_low=-4.9e-21, input_high=1e300, output_low=5e-324, output_high=0.1),
         ModelDescription(dt=1.0 / 3.0, delay=7),
+        ModelDescription(delay=-1.0 / 3.0, delay_interval=(-0.7, 2), smallest_swing=5e-324),
+        ModelDescription(verdict=Verdict("unfit", ("Two loops, one µm apart.", "Record anew."))),
     ],
 )
 def test_descriptions_come_back(file: Path, description: ModelDescription) -> None:
@@ -111,11 +113,17 @@ def test_descriptions_come_back(file: Path, description: ModelDescription) -> No
         ({"input_low": float("inf")}, "input_low is inf"),
         ({"input_high": "5"}, "input_high is '5'; give a finite number"),
         ({"output_low": True}, "output_low is True; give a finite number"),
-        ({"delay": 1.5}, r"delay is 1\.5; give a whole number"),
-        ({"delay": None}, "delay is None; give a whole number"),
+        ({"delay": float("inf")}, r"delay is inf; give a finite number"),
+        ({"delay": None}, "delay is None; give a finite number"),
         ({"delay": True}, "delay is True"),
         ({"input_unit": 5}, "input_unit is 5; give text"),
         ({"input_name": None}, "input_name is None; give text"),
+        ({"delay_interval": (2.0, 1.0)}, r"delay_interval is \(2\.0, 1\.0\); give the lower"),
+        ({"delay_interval": (2.0,)}, "delay_interval is .*; give two numbers"),
+        ({"delay_interval": 2.0}, r"delay_interval is 2\.0; give two numbers"),
+        ({"smallest_swing": 0.0}, r"smallest_swing is 0\.0; give a way above 0"),
+        ({"verdict": "unfit"}, "a verdict has the entries 'level' and 'sentences'"),
+        ({"verdict": {"level": "bad", "sentences": ["No."]}}, "the level of a verdict is 'bad'"),
         ({"output_name": "\ud800"}, "output_name is .*; give text"),
     ],
 )
@@ -194,9 +202,9 @@ def entry(*path: str | int, value: Any) -> Callable[[dict[str, Any]], None]:
         (entry("format", value="hyst"), "not a model file"),
         (
             entry("version", value=...),
-            "version None of the model file; this hyst reads versions 1 and 2",
+            "version None of the model file; this hyst reads versions 1, 2 and 3",
         ),
-        (entry("version", value=3), "version 3 of the model file"),
+        (entry("version", value=4), "version 4 of the model file"),
         (entry("version", value="1"), "version '1'"),
         (entry("version", value=1.0), r"version 1\.0"),
         (entry("version", value=True), "version True"),
@@ -207,8 +215,9 @@ def entry(*path: str | int, value: Any) -> Callable[[dict[str, Any]], None]:
         (entry("description", "colour", value=1), "unknown entry 'colour' in 'description'"),
         (entry("description", "dt", value=None), "'dt' in 'description' is null; leave"),
         (entry("description", "dt", value="fast"), "in 'description', dt is 'fast'; give a finite"),
-        (entry("description", "delay", value=0.5), r"in 'description', delay is 0\.5"),
-        (entry("description", "delay", value=-3), r"in 'description', delay is -3"),
+        (entry("description", "delay", value="2"), r"in 'description', delay is '2'"),
+        (entry("description", "delay_interval", value=[1]), "in 'description', delay_interval is"),
+        (entry("description", "verdict", value={"level": "good"}), "in 'description', a verdict"),
         (entry("description", "dt", value=0.0), r"in 'description', dt is 0\.0"),
         (entry("description", "family", value=["pi"]), "in 'description', family is"),
         (entry("model", value=None), "an object with an entry 'kind'"),
@@ -307,7 +316,7 @@ def test_numbers_that_are_not_finite(file: Path, number: str, key: str) -> None:
 def test_entries_given_twice(file: Path) -> None:
     Play(1.0).save(file)
     text = file.read_text(encoding="utf-8")
-    for once in ('"version": 2', '"kind": "play"', '"r": 1.0'):
+    for once in ('"version": 3', '"kind": "play"', '"r": 1.0'):
         file.write_text(text.replace(once, f"{once}, {once}"), encoding="utf-8")
         assert_refused(file, "the entry .* is there more than once")
 

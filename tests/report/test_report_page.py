@@ -233,7 +233,7 @@ def test_a_delay_is_explained_and_drawn(tmp_path: Path) -> None:
     late = hyst.Record(record.u, np.concatenate([[record.y[0]] * 3, record.y[:-3]]), record.dt)
     found = hyst.identify(late, family="pi", plays=2, delay=3)
     *_, page = write_report(found, late, (), tmp_path / "out")
-    assert "lags the model by 3 samples (0.03 s)" in Reader(page.read_text()).words
+    assert "lags the model by 3 samples, 30 ms" in Reader(page.read_text()).words
 
 
 def test_a_perfect_model_and_a_model_without_inverse(tmp_path: Path) -> None:

@@ -126,6 +126,11 @@ def adapt(
         _write_parameters(temporary / names[2], trajectory)
         (temporary / names[3]).write_bytes(picture)
     _tell(estimator, before.tolist())
+    if about.verdict is not None and about.is_unfit:
+        note(
+            "the model it started from is unfit, and the estimate has its shape: "
+            f"{hyst.report.verdict_sentence(about.verdict)}"
+        )
     show_files([folder / name for name in names])
 
 
@@ -137,7 +142,7 @@ def _described(
     """Give the model's description with the origin of the estimate in the place of its own."""
     asked = {name: each for name, each in estimator.settings.items() if name != "model"}
     return replace(
-        about.of_other_constants(),
+        about.of_estimate(),
         dt=measured.dt,
         provenance=hyst.operators.provenance.provenance([measured], asked),
     )
@@ -201,15 +206,19 @@ def _resumed(
     return estimator, given
 
 
-def _without_delay(record: hyst.Record, delay: int) -> hyst.Record:
+def _without_delay(record: hyst.Record, delay: float) -> hyst.Record:
+    """Set input and output side by side; part of a sample is taken off the input."""
     if delay == 0:
         return record
-    if delay >= record.samples:
+    whole = math.floor(delay)
+    if abs(whole) >= record.samples:
         raise hyst.InputError(
-            f"the model's delay is {delay} samples but the record has {record.samples}; "
+            f"the model's delay is {delay:.4g} samples but the record has {record.samples}; "
             "give a longer record"
         )
-    return replace(record, u=record.u[: record.samples - delay], y=record.y[delay:])
+    ahead, behind = max(-whole, 0), max(whole, 0)
+    u = hyst.identification.later(record.u, delay - whole)[ahead : record.samples - behind]
+    return replace(record, u=u, y=record.y[behind : record.samples - ahead])
 
 
 def _from_start(record: hyst.Record, start: int) -> tuple[NDArray[np.float64], hyst.Record]:

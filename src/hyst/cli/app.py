@@ -16,6 +16,7 @@ from hyst.cli.compensate import compensate
 from hyst.cli.demo import demo
 from hyst.cli.diagnose import diagnose
 from hyst.cli.excite import excite
+from hyst.cli.exit_codes import BAD_INPUT, DONE, FAILURE
 from hyst.cli.export import export
 from hyst.cli.family_options import FamilyCommand
 from hyst.cli.fit import fit
@@ -25,14 +26,13 @@ from hyst.cli.observer import observer
 from hyst.cli.reproduce import reproduce
 from hyst.cli.simulate import simulate
 
-DONE, FAILURE, BAD_INPUT = 0, 1, 2
-
 app = typer.Typer(
     add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     help="From a measured hysteresis loop to a model, its exact inverse and a command.",
-    epilog="Exit code: 0 done, 2 bad input, 1 failure.",
+    epilog="Exit code: 0 done, 3 done but no command should come from the model, 2 bad input, "
+    "1 failure.",
 )
 VERBS = (
     diagnose,

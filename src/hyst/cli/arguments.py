@@ -52,6 +52,11 @@ SampleRate = Annotated[
     ),
 ]
 
+DespiteVerdict = Annotated[
+    bool,
+    typer.Option("--despite-verdict", help="Go on with a model whose verdict is unfit."),
+]
+
 _STAMPS_ROUNDED = 1e-3
 
 

@@ -9,6 +9,7 @@ import typer
 
 import hyst
 from hyst.cli.arguments import (
+    DespiteVerdict,
     ModelFile,
     SampleRate,
     load_operator,
@@ -96,6 +97,7 @@ def compensate(
     rate_limit: RateLimit = None,
     rate: SampleRate = None,
     allow_unconverged: AllowUnconverged = False,
+    despite_verdict: DespiteVerdict = False,
 ) -> None:
     """Turn a wanted output into the input that produces it, and predict how well."""
     if method in hyst.compensation.METHODS:
@@ -118,6 +120,7 @@ def compensate(
             rate_limit=rate_limit,
             preview=preview,
             allow_unconverged=allow_unconverged,
+            despite_verdict=despite_verdict,
             progress=progress,
         )
     if not known:
@@ -132,6 +135,11 @@ def compensate(
     ]
     hyst.io.write_columns(out, headers, (done.y_ref, done.u, done.y_predicted))
     _tell(done, about, input_range)
+    if history is None and model.initial_state().size:
+        print(
+            "memory taken as virgin, as of an actuator never driven; if it was driven, give the "
+            "turns of the drive just before with --history"
+        )
     show_files([out])
 
 
@@ -174,6 +182,9 @@ def _tell(
     about: ModelDescription,
     input_range: tuple[float, float] | None,
 ) -> None:
+    print(done.expectation(about.output_unit))
+    for sentence in done.unknown:
+        note(sentence)
     unit = f" {about.input_unit}" if about.input_unit else ""
     limits = (
         "no limits"
@@ -193,4 +204,4 @@ def _tell(
     for sentence in done.notes:
         print(sentence)
     if about.delay:
-        print(hyst.report.delay_sentence(about.delay, about.dt))
+        print(hyst.report.delay_sentence(about.delay, about.dt, about.delay_interval))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import hyst
-from hyst.cli.arguments import ModelFile
+from hyst.cli.arguments import DespiteVerdict, ModelFile
 from hyst.cli.console import show_table
 from hyst.cli.relevant_options import refuse_irrelevant
 
@@ -30,6 +30,7 @@ class _Order:
     force: bool
     fmi: str
     binary: bool
+    despite_verdict: bool
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,7 @@ def _c(order: _Order) -> _Done:
         precision=order.precision,
         name=order.name,
         force=order.force,
+        despite_verdict=order.despite_verdict,
     )
     zipped = order.out.suffix.lower() == ".zip"
     folder = order.name if zipped else str(order.out)
@@ -78,6 +80,7 @@ def _fmu(order: _Order) -> _Done:
         name=order.name,
         force=order.force,
         binary=order.binary,
+        despite_verdict=order.despite_verdict,
     )
     binaries = [each for each in written.files if each.startswith("binaries/")]
     rows = (
@@ -91,7 +94,13 @@ def _fmu(order: _Order) -> _Done:
 
 
 def _mex(order: _Order) -> _Done:
-    written = hyst.export.mex(order.model, order.out, name=order.name, force=order.force)
+    written = hyst.export.mex(
+        order.model,
+        order.out,
+        name=order.name,
+        force=order.force,
+        despite_verdict=order.despite_verdict,
+    )
     rows = (
         ("files", ", ".join(written.files)),
         ("state", f"{written.saved_bytes} bytes, {written.state_length} numbers of memory"),
@@ -162,6 +171,7 @@ def export(
             "--binary/--no-binary", help="Whether to compile an FMU's binary for this platform."
         ),
     ] = True,
+    despite_verdict: DespiteVerdict = False,
 ) -> None:
     """Write a model as code for other tools: the numbers of Python, bit for bit in double."""
     if target not in _TARGETS:
@@ -170,10 +180,12 @@ def export(
     model = hyst.load(model_file)
     if inverse or explicit:
         model = hyst.export.inverse_of(model, explicit)
-    done = _TARGETS[target](_Order(model, out, precision, name, force, fmi, binary))
+    order = _Order(model, out, precision, name, force, fmi, binary, despite_verdict)
+    done = _TARGETS[target](order)
     what = "inverse of " if inverse or explicit else ""
     title = f"{what}{model_file.name} as {target}: {out}"
     show_table(hyst.report.Table(title, ("", ""), done.rows))
-    if model.description.delay:
-        print("\n" + hyst.report.delay_sentence(model.description.delay, model.description.dt))
+    about = model.description
+    if about.delay:
+        print("\n" + hyst.report.delay_sentence(about.delay, about.dt, about.delay_interval))
     print(f"\nnext: {done.next_step}")

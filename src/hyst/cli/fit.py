@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -34,6 +34,8 @@ from hyst.cli.fitted import (
     ValidateInput,
     ValidateOutput,
     ValidateTime,
+    ended,
+    named_by_files,
     tell_fitted,
     write_fitted,
 )
@@ -86,7 +88,7 @@ def fit(
     input_label: InputLabel = None,
     output_label: OutputLabel = None,
     allow_unconverged: AllowUnconverged = False,
-) -> None:
+) -> int:
     """Fit the constants of a model to records, from its own values, and report as identify does."""
     require_folder(folder)
     guess = load_operator(model)
@@ -114,13 +116,15 @@ def fit(
             progress=say,
         )
         say("report")
+        found = named_by_files(found, data)
         sources = [*data, *(validate or [])]
         written = write_fitted(found, records, validation, folder, sources)
     tell_fitted(found, records)
     show_files(written)
+    return ended(found)
 
 
-def _own_delay(guess: hyst.Operator, record: hyst.Record) -> int:
+def _own_delay(guess: hyst.Operator, record: hyst.Record) -> Any:
     """Give the delay of the model file, whose samples are those of the record it was made from."""
     about = guess.description
     if about.delay and about.dt is not None and not math.isclose(about.dt, record.dt, rel_tol=1e-6):
@@ -128,7 +132,7 @@ def _own_delay(guess: hyst.Operator, record: hyst.Record) -> int:
             f"the model's delay is {about.delay} samples of {about.dt:.6g} s, the record's are of "
             f"{record.dt:.6g} s; give --delay in samples of the record"
         )
-    return about.delay
+    return about.delay  # hyst.fit says which delays it can take
 
 
 def _as_bound(text: str) -> tuple[str, tuple[float, float]]:

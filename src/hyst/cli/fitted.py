@@ -12,6 +12,7 @@ import typer
 
 import hyst
 from hyst.cli.console import show_table
+from hyst.cli.exit_codes import DONE, UNFIT
 
 Data = Annotated[
     list[Path], typer.Argument(metavar="DATA", show_default=False, help="Measured records.")
@@ -124,17 +125,34 @@ def write_fitted(
 
 
 def tell_fitted(found: hyst.Identified, records: Sequence[hyst.Record]) -> None:
-    """Print what was found and how good it is."""
+    """Print how far to trust what was found, what it is, and how good it is."""
+    print(hyst.report.verdict_sentence(found.verdict))
     for sentence in hyst.report.in_short(found, tuple(records)):
         print(sentence)
     if found.candidates:
         show_table(hyst.report.candidates_table(found))
     show_table(hyst.report.metrics_table(found))
+    by_record = hyst.report.per_record_table(found)
+    if by_record.rows:
+        show_table(by_record)
     show_table(hyst.report.parameters_table(found))
     if any(math.isnan(each) for each in found.standard_errors):
         print("(-: on a bound, or not determined by the records)")
     for sentence in found.undetermined:
         print(f"note: {sentence}")
+
+
+def ended(found: hyst.Identified) -> int:
+    """Give the exit code: whether a command should come from what was found."""
+    return UNFIT if found.verdict.level == hyst.operators.verdict.UNFIT else DONE
+
+
+def named_by_files(found: hyst.Identified, paths: Sequence[Path]) -> hyst.Identified:
+    """Give a result whose errors by record name the files."""
+    named = (
+        replace(each, name=path.name) for each, path in zip(found.per_record, paths, strict=True)
+    )
+    return replace(found, per_record=tuple(named))
 
 
 def _labelled(

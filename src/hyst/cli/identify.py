@@ -30,6 +30,8 @@ from hyst.cli.fitted import (
     ValidateInput,
     ValidateOutput,
     ValidateTime,
+    ended,
+    named_by_files,
     tell_fitted,
     write_fitted,
 )
@@ -59,7 +61,7 @@ def identify(
     input_label: InputLabel = None,
     output_label: OutputLabel = None,
     allow_unconverged: AllowUnconverged = False,
-) -> None:
+) -> int:
     """Identify a model from measured records, and write model, numbers, figures and a report."""
     require_folder(folder)
     options = options_given(context, family)
@@ -84,6 +86,7 @@ def identify(
             **options,
         )
         say("report")
+        found = named_by_files(found, data)
         used = next(each for each in chosen if each.name == found.family)
         records = used.records_to_use(tuple(measured), first)[0].records
         told = hyst.report.distortion_sections(measured, options.get("period"))
@@ -91,3 +94,4 @@ def identify(
         written = write_fitted(found, records, validation, folder, sources, told)
     tell_fitted(found, records)
     show_files(written)
+    return ended(found)

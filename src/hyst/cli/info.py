@@ -13,6 +13,8 @@ def info(model_file: ModelFile) -> None:
     """Show what a model file holds: meaning, errors, origin, constants, traits, invertibility."""
     found = hyst.load(model_file)
     about = found.description
+    if about.verdict is not None:
+        print(hyst.report.verdict_sentence(about.verdict))
     show_table(hyst.report.description_table(about))
     for table in (hyst.report.errors_table(about), hyst.report.provenance_table(about)):
         if table.rows:

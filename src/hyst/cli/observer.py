@@ -11,9 +11,11 @@ import typer
 
 import hyst
 from hyst._files import replacing_files, require_folder
+from hyst.cli.arguments import DespiteVerdict
 from hyst.cli.console import at_work, note, progress_bar, show_files, show_table
 from hyst.cli.observer_spec import read_spec
 from hyst.cli.observer_template import TEMPLATE
+from hyst.operators.verdict import refuse_if_unfit
 
 if TYPE_CHECKING:
     from hyst.cli.observer_spec import ObserverSpec
@@ -35,7 +37,12 @@ Template = Annotated[
 NONE = "none"
 
 
-def observer(spec_file: SpecFile = None, folder: Folder = None, template: Template = False) -> None:
+def observer(
+    spec_file: SpecFile = None,
+    folder: Folder = None,
+    template: Template = False,
+    despite_verdict: DespiteVerdict = False,
+) -> None:
     """Design a disturbance observer; say if the loop is safe, and write what to implement."""
     if template:
         if spec_file is not None or folder is not None:
@@ -48,6 +55,9 @@ def observer(spec_file: SpecFile = None, folder: Folder = None, template: Templa
         )
     require_folder(folder)
     spec = read_spec(spec_file)
+    for each in (spec.hysteresis, spec.inverse):
+        judged = None if each is None else each.description.verdict
+        refuse_if_unfit(judged, "no controller is designed", despite_verdict)
     design = _design(spec)
     answer = _tried(spec, design)
     with at_work("drawing"):
@@ -70,9 +80,8 @@ def observer(spec_file: SpecFile = None, folder: Folder = None, template: Templa
             names.append("controller.json")
             answer.block.save(temporary / names[5])
     _tell(answer)
-    about = spec.hysteresis.description
-    if about.delay:
-        lag = f"{about.delay} samples" if about.dt is None else f"{about.delay * about.dt:g} s"
+    lag = hyst.report.delay_to_act_on(spec.hysteresis.description)
+    if lag:
         note(f"the recorded output lagged the model by {lag}: put that lag into plant or Wu")
     show_files([folder / name for name in names])
 
@@ -125,6 +134,7 @@ def _tried(spec: ObserverSpec, design: DisturbanceObserver) -> ObserverAnswer:
         observer=design,
         inverse=spec.inverse,
         method=spec.filter_method,
+        despite_verdict=True,  # who does not want that was refused at the beginning
     )
     bound, slopes = _of_inverse(spec, comparison)
     margin = None

@@ -47,24 +47,16 @@ def simulate(
     sample_time_known(model, data, rate, "the record")
     u, _, unit = hyst.io.read_column(data, input_column)
     require_same_unit(unit, about.input_unit, "the input")
-    y = _delayed(model(u), about.delay if with_delay else 0)
+    y = hyst.identification.late_output(model, u, about.delay if with_delay else 0)
     headers = (
         hyst.io.join_unit(about.input_name, about.input_unit),
         hyst.io.join_unit(about.output_name, about.output_unit),
     )
     hyst.io.write_columns(out, headers, (u, y))
     _note_extrapolation(u, about)
+    if with_delay and about.delay < 0:
+        note(hyst.report.delay_sentence(about.delay, about.dt, about.delay_interval))
     show_files([out])
-
-
-def _delayed(y: NDArray[np.float64], lag: int) -> NDArray[np.float64]:
-    """Let a signal lag, its first value repeated before."""
-    if lag == 0:
-        return y
-    late = y.copy()
-    late[:lag] = y[0]
-    late[lag:] = y[:-lag]
-    return late
 
 
 def _note_extrapolation(u: NDArray[np.float64], about: ModelDescription) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from hyst.compensation.error_of_inverse.inverse_error import ErrorBound, error_bound
 from hyst.compensation.error_of_inverse.inverse_reduction import reduce_inverse
 from hyst.compensation.error_of_inverse.inverse_slopes import slope_range
+from hyst.compensation.expectation import ModelError
 from hyst.compensation.invert import METHODS, invert_trajectory
 from hyst.compensation.result import Compensation, error_parts
 from hyst.compensation.suited_methods import methods_for
@@ -13,6 +14,7 @@ __all__ = [
     "METHODS",
     "Compensation",
     "ErrorBound",
+    "ModelError",
     "error_bound",
     "error_parts",
     "invert_trajectory",

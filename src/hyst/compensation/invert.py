@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from hyst.checks.numbers import as_positive, whole_number
 from hyst.compensation.exact import invert_exactly
+from hyst.compensation.expectation import beyond_the_records, error_to_expect
 from hyst.compensation.noncausal import invert_noncausally
 from hyst.compensation.rate_dependent.explicit import drive_explicitly
 from hyst.compensation.rate_dependent.limits_kept import judge_rate_limit
@@ -20,7 +22,8 @@ from hyst.compensation.rate_dependent.task import RateDependentTask, prepare_tas
 from hyst.compensation.rate_dependent.whole_trajectory import drive_along_trajectory
 from hyst.compensation.result import Compensation
 from hyst.errors import InputError, SolverError
-from hyst.operators import Operator
+from hyst.operators import ModelDescription, Operator
+from hyst.operators.verdict import refuse_if_unfit
 
 METHODS = ("exact", "noncausal", "explicit", "sample-exact", "preview", "trajectory")
 
@@ -37,6 +40,7 @@ def invert_trajectory(
     preview: int = 20,
     max_iterations: int = 1000,
     allow_unconverged: bool = False,
+    despite_verdict: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> Compensation:
     """Find the input that makes a model follow a wanted output.
@@ -85,13 +89,16 @@ def invert_trajectory(
         Of each stage of ``trajectory``.
     allow_unconverged
         Give the best command with its status instead of raising if ``trajectory`` did not converge.
+    despite_verdict
+        Make a command also of a model whose verdict is ``unfit``.
     progress
         Called with the share done, 0 to 1.
 
     Returns
     -------
     Compensation
-        The command ``u``, ``y_predicted``, ``predicted_error`` and what follows from it.
+        The command ``u``, ``y_predicted``, ``predicted_error`` and what follows from it; what the
+        model itself missed, ``expected``, and what its records did not show, ``unknown``.
 
     Raises
     ------
@@ -100,7 +107,7 @@ def invert_trajectory(
         or another option is not one there is, the range is not two finite ascending numbers, the
         method is not for this model, or, with ``"refuse"``, the reference is out of reach or takes
         the input of ``explicit`` or ``sample-exact`` out of its range, or the limit of the rate is
-        far below what the reference needs.
+        far below what the reference needs; or if the model's verdict is ``unfit``.
     NotInvertibleError
         If the model has no exact inverse and the method needs one, or p0 is not positive.
     SolverError
@@ -121,35 +128,70 @@ def invert_trajectory(
         raise InputError(f"unknown method {method!r}; the methods there are: {known}")
     if outside not in ("refuse", "clip"):
         raise InputError(f"outside is {outside!r}; choose 'refuse' or 'clip'")
-    clip = outside == "clip"
-    change_limited = rate_limit is not None
-    if change_limited and method not in ("preview", "trajectory"):
+    if rate_limit is not None and method not in ("preview", "trajectory"):
         raise InputError(f"method {method!r} knows no rate limit; use 'preview' or 'trajectory'")
+    about = model.description if isinstance(model, Operator) else ModelDescription()
+    refuse_if_unfit(about.verdict, "no command is made", despite_verdict)
+    task = _Task(model, y_ref, input_range, outside == "clip", history)
+    options = _Options(rate_limit, preview, max_iterations, allow_unconverged, progress or _silent)
+    done = _inverted(task, method, options)
+    unknown = beyond_the_records(about, done.u, done.y_ref)
+    return replace(done, expected=error_to_expect(about), unknown=unknown)
+
+
+@dataclass(frozen=True, eq=False)
+class _Task:
+    """What is wanted of which model."""
+
+    model: Operator
+    y_ref: ArrayLike
+    input_range: tuple[float, float] | None
+    clip: bool
+    history: ArrayLike | None
+
+
+@dataclass(frozen=True, eq=False)
+class _Options:
+    """Of the methods for rate-dependent plays."""
+
+    rate_limit: float | None
+    preview: int
+    max_iterations: int
+    allow_unconverged: bool
+    say: Callable[[float], None]
+
+
+def _inverted(asked: _Task, method: str, options: _Options) -> Compensation:
+    """Invert by one of the methods."""
     if method == "exact":
-        return invert_exactly(model, y_ref, input_range, clip, history)
+        return invert_exactly(
+            asked.model, asked.y_ref, asked.input_range, asked.clip, asked.history
+        )
     if method == "noncausal":
-        return invert_noncausally(model, y_ref, input_range, clip, history)
-    task = prepare_task(model, y_ref, input_range, clip, history)
-    say = progress or _silent
+        return invert_noncausally(
+            asked.model, asked.y_ref, asked.input_range, asked.clip, asked.history
+        )
+    task = prepare_task(asked.model, asked.y_ref, asked.input_range, asked.clip, asked.history)
     if method == "explicit":
         found = drive_explicitly(task)
     elif method == "sample-exact":
         found = drive_sample_by_sample(task)
     elif method == "preview":
-        change = _change(task, rate_limit)
-        found = drive_with_preview(task, whole_number(preview, "preview", 1), change, say)
+        ahead = whole_number(options.preview, "preview", 1)
+        change = _change(task, options.rate_limit)
+        found = drive_with_preview(task, ahead, change, options.say)
         found = judge_rate_limit(task, found, change, False)
     else:
-        limit = whole_number(max_iterations, "max_iterations", 1)
-        change = _change(task, rate_limit)
-        found = drive_along_trajectory(task, change, limit, say)
+        limit = whole_number(options.max_iterations, "max_iterations", 1)
+        change = _change(task, options.rate_limit)
+        found = drive_along_trajectory(task, change, limit, options.say)
         found = judge_rate_limit(task, found, change, True)
     done = _compensation(task, found, method)
-    if found.status == ITERATION_LIMIT and not allow_unconverged:
+    if found.status == ITERATION_LIMIT and not options.allow_unconverged:
         raise SolverError(
-            f"the trajectory inversion did not converge in {max_iterations} iterations a stage; "
-            f"its best command leaves an error of {done.max_abs:.4g} (rms {done.rms:.4g}); raise "
-            "max_iterations, or accept it with allow_unconverged"
+            f"the trajectory inversion did not converge in {options.max_iterations} iterations a "
+            f"stage; its best command leaves an error of {done.max_abs:.4g} (rms {done.rms:.4g}); "
+            "raise max_iterations, or accept it with allow_unconverged"
         )
     return done
 

@@ -10,10 +10,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.compensation.expectation import ModelError, expectation_of
+
 Array = NDArray[np.float64]
 
+_ROUNDING = 1e-9  # of the largest output; an inverse in double leaves some 1e-15
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Compensation:
     """A command, and what the model says it will do.
 
@@ -38,6 +42,12 @@ class Compensation:
     interior
         First sample and the one beyond the last for which the method promises what it does; outside
         them are the edges, of which it assumes something. None if there are none.
+    expected
+        By how much the model itself missed a record, which is what to expect of the actuator beside
+        the predicted error; None if the model does not tell.
+    unknown
+        Where not even that is known, in sentences: the command leaves what the model's records
+        showed.
 
     Examples
     --------
@@ -55,6 +65,14 @@ class Compensation:
     iterations: int = 1
     notes: tuple[str, ...] = ()
     interior: tuple[int, int] | None = None
+    expected: ModelError | None = None
+    unknown: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return (
+            f"Compensation({self.method}, {self.u.size} samples, u {self.u.min():.4g} to "
+            f"{self.u.max():.4g}, {self.expectation()})"
+        )
 
     @cached_property
     def predicted_error(self) -> Array:
@@ -70,6 +88,44 @@ class Compensation:
     def max_abs(self) -> float:
         """Largest absolute predicted error, output units."""
         return float(np.max(np.abs(self.predicted_error)))
+
+    def expectation(self, unit: str = "") -> str:
+        """Say which tracking error to expect of the actuator: the model's own beside the predicted.
+
+        Parameters
+        ----------
+        unit
+            Of the output.
+
+        Returns
+        -------
+        str
+        """
+        return expectation_of(self.rms, self.max_abs, self._is_exact(), self.expected, unit)
+
+    def summary(self, unit: str = "") -> str:
+        """Give what there is to know of a command in some lines, the error to expect first.
+
+        Parameters
+        ----------
+        unit
+            Of the output.
+
+        Returns
+        -------
+        str
+        """
+        lines = [self.expectation(unit), *self.unknown, *self.notes]
+        if self.clipped:
+            lines.append(
+                f"{self.clipped} of {self.u.size} samples were held at an end of the range"
+            )
+        return "\n".join(lines)
+
+    def _is_exact(self) -> bool:
+        """Whether what is left of the reference is rounding."""
+        largest = max(float(np.abs(self.y_ref).max()), float(np.abs(self.y_predicted).max()))
+        return self.method == "exact" and self.max_abs <= _ROUNDING * largest
 
     @property
     def total_variation(self) -> float | None:

@@ -20,6 +20,7 @@ from hyst.operators import Operator
 from hyst.operators.description import Described, ModelDescription
 from hyst.operators.model_file import MODEL, write_file
 from hyst.operators.registry import entries, operator_from_dict
+from hyst.operators.verdict import refuse_if_unfit
 
 Array = NDArray[np.float64]
 
@@ -56,12 +57,14 @@ class TrackingController(Described):
         Shapes (n,) and (2,), or neither.
     x0
         Shape (n,), state before the first sample; zeros if left out.
+    despite_verdict
+        Take also an inverse of a model whose verdict is ``unfit``.
 
     Raises
     ------
     InputError
         If shapes do not fit, a number is not finite, n is above 64, dt is not above 0, the inverse
-        is no operator or has another dt.
+        is no operator, has another dt or is of a model whose verdict is ``unfit``.
 
     Source
     ------
@@ -96,6 +99,7 @@ class TrackingController(Described):
         E: ArrayLike | None = None,
         F: ArrayLike | None = None,
         x0: ArrayLike | None = None,
+        despite_verdict: bool = False,
     ) -> None:
         c = as_constants(C, "C")
         n, time = c.size, as_sample_time(dt)
@@ -107,6 +111,7 @@ class TrackingController(Described):
             if not isinstance(inverse, Operator):
                 raise InputError(f"inverse is {type(inverse).__name__}; give an operator or None")
             inverse.require_sample_time(time, "the controller")
+            refuse_if_unfit(inverse.description.verdict, "no controller is made", despite_verdict)
         values: dict[str, Any] = {
             "A": _matrix(A, (n, n), "A"),
             "B": _matrix(B, (n, 2), "B"),
@@ -130,6 +135,7 @@ class TrackingController(Described):
         observer: Any = None,
         inverse: Operator | None = None,
         method: Method = "tustin",
+        despite_verdict: bool = False,
     ) -> TrackingController:
         """Sample a design in continuous time.
 
@@ -151,6 +157,8 @@ class TrackingController(Described):
             Operator from v to u; ``u = v`` if left out.
         method
             How they are sampled: ``"tustin"`` or ``"zoh"``.
+        despite_verdict
+            Take also an inverse of a model whose verdict is ``unfit``.
 
         Returns
         -------
@@ -160,7 +168,7 @@ class TrackingController(Described):
         ------
         InputError
             If a block cannot be read, is improper, has other inputs or outputs or another sample
-            time, or the observer is unstable.
+            time, the observer is unstable, or the inverse is of a model whose verdict is ``unfit``.
 
         Examples
         --------
@@ -171,7 +179,15 @@ class TrackingController(Described):
         blocks = feedback_controller(controller), disturbance_observer_of(observer)
         whole = joined(*(discretize(each, dt, method) for each in blocks))
         return cls(
-            whole.A, whole.B, whole.C[0], whole.D[0], dt, inverse, E=whole.C[1], F=whole.D[1]
+            whole.A,
+            whole.B,
+            whole.C[0],
+            whole.D[0],
+            dt,
+            inverse,
+            E=whole.C[1],
+            F=whole.D[1],
+            despite_verdict=despite_verdict,
         )
 
     @property

@@ -12,12 +12,12 @@ from typing import final
 
 import hyst
 from hyst.errors import InputError
-from hyst.export.c.block import Block, Model, described
+from hyst.export.c.block import Block, Model, described, refuse_unfit
 from hyst.export.c.c_sources import header, places, source
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.names import as_c_name, plain_text
 from hyst.export.c.one_file import in_one_file
-from hyst.export.c.readme import lag_row
+from hyst.export.c.readme import lag_row, verdict_row
 from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, MANIFEST, write_export
 from hyst.export.tool_block import ToolBlock, tool_block
@@ -73,6 +73,7 @@ def mex(
     name: str = "stage",
     force: bool = False,
     description: ModelDescription | None = None,
+    despite_verdict: bool = False,
 ) -> MexFolder:
     """Write a model as one C file that MATLAB and Octave compile, with wrappers in their language.
 
@@ -88,6 +89,8 @@ def mex(
         Whether an earlier export of that path is replaced, as a whole.
     description
         Names and units of input and output, for comments; that of the model itself if left out.
+    despite_verdict
+        Export also a model whose verdict is ``unfit``.
 
     Returns
     -------
@@ -96,7 +99,8 @@ def mex(
     Raises
     ------
     InputError
-        If the model or the name cannot be used, or the path exists.
+        If the model or the name cannot be used, the path exists, or the verdict on the model is
+        ``unfit``.
 
     Examples
     --------
@@ -109,6 +113,7 @@ def mex(
     ('README.md', 'lens.m', 'lens_mex.c', 'lens_stepper.m', 'manifest.json')
     """
     _as_function_name(name)
+    refuse_unfit(model, description, despite_verdict)
     tool = tool_block(model)
     about = described(model, description)
     files = mex_files(tool, name, about)
@@ -229,7 +234,7 @@ def _rows(block: Block, signals: str, about: ModelDescription) -> str:
         "sample time": "any" if block.dt is None else f"{block.dt!r} s, and no other",
     }
     rows |= dict(line.split(": ", 1) for line in _signal_lines(signals))
-    rows |= lag_row(about)
+    rows |= verdict_row(about) | lag_row(about)
     return "\n".join(f"| {key} | {value} |" for key, value in rows.items())
 
 

@@ -11,11 +11,13 @@ from hyst.errors import InputError
 from hyst.operators.plain_data import (
     as_finite,
     as_finite_or_none,
+    as_finite_pair_or_none,
     as_mapping,
+    as_number,
     as_text,
-    as_whole,
 )
 from hyst.operators.provenance import Provenance
+from hyst.operators.verdict import UNFIT, Verdict
 
 ERRORS = ("rms", "rms_percent", "max_abs")
 
@@ -36,7 +38,8 @@ class ModelDescription:
     dt
         Sample time of that record in seconds.
     delay
-        Whole samples by which the measured output lagged the model's output in that record. The
+        Samples by which the measured output lagged the model's output in that record; may be a
+        fraction, and is negative where the output was ahead of the input, which no actuator is. The
         model itself has no delay, so that it has an exact inverse.
     family
         Family the model was identified in.
@@ -45,12 +48,19 @@ class ModelDescription:
         ``max_abs`` in output units, and ``rms_percent`` of the output's range.
     provenance
         Where the model comes from, if it was identified.
+    verdict
+        How far the model can be trusted, if that was judged.
+    delay_interval
+        Lowest and highest delay that the records do not exclude, samples.
+    smallest_swing
+        Least way of the input between two turns in the records, input units: of smaller loops they
+        show nothing.
 
     Raises
     ------
     InputError
-        If a name or unit is no text, a number is not finite or, for the delay, not whole, the delay
-        is negative, dt is not positive, a range is upside down, or an error has another name.
+        If a name or unit is no text, a number is not finite, dt or the swing is not positive, a
+        range is upside down, an error has another name, or a structure is of another kind.
     """
 
     input_name: str = "u"
@@ -62,22 +72,31 @@ class ModelDescription:
     output_low: float | None = None
     output_high: float | None = None
     dt: float | None = None
-    delay: int = 0
+    delay: float = 0
     family: str = ""
     errors: Mapping[str, Mapping[str, float]] = field(default_factory=dict, hash=False)
     provenance: Provenance | None = None
+    verdict: Verdict | None = None
+    delay_interval: tuple[float, float] | None = None
+    smallest_swing: float | None = None
 
     # Of the file format: entries that files of a version may have are those of it and before.
-    ADDED: ClassVar[dict[str, int]] = {"errors": 2, "provenance": 2}
+    ADDED: ClassVar[dict[str, int]] = {
+        "errors": 2,
+        "provenance": 2,
+        "verdict": 3,
+        "delay_interval": 3,
+        "smallest_swing": 3,
+    }
 
     def __post_init__(self) -> None:
         for each in fields(self):
             value = _CHECKS[each.name](each.name, getattr(self, each.name))
             object.__setattr__(self, each.name, value)
-        if self.delay < 0:
-            raise InputError(f"delay is {self.delay}; give zero or more samples")
         if self.dt is not None and self.dt <= 0.0:
             raise InputError(f"dt is {self.dt}; give a sample time above 0, in seconds")
+        if self.smallest_swing is not None and self.smallest_swing <= 0.0:
+            raise InputError(f"smallest_swing is {self.smallest_swing}; give a way above 0")
         for signal in ("input", "output"):
             low, high = getattr(self, f"{signal}_low"), getattr(self, f"{signal}_high")
             if low is not None and high is not None and low > high:
@@ -85,12 +104,21 @@ class ModelDescription:
                     f"{signal}_low is {low} and {signal}_high is {high}; give the lower end first"
                 )
 
+    @property
+    def is_unfit(self) -> bool:
+        """Whether no command should come from the model, because its verdict says so."""
+        return self.verdict is not None and self.verdict.level == UNFIT
+
     def to_dict(self) -> dict[str, Any]:
         """Give what there is to say as values of JSON; what is not known is left out."""
-        return {key: value for key, value in asdict(self).items() if value not in (None, {})}
+        plain = asdict(self)
+        plain["verdict"] = None if self.verdict is None else self.verdict.to_dict()
+        if self.delay_interval is not None:
+            plain["delay_interval"] = list(self.delay_interval)
+        return {key: value for key, value in plain.items() if value not in (None, {})}
 
     @classmethod
-    def from_dict(cls, data: Any, version: int = 2) -> ModelDescription:
+    def from_dict(cls, data: Any, version: int = 3) -> ModelDescription:
         """Rebuild a description from ``to_dict()``.
 
         Parameters
@@ -98,7 +126,8 @@ class ModelDescription:
         data
             What ``to_dict()`` gave, or the same read from a file.
         version
-            Of the description: 1 has neither errors nor provenance.
+            Of the description: 1 has neither errors nor provenance, 2 neither verdict nor what
+            records leave open, and both know whole delays from 0 only.
 
         Raises
         ------
@@ -116,12 +145,21 @@ class ModelDescription:
             if value is None:
                 raise InputError(f"{key!r} in 'description' is null; leave the entry out")
         try:
-            return cls(**data)
+            about = cls(**data)
         except InputError as error:
             raise InputError(f"in 'description', {error}") from None
+        if version < _ANY_DELAY and (about.delay < 0 or not isinstance(about.delay, int)):
+            raise InputError(
+                f"in 'description', delay is {about.delay}; in files of this version it is a whole "
+                "number of samples, 0 or more"
+            )
+        return about
 
     def of_inverse(self) -> ModelDescription:
-        """Give the description of the inverse: input and output change places, without errors."""
+        """Give that of the inverse: input and output change places, without errors and swing.
+
+        The verdict stays, for the inverse of a model that is not fit is not fit either.
+        """
         return replace(
             self,
             input_name=self.output_name,
@@ -133,11 +171,19 @@ class ModelDescription:
             output_low=self.input_low,
             output_high=self.input_high,
             errors={},
+            smallest_swing=None,
         )
 
     def of_other_constants(self) -> ModelDescription:
-        """Give what still holds when the constants change: no errors, and no provenance."""
-        return replace(self, errors={}, provenance=None)
+        """Give what still holds when the constants change: no errors, origin or verdict."""
+        return replace(self, errors={}, provenance=None, verdict=None)
+
+    def of_estimate(self) -> ModelDescription:
+        """Give what holds of an estimate that starts here: where this is unfit, its shape stays so.
+
+        Estimation changes constants. What is unfit of a model is its shape, which it does not.
+        """
+        return replace(self.of_other_constants(), verdict=self.verdict if self.is_unfit else None)
 
 
 class Described:
@@ -216,14 +262,22 @@ def _as_provenance(name: str, value: Any) -> Provenance | None:
     return value if value is None or isinstance(value, Provenance) else Provenance.from_dict(value)
 
 
+def _as_verdict(name: str, value: Any) -> Verdict | None:
+    return value if value is None or isinstance(value, Verdict) else Verdict.from_dict(value)
+
+
 # How each entry is checked; one that has a structure gives back what is plain and its own.
 _CHECKS: dict[str, Callable[[str, Any], Any]] = {
     **dict.fromkeys(("input_name", "output_name", "input_unit", "output_unit", "family"), as_text),
     **dict.fromkeys(("input_low", "input_high", "output_low", "output_high"), as_finite_or_none),
     "dt": as_finite_or_none,
-    "delay": as_whole,
+    "delay": as_number,
     "errors": _as_errors,
     "provenance": _as_provenance,
+    "verdict": _as_verdict,
+    "delay_interval": as_finite_pair_or_none,
+    "smallest_swing": as_finite_or_none,
 }
+_ANY_DELAY = 3  # the version from which on a delay may be a fraction or negative
 _NOTHING_SAID = ModelDescription()
 _CARRIED = "_description"

@@ -43,10 +43,11 @@ class Format:
     entries: tuple[str, ...]
 
 
-# Version 2 of a description: errors and provenance. A model file must have one, an estimator's
-# file of version 2 may; version 1 of those knew no search beside the estimate and is not read.
-MODEL = Format("hyst model", "model", {1: 1, 2: 2}, ("model",))
-ESTIMATOR = Format("hyst estimator", "estimator", {2: 1, 3: 2}, ("kind", "settings", "state"))
+# Version 2 of a description: errors and provenance; version 3: a verdict, and a delay that may be a
+# fraction or negative with its interval. A model file must have one, an estimator's file of version
+# 2 may; version 1 of those knew no search beside the estimate and is not read.
+MODEL = Format("hyst model", "model", {1: 1, 2: 2, 3: 3}, ("model",))
+ESTIMATOR = Format("hyst estimator", "estimator", {2: 1, 3: 2, 4: 3}, ("kind", "settings", "state"))
 _FORMATS = {each.name: each for each in (MODEL, ESTIMATOR)}
 
 
@@ -126,7 +127,8 @@ def read_file(path: str | os.PathLike[str]) -> SavedFile:
         raise InputError(f"{path}: not a model file; its entry 'format' must be {known}")
     version = content.get("version")
     if type(version) is not int or version not in form.versions:
-        known = " and ".join(str(each) for each in form.versions)
+        *others, last = (str(each) for each in form.versions)
+        known = f"{', '.join(others)} and {last}"
         raise InputError(
             f"{path}: version {version!r} of the {form.holds} file; this hyst reads versions "
             f"{known}; use the hyst that wrote it"

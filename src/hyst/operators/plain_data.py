@@ -34,11 +34,37 @@ def as_finite_or_none(name: str, value: Any) -> float | None:
     return None if value is None else as_finite(name, value)
 
 
-def as_whole(name: str, value: Any) -> int:
-    """Give a ``value`` that is a whole number; ``name`` is what a refusal calls it."""
-    if not _is_real(value) or not float(value).is_integer():
-        _refuse(name, value, "a whole number")
-    return int(value)
+def as_number(name: str, value: Any) -> float:
+    """Give a finite ``value``, a whole one as an int; ``name`` is what a refusal calls it."""
+    number = as_finite(name, value)
+    return int(number) if number.is_integer() else number
+
+
+def as_finite_pair_or_none(name: str, value: Any) -> tuple[float, float] | None:
+    """Give None, or two finite numbers of which the lower comes first.
+
+    Parameters
+    ----------
+    name
+        What messages call it.
+    value
+        None or a list of two numbers.
+
+    Raises
+    ------
+    InputError
+        If it is something else, or the higher number comes first.
+    """
+    if value is None:
+        return None
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        _refuse(name, value, "two numbers, the lower one first")
+    low, high = (as_number(name, each) for each in value)
+    if low > high:
+        _refuse(name, value, "the lower number first")
+    return low, high
 
 
 def as_mapping(name: str, value: Any) -> dict[str, Any]:

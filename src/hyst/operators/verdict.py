@@ -11,6 +11,7 @@ from hyst.operators.plain_data import as_text
 
 Level = Literal["good", "fair", "unfit"]
 LEVELS: tuple[Level, ...] = get_args(Level)
+UNFIT: Level = "unfit"
 
 
 @final
@@ -71,3 +72,30 @@ class Verdict:
         if not isinstance(data["sentences"], list | tuple):
             raise InputError("the sentences of a verdict are a list of texts")
         return cls(data["level"], tuple(data["sentences"]))
+
+
+def refuse_if_unfit(verdict: Verdict | None, what: str, despite_verdict: bool) -> None:
+    """Refuse to make what moves an actuator of a model that no command should come from.
+
+    Parameters
+    ----------
+    verdict
+        Of the model; None if it was not judged.
+    what
+        What would be made, as ``"no command is made"``.
+    despite_verdict
+        Whether the user wants it nevertheless.
+
+    Raises
+    ------
+    InputError
+        If the verdict is ``"unfit"`` and the user does not.
+    """
+    if despite_verdict or verdict is None or verdict.level != UNFIT:
+        return
+    reason = verdict.sentences[0].rstrip(".")
+    raise InputError(
+        f"{what}, for the verdict on the model is {UNFIT}: {reason}; record and identify anew "
+        "(hyst diagnose says what the record lacks), or go on at your own risk with "
+        "--despite-verdict (despite_verdict=True in Python)"
+    )

@@ -1,6 +1,8 @@
 # The one list of what reports offer, for type checkers and for hyst/_lazy.py.
 
 from hyst.report.closed_loop_figure import draw_closed_loops as draw_closed_loops
+from hyst.report.delay_words import delay_sentence as delay_sentence
+from hyst.report.delay_words import delay_to_act_on as delay_to_act_on
 from hyst.report.description_tables import description_table as description_table
 from hyst.report.description_tables import errors_table as errors_table
 from hyst.report.description_tables import provenance_table as provenance_table
@@ -20,8 +22,9 @@ from hyst.report.tables import constants_table as constants_table
 from hyst.report.tables import metrics_table as metrics_table
 from hyst.report.tables import number as number
 from hyst.report.tables import parameters_table as parameters_table
+from hyst.report.tables import per_record_table as per_record_table
 from hyst.report.tables import traits_table as traits_table
 from hyst.report.tracking_figure import draw_tracking as draw_tracking
-from hyst.report.words import delay_sentence as delay_sentence
 from hyst.report.words import in_short as in_short
 from hyst.report.words import invertible_sentence as invertible_sentence
+from hyst.report.words import verdict_sentence as verdict_sentence

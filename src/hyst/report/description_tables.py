@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hyst.operators import ModelDescription
+from hyst.report.delay_words import lag_in_words
 from hyst.report.tables import Table, number, with_unit
 
 
@@ -31,9 +32,20 @@ def description_table(about: ModelDescription) -> Table:
             signal(about.output_name, about.output_unit, about.output_low, about.output_high),
         ),
         ("sample time", "any" if about.dt is None else f"{number(about.dt, 6)} s"),
-        ("delay of the output", f"{about.delay} samples"),
+        ("delay of the output", _delay(about)),
     ]
+    if about.smallest_swing is not None:
+        swing = with_unit(number(about.smallest_swing), about.input_unit)
+        rows.append(("smallest loop it was shown", swing))
+    if about.verdict is not None:
+        rows.insert(0, ("verdict", about.verdict.level))
     return Table("Description", ("what", "value"), tuple(rows))
+
+
+def _delay(about: ModelDescription) -> str:
+    if about.delay < 0:
+        return f"{lag_in_words(about.delay, about.dt, about.delay_interval)}: not aligned"
+    return lag_in_words(about.delay, about.dt, about.delay_interval)
 
 
 def errors_table(about: ModelDescription) -> Table:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification import Identified
+from hyst.identification import Identified, UsedSamples
+from hyst.identification.result.identified import late_output
+from hyst.operators import Affine
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
@@ -27,30 +30,33 @@ class FittedRecord:
         Model's output for all samples, delayed as the measured one is, shape (N,).
     start
         First sample that takes part; before it the memory of the actuator is not known.
+    stop
+        One past the last; where the output is ahead of the input, its end has no input.
     delay
-        Whole samples by which the output lags.
+        Samples by which the output lags.
     """
 
     label: str
     record: Record
     y_model: Array
     start: int
-    delay: int
+    stop: int
+    delay: float
 
     @property
     def time(self) -> Array:
         """Time of the samples that take part, s."""
-        return self.record.time[self.start :]
+        return self.record.time[self.start : self.stop]
 
     @property
     def measured(self) -> Array:
         """Measured output that takes part."""
-        return self.record.y[self.start :]
+        return self.record.y[self.start : self.stop]
 
     @property
     def modelled(self) -> Array:
         """Modelled output that takes part."""
-        return self.y_model[self.start :]
+        return self.y_model[self.start : self.stop]
 
     @property
     def error(self) -> Array:
@@ -60,8 +66,7 @@ class FittedRecord:
     @property
     def model_input(self) -> Array:
         """The input each of these outputs belongs to, ``delay`` samples earlier."""
-        indices = np.arange(self.start, len(self.record)) - self.delay
-        return self.record.u[np.maximum(indices, 0)]
+        return late_output(Affine(1.0), self.record.u, self.delay)[self.start : self.stop]
 
 
 def fit_records(
@@ -84,21 +89,29 @@ def fit_records(
     """
     return (
         tuple(
-            _fit(identified, record, used.start, _label("training", number, len(training)))
+            _fit(identified, record, used, _label("training", number, len(training)))
             for number, (record, used) in enumerate(zip(training, identified.used, strict=True), 1)
         ),
         tuple(
             _fit(
-                identified, record, identified.delay, _label("validation", number, len(validation))
+                identified,
+                record,
+                _all_that_have_an_input(record, identified.delay),
+                _label("validation", number, len(validation)),
             )
             for number, record in enumerate(validation, 1)
         ),
     )
 
 
-def _fit(identified: Identified, record: Record, start: int, label: str) -> FittedRecord:
-    delay = identified.delay
-    return FittedRecord(label, record, identified.predict(record.u), start, delay)
+def _fit(identified: Identified, record: Record, used: UsedSamples, label: str) -> FittedRecord:
+    y_model = identified.predict(record.u)
+    return FittedRecord(label, record, y_model, used.start, used.stop, identified.delay)
+
+
+def _all_that_have_an_input(record: Record, delay: float) -> UsedSamples:
+    total = len(record)
+    return UsedSamples(max(math.ceil(delay), 0), total + min(math.floor(delay), 0), total)
 
 
 def _label(role: str, number: int, count: int) -> str:

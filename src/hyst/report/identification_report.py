@@ -13,6 +13,7 @@ import numpy as np
 
 from hyst._files import replacing_files
 from hyst.identification import Identified
+from hyst.operators.verdict import UNFIT
 from hyst.report.error_figure import autocorrelation, draw_error
 from hyst.report.fitted_record import FittedRecord, fit_records
 from hyst.report.history_figure import draw_history
@@ -25,6 +26,7 @@ from hyst.report.tables import (
     metrics_table,
     number,
     parameters_table,
+    per_record_table,
     with_unit,
 )
 from hyst.report.words import (
@@ -167,6 +169,7 @@ def _page(findings: _Findings, figures: dict[str, bytes]) -> str:
     page = Page(f"Hysteresis of {about.output_name} over {about.input_name}")
     if findings.banner:
         page.banner(findings.banner)
+    page.verdict(findings.identified.verdict)
     page.items(in_short(findings.identified, findings.records))
     page.picture(
         figures[LOOP],
@@ -186,6 +189,9 @@ def _page(findings: _Findings, figures: dict[str, bytes]) -> str:
 def _how_good(page: Page, findings: _Findings, figures: dict[str, bytes]) -> None:
     page.heading("How good it is")
     page.table(metrics_table(findings.identified))
+    by_record = per_record_table(findings.identified)
+    if by_record.rows:
+        page.table(by_record)
     page.text(
         "Fit is 100 % for a perfect model and 0 % for one no better than the mean. With a free "
         "offset the mean of the error is taken out first: sensors drift, and a constant between "
@@ -223,8 +229,10 @@ def _what_was_compared(page: Page, findings: _Findings) -> None:
         return
     page.heading("What else was tried")
     page.text(
-        "Every candidate was identified without some blocks of the record and judged on those. The "
-        "simplest one within one standard error (+-) of the best was taken."
+        "Every candidate was identified without some blocks of the record and judged on those, "
+        "each block with its own offset, so that slow drift does not decide: errors here can be "
+        "smaller than those of the fit above. The simplest one within one standard error (+-) of "
+        "the best was taken."
     )
     page.table(candidates_table(identified))
 
@@ -257,7 +265,7 @@ def _the_data(page: Page, findings: _Findings) -> None:
             f"{fit.label}: output samples {used.start} to {used.stop - 1} of {used.total} were used"
             + (
                 "; before, the memory of the actuator is not known."
-                if used.start > identified.delay
+                if used.start > max(identified.delay, 0.0)
                 else "."
             )
             for fit, used in zip(findings.training, identified.used, strict=True)
@@ -281,6 +289,8 @@ def _range(signal: np.ndarray[tuple[int], np.dtype[np.float64]], unit: str) -> s
 
 
 def _what_next(page: Page, findings: _Findings) -> None:
+    if findings.identified.verdict.level == UNFIT:
+        return
     page.heading("What next")
     model = shlex.quote(str(findings.folder / MODEL))
     method = command_method(findings.identified)

@@ -9,6 +9,7 @@ import base64
 import html
 from collections.abc import Sequence
 
+from hyst.operators import Verdict
 from hyst.report.tables import Table
 
 _STYLE = """
@@ -22,6 +23,11 @@ p, ul { margin: 0.5rem 0; max-width: 46rem; }
 .faint { color: #6b7280; font-size: 0.9rem; }
 .banner { background: #fef3c7; border-left: 4px solid #d97706; padding: 0.6rem 0.9rem;
   font-weight: 600; }
+.verdict { border-left: 6px solid; padding: 0.6rem 0.9rem; max-width: none; }
+.verdict p { margin: 0.2rem 0; max-width: none; }
+.good { background: #dcfce7; border-color: #16a34a; }
+.fair { background: #fef3c7; border-color: #d97706; }
+.unfit { background: #fee2e2; border-color: #dc2626; }
 figure { margin: 1rem 0; }
 figure img { max-width: 100%; height: auto; }
 figcaption { color: #4b5563; font-size: 0.9rem; max-width: 46rem; }
@@ -76,6 +82,15 @@ class Page:
     def banner(self, text: str) -> None:
         """Add a line nobody overlooks."""
         self._parts.append(f'<p class="banner">{html.escape(text)}</p>')
+
+    def verdict(self, verdict: Verdict) -> None:
+        """Add a box that says how far something can be trusted, in words and colour."""
+        first, *others = (html.escape(each) for each in verdict.sentences)
+        more = "".join(f"<p>{each}</p>" for each in others)
+        self._parts.append(
+            f'<div class="verdict {verdict.level}"><p><strong>Verdict: {verdict.level}</strong> - '
+            f"{first}</p>{more}</div>"
+        )
 
     def items(self, texts: Sequence[str]) -> None:
         """Add a list; nothing if there is no item."""

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from hyst.compensation import Compensation, error_parts
-from hyst.identification import Identified
+from hyst.identification import Identified, RecordErrors
 from hyst.operators import Operator
 from hyst.operators.traits import Degree
 
@@ -113,6 +113,49 @@ def metrics_table(identified: Identified) -> Table:
     )
 
 
+def per_record_table(identified: Identified) -> Table:
+    """Errors over each of the records it was identified from.
+
+    Parameters
+    ----------
+    identified
+        The result.
+
+    Returns
+    -------
+    Table
+        No row for a single record, of which the table of metrics says the same.
+    """
+    unit = identified.description.output_unit
+    several = identified.per_record if len(identified.per_record) > 1 else ()
+    return Table(
+        "Error by record (percent of its own output range)",
+        (
+            "record",
+            with_unit("rms", unit and f"[{unit}]"),
+            "rms [%]",
+            with_unit("max", unit and f"[{unit}]"),
+            "max [%]",
+            "samples used",
+        ),
+        tuple(_record_row(each) for each in several),
+    )
+
+
+def _record_row(each: RecordErrors) -> tuple[str, ...]:
+    name = f"{each.number}, {each.name}" if each.name else str(each.number)
+    if each.metrics is None:
+        return name, "-", "-", "-", "-", str(each.samples)
+    return (
+        name,
+        number(each.metrics.rms),
+        f"{each.metrics.rms_percent:.3f}",
+        number(each.metrics.max_abs),
+        f"{each.metrics.max_percent:.3f}",
+        str(each.samples),
+    )
+
+
 def candidates_table(identified: Identified) -> Table:
     """Families and sizes that were compared; the chosen one is marked.
 
@@ -129,7 +172,7 @@ def candidates_table(identified: Identified) -> Table:
     candidates = identified.candidates
     marked = [k for k, each in enumerate(candidates) if each.chosen]
     return Table(
-        "Families and sizes compared",
+        "Families and sizes compared by blocks left out of the fit, each block with its own offset",
         (
             "family",
             "plays",
@@ -231,7 +274,7 @@ def _said(held: bool | Degree) -> str:
 
 
 def compensation_table(done: Compensation, unit: str) -> Table:
-    """Give the tracking error the model predicts.
+    """Give the tracking error the model predicts, and what the model itself missed.
 
     Parameters
     ----------
@@ -249,12 +292,22 @@ def compensation_table(done: Compensation, unit: str) -> Table:
         percent = done.percent_of_range(value)
         return name, number(value), "-" if percent is None else number(percent)
 
+    model = done.expected
+    expected = (
+        ()
+        if model is None
+        else (
+            row(f"model itself, rms ({model.record})", model.rms),
+            row(f"model itself, max ({model.record})", model.max_abs),
+        )
+    )
+    predicted = tuple(
+        row(", ".join(filter(None, (f"inversion, {name}", part.name))), value)
+        for part in error_parts(done)
+        for name, value in (("rms", part.rms), ("max", part.max_abs))
+    )
     return Table(
-        "Predicted tracking error (model's output minus reference)",
+        "Tracking error: of the model against the reference, and of the model against its record",
         ("", with_unit("error", unit and f"[{unit}]"), "% of the reference's range"),
-        tuple(
-            row(", ".join(filter(None, (name, part.name))), value)
-            for part in error_parts(done)
-            for name, value in (("rms", part.rms), ("max", part.max_abs))
-        ),
+        (*predicted, *expected),
     )

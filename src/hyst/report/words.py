@@ -14,6 +14,8 @@ from hyst.identification.families.registry import families
 from hyst.models import LinearDynamics
 from hyst.operators import Operator
 from hyst.operators.composition import leaves_of
+from hyst.operators.verdict import UNFIT, Verdict
+from hyst.report.delay_words import delay_sentence
 from hyst.report.tables import number, with_unit
 from hyst.signals import Record
 
@@ -94,7 +96,7 @@ def straight_line_rms(record: Record, start: int) -> float:
 
 
 def in_short(identified: Identified, records: tuple[Record, ...]) -> tuple[str, ...]:
-    """Say in a few sentences what was found and how good it is.
+    """Say in a few sentences what was found and how good it is, its verdict apart.
 
     Parameters
     ----------
@@ -131,10 +133,9 @@ def in_short(identified: Identified, records: tuple[Record, ...]) -> tuple[str, 
         sentences.append(
             "No validation record was given, so how well it predicts another drive is not measured."
         )
-    sentences += [
-        lag_sentence(identified),
-        invertible_sentence(identified.model),
-    ]
+    sentences.append(lag_sentence(identified))
+    if identified.verdict.level != UNFIT:
+        sentences.append(invertible_sentence(identified.model))
     return tuple(sentences)
 
 
@@ -152,7 +153,8 @@ def lag_sentence(identified: Identified) -> str:
     """
     inside = [each for each in leaves_of(identified.model) if isinstance(each, LinearDynamics)]
     if identified.delay or not inside:
-        return delay_sentence(identified.delay, identified.description.dt)
+        about = identified.description
+        return delay_sentence(identified.delay, about.dt, identified.delay_interval)
     delay = sum(each.delay for each in inside)
     if delay == 0:
         return "The dynamics have no delay beside their own lag."
@@ -160,32 +162,28 @@ def lag_sentence(identified: Identified) -> str:
     return f"The dynamics contain a delay of {delay} sample{'s' * (delay > 1)} ({time} s)."
 
 
-def delay_sentence(delay: int, dt: float | None) -> str:
-    """Say by how much the output lags.
+def verdict_sentence(verdict: Verdict) -> str:
+    """Say how far a model can be trusted, and why.
 
     Parameters
     ----------
-    delay
-        Whole samples.
-    dt
-        Sample time, s, if known.
+    verdict
+        Of the model.
 
     Returns
     -------
     str
+
+    Examples
+    --------
+    >>> verdict_sentence(Verdict("good", ("What is left is noise.", "Go on.")))
+    'verdict: good - What is left is noise. Go on.'
     """
-    if delay == 0:
-        return "The output does not lag by a whole sample or more."
-    time = "" if dt is None else f" ({number(delay * dt)} s)"
-    return (
-        f"The recorded output lags the model by {delay} sample{'s' * (delay > 1)}{time}. The "
-        "model itself has no delay; the lag is kept in the model file and cannot be compensated, "
-        "only anticipated, by giving the command that much earlier."
-    )
+    return f"verdict: {verdict.level} - {' '.join(verdict.sentences)}"
 
 
 def invertible_sentence(model: Operator) -> str:
-    """Say whether there is an exact inverse, or what stands in its way.
+    """Say whether there is an exact inverse, what stands in its way, and if it is of any use.
 
     Parameters
     ----------
@@ -200,6 +198,8 @@ def invertible_sentence(model: Operator) -> str:
         model.inverse()
     except NotInvertibleError as error:
         return f"It has no exact inverse: {error}."
+    if model.description.is_unfit:
+        return "It has an exact inverse, but its verdict is unfit: no command should come from it."
     return "It has an exact inverse, so a wanted output can be turned into a command."
 
 

@@ -8,6 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 from hyst.checks.arrays import finite_vector
 from hyst.checks.numbers import as_not_negative
 
+SMALLEST_SWING = 0.02
+"""Share of a range below which a swing is taken for noise of the drive."""
+
 
 def reversals(u: ArrayLike, dead_band: float = 0.0) -> NDArray[np.intp]:
     """Find the samples at which a signal turns round by more than a dead band D.
@@ -63,6 +66,25 @@ def reversals(u: ArrayLike, dead_band: float = 0.0) -> NDArray[np.intp]:
     candidates = np.concatenate(([0], turning, [signal.size - 1]))
     accepted = _gate(signal[candidates].tolist(), float(dead_band))
     return candidates[np.array(accepted, dtype=np.intp)]
+
+
+def swings_of(u: ArrayLike, extent: float) -> NDArray[np.float64]:
+    """Give the ways a signal goes between its turns, those of noise passed over.
+
+    Parameters
+    ----------
+    u
+        Signal, shape (N,), finite.
+    extent
+        Of which ``SMALLEST_SWING`` is the least way that counts, in units of ``u``, >= 0.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (number of reversals - 1,), all positive; empty where there are fewer than two.
+    """
+    signal = finite_vector(u, "u")
+    return np.abs(np.diff(signal[reversals(signal, SMALLEST_SWING * extent)]))
 
 
 def _turning_points(signal: NDArray[np.float64]) -> NDArray[np.intp]:

@@ -18,6 +18,7 @@ from hyst.models.stable_inverse import StableInverse
 from hyst.online import JointEstimator
 from hyst.operators import Affine, ModelDescription, Operator
 from hyst.operators.registry import compose
+from hyst.operators.verdict import refuse_if_unfit
 
 Model = Operator | TrackingController | StableInverse | JointEstimator
 
@@ -171,6 +172,26 @@ def described(model: Model, description: ModelDescription | None) -> ModelDescri
     if description is not None or isinstance(model, StableInverse):
         return description or ModelDescription()
     return model.description
+
+
+def refuse_unfit(model: Model, description: ModelDescription | None, despite_verdict: bool) -> None:
+    """Refuse to export a ``model`` that no command should come from, or one so described.
+
+    Parameters
+    ----------
+    model, description
+        As given to the export.
+    despite_verdict
+        Whether the user wants it nevertheless.
+
+    Raises
+    ------
+    InputError
+        If a verdict is ``unfit`` and the user does not.
+    """
+    for about in (getattr(model, "description", None), description):
+        verdict = about.verdict if isinstance(about, ModelDescription) else None
+        refuse_if_unfit(verdict, "nothing is exported", despite_verdict)
 
 
 def _controller(model: TrackingController, precision: Precision) -> Block:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, final
 
 from hyst import __version__
-from hyst.export.c.block import Block, Model, block_of, described
+from hyst.export.c.block import Block, Model, block_of, described, refuse_unfit
 from hyst.export.c.c_sources import WORD_BYTES, header, places, selftest_source, source, vectors
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.drive import SAMPLES
@@ -68,6 +68,7 @@ def c_project(
     name: str = "stage",
     force: bool = False,
     description: ModelDescription | None = None,
+    despite_verdict: bool = False,
 ) -> CProject:
     """Write a model as C99 for firmware, with the core's sources it needs and a self-test.
 
@@ -87,6 +88,8 @@ def c_project(
     description
         Names, units and ranges of input and output, for comments and the self-test's range; that of
         the model itself if left out.
+    despite_verdict
+        Export also a model whose verdict is ``unfit``.
 
     Returns
     -------
@@ -95,7 +98,8 @@ def c_project(
     Raises
     ------
     InputError
-        If the model, the name or the precision cannot be used, or the path exists.
+        If the model, the name or the precision cannot be used, the path exists, or the verdict on
+        the model is ``unfit``.
 
     Examples
     --------
@@ -108,6 +112,7 @@ def c_project(
     ['core/src/prandtl_ishlinskii.c', 'inverse.c', 'selftest.c']
     """
     as_c_name(name)
+    refuse_unfit(model, description, despite_verdict)
     exact = as_precision(precision)
     if isinstance(model, JointEstimator):
         block = estimator_block(model, exact)

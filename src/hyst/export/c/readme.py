@@ -50,7 +50,7 @@ def readme(
             f"from {test.drive.low * test.drive.unit:.6g} to {test.drive.high:.6g}"
         )
     rows |= {signal: _signal(*meant) for signal, meant in signals(block, about).items()}
-    rows |= lag_row(about)
+    rows |= verdict_row(about) | lag_row(about)
     more = {
         "rows": "\n".join(f"| {key} | {value} |" for key, value in rows.items()),
         "usage": _ESTIMATOR_USAGE if block.is_estimator else _USAGE,
@@ -75,11 +75,30 @@ def signals(block: Block, about: ModelDescription) -> dict[str, tuple[str, str]]
     return {}
 
 
+def verdict_row(about: ModelDescription) -> dict[str, str]:
+    """Give the row of a table that says that no command should come from what ``about`` tells of.
+
+    Parameters
+    ----------
+    about
+        Of the model.
+    """
+    if about.verdict is None or not about.is_unfit:
+        return {}
+    return {"verdict": f"{about.verdict.level}: {plain_text(about.verdict.sentences[0])}"}
+
+
 def lag_row(about: ModelDescription) -> dict[str, str]:
     """Give the row of a table that says what lag ``about`` tells of, which no code contains."""
     if about.delay == 0:
         return {}
     time = "" if about.dt is None else f" of {about.dt!r} s"
+    if about.delay < 0:
+        ahead = f"the recorded output was {-about.delay} sample(s){time} ahead of the input, which"
+        return {"lag": f"{ahead} no actuator is: its channels were not aligned"}
+    low, _ = about.delay_interval or (about.delay, about.delay)
+    if low <= 0.0:
+        return {}  # the records would bear none
     return {"lag": f"the recorded output lagged {about.delay} sample(s){time}; this code does not"}
 
 

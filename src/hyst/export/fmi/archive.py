@@ -11,7 +11,7 @@ from typing import final
 
 import hyst
 from hyst.errors import InputError
-from hyst.export.c.block import Model, described
+from hyst.export.c.block import Model, described, refuse_unfit
 from hyst.export.c.names import as_c_name
 from hyst.export.fmi.binary import binary_path, compiled
 from hyst.export.fmi.description import (
@@ -77,6 +77,7 @@ def fmu(
     description: ModelDescription | None = None,
     binary: bool = True,
     compiler: str | None = None,
+    despite_verdict: bool = False,
 ) -> Fmu:
     """Write a model as an FMU for co-simulation, with its sources and a binary for this platform.
 
@@ -98,6 +99,8 @@ def fmu(
         Whether to compile a binary; without one, an importer compiles the sources.
     compiler
         Command of a C compiler; by default that of the variable CC, or else cc, gcc or clang.
+    despite_verdict
+        Export also a model whose verdict is ``unfit``.
 
     Returns
     -------
@@ -106,7 +109,8 @@ def fmu(
     Raises
     ------
     InputError
-        If the model, the name, the version or the compiler cannot be used, or the path exists.
+        If the model, the name, the version or the compiler cannot be used, the path exists, or the
+        verdict on the model is ``unfit``.
     HystError
         If there is no compiler, or it fails.
 
@@ -121,6 +125,7 @@ def fmu(
     (('u',), 'y', ('p0', 'p[1]', 'r[1]'))
     """
     as_c_name(name)
+    refuse_unfit(model, description, despite_verdict)
     fmi = _as_version(version)
     if Path(path).suffix.lower() != ".fmu":
         raise InputError(f"{path} is not the name of an FMU; give one that ends in .fmu")

@@ -16,7 +16,7 @@ SMALLEST_TURN = 1e-3
 
 
 def lag_in_samples(lag: float, dt: float, own_dt: float) -> float:
-    """Give a lag in samples of ``dt`` in those of another record; the same number if they agree."""
+    """Give a ``lag`` in samples of ``dt`` in those of ``own_dt``; the same one if they agree."""
     return lag if math.isclose(dt, own_dt, rel_tol=1e-6) else lag * dt / own_dt
 
 
@@ -49,3 +49,10 @@ def later(u: Array, part: float) -> Array:
     corners = turns if part < 0.5 else np.minimum(turns + 1, u.size - 1)
     moved[corners] = u[turns]
     return np.asarray(moved)
+
+
+def by_whole_samples(y: Array, late: int) -> Array:
+    """Give a signal ``late`` samples later, its first or last value where there is no other."""
+    if late == 0:
+        return y
+    return np.asarray(y[np.clip(np.arange(y.size) - late, 0, y.size - 1)])

@@ -11,10 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.arrays import finite_vector
 from hyst.diagnosis import Diagnosis
-from hyst.identification.record_use.part_of_a_sample import later
+from hyst.identification.record_use.part_of_a_sample import by_whole_samples, later
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.bands import NEW, Bands, as_level
+from hyst.identification.result.record_errors import RecordErrors
 from hyst.operators import ModelDescription, Operator, Verdict
+from hyst.operators.plain_data import as_number
 from hyst.signals import Metrics
 
 Array = NDArray[np.float64]
@@ -49,7 +51,7 @@ class Candidate:
     chosen: bool
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Identified:
     """A model identified from records, and how far it can be trusted.
 
@@ -89,6 +91,8 @@ class Identified:
         What the records showed before any model.
     bands
         What ``band`` is made of.
+    per_record
+        Errors over each of the records it was identified from, in their order.
     """
 
     model: Operator
@@ -108,6 +112,16 @@ class Identified:
     delay_interval: tuple[float, float]
     diagnosis: Diagnosis
     bands: Bands = field(repr=False)
+    per_record: tuple[RecordErrors, ...]
+
+    def __repr__(self) -> str:
+        what = self.family or self.model.kind
+        training = self.metrics.get("training")
+        missed = "" if training is None else f", {training.rms_percent:.3g} % of range"
+        return (
+            f"{type(self).__name__}({self.verdict.level}: {self.verdict.sentences[0]!r}; "
+            f"{what}{missed}, delay {self.delay:.4g} samples, {self.status})"
+        )
 
     def predict(self, u: ArrayLike) -> Array:
         """Give the output as it would be measured: the model's output, delayed.
@@ -122,8 +136,13 @@ class Identified:
         numpy.ndarray
             Shape (N,). The first ``delay`` samples repeat the first output; where the output is
             ahead of the input, the last ones repeat the last.
+
+        Raises
+        ------
+        InputError
+            If the drive is no finite vector.
         """
-        return self._as_measured(self.model(self._input(u)))
+        return late_output(self.model, finite_vector(u, "u"), self.delay)
 
     def band(self, u: ArrayLike, level: float = 0.95) -> tuple[Array, Array]:
         """Give between which outputs most samples will be measured, slow drift left aside.
@@ -180,8 +199,7 @@ class Identified:
         return later(finite_vector(u, "u"), self.delay - math.floor(self.delay))
 
     def _as_measured(self, y: Array) -> Array:
-        places = np.clip(np.arange(y.size) - math.floor(self.delay), 0, y.size - 1)
-        return np.asarray(y[places])
+        return by_whole_samples(y, math.floor(self.delay))
 
     def to_dict(self) -> dict[str, Any]:
         """Give everything but the model as plain numbers and text, for metrics.json.
@@ -189,15 +207,18 @@ class Identified:
         Returns
         -------
         dict
-            NaN standard errors are given as None.
+            The verdict first; NaN standard errors are given as None.
         """
         errors = [None if np.isnan(each) else float(each) for each in self.standard_errors]
         return {
+            "verdict": self.verdict.to_dict(),
             "family": self.family,
             "status": self.status,
             "iterations": self.iterations,
-            "delay": self.delay,
+            "delay": as_number("delay", self.delay),
+            "delay_interval": [as_number("delay_interval", each) for each in self.delay_interval],
             "metrics": {name: each.to_dict() for name, each in self.metrics.items()},
+            "per_record": [each.to_dict() for each in self.per_record],
             "parameters": [
                 {"name": name, "value": float(value), "standard_error": error}
                 for name, value, error in zip(
@@ -207,10 +228,11 @@ class Identified:
             "undetermined": list(self.undetermined),
             "candidates": [vars(each) for each in self.candidates],
             "used_samples": [vars(each) for each in self.used],
+            **self.diagnosis.to_dict(),
         }
 
     def summary(self) -> str:
-        """Give a table of a page or less for people.
+        """Give a table of a page or less for people, the verdict first.
 
         Returns
         -------
@@ -218,12 +240,17 @@ class Identified:
         """
         unit = f" {self.description.output_unit}" if self.description.output_unit else ""
         what = f"family {self.family}" if self.family else self.model.kind
-        lines = [f"{what}, delay {self.delay} samples, {self.status}", ""]
+        lines = [f"verdict: {self.verdict.level} - {' '.join(self.verdict.sentences)}"]
+        low, high = self.delay_interval
+        open_to = "" if low == high else f" ({low:.3g} to {high:.3g})"
+        lines += [f"{what}, delay {self.delay:.4g}{open_to} samples, {self.status}", ""]
         for name, each in self.metrics.items():
             lines.append(
                 f"{name:28s} rms {each.rms:.4g}{unit} ({each.rms_percent:.3f} % of range)   "
                 f"max {each.max_abs:.4g}{unit}   fit {each.nrmse_fit_percent:.2f} %"
             )
+        if len(self.per_record) > 1:
+            lines += [_record_line(each, unit) for each in self.per_record]
         lines += ["", f"{'parameter':36s} {'value':>13s} {'standard error':>15s}"]
         for name, value, error in zip(
             self.parameter_names, self.parameter_values, self.standard_errors, strict=True
@@ -234,3 +261,24 @@ class Identified:
             lines.append("(-: on a bound, or not determined by the records)")
         lines += [f"note: {sentence}" for sentence in self.undetermined]
         return "\n".join(lines)
+
+
+def late_output(model: Operator, u: Array, delay: float) -> Array:
+    """Give a model's output as late as it is measured.
+
+    Parameters
+    ----------
+    model
+        Without delay.
+    u
+        Shape (N,), input units.
+    delay
+        Samples, parts of one included; negative where the output is ahead.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (N,). What no sample of the input tells repeats the first or the last output.
+    """
+    whole = math.floor(delay)
+    return by_whole_samples(model(later(u, delay - whole)), whole)

@@ -18,10 +18,12 @@ from hyst.identification.record_use.used_samples import Data, prepare
 from hyst.identification.result.bands import bands_of
 from hyst.identification.result.fit_spread import spread_of_fit
 from hyst.identification.result.identified import Candidate, Identified
+from hyst.identification.result.record_errors import errors_by_record
 from hyst.operators import ModelDescription, Operator
 from hyst.operators.description import errors_of
 from hyst.operators.provenance import provenance
 from hyst.signals import Metrics, Record, error_metrics
+from hyst.signals.turning_points import swings_of
 
 Array = NDArray[np.float64]
 
@@ -83,11 +85,12 @@ def identified_from_fit(
         delay_interval=(data.lag, data.lag),
         diagnosis=diagnosis,
         bands=bands_of(data, fit, spread, rivals),
+        per_record=errors_by_record(data, operator),
     )
 
 
 def traced(found: Identified, records: Sequence[Record], options: Mapping[str, Any]) -> Identified:
-    """Give a result whose model tells what it means, how good it is and where it comes from.
+    """Give a result whose model tells what it means, how far it is to be trusted, and its origin.
 
     Parameters
     ----------
@@ -104,6 +107,9 @@ def traced(found: Identified, records: Sequence[Record], options: Mapping[str, A
     """
     about = replace(
         found.description,
+        delay=found.delay,
+        delay_interval=found.delay_interval,
+        verdict=found.verdict,
         errors=errors_of(found.metrics),
         provenance=provenance(records, options),
     )
@@ -183,4 +189,12 @@ def describe(data: Data, family: str) -> ModelDescription:
         dt=first.dt,
         delay=data.lag,
         family=family,
+        smallest_swing=_smallest_swing(data.records),
     )
+
+
+def _smallest_swing(records: Sequence[Record]) -> float | None:
+    """Give the least way of the inputs between two turns; None if none has two."""
+    extent = max(r.u.max() for r in records) - min(r.u.min() for r in records)
+    swings = [swings_of(record.u, float(extent)) for record in records]
+    return min((float(each.min()) for each in swings if each.size), default=None)

@@ -14,6 +14,7 @@ from hyst.online.estimator_file import Saved, restored_state
 from hyst.online.joint.joint_estimator import JointEstimator
 from hyst.operators import ModelDescription, Operator
 from hyst.operators.registry import operator_from_dict
+from hyst.operators.verdict import refuse_if_unfit
 
 Array = NDArray[np.float64]
 
@@ -45,11 +46,14 @@ class AdaptiveInverse(Saved):
         Seconds over which errors are compared, at least a period of what is tracked.
     margin
         Ratio of the mean square errors at which the guard falls back, above 1.
+    despite_verdict
+        Give commands also where the estimator started from a model whose verdict is ``unfit``.
 
     Raises
     ------
     InputError
-        If a number is out of range, or ``estimator`` is no joint estimator.
+        If a number is out of range, ``estimator`` is no joint estimator, or started from a model
+        whose verdict is ``unfit``.
 
     Examples
     --------
@@ -67,9 +71,17 @@ class AdaptiveInverse(Saved):
 
     kind: ClassVar[str] = "inverse"
 
-    def __init__(self, estimator: JointEstimator, window: float, margin: float = 4.0) -> None:
+    def __init__(
+        self,
+        estimator: JointEstimator,
+        window: float,
+        margin: float = 4.0,
+        *,
+        despite_verdict: bool = False,
+    ) -> None:
         if not isinstance(estimator, JointEstimator):
             raise InputError(f"estimator is a {type(estimator).__name__}; give a JointEstimator")
+        refuse_if_unfit(estimator.description.verdict, "no command is given", despite_verdict)
         self.estimator = estimator
         self._seconds = as_positive(window, "window", "seconds")
         self._window = self._seconds / estimator.dt

@@ -132,7 +132,7 @@ class JointEstimator(Saved):
         search: bool = True,
     ) -> None:
         self._parts = take_apart(model)
-        self.description = model.description.of_other_constants()
+        self.description = model.description.of_estimate()
         """What the numbers of its model mean; those of the start, as far as they still hold."""
         self.dt = as_sample_time(dt)
         self.settings: dict[str, Any] = {

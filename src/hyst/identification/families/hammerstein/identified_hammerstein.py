@@ -38,7 +38,7 @@ class Loop:
     band: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class IdentifiedHammerstein(Identified):
     """Hysteresis and linear dynamics identified together; ``model = dynamics @ hysteresis``.
 
