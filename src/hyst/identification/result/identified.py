@@ -282,3 +282,13 @@ def late_output(model: Operator, u: Array, delay: float) -> Array:
     """
     whole = math.floor(delay)
     return by_whole_samples(model(later(u, delay - whole)), whole)
+
+
+def _record_line(each: RecordErrors, unit: str) -> str:
+    named = f"record {each.number}" + (f", {each.name}" if each.name else "")
+    if each.metrics is None:
+        return f"{named:28s} no sample that moves was used"
+    return (
+        f"{named:28s} rms {each.metrics.rms:.4g}{unit} ({each.metrics.rms_percent:.3f} % of its "
+        f"own range)   max {each.metrics.max_abs:.4g}{unit}   {each.samples} samples"
+    )
