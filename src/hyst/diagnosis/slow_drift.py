@@ -36,7 +36,7 @@ class Drift:
     Parameters
     ----------
     curve
-        Shape (N,), output units, 0 at the first sample.
+        Shape (N,), output units, of mean 0: a model is right on the average over its record.
     total
         Its range over the record, output units.
     rate
@@ -97,7 +97,7 @@ def slow_drift(record: Record, found: Repetition | None = None) -> Drift | None:
     ends = np.ptp(_polynomials(np.arange(len(record)), len(record), degree), axis=0)
     error = float(np.sqrt(variance * (ends @ inverse @ ends)))
     rate = float(curve[-1] - curve[0]) / record.duration
-    return Drift(curve - curve[0], total, rate, error, degree)
+    return Drift(curve - curve.mean(), total, rate, error, degree)
 
 
 def _degree(record: Record, repeats: Repetition) -> int:
