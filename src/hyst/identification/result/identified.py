@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.diagnosis import Diagnosis
-from hyst.identification.record_use.part_of_a_sample import later
 from hyst.identification.record_use.used_samples import UsedSamples
+from hyst.identification.result.late_output import late_output
 from hyst.identification.result.record_errors import RecordErrors
 from hyst.operators import ModelDescription, Operator, Verdict
 from hyst.operators.plain_data import as_number
@@ -129,10 +128,10 @@ class Identified:
         Returns
         -------
         numpy.ndarray
-            Shape (N,). The first ``delay`` samples repeat the first output; where the delay is
-            negative, the last ones the last.
+            Shape (N,). The first ``delay`` samples repeat the first output; where the output is
+            ahead of the input, the last ones repeat the last.
         """
-        return late_output(self.model, np.asarray(u, dtype=np.float64), self.delay)
+        return late_output(self.model, u, self.delay)
 
     def to_dict(self) -> dict[str, Any]:
         """Give everything but the model as plain numbers and text, for metrics.json.
@@ -194,31 +193,6 @@ class Identified:
             lines.append("(-: on a bound, or not determined by the records)")
         lines += [f"note: {sentence}" for sentence in self.undetermined]
         return "\n".join(lines)
-
-
-def late_output(model: Operator, u: Array, delay: float) -> Array:
-    """Give a model's output as it comes ``delay`` samples later, held where there is none.
-
-    Parameters
-    ----------
-    model
-        Any operator.
-    u
-        Shape (N,), input units.
-    delay
-        Samples; whole ones shift the output, the part beyond them shifts the input, so that the
-        corners of loops stay corners.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (N,).
-    """
-    whole = math.floor(delay)
-    y = model(later(u, delay - whole))
-    if whole == 0:
-        return y
-    return np.asarray(y[np.clip(np.arange(y.size) - whole, 0, y.size - 1)])
 
 
 def _record_line(each: RecordErrors, unit: str) -> str:
