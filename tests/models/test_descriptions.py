@@ -152,6 +152,11 @@ def test_only_what_is_unfit_of_the_start_stays_with_an_estimate() -> None:
         lambda model, **how: TrackingController.from_continuous(
             1.0, 1.0, inverse=model.inverse(), **how
         ),
+        lambda model, **how: TrackingController(
+            *([], [], [], [1.0, -1.0], 1.0),
+            hyst.compensation.reduce_inverse(model, 1, 5.0),
+            **how,
+        ),
         lambda model, **how: hyst.compensation.invert_trajectory(model, [0.0, 1.0], **how),
     ],
 )

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification import Identified, UsedSamples
-from hyst.identification.result.identified import late_output
+from hyst.identification import Identified, UsedSamples, late_output
 from hyst.operators import Affine
 from hyst.signals import Record
 

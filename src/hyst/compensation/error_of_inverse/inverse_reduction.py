@@ -66,9 +66,11 @@ def reduce_inverse(model: Operator, plays: int, y_max: float) -> Operator:
     keep = np.append(True, np.diff(best) != 0.0)
     starts, best = starts[keep], best[keep]
     reduced = PrandtlIshlinskii(np.diff(best), edges[starts[1:]], float(best[0]))
+    about = model.inverse().description  # of which the verdict is not lost with the plays
     if not exact.before.stages and not exact.after.stages:
-        return reduced
-    return Composition([*exact.before.stages, reduced, *exact.after.stages])
+        return reduced.with_description(about)
+    stages = [*exact.before.stages, reduced, *exact.after.stages]
+    return Composition(stages).with_description(about)
 
 
 def _fewer_steps(widths: Array, levels: Array, count: int) -> tuple[NDArray[np.intp], Array]:

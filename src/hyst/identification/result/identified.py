@@ -14,6 +14,7 @@ from hyst.diagnosis import Diagnosis
 from hyst.identification.record_use.part_of_a_sample import by_whole_samples, later
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.bands import NEW, Bands, as_level
+from hyst.identification.result.late_output import late_output
 from hyst.identification.result.record_errors import RecordErrors
 from hyst.operators import ModelDescription, Operator, Verdict
 from hyst.operators.plain_data import as_number
@@ -142,7 +143,7 @@ class Identified:
         InputError
             If the drive is no finite vector.
         """
-        return late_output(self.model, finite_vector(u, "u"), self.delay)
+        return late_output(self.model, u, self.delay)
 
     def band(self, u: ArrayLike, level: float = 0.95) -> tuple[Array, Array]:
         """Give between which outputs most samples will be measured, slow drift left aside.
@@ -261,27 +262,6 @@ class Identified:
             lines.append("(-: on a bound, or not determined by the records)")
         lines += [f"note: {sentence}" for sentence in self.undetermined]
         return "\n".join(lines)
-
-
-def late_output(model: Operator, u: Array, delay: float) -> Array:
-    """Give a model's output as late as it is measured.
-
-    Parameters
-    ----------
-    model
-        Without delay.
-    u
-        Shape (N,), input units.
-    delay
-        Samples, parts of one included; negative where the output is ahead.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (N,). What no sample of the input tells repeats the first or the last output.
-    """
-    whole = math.floor(delay)
-    return by_whole_samples(model(later(u, delay - whole)), whole)
 
 
 def _record_line(each: RecordErrors, unit: str) -> str:
