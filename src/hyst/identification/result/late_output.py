@@ -35,7 +35,13 @@ def late_output(model: Operator, u: ArrayLike, delay: float) -> Array:
     Raises
     ------
     InputError
-        If the input is no finite vector.
+        If the input is no finite vector, or the model refuses it.
+
+    Examples
+    --------
+    >>> from hyst.operators import Affine
+    >>> late_output(Affine(2.0), [0.0, 1.0, 2.0, 3.0], 1)
+    array([0., 0., 2., 4.])
     """
     whole = math.floor(delay)
     return by_whole_samples(model(later(finite_vector(u, "u"), delay - whole)), whole)
