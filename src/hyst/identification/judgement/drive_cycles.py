@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,6 +24,20 @@ def turns_of(part: Part) -> NDArray[np.intp]:
 def cycles_of(part: Part) -> float:
     """Give the number of cycles of the drive."""
     return turns_of(part).size / 2.0
+
+
+def octaves_of(parts: Sequence[Part]) -> float:
+    """Give how far the frequencies of branches are apart, octaves, the extreme ones left out."""
+    octaves = np.concatenate([np.log2(branch_frequencies(each)) for each in parts])
+    low, high = np.percentile(octaves, [5.0, 95.0])
+    return float(high - low)
+
+
+def swings_alike(parts: Sequence[Part]) -> bool:
+    """Tell whether all branches between two turns are of one size, within a tenth."""
+    swings = [np.abs(np.diff(each.u[turns_of(each)])) for each in parts]
+    sizes = np.concatenate(swings)
+    return bool(sizes.size == 0 or sizes.max() <= 1.1 * sizes.min())
 
 
 def last_turns(part: Part) -> tuple[Array, Array]:

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
+import scipy.fft
 import scipy.special
 from numpy.typing import NDArray
 
@@ -18,6 +18,10 @@ SMALLEST_EIGENVALUE = 1e-9
 """Of the correlations of columns: below, a direction is told by others."""
 
 NOT_CORRELATED = 0.05
+
+MOST_LAGS = 60
+TELLING = 0.1
+"""Sum of squared autocorrelations of an error that is not white by a part worth telling."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,6 +118,29 @@ def correlation_time(error: Array) -> float:
     below = np.flatnonzero(correlation[1:] < NOT_CORRELATED)
     stop = int(below[0]) + 1 if below.size else correlation.size
     return float(max(1.0 + 2.0 * correlation[1:stop].sum(), 1.0))
+
+
+def is_white(error: Array) -> bool:
+    """Tell whether an error's samples tell nothing of those after them.
+
+    Parameters
+    ----------
+    error
+        Shape (n,), of samples one after the other.
+
+    Notes
+    -----
+    The sum of squared autocorrelations, after Box and Pierce, J. Am. Stat. Assoc. 65 (1970),
+    1509-1526; n times the sum is of n white samples as the sum of as many squared normal numbers.
+    """
+    n, power = error.size, float(error @ error)
+    lags = min(MOST_LAGS, n // 4)
+    if lags < 1 or power == 0.0:
+        return True
+    transform = np.abs(scipy.fft.rfft(error, scipy.fft.next_fast_len(n + lags, real=True))) ** 2
+    correlation = np.asarray(scipy.fft.irfft(transform))[1 : lags + 1] / power
+    by_noise = (lags + 5.0 * math.sqrt(2.0 * lags)) / n
+    return float(correlation @ correlation) <= max(TELLING, by_noise)
 
 
 def chance(before: float, after: float, directions: int, freedom: float) -> float:

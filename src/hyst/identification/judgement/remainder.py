@@ -18,7 +18,7 @@ from hyst.identification.record_use.used_samples import Data
 Array = NDArray[np.float64]
 Found = TypeVar("Found")
 
-MOST_ROWS = 6_000
+MOST_ROWS = 10_000
 """Samples that regressions take, spread evenly: more would cost time and change no verdict."""
 
 LARGEST_TANGENT = 3_000_000

@@ -16,8 +16,10 @@ SAME_DRIVE = 2e-3
 
 FEWEST_IN_A_PERIOD = 8
 MOST_TRIED = 12
-MOST_PHASES = 200
-"""Into which a period is divided: enough to see a loop's shape, and many samples in each."""
+"""Periods looked at, that nearly repeat."""
+
+FEWEST_AT_A_PHASE = 3
+"""Samples, on the average: a period is divided as finely as these allow."""
 
 
 def period_of(part: Part) -> int:
@@ -41,7 +43,7 @@ def period_of(part: Part) -> int:
 
 
 def repeating(error: Array, places: NDArray[np.intp], period: int, unlikely: float) -> float:
-    """Give the sum of squares of what repeats with the drive, noise taken off; 0 if noise may do it.
+    """Give the sum of squares of what repeats with the drive, or 0 if noise may do it.
 
     Parameters
     ----------
@@ -54,7 +56,7 @@ def repeating(error: Array, places: NDArray[np.intp], period: int, unlikely: flo
     unlikely
         Probability below which noise does not do it.
     """
-    phases = min(period, MOST_PHASES, max(error.size // 4, 1))
+    phases = min(period, max(error.size // FEWEST_AT_A_PHASE, 1))
     phase = (places % period) * phases // period
     count = np.bincount(phase, minlength=phases)
     mean = np.bincount(phase, error, minlength=phases) / np.maximum(count, 1)

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from hyst.identification.judgement.cause import Cause, Contribution
 from hyst.identification.judgement.causes.another_shape import ANOTHER_SHAPE
 from hyst.identification.judgement.outliers import outliers_of
-from hyst.identification.judgement.regression import Regression, chance, correlation_time
 from hyst.identification.judgement.registry import CAUSES
+from hyst.identification.judgement.regression import Regression, chance, correlation_time, is_white
 from hyst.identification.judgement.remainder import Remainder
 from hyst.identification.judgement.repetition import period_of, repeating
 
@@ -32,6 +32,10 @@ ABOUT_THE_SAME = 0.9
 BEYOND_LOOPS = 0.5
 """Share of what a cause explains that general loops must not explain as well."""
 
+BESIDE_ANOTHER_SHAPE = 0.6
+"""Share of what is left that such a cause must explain once the loops are of another shape: what
+general loops miss looks like much."""
+
 TANGENT, LINE, SHAPE = "tangent", "line", ANOTHER_SHAPE.name
 
 
@@ -47,15 +51,15 @@ class TakenApart:
         Number of samples far from their neighbours, and share of the squared error they make.
     noise
         Rms of what no cause explains.
-    undisturbed, line
-        Rms that the model, and a straight line, would leave of a record without outliers and
-        without what comes to the output from elsewhere.
+    undisturbed, line, spread
+        Rms that the model, a straight line and the mean would leave of a record without outliers
+        and without what comes to the output from elsewhere.
     repeats
         Rms of the part of the noise that repeats with the drive and is worth telling; else 0.
     period_known
         Whether the drive repeats, so that noise is what does not.
-    correlation
-        Samples of the noise that count as one.
+    white
+        Whether the noise tells nothing of the samples after.
     """
 
     named: tuple[tuple[Cause, Contribution], ...]
@@ -63,9 +67,15 @@ class TakenApart:
     noise: float
     undisturbed: float
     line: float
+    spread: float
     repeats: float
     period_known: bool
-    correlation: float
+    white: bool
+
+    @property
+    def is_noise(self) -> bool:
+        """Whether what no cause explains is known to be the record's own noise."""
+        return self.white or (self.period_known and not self.repeats)
 
 
 def taken_apart(remainder: Remainder) -> TakenApart:
@@ -95,7 +105,10 @@ def taken_apart(remainder: Remainder) -> TakenApart:
         remainder.y[remainder.rows][inner],
         groups | {LINE: remainder.u[remainder.rows][inner, None]},
     )
-    if repeats < max(math.sqrt(SMALLEST_SHARE) * noise, SMALLEST_PART * remainder.output_range):
+    shape = max((each.rms for cause, each in told if cause.name == SHAPE), default=0.0)
+    if repeats < max(
+        shape, math.sqrt(SMALLEST_SHARE) * noise, SMALLEST_PART * remainder.output_range
+    ):
         repeats = 0.0
     noise = math.sqrt(max(noise**2 - repeats**2, 0.0))
     return TakenApart(
@@ -104,9 +117,10 @@ def taken_apart(remainder: Remainder) -> TakenApart:
         noise,
         regression.rms([TANGENT, *disturbing] if disturbing else []),
         y.rms([LINE, *disturbing]),
+        y.rms(disturbing),
         repeats,
         known,
-        correlation_time(rest),
+        is_white(rest),
     )
 
 
@@ -140,10 +154,12 @@ def _named(
 def _gain(regression: Regression, taken: list[str], cause: Cause, time: float) -> float:
     """Give the share of the squared error that a cause explains beyond those taken, and noise."""
     gain = _over_noise(regression, taken, cause.name, time)
-    if gain > 0.0 and cause.beyond_loops and SHAPE not in taken:
-        beyond = _over_noise(regression, [*taken, SHAPE], cause.name, time)
-        return gain if beyond >= BEYOND_LOOPS * gain else 0.0
-    return gain
+    if gain == 0.0 or not cause.beyond_loops:
+        return gain
+    if SHAPE in taken:
+        return gain if gain >= BESIDE_ANOTHER_SHAPE * regression.left(taken)[0] else 0.0
+    beyond = _over_noise(regression, [*taken, SHAPE], cause.name, time)
+    return gain if beyond >= BEYOND_LOOPS * gain else 0.0
 
 
 def _over_noise(regression: Regression, taken: list[str], name: str, time: float) -> float:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.judgement.cause import Cause, Contribution
+from hyst.identification.judgement.drive_cycles import octaves_of
 from hyst.identification.judgement.remainder import Part, Remainder
 from hyst.identification.judgement.slow_filter import low_passed
 
@@ -16,7 +17,14 @@ TIME_CONSTANTS = (3.0, 10.0, 30.0)
 """Of low passes over the input, samples."""
 
 
+FEWEST_OCTAVES = 0.5
+"""Between frequencies of branches: with less, dynamics and shape of the loop are not told apart."""
+
+
 def _columns(remainder: Remainder) -> Array:
+    if octaves_of(remainder.parts) < FEWEST_OCTAVES:
+        return np.empty((remainder.rows.size, 0))
+
     def of_part(part: Part) -> Array:
         u, past = part.whole, part.past.size
         lagged = [np.concatenate([np.full(each, u[0]), u])[: u.size] - u for each in LAGS]

@@ -6,13 +6,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.judgement.cause import Cause, Contribution
+from hyst.identification.judgement.drive_cycles import octaves_of, swings_alike
 from hyst.identification.judgement.remainder import Part, Remainder
 
 Array = NDArray[np.float64]
 
+FEWEST_OCTAVES = 0.5
+"""Between frequencies of branches: one loop run at one rate does not tell lag and radius apart."""
+
 
 def _columns(remainder: Remainder) -> Array:
     """Give the change of the model's output from sample to sample."""
+    one_loop = octaves_of(remainder.parts) < FEWEST_OCTAVES and swings_alike(remainder.parts)
+    if one_loop:
+        return np.empty((remainder.rows.size, 0))
 
     def of_part(part: Part) -> Array:
         if part.modelled.size < 3:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.judgement.cause import Cause, Contribution
-from hyst.identification.judgement.drive_cycles import branch_frequencies
+from hyst.identification.judgement.drive_cycles import branch_frequencies, octaves_of
 from hyst.identification.judgement.general_loops import loops_of_part
 from hyst.identification.judgement.remainder import Part, Remainder
 
@@ -17,10 +17,9 @@ FEWEST_OCTAVES = 0.5
 
 
 def _columns(remainder: Remainder) -> Array:
-    octaves = np.concatenate([np.log2(branch_frequencies(each)) for each in remainder.parts])
-    low, high = np.percentile(octaves, [5.0, 95.0])
-    if high - low < FEWEST_OCTAVES:
+    if octaves_of(remainder.parts) < FEWEST_OCTAVES:
         return np.empty((remainder.rows.size, 0))
+    octaves = np.concatenate([np.log2(branch_frequencies(each)) for each in remainder.parts])
     middle = float(octaves.mean())
 
     def of_part(part: Part) -> Array:

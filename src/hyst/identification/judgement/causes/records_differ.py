@@ -60,6 +60,5 @@ RECORDS_DIFFER = Cause(
     "records differ",
     _columns,
     _sentence,
-    "Identify each record alone and compare the errors; leave out those of another actuator, and "
-    "use a model that depends on the rate (--family rdpi) where the errors grow with it.",
+    "Identify each record alone and compare the errors; leave out those of another actuator.",
 )
