@@ -9,7 +9,7 @@ import numpy as np
 
 from hyst.diagnosis import Diagnosis
 from hyst.identification.families.family import Fit
-from hyst.identification.judgement.left_over import Told, told_of
+from hyst.identification.judgement.left_over import Told, causes_of, told_of
 from hyst.identification.judgement.remainder import Remainder, remainder_of
 from hyst.identification.judgement.taken_apart import SMALLEST_PART, TakenApart, taken_apart
 from hyst.identification.judgement.unfit import reasons_unfit
@@ -70,18 +70,17 @@ def _levelled(
     remainder: Remainder, found: TakenApart, error: float
 ) -> tuple[Level, tuple[str, ...], Told]:
     """Give level, the reason for it, and what is left."""
-    told = told_of(remainder, found)
     reasons = reasons_unfit(remainder, found)
     if reasons:
-        return "unfit", reasons, told
+        return "unfit", reasons, causes_of(found)
+    told = told_of(remainder, found)
     if told.left:
-        of_noise = (
-            f", of which {remainder.said(found.noise)} is the record's own noise"
+        more = (
+            f"more than the record's own noise of {remainder.said(found.noise)}"
             if found.is_noise
-            else ""
+            else "which is not noise alone"
         )
-        first = f"The model leaves {remainder.said(error)} rms{of_noise}; the rest is told here."
-        return "fair", (first,), told
+        return "fair", (f"The model leaves {remainder.said(error)} rms, {more}.",), told
     how = (
         "it is as large from one repetition of the drive to the next"
         if found.period_known

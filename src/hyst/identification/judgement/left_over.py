@@ -28,19 +28,27 @@ class Told:
     advice: tuple[str, ...]
 
 
+def causes_of(found: TakenApart) -> Told:
+    """Say by what causes a fit leaves what it leaves."""
+    named = found.named[:MOST_CAUSES]
+    return Told(
+        tuple(cause.sentence(told) for cause, told in named),
+        tuple(cause.advice for cause, _ in named),
+    )
+
+
 def told_of(remainder: Remainder, found: TakenApart) -> Told:
-    """Say what a fit leaves beside noise.
+    """Say what a fit leaves beside noise, with or without a name.
 
     Parameters
     ----------
     remainder, found
         What the fit leaves, and the same taken apart.
     """
-    pairs = [(cause.sentence(told), cause.advice) for cause, told in found.named[:MOST_CAUSES]]
-    pairs += [*_outliers(found), *_bias(remainder), *_without_name(remainder, found)]
-    return Told(
-        tuple(left for left, _ in pairs), tuple(dict.fromkeys(advice for _, advice in pairs))
-    )
+    causes = causes_of(found)
+    pairs = [*_outliers(found), *_bias(remainder), *_without_name(remainder, found)]
+    left, advice = (tuple(pair[i] for pair in pairs) for i in (0, 1))
+    return Told(causes.left + left, tuple(dict.fromkeys(causes.advice + advice)))
 
 
 def _outliers(found: TakenApart) -> list[tuple[str, str]]:
@@ -80,7 +88,9 @@ def _without_name(remainder: Remainder, found: TakenApart) -> list[tuple[str, st
                 "Try other families (--family auto), or dynamics (--family hammerstein).",
             )
         ]
-    if found.is_noise or found.noise < SMALLEST_PART * remainder.output_range:
+    smallest = SMALLEST_PART * remainder.output_range
+    error = math.sqrt(float(np.mean(remainder.error**2)))
+    if found.is_noise or found.noise < max(math.sqrt(SMALLEST_SHARE) * error, smallest):
         return []
     return [
         (

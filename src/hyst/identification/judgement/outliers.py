@@ -38,4 +38,4 @@ def _apart(error: Array) -> Array:
     """Give how far every sample is from the median of five around it."""
     if error.size < 5:
         return np.zeros(error.size)
-    return np.abs(error - scipy.ndimage.median_filter(error, 5, mode="nearest"))
+    return np.asarray(np.abs(error - scipy.ndimage.median_filter(error, 5, mode="nearest")))

@@ -59,7 +59,7 @@ class Part:
     @property
     def time(self) -> Array:
         """Of every sample, s."""
-        return self.places * self.dt
+        return np.asarray(self.places * self.dt)
 
     @functools.cached_property
     def whole(self) -> Array:

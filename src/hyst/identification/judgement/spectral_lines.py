@@ -98,16 +98,9 @@ def _is_the_drives(at: int, power: Array, part: Part, n: int) -> bool:
         return float(power[max(at - 2, 0) : at + 3].sum()) < DOMINATES * float(power.sum())
     if abs(order - round(order)) * first > 1.5:
         return False
-    around = [int(round((round(order) + step) * first)) for step in (-2, -1, 1, 2)]
-    beside = (
-        max(
-            float(power[each - 1 : each + 2].max(initial=0.0))
-            for each in around
-            if each < power.size and abs(each - at) > 2
-        )
-        if any(each < power.size and abs(each - at) > 2 for each in around)
-        else 0.0
-    )
+    around = [round((round(order) + step) * first) for step in (-2, -1, 1, 2)]
+    apart = [each for each in around if 2 < each < power.size and abs(each - at) > 2]
+    beside = max((float(power[each - 1 : each + 2].max()) for each in apart), default=0.0)
     return beside > OF_A_SHAPE * float(power[at])
 
 

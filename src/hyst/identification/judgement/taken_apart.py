@@ -19,8 +19,8 @@ from hyst.identification.judgement.repetition import period_of, repeating
 
 Array = NDArray[np.float64]
 
-SMALLEST_SHARE = 0.04
-"""Of the squared error: what explains less is not told, the error would be 2 % smaller without."""
+SMALLEST_SHARE = 0.08
+"""Of the squared error: what explains less is not told, the error would be 4 % smaller without."""
 
 SMALLEST_PART = 5e-4
 """Of the output's range: a smaller rms is not told, whatever it is."""
@@ -28,13 +28,19 @@ SMALLEST_PART = 5e-4
 UNLIKELY = 1e-5
 """Probability that noise alone looks like a cause."""
 
-ABOUT_THE_SAME = 0.9
+ABOUT_THE_SAME = 0.95
+FOR_FREEDOM = 0.75
+"""By which what another shape explains counts less: it has many columns, which resemble much."""
+
 BEYOND_LOOPS = 0.5
 """Share of what a cause explains that general loops must not explain as well."""
 
-BESIDE_ANOTHER_SHAPE = 0.6
+BESIDE_ANOTHER_SHAPE = 0.75
 """Share of what is left that such a cause must explain once the loops are of another shape: what
 general loops miss looks like much."""
+
+SMALLEST_OF_THE_REST = 0.25
+"""Share of what is left that a further cause must explain: small ones may resemble many things."""
 
 TANGENT, LINE, SHAPE = "tangent", "line", ANOTHER_SHAPE.name
 
@@ -106,9 +112,8 @@ def taken_apart(remainder: Remainder) -> TakenApart:
         groups | {LINE: remainder.u[remainder.rows][inner, None]},
     )
     shape = max((each.rms for cause, each in told if cause.name == SHAPE), default=0.0)
-    if repeats < max(
-        shape, math.sqrt(SMALLEST_SHARE) * noise, SMALLEST_PART * remainder.output_range
-    ):
+    smallest = SMALLEST_PART * remainder.output_range
+    if repeats < max(shape, math.sqrt(SMALLEST_SHARE) * noise, smallest):
         repeats = 0.0
     noise = math.sqrt(max(noise**2 - repeats**2, 0.0))
     return TakenApart(
@@ -143,10 +148,16 @@ def _named(
     while remaining:
         taken = [TANGENT, *(cause.name for cause, _ in result)]
         gains = [_gain(regression, taken, each, time) for each in remaining]
-        best = max(gains)
-        if best < least:
+        if result:
+            least = max(least, SMALLEST_OF_THE_REST * regression.left(taken)[0])
+        if max(gains) < least:
             break
-        at = next(i for i, gain in enumerate(gains) if gain >= ABOUT_THE_SAME * best)
+        counted = [
+            gain * (FOR_FREEDOM if each.name == SHAPE else 1.0) * (gain >= least)
+            for gain, each in zip(gains, remaining, strict=True)
+        ]
+        best = max(counted)
+        at = next(i for i, gain in enumerate(counted) if gain >= ABOUT_THE_SAME * best)
         result.append((remaining.pop(at), gains[at]))
     return result
 

@@ -50,7 +50,7 @@ def reasons_unfit(remainder: Remainder, found: TakenApart) -> tuple[str, ...]:
         reason += (
             f" The output runs against its main direction on {100.0 * against:.0f} % of its way: "
             "it falls where the input rises, as strain of a bipolar drive does (a butterfly), and "
-            "no family has such loops."
+            "no family has such loops. Keep the drive on one side of where the output turns."
         )
     return (f"No command should come from this model. {reason}",)
 
