@@ -1,0 +1,1 @@
+"""What a fit may leave and that has a name: one cause a file."""
