@@ -10,7 +10,26 @@ from collections.abc import Callable, Iterable
 
 from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding
+from hyst.diagnosis.findings import (
+    codes,
+    dropouts,
+    outliers,
+    output_is_noise,
+    quantisation,
+    saturated_sensor,
+    still_signals,
+    wrapped_counter,
+)
 
 Finder = Callable[[Evidence], Iterable[Finding]]
 
-FINDERS: tuple[Finder, ...] = ()
+FINDERS: tuple[Finder, ...] = (
+    codes.find,
+    still_signals.find,
+    wrapped_counter.find,
+    dropouts.find,
+    outliers.find,
+    saturated_sensor.find,
+    output_is_noise.find,
+    quantisation.find,
+)

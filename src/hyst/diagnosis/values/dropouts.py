@@ -16,6 +16,7 @@ _SHORTEST_HOLD = 4
 _LEAST_JUMP = 0.01
 _LEAST_MOTION = 0.005
 _TIMES_USUAL = 8.0
+_GAIN = 4.0
 _MOST_STANDING = 0.2
 _SIDE = 12
 _LONGEST_SHARE = 0.1
@@ -109,7 +110,9 @@ def _is_dropout(signal: Array, cause: Array, first: int, last: int) -> bool:
         return False
     if enters * leaves < 0.0 and abs(enters) > _TIMES_USUAL * usual:
         away = min(abs(enters), abs(leaves))
-        return abs(float(right[0] - left[-1])) < away / 2.0
+        comes_back = abs(float(right[0] - left[-1])) < away / 2.0
+        pace = float(np.max(np.abs(np.diff(cause[first - 2 : last + 3])))) / float(np.ptp(cause))
+        return comes_back and away > _GAIN * pace * float(np.ptp(signal))
     return length >= _SHORTEST_HOLD and _catches_up(signal, cause, first, last, left, right)
 
 

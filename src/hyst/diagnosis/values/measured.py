@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 _MOST_SPIKES = 0.02
 _MOST_CODES = 0.05
 _MOST_DROPOUTS = 0.2
-_MOST_STANDING = 0.6
+_REST = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,10 +76,9 @@ class Values:
         """Whether the output can be used without its dropouts."""
         return self.dropouts.samples.size <= _MOST_DROPOUTS * self.y.size
 
-    @property
-    def plateaus_are_few(self) -> bool:
-        """Whether the output can be used without its plateaus."""
-        return sum(each.samples.size for each in self.plateaus) <= _MOST_STANDING * self.y.size
+    def is_doubtful(self, plateau: Plateau) -> bool:
+        """Tell whether a plateau is at about zero, where an actuator may as well be at rest."""
+        return abs(plateau.level) <= _REST * float(np.ptp(self.y))
 
     @property
     def spikes_are_few(self) -> bool:
@@ -92,7 +91,8 @@ class Values:
         for code in self.output_codes:
             good[code.samples] = False
         for plateau in self.plateaus:
-            good[plateau.samples] = False
+            if not self.is_doubtful(plateau):
+                good[plateau.samples] = False
         good[self.dropouts.samples] = False
         if self.spikes_are_few:
             good[self.output_spikes.samples] = False
@@ -111,9 +111,7 @@ def values_of(evidence: Evidence, number: int) -> Values:
     Findings of other kinds take ``values_of(evidence, number).are_measurements()`` to pass over
     samples that are none.
     """
-    return evidence.once(
-        ("values", number), lambda: _look_at(evidence.records[number - 1], number)
-    )
+    return evidence.once(("values", number), lambda: _look_at(evidence.records[number - 1], number))
 
 
 def _look_at(record: Record, number: int) -> Values:

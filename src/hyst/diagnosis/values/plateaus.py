@@ -24,7 +24,10 @@ _MOST_NOISE = 0.01
 _FLANK = 0.1
 _LEAST_SLOPE = 0.35
 _MOST_BEND = 1.5
-_MOST_OPENING = 2.5
+_MOST_ROUNDING = 0.1
+_INSIDE = 200
+_NEAR = 5
+_MOST_OPENING = 1.6
 _LEAST_OPENING = 0.04
 _BAND = 4.5
 _TREND = 3.0
@@ -113,7 +116,7 @@ def plateaus_in(signal: Array, cause: Array, step: float = 0.0) -> tuple[Plateau
 
 
 def _standing(height: Array, cause: Array, step: float, noise: float) -> tuple[Samples, float]:
-    """Samples on the upper level and the largest motion of the input meanwhile."""
+    """Give the samples on the upper level and the largest motion of the input meanwhile."""
     exact = _End(height.max() - height, cause, 0.0, max(_FLANK, 5.0 * step))
     samples, moved = _judged(exact)
     if samples.size or not _LEAST_NOISE < noise < _MOST_NOISE:
@@ -129,7 +132,7 @@ def _standing(height: Array, cause: Array, step: float, noise: float) -> tuple[S
 
 
 def _judged(end: _End, noise: float = 0.0) -> tuple[Samples, float]:
-    """Samples on the level and the largest motion if most runs there are those of a sensor."""
+    """Give the samples on the level and the largest motion if most runs there are those of a sensor."""
     on_level = end.depth <= end.band
     nothing = np.empty(0, dtype=np.intp), 0.0
     first, last = runs_where(on_level)
@@ -214,7 +217,23 @@ def _is_slope(end: _End, place: int, way: int, direction: float) -> bool:
     # A material that saturates takes far more input for the upper half than for the lower.
     upper, lower = travel[0] / depths[0], (travel[1] - travel[0] + pace) / end.flank * 2.0
     straight = half == foot or upper - pace / depths[0] <= _MOST_BEND * lower
-    return bool(steep and straight) and not _jumps(end, place, way)
+    if not steep or not straight or _jumps(end, place, way):
+        return False
+    return end.band == 0.0 or half == foot or _has_corner(end, place, half, foot, way)
+
+
+def _has_corner(end: _End, place: int, half: int, foot: int, way: int) -> bool:
+    """Whether the line down a flank meets the level where noisy samples still are on it."""
+    inside = end.depth[place::-way][:_INSIDE]
+    pace = (end.cause[foot] - end.cause[half]) / (end.depth[foot] - end.depth[half])
+    corner = float(end.cause[half] - end.depth[half] * pace)
+    near = np.concatenate((inside[::-1], end.depth[place:foot:way][1:]))
+    causes = np.concatenate((end.cause[place::-way][:_INSIDE][::-1], end.cause[place:foot:way][1:]))
+    before = np.flatnonzero((causes - corner) * pace <= 0.0)[-_NEAR:]
+    if before.size == 0:
+        return False
+    allowed = _MOST_ROUNDING * end.flank + 2.0 * end.band / _BAND / math.sqrt(before.size)
+    return float(near[before].mean()) <= allowed
 
 
 def _jumps(end: _End, place: int, way: int) -> bool:

@@ -6,13 +6,15 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.fft
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
 _PLACES = 12
 _FEWEST_SAMPLES = 100
-_LAGS = (0, 1, 2, 4, 8, 16)
+_LAGS = range(17)
+_DEVIATIONS = 6.0
 
 
 @dataclass(frozen=True)
@@ -25,10 +27,18 @@ class Relation:
         Of the variance, 0 to 1, corrected for what chance explains.
     by_chance
         Shares up to this one arise from noise alone.
+    correlation
+        The largest of output and input at any lag, in standard errors.
     """
 
     share: float
     by_chance: float
+    correlation: float
+
+    @property
+    def is_none(self) -> bool:
+        """Whether nothing of the output comes from the input."""
+        return self.share <= self.by_chance and self.correlation < _DEVIATIONS
 
 
 def relation_of(signal: Array, cause: Array) -> Relation | None:
@@ -65,7 +75,19 @@ def relation_of(signal: Array, cause: Array) -> Relation | None:
     share = max(_explained(y[lag:], cell[: count - lag]) for lag in _LAGS)
     # Of noise, cells explain (K - 1) / (N - K) give or take, which the correction takes away.
     by_chance = 6.0 * math.sqrt(2.0 * 2 * _PLACES) / count + 1.0 / count
-    return Relation(share, by_chance)
+    return Relation(share, by_chance, _largest_correlation(y, x) * math.sqrt(count))
+
+
+def _largest_correlation(signal: Array, cause: Array) -> float:
+    """Give the largest correlation with the changes of the cause and with itself, at any lag."""
+    size = scipy.fft.next_fast_len(2 * signal.size, real=True)
+    transform = scipy.fft.rfft(signal - signal.mean(), size)
+    largest = 0.0
+    for each in (cause - cause.mean(), np.diff(cause, prepend=cause[0])):
+        scale = math.sqrt(float(each @ each) * float(signal @ signal))
+        products = scipy.fft.irfft(transform * np.conj(scipy.fft.rfft(each, size)), size)
+        largest = max(largest, float(np.max(np.abs(products))) / scale)
+    return largest
 
 
 def _explained(signal: Array, cell: NDArray[np.intp]) -> float:

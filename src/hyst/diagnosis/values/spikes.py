@@ -129,7 +129,8 @@ def _bends_nearby(bends: Array, first: Samples, length: int) -> Array:
         np.quantile(bends[np.clip(first[:, None] + side, 0, bends.size - 1)], 0.75, axis=1)
         for side in (before, length + 1 - before - 4)
     ]
-    return np.maximum(*levels)
+    larger: Array = np.maximum(levels[0], levels[1])
+    return larger
 
 
 def _sticks_out(signal: Array, first: Samples, length: int, size: Array) -> NDArray[np.bool_]:

@@ -9,10 +9,12 @@ from numpy.typing import NDArray
 
 _FEWEST_SAMPLES = 50
 _FEWEST_LEVELS = 3
+_MOST_DIFFERENT = 0.7
 # Rounded decimals are whole steps up to this share of a step.
 _SAME = 0.02
 _WHOLE_STEPS = 0.98
-_SECOND_KIND = 0.05
+_ROUNDING = 1e-13
+_LEAST_CHANGES = 0.05
 
 
 @dataclass(frozen=True)
@@ -34,8 +36,8 @@ class Levels:
 def levels_of(signal: NDArray[np.float64]) -> Levels | None:
     """Find the step of the converter a signal came through.
 
-    All its values are whole steps apart, each is taken several times, and from sample to sample it
-    goes by different numbers of steps: a triangle that repeats has few values too.
+    All its values are whole steps apart, many are taken again, and it goes by
+    ever different numbers of steps: a triangle that repeats has few values too.
 
     Parameters
     ----------
@@ -50,18 +52,19 @@ def levels_of(signal: NDArray[np.float64]) -> Levels | None:
     if signal.size < _FEWEST_SAMPLES:
         return None
     values = np.unique(signal / 4.0)
-    if not _FEWEST_LEVELS <= values.size <= signal.size / 3:
+    if not _FEWEST_LEVELS <= values.size <= _MOST_DIFFERENT * signal.size:
         return None
     gaps = np.diff(values)
     step = float(gaps.min())
     # The smallest gap itself carries the rounding of decimals; the mean of all does not.
+    if step < _ROUNDING * float(np.max(np.abs(values))):
+        return None
     single = gaps[gaps < 1.5 * step]
     step = float(single.mean())
     if not _mostly_whole(gaps / step):
         return None
     moves = np.round(np.abs(np.diff(signal / 4.0)) / step)
-    kinds = np.unique(moves, return_counts=True)[1]
-    if np.count_nonzero(kinds > _SECOND_KIND * moves.size) < 2:
+    if float(np.mean(moves[1:] != moves[:-1])) < _LEAST_CHANGES:
         return None
     return Levels(4.0 * step, int(values.size))
 

@@ -14,6 +14,8 @@ _FEWEST_JUMPS = 2
 _LEAST_MOTION = 0.3
 _LARGEST_STEP = 0.25
 _MOST_SHARE = 0.1
+_SIDE = 4
+_MOSTLY = 0.75
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,11 +57,14 @@ def wraps_in(signal: Array, other: Array) -> Wraps | None:
     jumps = np.flatnonzero(np.abs(steps) > 0.5)
     if not _FEWEST_JUMPS <= jumps.size <= _MOST_SHARE * signal.size:
         return None
-    nearby = _way_nearby(steps, jumps)
-    size = np.abs(steps[jumps] - nearby)
+    size = np.abs(steps[jumps])
     span = float(np.median(size))
-    if np.any(np.abs(size - span) > _LARGEST_STEP * span) or span < 0.95:
+    if np.any(np.abs(size - span) > _LARGEST_STEP * span) or span < 0.75:
         return None
+    # A jump is the span less the step that goes on meanwhile.
+    before = np.abs(steps[np.maximum(jumps - 1, 0)])
+    behind = np.abs(steps[np.minimum(jumps + 1, steps.size - 1)])
+    span = float(np.median(size + np.minimum(before, behind)))
     corrections = np.zeros(steps.size)
     corrections[jumps] = -np.sign(steps[jumps]) * span
     whole = np.concatenate(([0.0], np.cumsum(steps + corrections)))
@@ -70,24 +75,17 @@ def wraps_in(signal: Array, other: Array) -> Wraps | None:
     return Wraps(jumps + 1, span * spread)
 
 
-def _way_nearby(steps: Array, jumps: Samples) -> Array:
-    """Mean step right before and behind each jump."""
-    before = steps[np.maximum(jumps - 1, 0)]
-    behind = steps[np.minimum(jumps + 1, steps.size - 1)]
-    mean: Array = np.where(np.abs(before) < np.abs(behind), before, behind)
-    return mean
-
-
 def _goes_on(whole: Array, steps: Array, jumps: Samples, span: float) -> bool:
     """Whether the signal put together goes on as smoothly as elsewhere, and jumps against it."""
     moves = np.abs(np.diff(whole))
     elsewhere = np.delete(moves, jumps)
     smooth = np.all(moves[jumps] <= 3.0 * float(elsewhere.max()) + 0.02 * span)
-    against = steps[jumps] * _way_nearby(steps, jumps) < 0.0
+    last = whole.size - 1
+    way = whole[np.minimum(jumps + 1 + _SIDE, last)] - whole[np.maximum(jumps - _SIDE, 0)]
     return bool(
         smooth
         and float(elsewhere.max()) < _LARGEST_STEP * span
-        and float(np.mean(against)) >= 0.6
+        and float(np.mean(steps[jumps] * way < 0.0)) >= _MOSTLY
         and float(np.ptp(whole)) >= _LEAST_MOTION * span
     )
 
