@@ -9,13 +9,15 @@ import numpy as np
 from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding, Severity
 from hyst.diagnosis.values.measured import Values, values_of_each
-from hyst.diagnosis.values.opening import widest_opening
 from hyst.diagnosis.wording import amount, subject
+from hyst.signals import hysteresis_percent, reversals, suggest_dead_band
 
 NAME = "quantisation"
 
 _COARSE = 1.0 / 50.0
 _STEPS_OF_A_LOOP = 4.0
+# Of a line as well, steps make a loop of one to two of them.
+_ONE_STEP = 2.0
 # With more values than this a loop of few steps is hardly any.
 _FINE = 512
 _ADVICE = (
@@ -36,12 +38,12 @@ def _of_output(evidence: Evidence, values: Values) -> Finding | None:
     if levels is None:
         return None
     unit, spread = values.record.output_unit, float(np.ptp(values.y))
-    opening = widest_opening(values.u, values.y)
-    hides = levels.used <= _FINE and 1.0 <= opening / levels.step < _STEPS_OF_A_LOOP
+    opening = _opening(values) if levels.used <= _FINE else 0.0
+    hides = _ONE_STEP <= opening / levels.step < _STEPS_OF_A_LOOP
     # An input of few values gives an output of few, whatever the converter.
     finer = np.unique(values.u).size > 2 * levels.used
     coarse = (finer and levels.step > _COARSE * spread) or hides
-    told = f", and its loop opens by {amount(opening, unit)}" if hides else ""
+    told = f", and its loop opens by {amount(opening, unit)} at most" if hides else ""
     severity: Severity = "warning" if coarse else "remark"
     return Finding(
         NAME,
@@ -53,6 +55,15 @@ def _of_output(evidence: Evidence, values: Values) -> Finding | None:
         values.number,
         amounts={"step": levels.step, "levels": float(levels.used)},
     )
+
+
+def _opening(values: Values) -> float:
+    """Give the opening of the loop, steps included; 0 where the input does not turn."""
+    dead_band = suggest_dead_band(values.u)
+    if reversals(values.u, dead_band).size == 0:
+        return 0.0
+    percent = hysteresis_percent(values.u, values.y, dead_band)
+    return percent * float(np.ptp(values.y)) / 100.0
 
 
 def _of_input(evidence: Evidence, values: Values) -> Finding | None:

@@ -95,14 +95,12 @@ def codes_in(signal: NDArray[np.float64]) -> tuple[Code, ...]:
     if not 0 < values.size <= _MOST_CODES:
         return ()
     reach = highest - lowest
-    return tuple(
-        Code(
-            float(value),
-            np.flatnonzero(signal == value),
-            max(float(value) / 4.0 - highest, lowest - float(value) / 4.0) / reach,
-        )
-        for value in values
-    )
+    codes = []
+    for value in values.tolist():
+        times = max(value / 4.0 - highest, lowest - value / 4.0) / reach
+        if times >= _FAR:
+            codes.append(Code(value, np.flatnonzero(signal == value), times))
+    return tuple(codes)
 
 
 def _end_of_the_others(ordered: NDArray[np.float64]) -> float:

@@ -8,15 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.diagnosis.values.runs import Runs, runs_of_equals, samples_of
+from hyst.signals import reversals, suggest_dead_band
 
 Array = NDArray[np.float64]
 Samples = NDArray[np.intp]
 
 _SHORTEST_HOLD = 4
+_SHORTEST_AWAY = 3
 _LEAST_JUMP = 0.01
 _LEAST_MOTION = 0.005
 _TIMES_USUAL = 8.0
 _GAIN = 4.0
+_LAG = 4
 _MOST_STANDING = 0.2
 _SIDE = 12
 _LONGEST_SHARE = 0.1
@@ -73,6 +76,7 @@ def dropouts_in(signal: Array, cause: Array, step: float = 0.0) -> Dropouts:
         for place in np.flatnonzero(large).tolist()
         if _is_dropout(signal, cause, int(first[place]), int(last[place]))
     ]
+    holds = _not_between_turns(cause, first, last, holds)
     stood: Runs = (first[holds], last[holds])
     return Dropouts(samples_of(stood), signal[stood[0]], float(np.max(jump[holds], initial=0.0)))
 
@@ -82,13 +86,24 @@ def _worth_a_look(signal: Array, cause: Array) -> Runs:
     nothing = np.empty(0, dtype=np.intp)
     first, last = runs_of_equals(signal)
     length = last - first + 1
-    long_enough = (length <= max(_LONGEST_SHARE * signal.size, 2)) & (length >= 2)
+    long_enough = (length <= max(_LONGEST_SHARE * signal.size, 2)) & (length >= _SHORTEST_AWAY)
     # Few levels, or a coarse converter: standing is what such a signal does.
     if length[length >= 3].sum() > _MOST_STANDING * signal.size:
         return nothing, nothing
     inside = (first >= 4) & (last < signal.size - 4)
     keep = inside & long_enough
     return first[keep], last[keep]
+
+
+def _not_between_turns(cause: Array, first: Samples, last: Samples, holds: list[int]) -> list[int]:
+    """Leave out stretches that begin and end where the cause turns, as those of friction do."""
+    if not holds:
+        return []
+    turns = reversals(cause, suggest_dead_band(cause))
+    is_turn = np.zeros(cause.size + 2 * _LAG, dtype=bool)
+    for lag in range(_LAG):
+        is_turn[turns + lag] = True
+    return [place for place in holds if not (is_turn[first[place]] and is_turn[last[place] + 1])]
 
 
 def _is_dropout(signal: Array, cause: Array, first: int, last: int) -> bool:

@@ -23,6 +23,9 @@ _MOST_SPIKES = 0.02
 _MOST_CODES = 0.05
 _MOST_DROPOUTS = 0.2
 _REST = 0.02
+_LEAST_JUMP = 0.02
+_LAG = 10
+_NEVER_AN_ANSWER = 1e9
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,8 +119,10 @@ def values_of(evidence: Evidence, number: int) -> Values:
 
 def _look_at(record: Record, number: int) -> Values:
     """Look at one record: first codes, then what only shows without them."""
-    input_codes, output_codes = codes_in(record.u), codes_in(record.y)
-    u, y = _without(record.u, input_codes), _without(record.y, output_codes)
+    input_codes = codes_in(record.u)
+    u = _without(record.u, input_codes)
+    output_codes = tuple(each for each in codes_in(record.y) if not _is_answer(each, u))
+    y = _without(record.y, output_codes)
     output_levels = levels_of(y)
     step = output_levels.step if output_levels else 0.0
     dropouts = dropouts_in(y, u, step)
@@ -139,6 +144,14 @@ def _look_at(record: Record, number: int) -> Values:
         input_spikes=spikes_in(u, None, input_levels.step if input_levels else 0.0),
         output_spikes=spikes_in(whole, u, step),
     )
+
+
+def _is_answer(code: Code, u: Array) -> bool:
+    """Whether an output far outside comes right behind jumps of the input, as of pulses."""
+    moves = np.abs(np.diff(u, prepend=u[0]))
+    jumps = moves > max(_LEAST_JUMP * float(np.ptp(u)), 6.0 * float(np.median(moves)))
+    around = np.clip(code.samples[:, None] + np.arange(-_LAG, 1), 0, u.size - 1)
+    return code.times_the_range < _NEVER_AN_ANSWER and bool(np.all(np.any(jumps[around], axis=1)))
 
 
 def _without(signal: Array, codes: tuple[Code, ...]) -> Array:

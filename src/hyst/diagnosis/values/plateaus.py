@@ -20,13 +20,12 @@ _FEWEST_NOISY = 40
 _FEWEST_VALUES = 24
 _LEAST_OVER = 0.02
 _LEAST_NOISE = 1e-7
-_MOST_NOISE = 0.01
+_MOST_NOISE = 0.005
 _FLANK = 0.1
 _LEAST_SLOPE = 0.35
 _MOST_BEND = 1.5
 _MOST_ROUNDING = 0.1
 _INSIDE = 200
-_NEAR = 5
 _MOST_OPENING = 1.6
 _LEAST_OPENING = 0.04
 _BAND = 4.5
@@ -132,7 +131,7 @@ def _standing(height: Array, cause: Array, step: float, noise: float) -> tuple[S
 
 
 def _judged(end: _End, noise: float = 0.0) -> tuple[Samples, float]:
-    """Give the samples on the level and the largest motion if most runs there are those of a sensor."""
+    """Give the samples on the level and the largest motion if most runs are those of a sensor."""
     on_level = end.depth <= end.band
     nothing = np.empty(0, dtype=np.intp), 0.0
     first, last = runs_where(on_level)
@@ -207,33 +206,41 @@ def _loop_is_as_wide_below(end: _End, begin: int, stop: int, width: float) -> bo
 
 def _is_slope(end: _End, place: int, way: int, direction: float) -> bool:
     """Whether the output goes down from an end of a run steeply, straight, and without a jump."""
-    half, foot = _foot(end, place, way, 0.5), _foot(end, place, way)
-    if half is None or foot is None:
+    half, foot = _crossing(end, place, way, 0.5), _crossing(end, place, way)
+    if half is None or foot is None or _jumps(end, place, way):
         return False
-    travel = direction * (end.cause[place] - end.cause)[[half, foot]]
-    pace = float(np.max(np.abs(np.diff(end.cause[min(place, foot) : max(place, foot) + 1]))))
-    depths = end.depth[[half, foot]]
-    steep = 0.0 <= travel[1] <= depths[1] / _LEAST_SLOPE
+    start = float(end.cause[place + way])
+    upper, lower = direction * (start - half), direction * (half - foot)
+    travel = direction * (float(end.cause[place]) - foot)
+    if not 0.0 <= travel <= end.flank / _LEAST_SLOPE:
+        return False
     # A material that saturates takes far more input for the upper half than for the lower.
-    upper, lower = travel[0] / depths[0], (travel[1] - travel[0] + pace) / end.flank * 2.0
-    straight = half == foot or upper - pace / depths[0] <= _MOST_BEND * lower
-    if not steep or not straight or _jumps(end, place, way):
+    if upper > _MOST_BEND * lower:
         return False
-    return end.band == 0.0 or half == foot or _has_corner(end, place, half, foot, way)
+    return end.band == 0.0 or _has_corner(end, place, way, 2.0 * half - foot, abs(lower))
 
 
-def _has_corner(end: _End, place: int, half: int, foot: int, way: int) -> bool:
-    """Whether the line down a flank meets the level where noisy samples still are on it."""
-    inside = end.depth[place::-way][:_INSIDE]
-    pace = (end.cause[foot] - end.cause[half]) / (end.depth[foot] - end.depth[half])
-    corner = float(end.cause[half] - end.depth[half] * pace)
-    near = np.concatenate((inside[::-1], end.depth[place:foot:way][1:]))
-    causes = np.concatenate((end.cause[place::-way][:_INSIDE][::-1], end.cause[place:foot:way][1:]))
-    before = np.flatnonzero((causes - corner) * pace <= 0.0)[-_NEAR:]
-    if before.size == 0:
+def _crossing(end: _End, place: int, way: int, share: float = 1.0) -> float | None:
+    """Input at which the flank, or a share of it, is passed before (-1) or behind (1) a run."""
+    foot = _foot(end, place, way, share)
+    if foot is None:
+        return None
+    inner, outer = end.depth[foot - way], end.depth[foot]
+    weight = float((share * end.flank - inner) / (outer - inner))
+    return float((1.0 - weight) * end.cause[foot - way] + weight * end.cause[foot])
+
+
+def _has_corner(end: _End, place: int, way: int, corner: float, reach: float) -> bool:
+    """Whether noisy samples near the input at which the flank meets the level are on it."""
+    nearby = slice(max(place - _INSIDE, 0), place + _INSIDE)
+    inside = way * (np.arange(end.depth.size)[nearby] - place) <= 1
+    near = inside & (np.abs(end.cause[nearby] - corner) <= reach / 2.0)
+    beyond = (end.cause[nearby] - corner) * (end.cause[place] - end.cause[place + way]) >= 0.0
+    depths = end.depth[nearby][near & beyond]
+    if depths.size == 0:
         return False
-    allowed = _MOST_ROUNDING * end.flank + 2.0 * end.band / _BAND / math.sqrt(before.size)
-    return float(near[before].mean()) <= allowed
+    allowed = _MOST_ROUNDING * end.flank + 2.0 * end.band / _BAND / math.sqrt(depths.size)
+    return float(depths.mean()) <= allowed
 
 
 def _jumps(end: _End, place: int, way: int) -> bool:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.signals import reversals, suggest_dead_band
+
 Array = NDArray[np.float64]
 Samples = NDArray[np.intp]
 
@@ -150,9 +152,10 @@ def _excused(cause: Array, first: Samples, length: int, size: Array) -> NDArray[
         return np.zeros(first.size, dtype=bool)
     moves = np.diff(cause / spread, prepend=cause[0] / spread)
     bends = np.abs(np.diff(moves, prepend=0.0))
-    bends = np.maximum(bends - 6.0 * float(np.median(bends)), 0.0)
     jumps = np.abs(moves) > max(_LEAST_JUMP, 6.0 * float(np.median(np.abs(moves))))
-    turns = np.append(moves[1:] * moves[:-1] <= 0.0, False) | (bends > _LEAST_BEND)
+    sharp = bends > max(_LEAST_BEND, 6.0 * float(np.median(bends)))
+    turns = sharp.copy()
+    turns[reversals(cause, suggest_dead_band(cause))] = True
     around = np.clip(first[:, None] + np.arange(-_LAG, length + 3), 0, cause.size - 1)
     excused = np.any(jumps[around], axis=1) | (size <= _GAIN * bends[around].max(axis=1))
     near = np.any(turns[around], axis=1)
