@@ -88,7 +88,9 @@ def _worth_a_look(signal: Array, cause: Array) -> Runs:
     length = last - first + 1
     long_enough = (length <= max(_LONGEST_SHARE * signal.size, 2)) & (length >= _SHORTEST_AWAY)
     # Few levels, or a coarse converter: standing is what such a signal does.
-    if length[length >= 3].sum() > _MOST_STANDING * signal.size:
+    moving = (signal > signal.min()) & (signal < signal.max())
+    standing = length[(length >= 3) & moving[first]].sum()
+    if standing > _MOST_STANDING * np.count_nonzero(moving):
         return nothing, nothing
     inside = (first >= 4) & (last < signal.size - 4)
     keep = inside & long_enough

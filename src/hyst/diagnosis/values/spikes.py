@@ -136,10 +136,18 @@ def _bends_nearby(bends: Array, first: Samples, length: int) -> Array:
 
 
 def _sticks_out(signal: Array, first: Samples, length: int, size: Array) -> NDArray[np.bool_]:
-    """Whether runs lie outside of the four samples on either side, by half their departure."""
+    """Whether runs stand out of the four samples on either side, by half their departure.
+
+    Both are taken from the line through the run's neighbours.
+    """
     around = np.concatenate((np.arange(-4, 0), np.arange(length, length + 4)))
-    near = signal[np.clip(first[:, None] + around, 0, signal.size - 1)]
-    run = signal[first[:, None] + np.arange(length)]
+    inside = np.arange(length)
+    before = signal[first - 1]
+    slope = (signal[first + length] - before) / (length + 1)
+    near = signal[np.clip(first[:, None] + around, 0, signal.size - 1)] - before[:, None]
+    run = signal[first[:, None] + inside] - before[:, None]
+    near -= slope[:, None] * (around + 1)
+    run -= slope[:, None] * (inside + 1)
     above = run.min(axis=1) - near.max(axis=1)
     below = near.min(axis=1) - run.max(axis=1)
     return np.asarray(np.maximum(above, below) > size / 2.0)
