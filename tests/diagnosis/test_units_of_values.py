@@ -38,3 +38,18 @@ def test_scaled_records(power_u: int, power_y: int) -> None:
             counted = name in {"count", "levels"}
             power = 0 if counted else (power_u if in_units_of_input else power_y)
             assert other.amounts[name] == amount * 2.0**power
+
+
+@pytest.mark.parametrize("scale_u", [1e-320, 1e-300, 1e160, 1e306])
+@pytest.mark.parametrize("scale_y", [1e-320, 1e-300, 1e160, 2e306])
+def test_absurd_units_are_no_obstacle(scale_u: float, scale_y: float) -> None:
+    u, y = good(1000, 250.0)
+    given = hyst.Record(scale_u * (u - 50.0), scale_y * np.minimum(y - 30.0, 20.0), 1e-3)
+    (finding,) = hyst.diagnose(given).named("saturated sensor")
+    # The nearest multiple of 5e-324 to 20 times the scale is at most 2.5e-324 off it.
+    assert finding.amounts["level"] == pytest.approx(20.0 * scale_y, rel=1e-12, abs=5e-324)
+
+
+def test_a_range_beyond_all_numbers_is_refused() -> None:
+    with pytest.raises(hyst.InputError, match=r"record 1: 'y' reaches over .* moderate size"):
+        hyst.diagnose(hyst.Record(np.arange(100.0), [1.7e308, -1.7e308] * 50, 1.0))

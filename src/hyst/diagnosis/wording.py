@@ -11,7 +11,7 @@ _NAMED = 12
 
 
 def amount(value: float, unit: str) -> str:
-    """Give a number of four digits with its unit."""
+    """Give a ``value`` in four digits with its ``unit``."""
     return f"{value:.4g} {unit}".rstrip()
 
 
@@ -35,5 +35,5 @@ def indices(samples: NDArray[np.intp]) -> str:
 
 
 def subject(evidence: Evidence, number: int, channel: str) -> str:
-    """Begin a sentence on a channel, with the record's number where there are several."""
+    """Begin a sentence on a ``channel``, of the ``number`` that it has if ``evidence`` has more."""
     return f"the {channel}" if len(evidence.records) == 1 else f"the {channel} of record {number}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -15,6 +16,7 @@ from hyst.diagnosis.values.plateaus import Plateau, plateaus_in
 from hyst.diagnosis.values.spikes import Spikes, spikes_in
 from hyst.diagnosis.values.steps import Levels, levels_of
 from hyst.diagnosis.values.wraps import Wraps, wraps_in
+from hyst.errors import InputError
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
@@ -118,11 +120,19 @@ def values_of(evidence: Evidence, number: int) -> Values:
 
 
 def _look_at(record: Record, number: int) -> Values:
-    """Look at one record: first codes, then what only shows without them."""
+    """Look at one record: first codes, then what only shows without them.
+
+    Raises
+    ------
+    InputError
+        If a range is no number.
+    """
     input_codes = codes_in(record.u)
     u = _without(record.u, input_codes)
     output_codes = tuple(each for each in codes_in(record.y) if not _is_answer(each, u))
     y = _without(record.y, output_codes)
+    for signal, name in ((u, record.input_name), (y, record.output_name)):
+        _require_range(signal, f"record {number}: {name!r}")
     output_levels = levels_of(y)
     step = output_levels.step if output_levels else 0.0
     dropouts = dropouts_in(y, u, step)
@@ -144,6 +154,12 @@ def _look_at(record: Record, number: int) -> Values:
         input_spikes=spikes_in(u, None, input_levels.step if input_levels else 0.0),
         output_spikes=spikes_in(whole, u, step),
     )
+
+
+def _require_range(signal: Array, name: str) -> None:
+    """Refuse a signal whose range is too large for a double."""
+    if float(signal.max()) / 2.0 - float(signal.min()) / 2.0 > sys.float_info.max / 2.0:
+        raise InputError(f"{name} reaches over more than 1.8e308; choose units of moderate size")
 
 
 def _is_answer(code: Code, u: Array) -> bool:

@@ -16,7 +16,15 @@ def runs_where(true: NDArray[np.bool_]) -> Runs:
 
 
 def runs_of_equals(signal: NDArray[np.float64], shortest: int = 2) -> Runs:
-    """Give the first and the last sample of every stretch of one value, to the bit."""
+    """Give the first and the last sample of every stretch on which a signal keeps one value.
+
+    Parameters
+    ----------
+    signal
+        Shape (N,).
+    shortest
+        How many samples a stretch has at least, >= 2.
+    """
     first, last = runs_where(signal[1:] == signal[:-1])
     keep = last - first + 2 >= shortest
     return first[keep], last[keep] + 1
