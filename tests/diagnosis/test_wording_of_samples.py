@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyst.diagnosis.wording import amount, indices, samples_counted
+from hyst.diagnosis.values.wording import amount, indices, samples_counted
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding, Severity
 from hyst.diagnosis.values.codes import Code
 from hyst.diagnosis.values.measured import values_of_each
-from hyst.diagnosis.wording import indices, samples_counted, subject
+from hyst.diagnosis.values.wording import indices, samples_counted, subject
 
 NAME = "code for no measurement"
 

@@ -10,7 +10,7 @@ from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding
 from hyst.diagnosis.values.measured import Values, values_of_each
 from hyst.diagnosis.values.spikes import Spikes
-from hyst.diagnosis.wording import amount, indices, samples_counted, subject
+from hyst.diagnosis.values.wording import amount, indices, samples_counted, subject
 
 NAME = "outliers"
 

@@ -8,7 +8,7 @@ from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding
 from hyst.diagnosis.values.measured import values_of_each
 from hyst.diagnosis.values.relation import relation_of
-from hyst.diagnosis.wording import subject
+from hyst.diagnosis.values.wording import subject
 
 NAME = "output is noise"
 

@@ -9,7 +9,7 @@ import numpy as np
 from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding, Severity
 from hyst.diagnosis.values.measured import Values, values_of_each
-from hyst.diagnosis.wording import amount, subject
+from hyst.diagnosis.values.wording import amount, subject
 from hyst.signals import hysteresis_percent, reversals, suggest_dead_band
 
 NAME = "quantisation"

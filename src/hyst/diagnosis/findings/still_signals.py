@@ -9,7 +9,7 @@ import numpy as np
 from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding
 from hyst.diagnosis.values.measured import Values, values_of_each
-from hyst.diagnosis.wording import amount, samples_counted, subject
+from hyst.diagnosis.values.wording import amount, samples_counted, subject
 
 NAME = "still signal"
 

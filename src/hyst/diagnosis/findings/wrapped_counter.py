@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding
 from hyst.diagnosis.values.measured import values_of_each
-from hyst.diagnosis.wording import amount, indices, subject
+from hyst.diagnosis.values.wording import amount, indices, subject
 
 NAME = "wrapped counter"
 

@@ -1,4 +1,4 @@
-"""How findings tell numbers, samples and records."""
+"""How findings on values name samples, amounts and channels."""
 
 from __future__ import annotations
 
