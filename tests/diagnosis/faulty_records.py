@@ -9,7 +9,29 @@ import pytest
 from healthy_records import Array, plays, triangle_wave
 
 import hyst
+from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding
+from hyst.diagnosis.findings import (
+    codes,
+    dropouts,
+    outliers,
+    output_is_noise,
+    quantisation,
+    saturated_sensor,
+    still_signals,
+    wrapped_counter,
+)
+
+FINDINGS_ON_VALUES = (
+    codes,
+    still_signals,
+    wrapped_counter,
+    dropouts,
+    outliers,
+    saturated_sensor,
+    output_is_noise,
+    quantisation,
+)
 
 NOISE = 0.02
 
@@ -36,6 +58,14 @@ def good(
     u = 50.0 + 50.0 * wave
     y = plays(u) + np.random.default_rng(seed).normal(0.0, NOISE, samples)
     return u, y
+
+
+def diagnosed(*records: hyst.Record) -> hyst.Diagnosis:
+    """Give what the findings on values alone find."""
+    evidence = Evidence(records)
+    return hyst.Diagnosis(
+        tuple(each for finding in FINDINGS_ON_VALUES for each in finding.find(evidence))
+    )
 
 
 def only(found: hyst.Diagnosis, name: str) -> Finding:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from faulty_records import case_record, good, only, record
+from faulty_records import case_record, diagnosed, good, only, record
 
 import hyst
 from hyst.diagnosis.values.codes import codes_in
@@ -23,12 +23,14 @@ NAME = "code for no measurement"
     ],
 )
 def test_cases(measured_data: Path, case: str, code: float, samples: list[int], words: str) -> None:
-    finding = only(hyst.diagnose(case_record(measured_data, case)), NAME)
+    given = case_record(measured_data, case)
+    finding = only(diagnosed(given), NAME)
     assert finding.severity == "left out"
     assert finding.samples.tolist() == samples
     assert finding.amounts["value"] == code
     assert words in finding.sentence
     assert f"{code:.7g}" in finding.sentence
+    assert hyst.diagnose(given).left_out(1).tolist() == samples
 
 
 @pytest.mark.parametrize(
@@ -38,7 +40,7 @@ def test_codes_anywhere_in_the_output(code: float) -> None:
     u, y = good(seed=3)
     places = np.sort(np.random.default_rng(7).choice(y.size, 30, replace=False))
     y[places] = code
-    found = hyst.diagnose(record(u, y))
+    found = diagnosed(record(u, y))
     finding = only(found, NAME)
     assert finding.severity == "left out"
     assert found.left_out(1).tolist() == places.tolist()
@@ -54,7 +56,7 @@ def test_several_codes_and_those_of_the_input() -> None:
         [5, 9],
     ]
     u[77] = 9.91e37
-    found = hyst.diagnose(record(u, y))
+    found = diagnosed(record(u, y))
     (refusal,) = found.of("refusal")
     assert (refusal.name, refusal.samples.tolist()) == (NAME, [77])
     assert "input" in refusal.sentence
@@ -63,7 +65,7 @@ def test_several_codes_and_those_of_the_input() -> None:
 def test_many_codes_refuse_the_record() -> None:
     u, y = good()
     y[1000:1400] = 9.9e37
-    assert hyst.diagnose(record(u, y)).of("refusal")[0].name == NAME
+    assert diagnosed(record(u, y)).of("refusal")[0].name == NAME
 
 
 def test_the_record_is_named() -> None:
@@ -71,7 +73,7 @@ def test_the_record_is_named() -> None:
     first = record(u, y)
     second = y.copy()
     second[8] = -1e30
-    found = hyst.diagnose([first, record(u, second)])
+    found = diagnosed(first, record(u, second))
     finding = only(found, NAME)
     assert finding.record == 2
     assert "the output of record 2" in finding.sentence
@@ -84,7 +86,7 @@ def test_values_near_the_others_are_none() -> None:
     assert codes_in(y) == ()
     y[50] = y.max() + 9.0 * np.ptp(y)  # an outlier, and found as one
     assert codes_in(y) == ()
-    assert only(hyst.diagnose(record(u, y)), "outliers").samples.tolist() == [50]
+    assert only(diagnosed(record(u, y)), "outliers").samples.tolist() == [50]
 
 
 @pytest.mark.parametrize("signal", [[1.0], [0.0, 1e38], [2.0] * 50, [0.0] * 30 + [1.0] * 30])

@@ -5,32 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from faulty_records import diagnosed
 from healthy_records import SENSORS, drives, healthy, measured_records, plants
 
 import hyst
-from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding
-from hyst.diagnosis.findings import (
-    codes,
-    dropouts,
-    outliers,
-    output_is_noise,
-    quantisation,
-    saturated_sensor,
-    still_signals,
-    wrapped_counter,
-)
 
-FINDINGS_ON_VALUES = (
-    codes,
-    dropouts,
-    outliers,
-    output_is_noise,
-    quantisation,
-    saturated_sensor,
-    still_signals,
-    wrapped_counter,
-)
 # What is true of these records, and no fault of a sensor.
 TRUE = {
     ("dead_zone", "from_zero"): "saturated sensor",  # at zero; a warning that names both causes
@@ -42,9 +22,7 @@ TRUE |= {("few_relays", drive): "quantisation" for drive in drives()}  # 13 valu
 
 def told(record: hyst.Record) -> list[Finding]:
     """Give what the findings on values tell beyond remarks."""
-    evidence = Evidence((record,))
-    found = [each for finding in FINDINGS_ON_VALUES for each in finding.find(evidence)]
-    return [each for each in found if each.severity != "remark"]
+    return [each for each in diagnosed(record).findings if each.severity != "remark"]
 
 
 @pytest.mark.parametrize("plant", plants())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from faulty_records import good, record
+from faulty_records import diagnosed, good, record
 from healthy_records import triangle_wave
 
 import hyst
@@ -16,7 +16,7 @@ from hyst.diagnosis.values.steps import levels_of
 def test_the_step_of_an_output(step: float, offset: float) -> None:
     u, y = good()
     counted = np.round(y / step) * step + offset
-    (finding,) = hyst.diagnose(record(u, counted)).named("quantisation")
+    (finding,) = diagnosed(record(u, counted)).named("quantisation")
     assert finding.severity == "remark"
     # Values are rounded doubles of up to 1300, whole steps apart.
     assert finding.amounts["step"] == pytest.approx(step, rel=1e-9)
@@ -25,7 +25,7 @@ def test_the_step_of_an_output(step: float, offset: float) -> None:
 
 def test_a_coarse_step_is_a_warning() -> None:
     u, y = good()
-    (finding,) = hyst.diagnose(record(u, 2.0 * np.round(y / 2.0))).of("warning")
+    (finding,) = diagnosed(record(u, 2.0 * np.round(y / 2.0))).of("warning")
     assert finding.name == "quantisation"
     assert "steps of 2 um" in finding.sentence
 
@@ -33,13 +33,13 @@ def test_a_coarse_step_is_a_warning() -> None:
 def test_a_loop_of_few_steps_is_a_warning() -> None:
     u = triangle_wave(4000, 1000.0, 50.0)
     y = 0.5 * u + 0.3 * np.sign(hyst.Play(20.0)(u)) + 0.003 * u
-    (finding,) = hyst.diagnose(record(u, 0.25 * np.round(y / 0.25))).of("warning")
+    (finding,) = diagnosed(record(u, 0.25 * np.round(y / 0.25))).of("warning")
     assert "loop opens by" in finding.sentence
 
 
 def test_the_step_of_an_input() -> None:
     u, y = good(kind="sine")
-    (finding,) = hyst.diagnose(record(np.round(u / 0.4) * 0.4, y)).named("quantisation")
+    (finding,) = diagnosed(record(np.round(u / 0.4) * 0.4, y)).named("quantisation")
     assert "input" in finding.sentence
     assert finding.amounts["step"] == pytest.approx(0.4, rel=1e-9)
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from faulty_records import NOISE, case_record, good, only, record
+from faulty_records import NOISE, case_record, diagnosed, good, only, record
 from healthy_records import drives, plants, preisach, triangle_wave
 
 import hyst
@@ -16,7 +16,7 @@ NAME = "saturated sensor"
 
 def test_case(measured_data: Path) -> None:
     given = case_record(measured_data, "clipped-sensor")
-    finding = only(hyst.diagnose(given), NAME)
+    finding = only(diagnosed(given), NAME)
     assert finding.severity == "left out"
     assert finding.samples.tolist() == np.flatnonzero(given.y == 48.0).tolist()
     assert finding.amounts["level"] == 48.0
@@ -37,7 +37,7 @@ def test_the_end_of_other_plants(drive: str, plant: str, sign: float) -> None:
     # Between two samples, for periods repeat up to rounding only.
     level = float(np.quantile(true, 0.88) - 1e-6 * np.ptp(true))
     y = np.minimum(true, level)
-    finding = only(hyst.diagnose(record(u, y)), NAME)
+    finding = only(diagnosed(record(u, y)), NAME)
     assert finding.samples.tolist() == np.flatnonzero(true >= level).tolist()
     assert finding.amounts["level"] == level
     assert "upper end" in finding.sentence
@@ -48,7 +48,7 @@ def test_noise_of_the_converter_on_the_level(seed: int) -> None:
     u, _ = good(period=1333.3)
     true = plants()["plays"](u)
     y = np.minimum(true, 48.0) + np.random.default_rng(seed).normal(0.0, NOISE, u.size)
-    finding = only(hyst.diagnose(record(u, y)), NAME)
+    finding = only(diagnosed(record(u, y)), NAME)
     # Within one standard error of 1000 samples, thrice, and the rounding of the corner.
     assert finding.amounts["level"] == pytest.approx(48.0, abs=0.2 * NOISE)
     beyond = np.flatnonzero(true > 48.0)
@@ -59,14 +59,14 @@ def test_noise_of_the_converter_on_the_level(seed: int) -> None:
 
 def test_both_ends() -> None:
     u, y = good(kind="sine")
-    found = hyst.diagnose(record(u, np.clip(y, 15.0, 50.0)))
+    found = diagnosed(record(u, np.clip(y, 15.0, 50.0)))
     assert [each.amounts["level"] for each in found.named(NAME)] == [50.0, 15.0]
     assert found.left_out(1).tolist() == np.flatnonzero((y <= 15.0) | (y >= 50.0)).tolist()
 
 
 def test_at_zero_it_may_be_a_dead_zone() -> None:
     u, y = good()
-    found = hyst.diagnose(record(u, np.maximum(y - 20.0, 0.0)))
+    found = diagnosed(record(u, np.maximum(y - 20.0, 0.0)))
     finding = only(found, NAME)
     assert finding.severity == "warning"
     assert "dead zone" in finding.sentence
@@ -96,5 +96,5 @@ def test_plants_that_stand_by_themselves(plant: object, noise: float, period: fl
     u = triangle_wave(4000, period, 50.0)
     true = plant(u)  # type: ignore[operator]
     y = true + np.random.default_rng(1).normal(0.0, noise * np.ptp(true) + 1e-300, u.size)
-    found = hyst.diagnose(record(u, y))
+    found = diagnosed(record(u, y))
     assert not found.named(NAME), found.summary()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from faulty_records import good
+from faulty_records import diagnosed, good
 
 import hyst
 
@@ -24,8 +24,8 @@ def faulty(scale_u: float, scale_y: float) -> hyst.Record:
 @pytest.mark.parametrize("power_u", [-40, 0, 33])
 @pytest.mark.parametrize("power_y", [-60, 0, 21])
 def test_scaled_records(power_u: int, power_y: int) -> None:
-    expected = hyst.diagnose(faulty(1.0, 1.0)).findings
-    found = hyst.diagnose(faulty(2.0**power_u, 2.0**power_y)).findings
+    expected = diagnosed(faulty(1.0, 1.0)).findings
+    found = diagnosed(faulty(2.0**power_u, 2.0**power_y)).findings
     names = {each.name for each in expected}
     assert names >= {"outliers", "dropouts", "saturated sensor", "code for no measurement"}
     assert [(each.name, each.severity) for each in found] == [
@@ -45,11 +45,11 @@ def test_scaled_records(power_u: int, power_y: int) -> None:
 def test_absurd_units_are_no_obstacle(scale_u: float, scale_y: float) -> None:
     u, y = good(1000, 250.0)
     given = hyst.Record(scale_u * (u - 50.0), scale_y * np.minimum(y - 30.0, 20.0), 1e-3)
-    (finding,) = hyst.diagnose(given).named("saturated sensor")
+    (finding,) = diagnosed(given).named("saturated sensor")
     # The nearest multiple of 5e-324 to 20 times the scale is at most 2.5e-324 off it.
     assert finding.amounts["level"] == pytest.approx(20.0 * scale_y, rel=1e-12, abs=5e-324)
 
 
 def test_a_range_beyond_all_numbers_is_refused() -> None:
     with pytest.raises(hyst.InputError, match=r"record 1: 'y' reaches over .* moderate size"):
-        hyst.diagnose(hyst.Record(np.arange(100.0), [1.7e308, -1.7e308] * 50, 1.0))
+        diagnosed(hyst.Record(np.arange(100.0), [1.7e308, -1.7e308] * 50, 1.0))

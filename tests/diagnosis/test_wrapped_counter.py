@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from faulty_records import good, only, record
+from faulty_records import diagnosed, good, only, record
 
-import hyst
 from hyst.diagnosis.values.wraps import wraps_in
 
 
@@ -18,7 +17,7 @@ def test_output(kind: str, span: float, sign: float) -> None:
     wrapped = np.mod(sign * y + 3.7, span)
     # By definition of the wrap: where the whole number of spans changes.
     jumps = np.flatnonzero(np.diff(np.floor_divide(sign * y + 3.7, span))) + 1
-    finding = only(hyst.diagnose(record(u, wrapped)), "wrapped counter")
+    finding = only(diagnosed(record(u, wrapped)), "wrapped counter")
     assert finding.severity == "refusal"
     assert finding.samples.tolist() == jumps.tolist()
     # A jump is the span less one step, and noise.
@@ -28,7 +27,7 @@ def test_output(kind: str, span: float, sign: float) -> None:
 
 def test_input() -> None:
     u, y = good()
-    finding = only(hyst.diagnose(record(np.mod(u, 64.0), y)), "wrapped counter")
+    finding = only(diagnosed(record(np.mod(u, 64.0), y)), "wrapped counter")
     assert "input" in finding.sentence
     assert finding.amounts["span"] == pytest.approx(64.0, rel=0.01)
 
