@@ -9,10 +9,10 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.diagnosis.drift import Drift, drift_of
 from hyst.diagnosis.finding import NO_SAMPLES, Finding
 from hyst.diagnosis.loops import Loop, loops_of
 from hyst.diagnosis.repetition import Repetition, noise_of, repetition_of
+from hyst.diagnosis.slow_drift import Drift, slow_drift
 from hyst.signals import Record
 
 Found = TypeVar("Found")
@@ -66,9 +66,14 @@ class Evidence:
     def numbered(self) -> Iterator[tuple[int, Record]]:
         """Give the usable records in which something moves, with their numbers."""
         for number in range(1, len(self.records) + 1):
+            if self._refused(number):
+                continue
             record = self.usable(number)
             if record.samples >= 4 and np.ptp(record.u) > 0.0 and np.ptp(record.y) > 0.0:
                 yield number, record
+
+    def _refused(self, number: int) -> bool:
+        return any(e.severity == "refusal" and e.record in (0, number) for e in self._told)
 
     def repetition(self, number: int) -> Repetition | None:
         """Give where a record repeats itself."""
@@ -83,16 +88,16 @@ class Evidence:
         return self.once(("noise", id(record)), lambda: noise_of(found, record))
 
     def drift(self, number: int) -> Drift | None:
-        """Give the drift of an output; None where too little repeats."""
+        """Give the drift of an output; None where too little repeats, or nothing drifts."""
         found, record = self.repetition(number), self.usable(number)
         if found is None:
             return None
-        return self.once(("drift", id(record)), lambda: drift_of(found, record))
+        return self.once(("drift", id(record)), lambda: slow_drift(record, found))
 
     def loops(self, number: int) -> tuple[Loop, ...]:
         """Give the loops of a record, drift taken out where there is one."""
         record, drift = self.usable(number), self.drift(number)
-        rate = drift.rate if drift is not None and drift.shown else 0.0
+        rate = drift.rate if drift is not None else 0.0
         return self.once(("loops", id(record)), lambda: loops_of(record, rate))
 
 
@@ -102,7 +107,6 @@ def _bridged(record: Record, left_out: NDArray[np.intp]) -> Record:
     if kept.all() or not kept.any():
         return record
     at, known = np.flatnonzero(~kept), np.flatnonzero(kept)
-    u, y = record.u.copy(), record.y.copy()
-    for signal in (u, y):
-        signal[at] = np.interp(at, known, signal[known])
-    return replace(record, u=u, y=y)
+    y = record.y.copy()
+    y[at] = np.interp(at, known, y[known])  # what is left out is never of the input
+    return replace(record, y=y)

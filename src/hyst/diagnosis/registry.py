@@ -12,10 +12,12 @@ from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding
 from hyst.diagnosis.findings import (
     butterfly,
+    codes,
     direction,
     disagreement,
-    driven,
     drifting_output,
+    driven,
+    dropouts,
     dynamics,
     foreign_lines,
     gain_sign,
@@ -23,13 +25,27 @@ from hyst.diagnosis.findings import (
     next_record,
     noise_floor,
     one_amplitude,
+    outliers,
+    output_is_noise,
+    quantisation,
     rate_dependence,
+    saturated_sensor,
     step_change,
+    still_signals,
+    wrapped_counter,
 )
 
 Finder = Callable[[Evidence], Iterable[Finding]]
 
 FINDERS: tuple[Finder, ...] = (
+    codes.find,
+    still_signals.find,
+    wrapped_counter.find,
+    dropouts.find,
+    outliers.find,
+    saturated_sensor.find,
+    output_is_noise.find,
+    quantisation.find,
     step_change.find,
     drifting_output.find,
     butterfly.find,

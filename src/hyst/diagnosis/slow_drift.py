@@ -43,6 +43,8 @@ class Drift:
         Its mean slope, output units per second.
     standard_error
         Of ``total``.
+    early, late
+        Mean slopes of the first and of the second half, output units per second.
     degree
         Of the polynomial in time.
     """
@@ -51,7 +53,14 @@ class Drift:
     total: float
     rate: float
     standard_error: float
+    early: float
+    late: float
     degree: int
+
+    @property
+    def curved(self) -> bool:
+        """Whether the halves differ by more than half of the larger slope."""
+        return abs(self.early - self.late) > 0.5 * max(abs(self.early), abs(self.late))
 
 
 def slow_drift(record: Record, found: Repetition | None = None) -> Drift | None:
@@ -96,8 +105,10 @@ def slow_drift(record: Record, found: Repetition | None = None) -> Drift | None:
     inverse = np.linalg.pinv(rows[:, :degree].T @ rows[:, :degree])
     ends = np.ptp(_polynomials(np.arange(len(record)), len(record), degree), axis=0)
     error = float(np.sqrt(variance * (ends @ inverse @ ends)))
-    rate = float(curve[-1] - curve[0]) / record.duration
-    return Drift(curve - curve.mean(), total, rate, error, degree)
+    first, middle, last = (float(curve[k]) for k in (0, len(record) // 2, -1))
+    half = 0.5 * record.duration
+    early, late = (middle - first) / half, (last - middle) / half
+    return Drift(curve - curve.mean(), total, 0.5 * (early + late), error, early, late, degree)
 
 
 def _degree(record: Record, repeats: Repetition) -> int:

@@ -15,7 +15,7 @@ NAME = "amplitudes"
 
 
 def find(evidence: Evidence) -> Iterator[Finding]:
-    """Warn where all loops have one range, and where there is hardly one loop."""
+    """Say where all loops have one range, and where there is hardly one loop."""
     drives = [record.u for _, record in evidence.numbered()]
     # Records of different amplitudes make up for one another.
     if not drives or len(ranges_of(drives)) > 1:
@@ -37,7 +37,7 @@ def find(evidence: Evidence) -> Iterator[Finding]:
     apart = " Nor can a lag and a small radius be told apart." if _of_one_rate(drives) else ""
     yield Finding(
         NAME,
-        "warning",
+        "remark",
         f"the input has {which}: what a model says of smaller loops inside is extrapolation, and "
         f"nothing in the data can confirm it.{apart}",
         "Record loops of several amplitudes, one within another.",

@@ -48,7 +48,7 @@ def _loops_of_part(remainder: Remainder, part: Part) -> Array:
     for knot in KNOTS:
         bent = np.maximum(part.whole - (middle + knot * half), 0.0)
         radii = (1.0 - knot) * half / 2.0 * np.array(RADII_OF_BENT)
-        columns += [bent[part.past.size :, None], play_outputs(part, bent, radii)]
+        columns += [bent[part.places, None], play_outputs(part, bent, radii)]
     return np.column_stack(columns)
 
 
@@ -56,4 +56,4 @@ def play_outputs(part: Part, drive: Array, r: Array) -> Array:
     """Give outputs of plays over the samples used of a part, from a drive over all of them."""
     z = np.empty((drive.size, r.size))
     _engine.play_outputs(r.tolist(), np.zeros(r.size), drive, z)
-    return z[part.past.size :]
+    return z[part.places]

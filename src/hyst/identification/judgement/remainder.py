@@ -31,8 +31,9 @@ class Part:
 
     Parameters
     ----------
-    past
-        Shape (k,), inputs before the first sample used, which its memory knows of.
+    whole
+        Shape (k,), inputs from the first sample of the record to the last one used; its memory
+        knows of those, too, that are not used.
     u, y, modelled
         Shape (n,), input, output brought forward by the delay, and the model's output.
     places
@@ -43,7 +44,7 @@ class Part:
         Of the record, counted from 1.
     """
 
-    past: Array
+    whole: Array
     u: Array
     y: Array
     modelled: Array
@@ -60,11 +61,6 @@ class Part:
     def time(self) -> Array:
         """Of every sample, s."""
         return np.asarray(self.places * self.dt)
-
-    @functools.cached_property
-    def whole(self) -> Array:
-        """Inputs from the first sample of the record on, those that were left out among them."""
-        return np.concatenate([self.past, self.u])
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,17 +161,17 @@ def remainder_of(data: Data, fit: Fit, output_range: float) -> Remainder:
     out = _power_of_two(float(np.ptp(measured)))
     into = _power_of_two(max(float(np.ptp(each.u)) for each in data.records))
     parts, first = [], 0
-    for number, (record, window) in enumerate(
-        zip(data.records, data.windows(), strict=True), start=1
-    ):
+    passes = zip(data.records, data.windows(), data.counted(), strict=True)
+    for number, (record, window, counts) in enumerate(passes, start=1):
         # The one place that knows which samples of a record are in use.
         places = np.arange(window.start, window.stop)
+        places = places if counts is None else places[counts]
         here = slice(first, first + places.size)
         first += places.size
         if places.size:
             parts.append(
                 Part(
-                    record.u[: window.start] / into,
+                    record.u[: window.stop] / into,
                     record.u[places] / into,
                     measured[here] / out,
                     modelled[here] / out,

@@ -28,7 +28,7 @@ def _columns(remainder: Remainder) -> Array:
         settling = [np.exp(-part.places / (share * duration)) for share in OF_THE_RECORD]
         # Over a whole cycle, so that what follows it is no loop.
         mean = scipy.ndimage.uniform_filter1d(part.whole, max(round(cycle), 1), mode="nearest")
-        following = [low_passed(mean, share * cycle)[part.past.size :] for share in OF_A_CYCLE]
+        following = [low_passed(mean, share * cycle)[part.places] for share in OF_A_CYCLE]
         logarithm = np.log1p(part.places / max(0.1 * cycle, 1.0))
         return np.column_stack([*settling, *following, logarithm])
 

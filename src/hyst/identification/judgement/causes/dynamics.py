@@ -26,10 +26,10 @@ def _columns(remainder: Remainder) -> Array:
         return np.empty((remainder.rows.size, 0))
 
     def of_part(part: Part) -> Array:
-        u, past = part.whole, part.past.size
+        u = part.whole
         lagged = [np.concatenate([np.full(each, u[0]), u])[: u.size] - u for each in LAGS]
         slow = [low_passed(u, each) - u for each in TIME_CONSTANTS]
-        return np.column_stack([*lagged, *slow])[past:]
+        return np.column_stack([*lagged, *slow])[part.places]
 
     return remainder.columns(of_part)
 

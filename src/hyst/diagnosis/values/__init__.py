@@ -1,0 +1,1 @@
+"""What single values tell, one algorithm a file, on plain vectors."""
