@@ -33,7 +33,7 @@ def find(evidence: Evidence) -> Iterator[Finding]:
             NAME,
             "warning",
             _sentence(record, drift, span, of_record(evidence, number)),
-            "Identification takes it out before the fit, for models do not drift; the actuator will. "
+            "Identification takes it out before the fit, for models do not drift; actuators do. "
             "Let it warm up or settle before it is recorded and used.",
             record=number,
             amounts={
