@@ -16,14 +16,26 @@ _CHI_SQUARED = 3.841
 
 _DEVIATIONS = 1.96
 _BLOCK = 8
-_MISFIT_OF_LAG, _MISFIT_OF_LEAD = 1.0, 3.0
+_BEYOND = 30.0
+"""A cost so many times the least is not possible, and its uncertainty need not be known."""
+
+_MISFIT_OF_LAG, _MISFIT_OF_LEAD = 1.5, 3.0
 """How many times the misfit of the best delay another one may add and still be possible: where the
 loops tried do not describe a record, its shape is taken for a delay. No actuator leads its input,
 so a lead needs more."""
 
 _FEWEST_STEPS, _FINEST_STEP = 48, 0.25
+_RESOLUTION = 2e-4
+"""rms in parts of the outputs' range that columns so far apart may leave of any loop."""
+
+_BETWEEN_SAMPLES = 0.1
+"""Samples by which the interval is widened: where between two samples the input turned, and how
+the loop bends there, no record tells."""
 _ALIKE = 0.05
 """By which a residual's rms may exceed the noise, as a part of it, and still be called noise."""
+
+_UNSURE = 1.5
+"""Standard deviations of a noise measured by n samples, times the square root of n."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +45,7 @@ class CompatibleDelays:
     Parameters
     ----------
     best
-        Of the least cost.
+        Of the least cost, to the quarter of a sample.
     low, high
         Ends of the interval.
     describes
@@ -86,15 +98,17 @@ def compatible_delays(costs: DelayCosts, longest: int, noise: float) -> Compatib
         tried, step = tried | near, finer
         profile = _Profile.of(costs, tried, noise)
     low, high = profile.ends()
+    low, high = max(low - _BETWEEN_SAMPLES, -longest), min(high + _BETWEEN_SAMPLES, longest)
     residual = float(np.sqrt(costs.cost(profile.best) / costs.rows))
-    return CompatibleDelays(
-        lowest_between(costs, profile.best, False), low, high, profile.describes, residual
-    )
+    return CompatibleDelays(profile.best, low, high, profile.describes, residual)
 
 
 def lowest_between(costs: DelayCosts, about: float, plain: bool) -> float:
-    """Refine a delay by the parabola through the costs beside it."""
+    """Refine a delay by smaller steps, and by the parabola through the costs beside it at last."""
     h = _FINEST_STEP
+    for _ in range(2):
+        h /= 2.0
+        about = min((about, about - h, about + h), key=lambda d: costs.cost(d, plain))
     before, here, after = (costs.cost(about + i * h, plain) for i in (-1, 0, 1))
     bend = before - 2.0 * here + after
     if bend <= 0.0:
@@ -118,8 +132,10 @@ class _Profile:
         place = int(cost.argmin())
         best, e = float(delays[place]), costs.left(float(delays[place]))
         misfit, describes = _misfit(e, noise)
-        likely = max(_CHI_SQUARED * cost[place] / _effective(e), 1e-20 * e.size)
-        allowed = np.array([max(likely, _paired(costs.left(d), e)) for d in delays])
+        likely = max(_CHI_SQUARED * cost[place] / _effective(e), e.size * _RESOLUTION**2)
+        allowed = np.full(delays.size, likely)
+        for i in np.flatnonzero((cost > cost[place] + likely) & (cost < _BEYOND * cost[place])):
+            allowed[i] = max(likely, _paired(costs.left(float(delays[i])), e))
         leading = (best < 0.0) & (delays > best)
         allowed = allowed + misfit * np.where(leading, _MISFIT_OF_LEAD, _MISFIT_OF_LAG)
         return cls(delays, (cost - cost[place]) / allowed, best, describes)
@@ -144,7 +160,7 @@ def _misfit(e: Array, noise: float) -> tuple[float, bool]:
     hold beyond what independent ones would.
     """
     total = float(e @ e)
-    known = total - (1.0 + _ALIKE) * e.size * noise**2
+    most = (1.0 + _ALIKE + _UNSURE / np.sqrt(e.size)) ** 2 * e.size * noise**2
     count = e.size // _BLOCK
     slow = 0.0
     if count >= 2:
@@ -152,8 +168,8 @@ def _misfit(e: Array, noise: float) -> tuple[float, bool]:
         means = blocks.mean(axis=1)
         within = float(((blocks - means[:, None]) ** 2).sum()) / (count * (_BLOCK - 1))
         slow = _BLOCK * float(means @ means) - count * within
-    describes = total <= (1.0 + _ALIKE) ** 2 * e.size * noise**2 + 1e-12 * e.size
-    return max(known, slow, 0.0), describes
+    describes = total <= most + e.size * _RESOLUTION**2
+    return max(total - most, slow, 0.0), bool(describes)
 
 
 def _effective(e: Array) -> float:

@@ -74,11 +74,16 @@ class DelayCosts:
         The records.
     sign
         1, or -1 where the output falls as its input rises.
+    longest
+        Delay either way, samples of the first record.
+    bends
+        Whether a map after plays is among the loops.
     """
 
     parts: tuple[_Part, ...]
     sign: float
     longest: float
+    bends: bool
     _shape: list[tuple[Array, Array]] = field(default_factory=list, repr=False)
     _cones: dict[tuple[float, ...], _Cones] = field(default_factory=dict, repr=False)
     _left: dict[tuple[float, bool], Array] = field(default_factory=dict, repr=False)
@@ -87,10 +92,12 @@ class DelayCosts:
     def of(
         cls,
         records: Sequence[Record],
+        outputs: Sequence[Array],
         starts: Sequence[int],
         kept: Sequence[Flags | None],
         longest: float,
         turns: Sequence[int],
+        bends: bool,
     ) -> DelayCosts:
         """Bring records to one scale and choose their rows.
 
@@ -98,14 +105,18 @@ class DelayCosts:
         ----------
         records, starts, kept
             As ``evidence_of_delay``.
+        outputs
+            Of the records, cleaned.
         longest
             Delay either way that will be asked for, samples of the first record.
         turns
             Of the input of each record.
+        bends
+            Whether a map after plays is wanted: on strokes of one amplitude every rising branch
+            is within the cones, and bends would only hide a delay.
         """
         u_low = min(float(each.u.min()) for each in records)
         half = max((max(float(each.u.max()) for each in records) - u_low) / 2.0, 1e-300)
-        outputs = [clean_output(each, own) for each, own in zip(records, kept, strict=True)]
         y_range = span_of(outputs)
         share = MOST_ROWS / sum(max(len(r) - s, 1) for r, s in zip(records, starts, strict=True))
         parts = []
@@ -116,7 +127,7 @@ class DelayCosts:
             loops = TurningLoops.of(u, rows)
             parts.append(_Part(loops, outputs[i] / y_range, ratio, turns[i]))
         slope = sum(_inner(part) for part in parts)
-        return cls(tuple(parts), -1.0 if slope < 0.0 else 1.0, longest)
+        return cls(tuple(parts), -1.0 if slope < 0.0 else 1.0, longest, bends)
 
     @property
     def rows(self) -> int:
@@ -170,8 +181,8 @@ class DelayCosts:
         if fractions not in self._cones:
             lagging, leading, products = self._columns(fractions)
             drifts = _block_diagonal([part.drifts() for part in self.parts])
-            bent = self._bent(lagging)
-            free = np.linalg.qr(np.hstack([drifts, products, bent]))[0]
+            either = [drifts, products, *([self._bent(lagging)] if self.bends else [])]
+            free = np.linalg.qr(np.hstack(either))[0]
             self._cones[fractions] = _Cones(
                 Cone.of(lagging, free), Cone.of(leading, free), self._plain(lagging)
             )

@@ -28,7 +28,13 @@ _ONE_AMPLITUDE = 0.1
 """Strokes that differ by less, as a part of the longest, are of one amplitude."""
 
 _FEWEST_ROWS = 16
-_WHOLE = 0.1
+_AS_WELL = 0.1
+"""By how much more squares, as a part, plays alone may leave to be asked for the delay."""
+
+_LEAST_LEAD, _LEAST_LAG = 0.5, 0.25
+"""Samples: what is steep between two samples looks like less than that."""
+
+_WHOLE = 0.15
 """Samples, or as a part of a wider interval: an estimate nearer to a whole number is taken for it."""
 
 
@@ -140,8 +146,10 @@ def evidence_of_delay(
     flags = tuple(kept) or (None,) * len(records)
     if longest < 1:
         return DelayEvidence(0.0, 0.0, 0.0, 0.0, 0.0, None, False, False, False)
-    costs = DelayCosts.of(records, starts, flags, float(longest), [each.size for each in turns])
     outputs = [clean_output(each, own) for each, own in zip(records, flags, strict=True)]
+    sizes = [each.size for each in turns]
+    one = _one_amplitude(records, starts, turns)
+    costs = DelayCosts.of(records, outputs, starts, flags, float(longest), sizes, bends=not one)
     noises = [_noise(r, y) for r, y in zip(records, outputs, strict=True)]
     shares = [part.loops.rows.size for part in costs.parts]
     noise = math.sqrt(
@@ -161,7 +169,7 @@ def evidence_of_delay(
         noise_rms=noise or None,
         describes=found.describes,
         excludes_zero=not low <= 0.0 <= high,
-        one_amplitude=_one_amplitude(records, starts, turns),
+        one_amplitude=one,
     )
 
 
@@ -175,21 +183,16 @@ def _judged(
     if high < 0.0 and not found.describes:
         # Loops of another kind, as those of a force that follows the speed, turn early as well.
         return 0.0, -float(longest), 0.0
-    delay = found.best
-    least = costs.cost(_nearest_tried(found.best))
+    if -_LEAST_LEAD < high and low < _LEAST_LAG:
+        return 0.0, min(low, 0.0), max(high, 0.0)
     inside = np.arange(math.ceil(low * 4.0), math.floor(high * 4.0) + 1) / 4.0
-    if inside.size:
-        by_plays = min(inside.tolist(), key=lambda d: costs.cost(d, plain=True))
-        if costs.cost(by_plays, plain=True) <= least * (1.0 + 16.0 / costs.rows):
-            delay = lowest_between(costs, by_plays, plain=True)
+    about = min(inside.tolist(), key=lambda d: costs.cost(d, plain=True), default=found.best)
+    plain = costs.cost(about, plain=True) <= (1.0 + _AS_WELL) * costs.cost(found.best)
+    delay = lowest_between(costs, about if plain else found.best, plain)
     delay = min(max(delay, low), high)
     whole = float(round(delay))
     close = abs(delay - whole) <= _WHOLE * max(1.0, high - low) and low <= whole <= high
     return (whole if close else delay), low, high
-
-
-def _nearest_tried(delay: float) -> float:
-    return round(delay * 4.0) / 4.0
 
 
 def _noise(record: Record, clean: NDArray[np.float64]) -> float:

@@ -126,7 +126,9 @@ def _memory(u: Array, wanted: Indices) -> tuple[Array, Array]:
     """Give plays, and plays of pieces, at the samples wanted."""
     plays = np.empty((wanted.size, RADII.size))
     cells = np.empty((wanted.size, _CELL_R.size))
-    z, own = np.zeros(RADII.size), [np.zeros(1) for _ in _CELL_R]
+    # Before the first sample nothing is known: as if the input had rested where it begins.
+    z = np.full(RADII.size, u[0])
+    own = [np.clip(u[:1], low, high) for low, high in zip(_CELL_LOW, _CELL_HIGH, strict=True)]
     for first in range(0, u.size, _AT_ONCE):
         part = np.ascontiguousarray(u[first : first + _AT_ONCE])
         inside = slice(*np.searchsorted(wanted, [first, first + part.size]))
