@@ -14,7 +14,9 @@ Array = NDArray[np.float64]
 _CHI_SQUARED = 3.841
 """95 % of a squared normal deviate."""
 
-_DEVIATIONS = 1.96
+_DEVIATIONS = 1.645
+"""95 % of a normal deviate on one side: another delay can only be worse than the best."""
+
 _BLOCK = 8
 _BEYOND = 30.0
 """A cost so many times the least is not possible, and its uncertainty need not be known."""
@@ -66,7 +68,7 @@ def compatible_delays(costs: DelayCosts, longest: int, noise: float) -> Compatib
 
     A delay d stays possible while
 
-        J(d) - J(best) <= max(3.84 s^2 n / n_eff, 1.96 sd(e_d^2 - e_best^2)) + misfit,
+        J(d) - J(best) <= max(3.84 s^2 n / n_eff, 1.645 sd(e_d^2 - e_best^2)) + misfit,
 
     J the sum of squares left, s^2 n / n_eff the residual's variance with its correlation counted,
     sd that of the paired differences, and misfit what the best delay leaves beyond noise: as much
@@ -186,7 +188,7 @@ def _effective(e: Array) -> float:
 
 
 def _paired(e: Array, best: Array) -> float:
-    """Give 1.96 standard deviations of the difference of two sums of squares."""
+    """Give 1.645 standard deviations of the difference of two sums of squares."""
     difference = e**2 - best**2
     n = difference.size
     return _DEVIATIONS * n * float(np.sqrt(difference.var() / _effective(difference)))

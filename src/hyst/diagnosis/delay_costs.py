@@ -26,8 +26,11 @@ _LONGEST_BRIDGE = 3
 _MOST_BENDS = 6
 """Of the drift of a record."""
 
-_BENDS = 9
+_BENDS = 15
 """Of a map after the plays."""
+
+_ROUNDS, _PIECES_OF_A_MAP = 4, 40
+"""By which plays and the map after them are found in turn."""
 
 _FINEST = 1 / 64
 """Samples: fractions are rounded to it, so that records of different rates share work."""
@@ -191,12 +194,16 @@ class DelayCosts:
     def _bent(self, lagging: Array) -> Array:
         """Give bends of the plays' best output: what a map after the plays would do to it."""
         if not self._shape:
-            plain = self._plain(self._columns((0.0,) * len(self.parts))[0])
+            still = self._columns((0.0,) * len(self.parts))[0]
+            plain = self._plain(still)
             delays = np.unique(np.round(np.linspace(-self.longest, self.longest, 17)))
             outputs = [self._shifted(float(d))[1] for d in delays]
             costs = [float(e @ e) for e in map(plain.left, outputs)]
-            weights = plain.weights(outputs[int(np.argmin(costs))])
-            v = self._output(lagging, weights)
+            y = outputs[int(np.argmin(costs))]
+            weights = plain.weights(y)
+            for _ in range(_ROUNDS):
+                weights = plain.weights(_unbent(y, self._output(still, weights)))
+            v = self._output(still, weights)
             knots = v.min() + np.ptp(v) * np.arange(1, _BENDS + 1) / (_BENDS + 1)
             self._shape.append((weights, knots))
         weights, knots = self._shape[0]
@@ -207,6 +214,22 @@ class DelayCosts:
         return np.asarray(
             lagging[:, 0] * weights[0] + lagging[:, 1 + SMALL : 1 + RADII.size] @ weights[1:]
         )
+
+
+def _unbent(y: Array, v: Array) -> Array:
+    """Undo the rising map from v to y that means over pieces of v tell."""
+    order = np.argsort(v, kind="stable")
+    pieces = [each for each in np.array_split(order, _PIECES_OF_A_MAP) if each.size]
+    middle = np.array([v[each].mean() for each in pieces])
+    height = np.maximum.accumulate([y[each].mean() for each in pieces])
+    rising = np.concatenate([[True], np.diff(height) > 1e-3 * max(float(np.ptp(height)), 1e-300)])
+    middle, height = middle[rising], height[rising]
+    if middle.size < 2:
+        return y
+    first, last = np.diff(middle[:2]) / np.diff(height[:2]), np.diff(middle[-2:]) / np.diff(height[-2:])
+    inside = np.interp(y, height, middle)
+    below, above = np.minimum(y - height[0], 0.0), np.maximum(y - height[-1], 0.0)
+    return np.asarray(inside + first * below + last * above)
 
 
 def clean_output(record: Record, kept: Flags | None) -> Array:
