@@ -13,8 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.errors import InputError, NotIdentifiableError
-from hyst.identification.choice.delay import estimate_delay, refine_delay
+from hyst.identification.choice.delay import find_delay, whole_delay
 from hyst.identification.choice.selection import (
     Contender,
     best_of_starts,
@@ -81,7 +82,7 @@ def find(records: Cleaned, families: Sequence[Family], options: Options) -> Foun
     """Choose delay, family and size, and fit it.
 
     Long records are searched in thinned form; the last fit takes every sample. An automatic delay
-    is estimated before the family is known, and judged again by the family.
+    is found before the family is known, and is 0 unless the records exclude it.
 
     Parameters
     ----------
@@ -110,12 +111,6 @@ def find(records: Cleaned, families: Sequence[Family], options: Options) -> Foun
     tasks = _with_delay(tasks, options)
     _require_samples(tasks)
     fit, task, candidates, refusals = _search(tasks, options)
-    if options.delay == AUTO and fit.family.has_memory and not fit.family.answers_late:
-        delay = refine_delay(task.data, fit)
-        if delay != task.data.delay:
-            options.say("delay, judged by the family")
-            shifted = [t if t.family.answers_late else t.delayed(delay) for t in tasks]
-            fit, task, candidates, refusals = _search(shifted, options)
     if task.searched() is not task.data:
         fit = _polished(fit, task, options)
     fit = replace(fit, parametrization=_in_given_units(fit, task))
@@ -181,7 +176,7 @@ def _require_same_records(tasks: Sequence[_Task]) -> None:
 
 def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
     """Give every task its delay; a family that answers late by itself takes it as an option."""
-    found: dict[int, int] = {}
+    found: dict[int, DelayEvidence] = {}
     result = []
     for task in tasks:
         if task.family.answers_late:
@@ -191,9 +186,9 @@ def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
             delay = as_delay(options.delay, task.given)
         else:
             key = min(task.given.starts)
-            delay = found.setdefault(key, -1)
-            if delay < 0:
-                delay = found[key] = estimate_delay(task.data)
+            if key not in found:
+                found[key] = find_delay(task.data)
+            delay = whole_delay(found[key], task.data)
         result.append(task.delayed(delay))
     return result
 

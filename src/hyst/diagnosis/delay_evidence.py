@@ -1,0 +1,232 @@
+"""What records say of the delay between input and output, before any model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.diagnosis.compatible_delays import (
+    CompatibleDelays,
+    compatible_delays,
+    lowest_between,
+)
+from hyst.diagnosis.delay_costs import DelayCosts, clean_output, span_of
+from hyst.diagnosis.repetition import noise_by_repetition
+from hyst.signals import Record, estimate_noise, reversals
+
+Flags = NDArray[np.bool_]
+Indices = NDArray[np.intp]
+
+_SMALLEST_TURN = 0.05
+"""Of an input's range."""
+
+_ONE_AMPLITUDE = 0.1
+"""Strokes that differ by less, as a part of the longest, are of one amplitude."""
+
+_FEWEST_ROWS = 16
+_AS_WELL = 0.1
+"""By how much more squares, as a part, plays alone may leave to be asked for the delay."""
+
+_LEAST_LEAD, _LEAST_LAG = 0.5, 0.25
+"""Samples: what is steep between two samples looks like less than that."""
+
+_WHOLE = 0.15
+"""Samples, or as a part of a wider interval: an estimate nearer to a whole number is taken for it."""
+
+
+@dataclass(frozen=True)
+class DelayEvidence:
+    """The delay of an output, with what it is known by.
+
+    Parameters
+    ----------
+    delay
+        Samples of the first record, > 0 where the output lags; 0 unless the records exclude it.
+    low, high
+        Its 95 % interval, samples.
+    limit
+        Delays from ``-limit`` to ``limit`` were tried, samples.
+    residual_rms
+        What general loops leave at the best delay, output units.
+    noise_rms
+        What an output does not repeat when its drive does; where no drive repeats, what is rough
+        in it; output units. None if there was nothing to measure it by.
+    describes
+        Whether what the loops leave is that noise.
+    excludes_zero
+        Whether the records exclude that there is no delay.
+    one_amplitude
+        Whether all strokes are equally long: then a delay and a small radius are much alike.
+    """
+
+    delay: float
+    low: float
+    high: float
+    limit: float
+    residual_rms: float
+    noise_rms: float | None
+    describes: bool
+    excludes_zero: bool
+    one_amplitude: bool
+
+    @property
+    def width(self) -> float:
+        """Of the interval, samples."""
+        return self.high - self.low
+
+    def said(self, dt: float) -> str:
+        """Give a sentence for people.
+
+        Parameters
+        ----------
+        dt
+            Sample time of the first record, s.
+        """
+        interval = f"{_number(self.low)} to {_number(self.high)}"
+        if self.excludes_zero:
+            amount = abs(self.delay)
+            ends = sorted((abs(self.low), abs(self.high)))
+            how = f"{_samples(amount)} ({_number(ends[0])} to {_number(ends[1])}), "
+            how += f"{amount * dt:.3g} s"
+            if self.delay > 0.0:
+                slow = "" if self.describes else ", or follows slowly, as by creep or dynamics"
+                return f"the output lags by {how}{slow}"
+            return (
+                f"the output is ahead of the input by {how}, which no actuator is: the channels "
+                "are not aligned"
+            )
+        if self.limit == 0.0:
+            return "nothing can be said of a delay: the records are too short for it"
+        if not self.describes and self.width > 1.0:
+            return (
+                "nothing certain can be said of a delay: general loops leave more than the noise, "
+                f"and with {interval} samples they leave hardly more or less"
+            )
+        if self.one_amplitude and self.width > 1.0:
+            return (
+                "delay and radius cannot be told apart by strokes of one amplitude: "
+                f"{interval} samples are as good as none"
+            )
+        return f"no delay is needed: {interval} samples are as good"
+
+
+def evidence_of_delay(
+    records: Sequence[Record], starts: Sequence[int], kept: Sequence[Flags | None] = ()
+) -> DelayEvidence:
+    """Find the delays that records leave possible, and the one to use.
+
+    General loops that turn where their input turns (see ``TurningLoops``) are fitted for many
+    delays, parts of a sample and negative ones among them. A delay is possible while its residual
+    exceeds the least by no more than noise and misfit explain. It is 0 if 0 is possible. If not,
+    and plays alone describe the records as well, it is their best one within the interval.
+
+    Parameters
+    ----------
+    records
+        One or more; the delay in seconds is common to all.
+    starts
+        First sample of each that can be used: from there its memory is known.
+    kept
+        For each record, shape (N,), which samples are measurements, or None for all; empty if all
+        of all are.
+
+    Returns
+    -------
+    DelayEvidence
+    """
+    turns = [
+        reversals(each.u, _SMALLEST_TURN * float(np.ptp(each.u))).astype(np.intp)
+        for each in records
+    ]
+    longest = _longest(records, starts, turns)
+    flags = tuple(kept) or (None,) * len(records)
+    if longest < 1:
+        return DelayEvidence(0.0, 0.0, 0.0, 0.0, 0.0, None, False, False, False)
+    outputs = [clean_output(each, own) for each, own in zip(records, flags, strict=True)]
+    sizes = [each.size for each in turns]
+    one = _one_amplitude(records, starts, turns)
+    costs = DelayCosts.of(records, outputs, starts, flags, float(longest), sizes, bends=not one)
+    noises = [_noise(r, y) for r, y in zip(records, outputs, strict=True)]
+    shares = [part.loops.rows.size for part in costs.parts]
+    noise = math.sqrt(
+        sum(n * s**2 for n, s in zip(shares, noises, strict=True)) / max(sum(shares), 1)
+    )
+    unit = span_of(outputs)
+    if costs.rows < _FEWEST_ROWS:
+        return DelayEvidence(0.0, 0.0, 0.0, 0.0, 0.0, noise or None, False, False, False)
+    found = compatible_delays(costs, longest, noise / unit)
+    delay, low, high = _judged(costs, found, longest)
+    return DelayEvidence(
+        delay=delay,
+        low=low,
+        high=high,
+        limit=float(longest),
+        residual_rms=found.residual * unit,
+        noise_rms=noise or None,
+        describes=found.describes,
+        excludes_zero=not low <= 0.0 <= high,
+        one_amplitude=one,
+    )
+
+
+def _judged(
+    costs: DelayCosts, found: CompatibleDelays, longest: int
+) -> tuple[float, float, float]:
+    """Give the delay to use and the interval to tell."""
+    low, high = found.low, found.high
+    if low <= 0.0 <= high:
+        return 0.0, low, high
+    if high < 0.0 and not found.describes:
+        # Loops of another kind, as those of a force that follows the speed, turn early as well.
+        return 0.0, -float(longest), 0.0
+    if -_LEAST_LEAD < high and low < _LEAST_LAG:
+        return 0.0, min(low, 0.0), max(high, 0.0)
+    inside = np.arange(math.ceil(low * 4.0), math.floor(high * 4.0) + 1) / 4.0
+    about = min(inside.tolist(), key=lambda d: costs.cost(d, plain=True), default=found.best)
+    plain = costs.cost(about, plain=True) <= (1.0 + _AS_WELL) * costs.cost(found.best)
+    delay = lowest_between(costs, about if plain else found.best, plain)
+    delay = min(max(delay, low), high)
+    whole = float(round(delay))
+    close = abs(delay - whole) <= _WHOLE * max(1.0, high - low) and low <= whole <= high
+    return (whole if close else delay), low, high
+
+
+def _noise(record: Record, clean: NDArray[np.float64]) -> float:
+    repeated = noise_by_repetition(record)
+    return estimate_noise(clean) if repeated is None else repeated
+
+
+def _longest(records: Sequence[Record], starts: Sequence[int], turns: Sequence[Indices]) -> int:
+    """Give a quarter of the shortest usual stroke, but an eighth of the shortest record's use."""
+    most = math.inf
+    for record, start, places in zip(records, starts, turns, strict=True):
+        own = (len(record) - start) / 8.0
+        if places.size > 1:
+            own = min(own, float(np.median(np.diff(places))) / 4.0)
+        most = min(most, own * record.dt / records[0].dt)
+    return int(most)
+
+
+def _one_amplitude(
+    records: Sequence[Record], starts: Sequence[int], turns: Sequence[Indices]
+) -> bool:
+    strokes = [
+        np.abs(np.diff(record.u[places[places >= start]]))
+        for record, start, places in zip(records, starts, turns, strict=True)
+    ]
+    together = np.concatenate(strokes)
+    if together.size == 0:
+        return True
+    return bool(together.min() > (1.0 - _ONE_AMPLITUDE) * together.max())
+
+
+def _number(value: float) -> str:
+    return f"{value:.2g}" if abs(value) < 10.0 else f"{value:.0f}"
+
+
+def _samples(amount: float) -> str:
+    return "1 sample" if amount == 1.0 else f"{amount:.3g} samples"
