@@ -226,7 +226,10 @@ def _unbent(y: Array, v: Array) -> Array:
     middle, height = middle[rising], height[rising]
     if middle.size < 2:
         return y
-    first, last = np.diff(middle[:2]) / np.diff(height[:2]), np.diff(middle[-2:]) / np.diff(height[-2:])
+    first, last = (
+        np.diff(middle[:2]) / np.diff(height[:2]),
+        np.diff(middle[-2:]) / np.diff(height[-2:]),
+    )
     inside = np.interp(y, height, middle)
     below, above = np.minimum(y - height[0], 0.0), np.maximum(y - height[-1], 0.0)
     return np.asarray(inside + first * below + last * above)

@@ -173,9 +173,7 @@ def evidence_of_delay(
     )
 
 
-def _judged(
-    costs: DelayCosts, found: CompatibleDelays, longest: int
-) -> tuple[float, float, float]:
+def _judged(costs: DelayCosts, found: CompatibleDelays, longest: int) -> tuple[float, float, float]:
     """Give the delay to use and the interval to tell."""
     low, high = found.low, found.high
     if low <= 0.0 <= high:

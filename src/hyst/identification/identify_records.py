@@ -110,7 +110,13 @@ def identify(
         for number, record in enumerate(judged, 1):
             found.fit.operator.require_sample_time(record.dt, f"validation record {number}")
         identified = identified_from_fit(
-            found.data, found.fit, found.candidates, judged, found.notes, diagnosis
+            found.data,
+            found.fit,
+            found.candidates,
+            judged,
+            found.notes,
+            diagnosis,
+            delay=found.delay,
         )
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
     return traced(told, given, asked)

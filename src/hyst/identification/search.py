@@ -15,7 +15,7 @@ import numpy as np
 
 from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.errors import InputError, NotIdentifiableError
-from hyst.identification.choice.delay import find_delay, whole_delay
+from hyst.identification.choice.delay import find_delay, usable_delay
 from hyst.identification.choice.selection import (
     Contender,
     best_of_starts,
@@ -52,12 +52,15 @@ class Found:
         What was compared; empty if there was nothing to choose.
     notes
         Sentences about what was left out before the fit.
+    delay
+        What the records say of their delay; None where it was given, or is part of the model.
     """
 
     fit: Fit
     data: Data
     candidates: tuple[Candidate, ...]
     notes: tuple[str, ...]
+    delay: DelayEvidence | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,9 +72,11 @@ class _Task:
     data: Data
     scales: tuple[float, float]
     notes: tuple[str, ...]
+    evidence: DelayEvidence | None = None
 
-    def delayed(self, delay: float) -> _Task:
-        return replace(self, given=self.given.delayed(delay), data=self.data.delayed(delay))
+    def delayed(self, delay: float, evidence: DelayEvidence | None) -> _Task:
+        given, data = self.given.delayed(delay), self.data.delayed(delay)
+        return replace(self, given=given, data=data, evidence=evidence)
 
     def searched(self) -> Data:
         """Give what the search fits to."""
@@ -114,7 +119,8 @@ def find(records: Cleaned, families: Sequence[Family], options: Options) -> Foun
     if task.searched() is not task.data:
         fit = _polished(fit, task, options)
     fit = replace(fit, parametrization=_in_given_units(fit, task))
-    return Found(fit, task.given, candidates, task.notes + left_out + refusals)
+    notes = task.notes + left_out + refusals
+    return Found(fit, task.given, candidates, notes, task.evidence)
 
 
 def _tasks(
@@ -183,13 +189,12 @@ def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
             result.append(task)
             continue
         if options.delay != AUTO:
-            delay = as_delay(options.delay, task.given)
-        else:
-            key = min(task.given.starts)
-            if key not in found:
-                found[key] = find_delay(task.data)
-            delay = whole_delay(found[key], task.data)
-        result.append(task.delayed(delay))
+            result.append(task.delayed(as_delay(options.delay, task.given), None))
+            continue
+        key = min(task.given.starts)
+        if key not in found:
+            found[key] = find_delay(task.data)
+        result.append(task.delayed(usable_delay(found[key], task.data), found[key]))
     return result
 
 

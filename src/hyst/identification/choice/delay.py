@@ -1,6 +1,8 @@
-"""Delay between input and output: what the records show, in whole samples."""
+"""Delay between input and output: what the records show of it."""
 
 from __future__ import annotations
+
+import math
 
 from hyst.diagnosis.delay_evidence import DelayEvidence, evidence_of_delay
 from hyst.identification.record_use.used_samples import Data
@@ -14,11 +16,12 @@ def find_delay(data: Data) -> DelayEvidence:
     data
         The records.
     """
-    return evidence_of_delay(data.records, data.starts)
+    bare = data.delayed(0.0)
+    return evidence_of_delay(bare.records, bare.starts, bare.kept)
 
 
-def whole_delay(evidence: DelayEvidence, data: Data) -> int:
-    """Give the delay in whole samples, at least 0, that leaves half of every record.
+def usable_delay(evidence: DelayEvidence, data: Data) -> float:
+    """Give the delay, cut where it would leave less than half of a record.
 
     Parameters
     ----------
@@ -28,4 +31,5 @@ def whole_delay(evidence: DelayEvidence, data: Data) -> int:
         The records.
     """
     half = min(len(r) - s for r, s in zip(data.records, data.starts, strict=True)) // 2
-    return max(0, min(round(evidence.delay), half))
+    delay = max(-half, min(evidence.delay, half))
+    return math.trunc(delay) if float(delay).is_integer() else delay

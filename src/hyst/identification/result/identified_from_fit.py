@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.diagnosis import Diagnosis
+from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.identification.families.family import Fit
 from hyst.identification.fit.problem import model_output
 from hyst.identification.judgement.judge import judge
@@ -36,6 +37,7 @@ def identified_from_fit(
     notes: tuple[str, ...],
     diagnosis: Diagnosis,
     rivals: Sequence[Operator] = (),
+    delay: DelayEvidence | None = None,
 ) -> Identified:
     """Put the result of an identification together.
 
@@ -55,6 +57,8 @@ def identified_from_fit(
         What the records showed before any model.
     rivals
         Models of other kinds that fit the records equally well.
+    delay
+        What the records say of their delay; None where it was given, or is part of the model.
 
     Returns
     -------
@@ -82,7 +86,7 @@ def identified_from_fit(
         used=data.used(),
         description=describe(data, fit.family.name),
         verdict=judge(data, fit, diagnosis, metrics),
-        delay_interval=(data.lag, data.lag),
+        delay_interval=(data.lag, data.lag) if delay is None else (delay.low, delay.high),
         diagnosis=diagnosis,
         bands=bands_of(data, fit, spread, rivals),
         per_record=errors_by_record(data, operator),
