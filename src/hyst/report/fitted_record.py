@@ -15,6 +15,10 @@ from hyst.signals import Record
 Array = NDArray[np.float64]
 
 
+MOST_BANDED = 50_000
+"""Samples of a record for which the band is worked out: nobody sees it in longer ones."""
+
+
 @dataclass(frozen=True, eq=False)
 class FittedRecord:
     """A record and a model's output for it.
@@ -33,6 +37,8 @@ class FittedRecord:
         One past the last; where the output is ahead of the input, its end has no input.
     delay
         Samples by which the output lags.
+    band
+        Lowest and highest output of the band of 95 %, each of shape (N,); None for long records.
     """
 
     label: str
@@ -41,6 +47,7 @@ class FittedRecord:
     start: int
     stop: int
     delay: float
+    band: tuple[Array, Array] | None = None
 
     @property
     def time(self) -> Array:
@@ -104,8 +111,10 @@ def fit_records(
 
 
 def _fit(identified: Identified, record: Record, used: UsedSamples, label: str) -> FittedRecord:
-    y_model = identified.predict(record.u)
-    return FittedRecord(label, record, y_model, used.start, used.stop, identified.delay)
+    y_model = identified.predict(record.u, record.dt)
+    band = identified.band(record.u, dt=record.dt) if len(record) <= MOST_BANDED else None
+    delay = identified.delay * (identified.description.dt or record.dt) / record.dt
+    return FittedRecord(label, record, y_model, used.start, used.stop, delay, band)
 
 
 def _all_that_have_an_input(record: Record, delay: float) -> UsedSamples:

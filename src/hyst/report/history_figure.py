@@ -41,7 +41,7 @@ def draw_history(fits: tuple[FittedRecord, ...], heading: str) -> Figure:
             whole.axvspan(0.0, fit.start * fit.record.dt, color="#f3f4f6", zorder=0)
     for bottom in axes[-2:]:
         bottom.set_xlabel("time [s]")
-    axes[1].legend(loc="upper right", ncols=2)
+    axes[1].legend(loc="upper right", ncols=3)
     low, high = axes[1].get_ylim()
     axes[1].set_ylim(low, high + 0.18 * (high - low))
     if heading:
@@ -51,6 +51,9 @@ def draw_history(fits: tuple[FittedRecord, ...], heading: str) -> Figure:
 
 def _draw(axes: Axes, fit: FittedRecord, start: int, stop: int) -> None:
     t = fit.record.time[start:stop]
+    if fit.band is not None:
+        low, high = (each[start:stop] for each in fit.band)
+        axes.fill_between(t, low, high, color=MODELLED, alpha=0.18, linewidth=0.0, label="95 %")
     axes.plot(t, fit.record.y[start:stop], color=MEASURED, linewidth=2.2, alpha=0.6, label="record")
     axes.plot(t, fit.y_model[start:stop], color=MODELLED, linewidth=1.0, label="model")
     axes.margins(x=0.01)

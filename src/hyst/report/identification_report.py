@@ -197,7 +197,11 @@ def _how_good(page: Page, findings: _Findings, figures: dict[str, bytes]) -> Non
         "offset the mean of the error is taken out first: sensors drift, and a constant between "
         "model and sensor often means nothing."
     )
-    page.picture(figures[HISTORY], "Output over time. A shaded beginning was not used.")
+    page.picture(
+        figures[HISTORY],
+        "Output over time, in the band that is to hold 95 % of the samples. A shaded beginning was "
+        "not used.",
+    )
     page.picture(figures[ERROR], "What the model leaves unexplained on the training record.")
     error = findings.training[0].error
     lag_one = float(autocorrelation(error, 1)[1]) if error.size > 1 else 0.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from hyst.signals import reversals
 
 Array = NDArray[np.float64]
+Value = TypeVar("Value", bound=np.generic)
 
 SMALLEST_TURN = 1e-3
 """Of the input's range: the corner of a larger turn stays, smaller ones are noise of the drive."""
@@ -51,7 +53,7 @@ def later(u: Array, part: float) -> Array:
     return np.asarray(moved)
 
 
-def by_whole_samples(y: Array, late: int) -> Array:
+def by_whole_samples(y: NDArray[Value], late: int) -> NDArray[Value]:
     """Give a signal ``late`` samples later, its first or last value where there is no other."""
     if late == 0:
         return y

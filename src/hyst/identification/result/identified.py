@@ -11,7 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.arrays import finite_vector
 from hyst.diagnosis import Diagnosis
-from hyst.identification.record_use.part_of_a_sample import by_whole_samples, later
+from hyst.identification.record_use.part_of_a_sample import (
+    by_whole_samples,
+    lag_in_samples,
+    later,
+)
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.bands import NEW, Bands, as_level
 from hyst.identification.result.late_output import late_output
@@ -124,13 +128,15 @@ class Identified:
             f"{what}{missed}, delay {self.delay:.4g} samples, {self.status})"
         )
 
-    def predict(self, u: ArrayLike) -> Array:
+    def predict(self, u: ArrayLike, dt: float | None = None) -> Array:
         """Give the output as it would be measured: the model's output, delayed.
 
         Parameters
         ----------
         u
             Shape (N,), input units.
+        dt
+            Sample time of ``u``, s; that of the (first) record it was identified from if left out.
 
         Returns
         -------
@@ -143,9 +149,11 @@ class Identified:
         InputError
             If the drive is no finite vector.
         """
-        return late_output(self.model, u, self.delay)
+        return late_output(self._model_at(dt), u, self._delay_at(dt))
 
-    def band(self, u: ArrayLike, level: float = 0.95) -> tuple[Array, Array]:
+    def band(
+        self, u: ArrayLike, level: float = 0.95, dt: float | None = None
+    ) -> tuple[Array, Array]:
         """Give between which outputs most samples will be measured, slow drift left aside.
 
         The band holds the noise of the records, what the model leaves beside it, how sure its
@@ -159,6 +167,8 @@ class Identified:
             Drive, shape (N,), input units, from the state of rest.
         level
             Share of the samples to hold, above 0 and below 1.
+        dt
+            Sample time of ``u``, as for ``predict``.
 
         Returns
         -------
@@ -170,10 +180,11 @@ class Identified:
         InputError
             If the drive is no finite vector, or the level is not between 0 and 1.
         """
-        share, given = as_level(level), self._input(u)
-        y = self.model(given)
+        share, given = as_level(level), self._input(u, dt)
+        y = self._model_at(dt)(given)
         half = self.bands.half_width(given, y, share)
-        return self._as_measured(y - half), self._as_measured(y + half)
+        late = math.floor(self._delay_at(dt))
+        return by_whole_samples(y - half, late), by_whole_samples(y + half, late)
 
     def is_new(self, u: ArrayLike) -> NDArray[np.bool_]:
         """Tell where a drive leads the memory to states that no record contained.
@@ -193,14 +204,20 @@ class Identified:
         InputError
             If the drive is no finite vector.
         """
-        return np.asarray(self._as_measured(self.bands.distances(self._input(u))) > NEW)
+        new = self.bands.distances(self._input(u, None)) > NEW
+        return by_whole_samples(new, math.floor(self.delay))
 
-    def _input(self, u: ArrayLike) -> Array:
+    def _input(self, u: ArrayLike, dt: float | None) -> Array:
         """Give an input later by the part of a sample that the delay has beyond whole ones."""
-        return later(finite_vector(u, "u"), self.delay - math.floor(self.delay))
+        delay = self._delay_at(dt)
+        return later(finite_vector(u, "u"), delay - math.floor(delay))
 
-    def _as_measured(self, y: Array) -> Array:
-        return by_whole_samples(y, math.floor(self.delay))
+    def _delay_at(self, dt: float | None) -> float:
+        own = self.description.dt
+        return self.delay if dt is None or own is None else lag_in_samples(self.delay, own, dt)
+
+    def _model_at(self, dt: float | None) -> Operator:
+        return self.model if dt is None else self.model.at_sample_time(dt)
 
     def to_dict(self) -> dict[str, Any]:
         """Give everything but the model as plain numbers and text, for metrics.json.
