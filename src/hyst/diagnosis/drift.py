@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,6 +72,8 @@ def drift_of(found: Repetition, record: Record) -> Drift | None:
         return None
     middle, lag, change = pairs[:, 0] * record.dt, pairs[:, 1] * record.dt, pairs[:, 2]
     rate, error = _rate(lag, change)
+    # A drive that did not quite repeat: its share is known to half its size only.
+    error = math.hypot(error, 0.5 * float(lag @ pairs[:, 3]) / float(lag @ lag))
     half = middle <= np.median(middle)
     if half.sum() < 2 or (~half).sum() < 2:
         return Drift(rate, error, rate * record.duration, rate, rate, True, lag.size)
@@ -81,16 +84,17 @@ def drift_of(found: Repetition, record: Record) -> Drift | None:
 
 
 def _pairs(found: Repetition, record: Record) -> Array:
-    """Rows of middle, lag and mean change of the output, samples and output units."""
+    """Rows of middle, lag and mean change of the output, and of what the drive had of that."""
     gain = _slope(record)
     rows = []
     for start, stop, lag in found.segments:
         for begin, end in _parts(start, stop, found.period):
             change_u, change_y, _ = changes(record, begin, end, lag)
             # What the drive itself moved on is not drift.
-            mean = float(change_y.mean()) - gain * float(change_u.mean())
-            rows.append((0.5 * (begin + end - lag), lag, mean))
-    return np.array(rows).reshape(-1, 3)
+            driven = gain * float(change_u.mean())
+            mean = float(change_y.mean()) - driven
+            rows.append((0.5 * (begin + end - lag), lag, mean, abs(driven)))
+    return np.array(rows).reshape(-1, 4)
 
 
 def _parts(start: int, stop: int, period: float) -> list[tuple[int, int]]:
@@ -100,7 +104,7 @@ def _parts(start: int, stop: int, period: float) -> list[tuple[int, int]]:
     length = max(period / _PARTS, _FEWEST_SAMPLES)
     count = max(int((stop - start) / length), 1)
     edges = [start + round(which * (stop - start) / count) for which in range(count + 1)]
-    return [each for each in zip(edges[:-1], edges[1:], strict=True) if each[1] > each[0]]
+    return [each for each in pairwise(edges) if each[1] > each[0]]
 
 
 def _rate(lag: Array, change: Array) -> tuple[float, float]:

@@ -160,11 +160,14 @@ def _best_lag(period: float, longest: int) -> float:
 
 def _without_slow(values: Array, width: int) -> Array:
     """Take out a running mean over a period, or a line where there is little more than one."""
+    rest: Array
     if values.size < 2 * width:
         t = np.linspace(-1.0, 1.0, values.size)
         slope = float(t @ values) / float(t @ t)
-        return values - values.mean() - slope * t
+        rest = values - values.mean() - slope * t
+        return rest
     total = np.concatenate([[0.0], np.cumsum(values)])
     at = np.arange(values.size)
     low = np.clip(at - width // 2, 0, values.size - width - 1)
-    return values - (total[low + width + 1] - total[low]) / (width + 1)
+    rest = values - (total[low + width + 1] - total[low]) / (width + 1)
+    return rest

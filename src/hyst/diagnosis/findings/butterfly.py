@@ -28,7 +28,9 @@ def find(evidence: Evidence) -> Iterator[Finding]:
         middle = np.mean([each.middle - each.middle.mean() for each in alike], axis=0)
         # Three sigma: what noise alone makes of the middle.
         floor = 3.0 * (evidence.noise(number) or 0.0) / np.sqrt(max(largest.samples, 1.0))
-        back = min(_variation(middle)) - floor
+        # Of a loop that is not closed the middle means little: either branch must turn back, too.
+        branches = min(min(_variation(largest.up)), min(_variation(largest.down)))
+        back = min(*_variation(middle), branches) - floor
         if back < _LEAST_RETURN * largest.height:
             continue
         steps = np.concatenate([np.diff(largest.up), np.diff(largest.down)])

@@ -116,9 +116,7 @@ def _shapes(evidence: Evidence) -> list[Shape]:
     if len(numbers) < 2:
         return []
     loops = {number: evidence.loops(number) for number in numbers}
-    references = [
-        max(each, key=lambda loop: loop.high - loop.low) for each in loops.values() if each
-    ]
+    references = [_largest(each) for each in loops.values() if each]
     best: list[Shape] = []
     for reference in references:
         shapes = []
@@ -131,6 +129,10 @@ def _shapes(evidence: Evidence) -> list[Shape]:
         if len(best) == len(numbers):
             break
     return best
+
+
+def _largest(loops: tuple[Loop, ...]) -> Loop:
+    return max(loops, key=lambda each: each.high - each.low)
 
 
 def _comparable(loop: Loop, other: Loop) -> bool:
@@ -154,4 +156,5 @@ def _shape(number: int, loops: tuple[Loop, ...], noise: float | None) -> Shape:
 def _distances(shapes: list[Shape]) -> Array:
     """Root mean square differences between all pairs of curves."""
     curves = np.array([each.curve for each in shapes])
-    return np.sqrt(np.mean((curves[:, None, :] - curves[None, :, :]) ** 2, axis=2))
+    distances: Array = np.sqrt(np.mean((curves[:, None, :] - curves[None, :, :]) ** 2, axis=2))
+    return distances

@@ -24,6 +24,7 @@ _LEAST_OF_NOISE = 0.5
 _FEWEST_SAMPLES, _DEGREE = 40, 9
 _MOST_BRANCHES = 400
 _LONGEST = 1 << 17
+_MOST_PACES = 4
 _MAINS = (50.0, 60.0)
 # A harmonic of the drive has neighbours of its size; a line has none (amplitudes).
 _OVER_HARMONICS = 4.0
@@ -101,12 +102,24 @@ def _within_branches(record: Record) -> list[Line]:
         return []
     rest = _without_smooth(record.y, ends)
     drive = lines_of(_without_smooth(record.u, ends), record.dt)
+    paces = _paces(lengths)
     found = []
     for line in lines_of(rest, record.dt):
         enough_cycles = line.frequency * usual * record.dt > 0.5 * _DEGREE
-        if enough_cycles and not _in(drive, line, record) and _alone(rest, line, record.dt, usual):
+        if enough_cycles and not _in(drive, line, record) and _alone(rest, line, record.dt, paces):
             found.append(line)
     return found
+
+
+def _paces(lengths: NDArray[np.intp]) -> list[float]:
+    """Give the lengths of branches that are frequent, those within a tenth alike."""
+    left = np.sort(lengths).astype(np.float64)
+    found: list[tuple[int, float]] = []
+    while left.size:
+        alike = left <= 1.1 * left[0]
+        found.append((int(alike.sum()), float(np.median(left[alike]))))
+        left = left[~alike]
+    return [pace for _, pace in sorted(found, reverse=True)[:_MOST_PACES]]
 
 
 def _in(lines: tuple[Line, ...], line: Line, record: Record) -> bool:
@@ -131,11 +144,11 @@ def _basis(samples: int, degree: int) -> Array:
     return np.linalg.qr(np.polynomial.legendre.legvander(t, degree))[0]
 
 
-def _alone(rest: Array, line: Line, dt: float, branch: float) -> bool:
+def _alone(rest: Array, line: Line, dt: float, branches: list[float]) -> bool:
     """Whether the harmonics of the drive next to a line are far smaller than it."""
-    drive = 1.0 / (2.0 * branch * dt)
     around = [
         _amplitude(rest, line.frequency + which * drive, dt)
+        for drive in (1.0 / (2.0 * branch * dt) for branch in branches)
         for which in (-4, -3, -2, -1, 1, 2, 3, 4)
         if 0.0 < line.frequency + which * drive < 0.5 / dt
     ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,7 +86,7 @@ def _pairs(repetition: Repetition, record: Record) -> Array:
         half = 0.5 * repetition.period
         count = max(int((stop - start) / half), 1) if half > 0.0 else 1
         edges = [start + round(which * (stop - start) / count) for which in range(count + 1)]
-        for begin, end in zip(edges[:-1], edges[1:], strict=True):
+        for begin, end in pairwise(edges):
             _, change, _ = changes(record, begin, end, lag)
             now = record.y[begin:end]
             before = now - change
