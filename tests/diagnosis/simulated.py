@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,10 +86,7 @@ def sine(period: float = 500.0, samples: int = 4000, low: float = 0.0, high: flo
 
 def through(levels: list[float], per_branch: int = 250) -> Array:
     """Straight from level to level, as many samples each."""
-    parts = [
-        np.linspace(one, two, per_branch, endpoint=False)
-        for one, two in zip(levels[:-1], levels[1:], strict=True)
-    ]
+    parts = [np.linspace(one, two, per_branch, endpoint=False) for one, two in pairwise(levels)]
     return np.concatenate([*parts, levels[-1:]])
 
 

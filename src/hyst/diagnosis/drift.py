@@ -74,6 +74,7 @@ def drift_of(found: Repetition, record: Record) -> Drift | None:
     rate, error = _rate(lag, change)
     # A drive that did not quite repeat: its share is known to half its size only.
     error = math.hypot(error, 0.5 * float(lag @ pairs[:, 3]) / float(lag @ lag))
+    error = math.hypot(error, _between_phases(lag, change, pairs[:, 4]))
     half = middle <= np.median(middle)
     if half.sum() < 2 or (~half).sum() < 2:
         return Drift(rate, error, rate * record.duration, rate, rate, True, lag.size)
@@ -84,7 +85,7 @@ def drift_of(found: Repetition, record: Record) -> Drift | None:
 
 
 def _pairs(found: Repetition, record: Record) -> Array:
-    """Rows of middle, lag and mean change of the output, and of what the drive had of that."""
+    """Rows of middle, lag, mean change of the output, the drive's share in that, and phase."""
     gain = _slope(record)
     rows = []
     for start, stop, lag in found.segments:
@@ -93,8 +94,16 @@ def _pairs(found: Repetition, record: Record) -> Array:
             # What the drive itself moved on is not drift.
             driven = gain * float(change_u.mean())
             mean = float(change_y.mean()) - driven
-            rows.append((0.5 * (begin + end - lag), lag, mean, abs(driven)))
-    return np.array(rows).reshape(-1, 4)
+            phase = _phase(record.u, begin, end, found.period)
+            rows.append((0.5 * (begin + end - lag), lag, mean, abs(driven), phase))
+    return np.array(rows).reshape(-1, 5)
+
+
+def _phase(u: Array, begin: int, end: int, period: float) -> int:
+    """Give the quarter of a period, or 1 for a rising branch and 0 for a falling one."""
+    if period > 0.0:
+        return int(_PARTS * (0.5 * (begin + end) / period % 1.0))
+    return int(u[end - 1] > u[begin])
 
 
 def _parts(start: int, stop: int, period: float) -> list[tuple[int, int]]:
@@ -102,7 +111,7 @@ def _parts(start: int, stop: int, period: float) -> list[tuple[int, int]]:
     if period == 0.0:
         return [(start, stop)]
     length = max(period / _PARTS, _FEWEST_SAMPLES)
-    count = max(int((stop - start) / length), 1)
+    count = max(round((stop - start) / length), 1)
     edges = [start + round(which * (stop - start) / count) for which in range(count + 1)]
     return [each for each in pairwise(edges) if each[1] > each[0]]
 
@@ -113,6 +122,15 @@ def _rate(lag: Array, change: Array) -> tuple[float, float]:
     rate = float(lag @ change) / energy
     left = change - rate * lag
     return rate, math.sqrt(float(left @ left) / max(change.size - 1, 1) / energy)
+
+
+def _between_phases(lag: Array, change: Array, phase: Array) -> float:
+    """Give the error of a rate by what rising and falling branches, or quarters, say apart.
+
+    Drift moves all of them; a loop that changes its shape or its size moves them differently.
+    """
+    rates = [_rate(lag[phase == each], change[phase == each])[0] for each in np.unique(phase)]
+    return float(np.std(rates, ddof=1)) / math.sqrt(len(rates)) if len(rates) > 1 else 0.0
 
 
 def _slope(record: Record) -> float:

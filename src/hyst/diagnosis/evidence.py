@@ -13,7 +13,7 @@ from hyst.diagnosis.drift import Drift, drift_of
 from hyst.diagnosis.finding import NO_SAMPLES, Finding
 from hyst.diagnosis.loops import Loop, loops_of
 from hyst.diagnosis.repetition import Repetition, noise_of, repetition_of
-from hyst.signals import Record
+from hyst.signals import Record, estimate_noise
 
 Found = TypeVar("Found")
 
@@ -81,6 +81,13 @@ class Evidence:
         if found is None:
             return None
         return self.once(("noise", id(record)), lambda: noise_of(found, record))
+
+    def noise_or_guess(self, number: int) -> float:
+        """Give the noise by repetition, or by how rough the output is, which may be too much."""
+        noise, record = self.noise(number), self.usable(number)
+        if noise is not None:
+            return noise
+        return self.once(("guess", id(record)), lambda: estimate_noise(record.y))
 
     def drift(self, number: int) -> Drift | None:
         """Give the drift of an output; None where too little repeats."""

@@ -112,7 +112,8 @@ def _floor(power: Array) -> Array:
     block = np.minimum(np.arange(power.size) // _BLOCK, blocks - 1)
     after = np.arange(power.size) % _BLOCK >= _BLOCK // 2
     other = np.clip(block + np.where(after, 1, -1), 0, blocks - 1)
-    return np.maximum(medians[block], medians[other])
+    floor: Array = np.maximum(medians[block], medians[other])
+    return floor
 
 
 def _peak(power: Array, index: int) -> float:

@@ -27,7 +27,7 @@ _LONGEST = 1 << 17
 _MOST_PACES = 4
 _MAINS = (50.0, 60.0)
 # A harmonic of the drive has neighbours of its size; a line has none (amplitudes).
-_OVER_HARMONICS = 4.0
+_OVER_HARMONICS = 3.0
 
 
 def find(evidence: Evidence) -> Iterator[Finding]:
@@ -145,19 +145,13 @@ def _basis(samples: int, degree: int) -> Array:
 
 
 def _alone(rest: Array, line: Line, dt: float, branches: list[float]) -> bool:
-    """Whether the harmonics of the drive next to a line are far smaller than it."""
-    around = [
-        _amplitude(rest, line.frequency + which * drive, dt)
-        for drive in (1.0 / (2.0 * branch * dt) for branch in branches)
-        for which in (-4, -3, -2, -1, 1, 2, 3, 4)
-        if 0.0 < line.frequency + which * drive < 0.5 / dt
-    ]
-    return line.amplitude > _OVER_HARMONICS * max(around, default=0.0)
-
-
-def _amplitude(signal: Array, frequency: float, dt: float) -> float:
-    """Amplitude of a signal at a frequency, von Hann's window applied."""
-    at = (np.arange(signal.size) + 0.5) / signal.size
-    window = 1.0 - np.cos(2.0 * np.pi * at)
-    wave = np.exp(-2j * np.pi * frequency * dt * np.arange(signal.size))
-    return 2.0 * abs(complex(np.vdot(wave.conj(), window * signal))) / signal.size
+    """Whether what is around a line, harmonics of the drive among it, is far smaller."""
+    window = 1.0 - np.cos(2.0 * np.pi * (np.arange(rest.size) + 0.5) / rest.size)
+    amplitude = 2.0 * np.abs(np.fft.rfft(window * rest)) / rest.size
+    away = np.abs(np.fft.rfftfreq(rest.size, dt) - line.frequency)
+    for drive in (1.0 / (2.0 * branch * dt) for branch in branches):
+        # Four harmonics to either side; of a drive that wavers they are broad.
+        around = (away > max(4.0 / (rest.size * dt), 0.3 * drive)) & (away < 4.3 * drive)
+        if line.amplitude < _OVER_HARMONICS * float(amplitude[around].max(initial=0.0)):
+            return False
+    return True

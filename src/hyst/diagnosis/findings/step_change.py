@@ -83,8 +83,8 @@ def _pairs(repetition: Repetition, record: Record) -> Array:
     """Rows of middle before, middle now, mean change and gain of the output against before."""
     rows = []
     for start, stop, lag in repetition.segments:
-        half = 0.5 * repetition.period
-        count = max(int((stop - start) / half), 1) if half > 0.0 else 1
+        part = 0.25 * repetition.period
+        count = max(int((stop - start) / part), 1) if part > 0.0 else 1
         edges = [start + round(which * (stop - start) / count) for which in range(count + 1)]
         for begin, end in pairwise(edges):
             _, change, _ = changes(record, begin, end, lag)
@@ -120,8 +120,10 @@ def _step(pairs: Array, values: Array, *, drifts: bool) -> Step | None:
             best = (left, float(moment), size)
     if best is None or best[0] > (1.0 - _EXPLAINED) * energy:
         return None
-    left, moment, size = best
+    _, moment, _ = best
     across = (before < moment) & (now > moment)
+    # Those that lie on either side of it only in part change less.
+    size = float(np.median(values[across]))
     scatter = math.sqrt(float(np.mean(np.square(values[~across]))))
     # A scatter told by few comparisons may be too small by chance.
     if abs(size) < _LEAST_SCATTERS * (1.0 + 4.0 / int((~across).sum())) * scatter:
