@@ -28,6 +28,7 @@ _MOST_PACES = 4
 _MAINS = (50.0, 60.0)
 # A harmonic of the drive has neighbours of its size; a line has none (amplitudes).
 _OVER_HARMONICS = 3.0
+_IN_EVERY_QUARTER, _OF_DRIVE = 0.4, 0.2  # amplitudes
 
 
 def find(evidence: Evidence) -> Iterator[Finding]:
@@ -84,11 +85,11 @@ def _between_repeats(record: Record, repetition: Repetition | None) -> list[Line
         return []
     of_u, of_y, _ = changes(record, start, stop, lag)
     found = []
-    driven = lines_of(of_u, record.dt)
+    gain = _ratio(record)
     for line in lines_of(of_y, record.dt):
         # A sine and itself a lag ago: what is left of it depends on its phase over the lag.
         left = 2.0 * abs(np.sin(np.pi * line.frequency * lag * record.dt))
-        if left > 0.3 and not _in(driven, line, record):
+        if left > 0.3 and not _of_drive(of_u, line, record.dt, gain):
             found.append(Line(line.frequency, line.amplitude / float(left)))
     return found
 
@@ -101,14 +102,21 @@ def _within_branches(record: Record) -> list[Line]:
     if usual < _FEWEST_SAMPLES or lengths.size > _MOST_BRANCHES:
         return []
     rest = _without_smooth(record.y, ends)
-    drive = lines_of(_without_smooth(record.u, ends), record.dt)
-    paces = _paces(lengths)
-    found = []
-    for line in lines_of(rest, record.dt):
-        enough_cycles = line.frequency * usual * record.dt > 0.5 * _DEGREE
-        if enough_cycles and not _in(drive, line, record) and _alone(rest, line, record.dt, paces):
-            found.append(line)
-    return found
+    drive, gain, paces = _without_smooth(record.u, ends), _ratio(record), _paces(lengths)
+    # Of few branches what is left of a bend is not told from a line by its repetition.
+    fewest_cycles = _DEGREE * (0.5 if lengths.size >= 6 else 1.5)
+    return [
+        line
+        for line in lines_of(rest, record.dt)
+        if line.frequency * usual * record.dt > fewest_cycles
+        and _throughout(rest, line, record.dt)
+        and _alone(rest, line, record.dt, paces)
+        and not _of_drive(drive, line, record.dt, gain)
+    ]
+
+
+def _ratio(record: Record) -> float:
+    return float(np.ptp(record.y)) / float(np.ptp(record.u))
 
 
 def _paces(lengths: NDArray[np.intp]) -> list[float]:
@@ -120,10 +128,6 @@ def _paces(lengths: NDArray[np.intp]) -> list[float]:
         found.append((int(alike.sum()), float(np.median(left[alike]))))
         left = left[~alike]
     return [pace for _, pace in sorted(found, reverse=True)[:_MOST_PACES]]
-
-
-def _in(lines: tuple[Line, ...], line: Line, record: Record) -> bool:
-    return any(abs(each.frequency - line.frequency) < 2.0 / record.duration for each in lines)
 
 
 def _without_smooth(signal: Array, ends: NDArray[np.intp]) -> Array:
@@ -146,12 +150,34 @@ def _basis(samples: int, degree: int) -> Array:
 
 def _alone(rest: Array, line: Line, dt: float, branches: list[float]) -> bool:
     """Whether what is around a line, harmonics of the drive among it, is far smaller."""
-    window = 1.0 - np.cos(2.0 * np.pi * (np.arange(rest.size) + 0.5) / rest.size)
-    amplitude = 2.0 * np.abs(np.fft.rfft(window * rest)) / rest.size
-    away = np.abs(np.fft.rfftfreq(rest.size, dt) - line.frequency)
+    frequency, amplitude = _spectrum(rest, dt)
+    away = np.abs(frequency - line.frequency)
     for drive in (1.0 / (2.0 * branch * dt) for branch in branches):
         # Four harmonics to either side; of a drive that wavers they are broad.
         around = (away > max(4.0 / (rest.size * dt), 0.3 * drive)) & (away < 4.3 * drive)
         if line.amplitude < _OVER_HARMONICS * float(amplitude[around].max(initial=0.0)):
             return False
     return True
+
+
+def _throughout(rest: Array, line: Line, dt: float) -> bool:
+    """Whether a line is there in every quarter of the record, at one phase."""
+    wave = np.exp(-2j * np.pi * line.frequency * dt * np.arange(rest.size))
+    quarters = np.array([2.0 * np.mean(part) for part in np.array_split(wave * rest, 4)])
+    whole = quarters.mean()
+    along = (quarters * np.conj(whole)).real / max(abs(whole), 1e-300)
+    return bool(np.all(along > _IN_EVERY_QUARTER * line.amplitude))
+
+
+def _of_drive(drive: Array, line: Line, dt: float, gain: float) -> bool:
+    """Whether the drive itself has at that frequency what would explain a line."""
+    frequency, amplitude = _spectrum(drive, dt)
+    near = np.abs(frequency - line.frequency) < 3.0 / (drive.size * dt)
+    return gain * float(amplitude[near].max(initial=0.0)) > _OF_DRIVE * line.amplitude
+
+
+def _spectrum(signal: Array, dt: float) -> tuple[Array, Array]:
+    """Give frequencies and amplitudes, von Hann's window applied."""
+    window = 1.0 - np.cos(2.0 * np.pi * (np.arange(signal.size) + 0.5) / signal.size)
+    amplitude = 2.0 * np.abs(np.fft.rfft(window * signal)) / signal.size
+    return np.fft.rfftfreq(signal.size, dt), amplitude
