@@ -113,7 +113,7 @@ def _parts(start: int, stop: int, period: float) -> list[tuple[int, int]]:
     length = max(period / _PARTS, _FEWEST_SAMPLES)
     count = max(round((stop - start) / length), 1)
     edges = [start + round(which * (stop - start) / count) for which in range(count + 1)]
-    return [each for each in pairwise(edges) if each[1] > each[0]]
+    return [each for each in pairwise(edges) if each[1] - each[0] >= 3]
 
 
 def _rate(lag: Array, change: Array) -> tuple[float, float]:

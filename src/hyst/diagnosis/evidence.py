@@ -17,6 +17,9 @@ from hyst.signals import Record, estimate_noise
 
 Found = TypeVar("Found")
 
+# Ranges beyond these are no measurements, and their squares leave the numbers there are.
+_SMALLEST, _LARGEST = 1e-100, 1e100
+
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
@@ -67,7 +70,8 @@ class Evidence:
         """Give the usable records in which something moves, with their numbers."""
         for number in range(1, len(self.records) + 1):
             record = self.usable(number)
-            if record.samples >= 4 and np.ptp(record.u) > 0.0 and np.ptp(record.y) > 0.0:
+            spans = (float(np.ptp(record.u)), float(np.ptp(record.y)))
+            if record.samples >= 4 and all(_SMALLEST < span < _LARGEST for span in spans):
                 yield number, record
 
     def repetition(self, number: int) -> Repetition | None:

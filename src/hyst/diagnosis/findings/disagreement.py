@@ -43,6 +43,8 @@ class Shape:
         Widest opening over its height.
     height
         Range of the output.
+    first
+        One of the loops.
     """
 
     record: int
@@ -51,6 +53,7 @@ class Shape:
     gain: float
     width: float
     height: float
+    first: Loop
 
 
 def find(evidence: Evidence) -> Iterator[Finding]:
@@ -61,7 +64,8 @@ def find(evidence: Evidence) -> Iterator[Finding]:
     height = float(np.median([each.height for each in shapes]))
     distances = _distances(shapes)
     noise = max(each.noise for each in shapes)
-    least = max(_LEAST * height, _LEAST_NOISES * noise)
+    mismatch = max(each.first.mismatch(shapes[0].first) for each in shapes)
+    least = max(_LEAST, mismatch) * height + _LEAST_NOISES * noise
     nearest = np.median(distances, axis=1)  # of the others, and of itself at 0
     if len(shapes) > 2:
         odd = int(np.argmax(nearest))
@@ -150,6 +154,7 @@ def _shape(number: int, loops: tuple[Loop, ...], noise: float | None) -> Shape:
         float(np.mean([each.gain for each in loops])),
         float(np.abs(down - up).max()) / height if height > 0.0 else 0.0,
         height,
+        loops[0],
     )
 
 

@@ -104,7 +104,10 @@ def _within_branches(record: Record) -> list[Line]:
     rest = _without_smooth(record.y, ends)
     drive, gain, paces = _without_smooth(record.u, ends), _ratio(record), _paces(lengths)
     # Of few branches what is left of a bend is not told from a line by its repetition.
-    fewest_cycles = _DEGREE * (0.5 if lengths.size >= 6 else 1.5)
+    few = lengths.size < 6
+    if few and usual < 3 * _FEWEST_SAMPLES:
+        return []
+    fewest_cycles = _DEGREE * (1.5 if few else 0.5)
     return [
         line
         for line in lines_of(rest, record.dt)
@@ -180,4 +183,5 @@ def _spectrum(signal: Array, dt: float) -> tuple[Array, Array]:
     """Give frequencies and amplitudes, von Hann's window applied."""
     window = 1.0 - np.cos(2.0 * np.pi * (np.arange(signal.size) + 0.5) / signal.size)
     amplitude = 2.0 * np.abs(np.fft.rfft(window * signal)) / signal.size
-    return np.fft.rfftfreq(signal.size, dt), amplitude
+    frequency: Array = np.arange(amplitude.size) / (signal.size * dt)
+    return frequency, amplitude

@@ -47,6 +47,8 @@ class Pace:
         Range of the input that the cells cover.
     coarseness
         What few samples may bend the curve by, over its height.
+    first
+        One of the loops.
     """
 
     rate: float
@@ -57,6 +59,7 @@ class Pace:
     height: float
     span: float
     coarseness: float
+    first: Loop
 
 
 def find(evidence: Evidence) -> Iterator[Finding]:
@@ -71,7 +74,7 @@ def find(evidence: Evidence) -> Iterator[Finding]:
     size = float(np.sqrt(np.mean(change**2)))
     height = max(slow.height, fast.height)
     noise = float(np.hypot(slow.noise, fast.noise))
-    coarse = max(each.coarseness for each in (slow, fast))
+    coarse = max(each.coarseness for each in (slow, fast)) + slow.first.mismatch(fast.first)
     if size < max(_LEAST * height, _LEAST_NOISES * noise, coarse * height):
         return
     lag, explained = _lag(paces)
@@ -145,7 +148,7 @@ def _pace(loops: tuple[Loop, ...], noises: list[float | None]) -> Pace:
     width = float(np.abs(down - up).max()) / height if height > 0.0 else 0.0
     rate = float(np.mean([each.rate for each in loops]))
     span = float(np.mean([each.high - each.low for each in loops])) * INNER_SHARE
-    return Pace(rate, curve, rates, float(noise), width, height, span, _COARSE / cells**2)
+    return Pace(rate, curve, rates, float(noise), width, height, span, _COARSE / cells**2, loops[0])
 
 
 def _lag(paces: list[Pace]) -> tuple[float, float]:

@@ -19,7 +19,7 @@ from hyst.signals import Record
 Array = NDArray[np.float64]
 
 NAME = "step change"
-_FEWEST_PAIRS = 4
+_FEWEST_PAIRS, _FEWEST_SAMPLES = 4, 3
 _LEAST_GAIN = 0.005
 _LEAST_OFFSET = 0.003  # of the range
 # Of the scatter that there is without the step.
@@ -87,6 +87,8 @@ def _pairs(repetition: Repetition, record: Record) -> Array:
         count = max(int((stop - start) / part), 1) if part > 0.0 else 1
         edges = [start + round(which * (stop - start) / count) for which in range(count + 1)]
         for begin, end in pairwise(edges):
+            if end - begin < _FEWEST_SAMPLES:
+                continue
             _, change, _ = changes(record, begin, end, lag)
             now = record.y[begin:end]
             before = now - change
