@@ -100,13 +100,15 @@ def _one(shapes: list[Shape], odd: int, share: float) -> Finding:
 def _all(shapes: list[Shape], share: float) -> Finding:
     widths = [each.width for each in shapes]
     gains = [abs(each.gain) for each in shapes]
+    both = min(each.gain for each in shapes) < 0.0 < max(each.gain for each in shapes)
+    signs = " and have both signs" if both else ""
     names = ", ".join(str(each.record) for each in shapes[:12])
     return Finding(
         NAME,
         "warning",
         f"records {names}{', ...' if len(shapes) > 12 else ''} were driven alike and differ by up "
         f"to {percent(share)} of the output's range (rms): gains differ by "
-        f"{percent(max(gains) / min(gains) - 1.0)}, and widths run from {percent(min(widths))} to "
+        f"{percent(max(gains) / min(gains) - 1.0)}{signs}, and widths run from {percent(min(widths))} to "
         f"{percent(max(widths))}.",
         "One model for all of them would be a mean of several actuators or states: identify each "
         "on its own and compare.",
