@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 _FEWEST_SAMPLES = 10
 # A period that holds for less of the record than this tells less than single branches do.
 _LEAST_PERIODIC = 0.4
-_ENOUGH_PERIODS = 4.0
+_ENOUGH_PERIODS, _MORE = 4.0, 1.2
 # The largest 1 % of the changes are no noise but spikes and corners; of a normal distribution they
 # hold 7.5 % of the variance.
 _KEPT, _KEPT_VARIANCE = 0.99, 0.9247
@@ -89,7 +89,7 @@ def repetition_of(u: Array) -> Repetition | None:
     if periodic is None or single is None:
         return periodic or single
     # A drive of many branches, repeated once or twice, repeats more within itself.
-    return single if single.samples > periodic.samples else periodic
+    return single if single.samples > _MORE * periodic.samples else periodic
 
 
 def _periodic(u: Array) -> Repetition | None:
@@ -184,7 +184,11 @@ def _without_slow(values: Array, width: int) -> Array:
         slope = float(t @ values) / float(t @ t)
         rest = values - values.mean() - slope * t
         return rest
-    total = np.concatenate([[0.0], np.cumsum(values)])
+    # A spike must not become a plateau of the running mean.
+    middle = float(np.median(values))
+    reach = 7.0 * float(np.median(np.abs(values - middle)))
+    held = np.clip(values, middle - reach, middle + reach) if reach > 0.0 else values
+    total = np.concatenate([[0.0], np.cumsum(held)])
     at = np.arange(values.size)
     low = np.clip(at - width // 2, 0, values.size - width - 1)
     rest = values - (total[low + width + 1] - total[low]) / (width + 1)

@@ -108,8 +108,8 @@ def _all(shapes: list[Shape], share: float) -> Finding:
         "warning",
         f"records {names}{', ...' if len(shapes) > 12 else ''} were driven alike and differ by up "
         f"to {percent(share)} of the output's range (rms): gains differ by "
-        f"{percent(max(gains) / min(gains) - 1.0)}{signs}, and widths run from {percent(min(widths))} to "
-        f"{percent(max(widths))}.",
+        f"{percent(max(gains) / min(gains) - 1.0)}{signs}, and widths run from "
+        f"{percent(min(widths))} to {percent(max(widths))}.",
         "One model for all of them would be a mean of several actuators or states: identify each "
         "on its own and compare.",
         amounts={"share": share, "narrowest": min(widths), "widest": max(widths)},
