@@ -38,7 +38,7 @@ def drive_period(u: Array) -> float | None:
     if best < _LEAST_SHARE:
         return None
     chosen = int(np.flatnonzero(shares >= 0.9 * best)[0])
-    return _refined(difference, exact[chosen])
+    return _refined(u, exact[chosen], noise)
 
 
 def repeat_tolerance(u: Array, change: Array, noise: float) -> float:
@@ -95,18 +95,32 @@ def _share(u: Array, lag: float, noise: float) -> float:
     return float(np.mean(np.abs(change) <= repeat_tolerance(u, change, noise)))
 
 
-def _refined(difference: Array, period: float) -> float:
-    """Use lags of 2, 4, 8, ... periods, as long as the drive still repeats over them."""
-    floor = difference[round(period)]
-    many = 2
-    while many * period < difference.size - 4:
-        centre = round(many * period)
-        near = np.arange(centre - 2, centre + 3)
-        lag = int(near[np.argmin(difference[near])])
-        if difference[lag] > 2.0 * floor + 0.02 or lag in (near[0], near[-1]):
+def _refined(u: Array, period: float, noise: float) -> float:
+    """Shift the drive onto itself by 1, 2, 4, ... periods, as long as it still repeats."""
+    many = 1
+    share = _share(u, period, noise)
+    while many * period < u.size / 1.5:
+        lag = _shifted(u[-(_ENOUGH_FOR_SHARES + int(many * period) + 4) :], many * period, noise)
+        if _share(u, lag, noise) < 0.8 * share or abs(lag - many * period) > 0.05 * period:
             break
-        period = _vertex(difference, lag) / many
+        period = lag / many
         many *= 2
     # A drive made sample by sample mostly has whole periods; the estimate rounds to them.
     nearest = round(period)
     return float(nearest) if abs(period - nearest) * many < 0.2 else period
+
+
+def _shifted(u: Array, lag: float, noise: float) -> float:
+    """Find the lag near one at which a drive is most like itself, by Gauss-Newton steps."""
+    for _ in range(4):
+        window = earlier(u, lag)[0]
+        change = u[first_comparable(lag) :] - window
+        if change.size < _FEWEST_SAMPLES // 2:
+            return lag
+        same = np.abs(change) <= 3.0 * repeat_tolerance(u, change, noise)
+        slope = np.gradient(window)[same]
+        energy = float(slope @ slope)
+        if energy == 0.0:
+            return lag
+        lag -= min(max(float(slope @ change[same]) / energy, -2.0), 2.0)
+    return lag

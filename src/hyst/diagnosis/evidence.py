@@ -13,9 +13,12 @@ from hyst.diagnosis.finding import NO_SAMPLES, Finding
 from hyst.diagnosis.loops import Loop, loops_of
 from hyst.diagnosis.repetition import Repetition, noise_of, repetition_of
 from hyst.diagnosis.slow_drift import Drift, slow_drift
-from hyst.signals import Record
+from hyst.signals import Record, estimate_noise
 
 Found = TypeVar("Found")
+
+# Ranges beyond these are no measurements, and their squares leave the numbers there are.
+_SMALLEST, _LARGEST = 1e-100, 1e100
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +72,8 @@ class Evidence:
             if self._refused(number):
                 continue
             record = self.usable(number)
-            if record.samples >= 4 and np.ptp(record.u) > 0.0 and np.ptp(record.y) > 0.0:
+            spans = (float(np.ptp(record.u)), float(np.ptp(record.y)))
+            if record.samples >= 4 and all(_SMALLEST < span < _LARGEST for span in spans):
                 yield number, record
 
     def _refused(self, number: int) -> bool:
@@ -86,6 +90,13 @@ class Evidence:
         if found is None:
             return None
         return self.once(("noise", id(record)), lambda: noise_of(found, record))
+
+    def noise_or_guess(self, number: int) -> float:
+        """Give the noise by repetition, or by how rough the output is, which may be too much."""
+        noise, record = self.noise(number), self.usable(number)
+        if noise is not None:
+            return noise
+        return self.once(("guess", id(record)), lambda: estimate_noise(record.y))
 
     def drift(self, number: int) -> Drift | None:
         """Give the drift of an output; None where too little repeats, or nothing drifts."""

@@ -99,6 +99,11 @@ class Loop:
             for one, two in zip(self.memory, other.memory, strict=True)
         )
 
+    def mismatch(self, other: Loop) -> float:
+        """Share of the height by which loops may differ for their ranges differ a little."""
+        apart = abs(self.low - other.low) + abs(self.high - other.high)
+        return apart / min(self.high - self.low, other.high - other.low)
+
     def _near(self, other: Loop) -> float:
         return _SAME_RANGE * max(self.high - self.low, other.high - other.low)
 

@@ -100,8 +100,14 @@ def _aligned(
     window = _window(u, start, stop, lag)
     if window is None or abs(lag - (branch[0] - before[0])) > max(2.0, 0.1 * count):
         return None
-    spread = float(np.median(np.abs(u[start:stop] - window)))
-    return (start, stop, _nearly_whole(lag)) if spread <= tolerance else None
+    change = np.abs(u[start:stop] - window)
+    spread = float(np.median(change))
+    # Branches may part on the way, where one of them goes on at another rate.
+    parted = change > max(tolerance, 6.0 * spread)
+    stop = start + int(np.argmax(parted)) if parted.any() else stop
+    if spread > tolerance or stop - start < _FEWEST_SAMPLES:
+        return None
+    return start, stop, _nearly_whole(lag)
 
 
 def _window(u: Array, start: int, stop: int, lag: float) -> Array | None:

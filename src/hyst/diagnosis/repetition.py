@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 _FEWEST_SAMPLES = 10
 # A period that holds for less of the record than this tells less than single branches do.
 _LEAST_PERIODIC = 0.4
+_ENOUGH_PERIODS, _MORE = 4.0, 1.2
 # The largest 1 % of the changes are no noise but spikes and corners; of a normal distribution they
 # hold 7.5 % of the variance.
 _KEPT, _KEPT_VARIANCE = 0.99, 0.9247
@@ -49,6 +50,11 @@ class Repetition:
         longest = max((stop - start for start, stop in self.settled), default=0)
         return longest / self.period if self.period > 0.0 else 0.0
 
+    @property
+    def samples(self) -> int:
+        """How many samples have another to be compared with."""
+        return sum(stop - start for start, stop, _ in self.segments)
+
 
 def noise_by_repetition(record: Record) -> float | None:
     """Measure the noise of an output by what it does not repeat when drive and memory do.
@@ -75,20 +81,32 @@ def noise_by_repetition(record: Record) -> float | None:
 
 def repetition_of(u: Array) -> Repetition | None:
     """Find where a drive repeats itself; None if it nowhere does."""
+    periodic = _periodic(u)
+    if periodic is not None and periodic.periods >= _ENOUGH_PERIODS:
+        return periodic
+    segments = tuple(repeated_segments(u))
+    single = Repetition(segments, 0.0, ()) if segments else None
+    if periodic is None or single is None:
+        return periodic or single
+    # A drive of many branches, repeated once or twice, repeats more within itself.
+    return single if single.samples > _MORE * periodic.samples else periodic
+
+
+def _periodic(u: Array) -> Repetition | None:
+    """Find where a drive has a period; None if it has none for much of the record."""
     period = drive_period(u)
     runs = _settled_runs(u, period) if period is not None else []
     covered = sum(stop - start for start, stop in runs)
-    if period is not None and covered >= _LEAST_PERIODIC * u.size:
-        lag = _best_lag(period, max(stop - start for start, stop in runs))
-        first = first_comparable(lag)
-        segments = tuple(
-            (start + first, stop, lag)
-            for start, stop in runs
-            if stop - start - first >= _FEWEST_SAMPLES
-        )
-        return Repetition(segments, period, tuple(runs))
-    segments = tuple(repeated_segments(u))
-    return Repetition(segments, 0.0, ()) if segments else None
+    if period is None or covered < _LEAST_PERIODIC * u.size:
+        return None
+    lag = _best_lag(period, max(stop - start for start, stop in runs))
+    first = first_comparable(lag)
+    segments = tuple(
+        (start + first, stop, lag)
+        for start, stop in runs
+        if stop - start - first >= _FEWEST_SAMPLES
+    )
+    return Repetition(segments, period, tuple(runs)) if segments else None
 
 
 def noise_of(found: Repetition, record: Record) -> float:
@@ -160,11 +178,18 @@ def _best_lag(period: float, longest: int) -> float:
 
 def _without_slow(values: Array, width: int) -> Array:
     """Take out a running mean over a period, or a line where there is little more than one."""
+    rest: Array
     if values.size < 2 * width:
         t = np.linspace(-1.0, 1.0, values.size)
         slope = float(t @ values) / float(t @ t)
-        return values - values.mean() - slope * t
-    total = np.concatenate([[0.0], np.cumsum(values)])
+        rest = values - values.mean() - slope * t
+        return rest
+    # A spike must not become a plateau of the running mean.
+    middle = float(np.median(values))
+    reach = 7.0 * float(np.median(np.abs(values - middle)))
+    held = np.clip(values, middle - reach, middle + reach) if reach > 0.0 else values
+    total = np.concatenate([[0.0], np.cumsum(held)])
     at = np.arange(values.size)
     low = np.clip(at - width // 2, 0, values.size - width - 1)
-    return values - (total[low + width + 1] - total[low]) / (width + 1)
+    rest = values - (total[low + width + 1] - total[low]) / (width + 1)
+    return rest

@@ -85,10 +85,9 @@ def strongest(power: Array) -> int | None:
     ratio[1:-1] = np.where(peak, power[1:-1] / np.maximum(floor[1:-1], _tiny(power)), 0.0)
     candidates = np.flatnonzero(ratio[inner] > _OVER_FLOOR) + _FEWEST_CYCLES
     for index in candidates[np.argsort(-power[candidates], kind="stable")][:10].tolist():
-        near = np.concatenate(
-            [power[max(index - 10, 1) : index - 3], power[index + 4 : index + 11]]
-        )
-        if near.size and power[index] > _OVER_NEAR * float(near.max()):
+        below, above = power[max(index - 10, 1) : index - 3], power[index + 4 : index + 11]
+        near = max(float(below.max(initial=0.0)), float(above.max(initial=0.0)))
+        if power[index] > _OVER_NEAR * near:
             return int(index)
     return None
 
@@ -101,7 +100,8 @@ def _power(signal: Array) -> Array:
     """Power of the spectrum, von Hann's window applied."""
     window = 0.5 - 0.5 * np.cos(2.0 * np.pi * (np.arange(signal.size) + 0.5) / signal.size)
     spectrum = np.fft.rfft(window * signal)
-    return spectrum.real**2 + spectrum.imag**2
+    power: Array = spectrum.real**2 + spectrum.imag**2
+    return power
 
 
 def _floor(power: Array) -> Array:
@@ -112,7 +112,8 @@ def _floor(power: Array) -> Array:
     block = np.minimum(np.arange(power.size) // _BLOCK, blocks - 1)
     after = np.arange(power.size) % _BLOCK >= _BLOCK // 2
     other = np.clip(block + np.where(after, 1, -1), 0, blocks - 1)
-    return np.maximum(medians[block], medians[other])
+    floor: Array = np.maximum(medians[block], medians[other])
+    return floor
 
 
 def _peak(power: Array, index: int) -> float:
@@ -145,4 +146,6 @@ def _fitted(signal: Array, omega: float) -> tuple[float, Array]:
 
 def _without_line(signal: Array) -> Array:
     t = np.linspace(-1.0, 1.0, signal.size)
-    return signal - signal.mean() - (float(t @ signal) / float(t @ t)) * t
+    slope = float(t @ signal) / float(t @ t)
+    level: Array = signal - signal.mean() - slope * t
+    return level

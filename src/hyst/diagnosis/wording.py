@@ -18,4 +18,5 @@ def of_record(evidence: Evidence, number: int) -> str:
 
 def percent(share: float) -> str:
     """Give a share in percent, as ``0.38 %``."""
-    return f"{100.0 * share:.2g} %"
+    value = 100.0 * share
+    return f"{value:.0f} %" if abs(value) >= 100.0 else f"{value:.2g} %"

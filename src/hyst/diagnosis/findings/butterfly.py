@@ -27,8 +27,10 @@ def find(evidence: Evidence) -> Iterator[Finding]:
         alike = [each for each in loops if each.like(largest)]
         middle = np.mean([each.middle - each.middle.mean() for each in alike], axis=0)
         # Three sigma: what noise alone makes of the middle.
-        floor = 3.0 * (evidence.noise(number) or 0.0) / np.sqrt(max(largest.samples, 1.0))
-        back = min(_variation(middle)) - floor
+        floor = 3.0 * evidence.noise_or_guess(number) / np.sqrt(max(largest.samples, 1.0))
+        # Of a loop that is not closed the middle means little: either branch must turn back, too.
+        branches = min(min(_variation(largest.up)), min(_variation(largest.down)))
+        back = min(*_variation(middle), branches) - floor
         if back < _LEAST_RETURN * largest.height:
             continue
         steps = np.concatenate([np.diff(largest.up), np.diff(largest.down)])

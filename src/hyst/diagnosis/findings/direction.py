@@ -26,7 +26,7 @@ def find(evidence: Evidence) -> Iterator[Finding]:
         sign = sign_of(largest) or 1
         alike = [each for each in loops if each.like(largest)]
         opening = sign * np.mean([each.opening for each in alike], axis=0)
-        noise = (evidence.noise(number) or 0.0) / np.sqrt(max(largest.samples, 1.0) * len(alike))
+        noise = evidence.noise_or_guess(number) / np.sqrt(max(largest.samples, 1.0) * len(alike))
         area = float(opening.mean())
         if area >= 0.0 or -area < max(_LEAST_WIDTH * largest.height, 5.0 * noise):
             continue

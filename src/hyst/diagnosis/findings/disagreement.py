@@ -43,6 +43,8 @@ class Shape:
         Widest opening over its height.
     height
         Range of the output.
+    first
+        One of the loops.
     """
 
     record: int
@@ -51,6 +53,7 @@ class Shape:
     gain: float
     width: float
     height: float
+    first: Loop
 
 
 def find(evidence: Evidence) -> Iterator[Finding]:
@@ -61,7 +64,8 @@ def find(evidence: Evidence) -> Iterator[Finding]:
     height = float(np.median([each.height for each in shapes]))
     distances = _distances(shapes)
     noise = max(each.noise for each in shapes)
-    least = max(_LEAST * height, _LEAST_NOISES * noise)
+    mismatch = max(each.first.mismatch(shapes[0].first) for each in shapes)
+    least = max(_LEAST, mismatch) * height + _LEAST_NOISES * noise
     nearest = np.median(distances, axis=1)  # of the others, and of itself at 0
     if len(shapes) > 2:
         odd = int(np.argmax(nearest))
@@ -96,14 +100,16 @@ def _one(shapes: list[Shape], odd: int, share: float) -> Finding:
 def _all(shapes: list[Shape], share: float) -> Finding:
     widths = [each.width for each in shapes]
     gains = [abs(each.gain) for each in shapes]
+    both = min(each.gain for each in shapes) < 0.0 < max(each.gain for each in shapes)
+    signs = " and have both signs" if both else ""
     names = ", ".join(str(each.record) for each in shapes[:12])
     return Finding(
         NAME,
         "warning",
         f"records {names}{', ...' if len(shapes) > 12 else ''} were driven alike and differ by up "
         f"to {percent(share)} of the output's range (rms): gains differ by "
-        f"{percent(max(gains) / min(gains) - 1.0)}, and widths run from {percent(min(widths))} to "
-        f"{percent(max(widths))}.",
+        f"{percent(max(gains) / min(gains) - 1.0)}{signs}, and widths run from "
+        f"{percent(min(widths))} to {percent(max(widths))}.",
         "One model for all of them would be a mean of several actuators or states: identify each "
         "on its own and compare.",
         amounts={"share": share, "narrowest": min(widths), "widest": max(widths)},
@@ -116,9 +122,7 @@ def _shapes(evidence: Evidence) -> list[Shape]:
     if len(numbers) < 2:
         return []
     loops = {number: evidence.loops(number) for number in numbers}
-    references = [
-        max(each, key=lambda loop: loop.high - loop.low) for each in loops.values() if each
-    ]
+    references = [_largest(each) for each in loops.values() if each]
     best: list[Shape] = []
     for reference in references:
         shapes = []
@@ -131,6 +135,10 @@ def _shapes(evidence: Evidence) -> list[Shape]:
         if len(best) == len(numbers):
             break
     return best
+
+
+def _largest(loops: tuple[Loop, ...]) -> Loop:
+    return max(loops, key=lambda each: each.high - each.low)
 
 
 def _comparable(loop: Loop, other: Loop) -> bool:
@@ -148,10 +156,12 @@ def _shape(number: int, loops: tuple[Loop, ...], noise: float | None) -> Shape:
         float(np.mean([each.gain for each in loops])),
         float(np.abs(down - up).max()) / height if height > 0.0 else 0.0,
         height,
+        loops[0],
     )
 
 
 def _distances(shapes: list[Shape]) -> Array:
     """Root mean square differences between all pairs of curves."""
     curves = np.array([each.curve for each in shapes])
-    return np.sqrt(np.mean((curves[:, None, :] - curves[None, :, :]) ** 2, axis=2))
+    distances: Array = np.sqrt(np.mean((curves[:, None, :] - curves[None, :, :]) ** 2, axis=2))
+    return distances

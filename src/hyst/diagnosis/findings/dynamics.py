@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +17,12 @@ from hyst.signals import Record
 Array = NDArray[np.float64]
 
 NAME = "dynamics"
-_BANDS = 40
+_WIDTH = 0.06  # of a band over its frequency
 _FEWEST_BINS = 6  # of a band
 _LEAST_POWER = 1e-4  # of the strongest bin of the drive
-_LEAST_COHERENCE = 0.8
+_LEAST_COHERENCE = 0.75
 _LEAST_SPREAD = 4.0  # highest over lowest frequency
-_LEAST_PHASE = 20.0  # degrees
+_LEAST_PHASE = 40.0  # degrees
 _LEAST_GAIN_RATIO = 1.4
 _FEWEST_BANDS = 4
 _LONGEST = 1 << 18
@@ -38,7 +39,7 @@ class Response:
     gain
         Magnitude over that of the lowest bands.
     phase
-        Degrees, against the lowest bands.
+        Degrees; negative where the output falls behind.
     """
 
     frequency: Array
@@ -52,14 +53,13 @@ def find(evidence: Evidence) -> Iterator[Finding]:
         response = _response(record.slice(0, min(record.samples, _LONGEST)))
         if response is None:
             continue
-        lag = float(-response.phase[-_FEWEST_BANDS // 2 :].mean())
-        peak = int(np.argmax(response.gain))
-        highest, lowest = float(response.gain[peak]), float(response.gain.min())
-        turned = abs(lag) > _LEAST_PHASE
-        if not turned and highest < _LEAST_GAIN_RATIO and lowest > 1.0 / _LEAST_GAIN_RATIO:
+        lag = float(response.phase[:2].mean() - response.phase[-2:].mean())
+        # Hysteresis alone turns the phase too, by less, or from ahead to level, as friction does.
+        if lag < _LEAST_PHASE or float(-response.phase[-2:].mean()) < _LEAST_PHASE:
             continue
-        frequency = float(response.frequency[peak])
-        resonant = highest > _LEAST_GAIN_RATIO
+        peak = int(np.argmax(response.gain))
+        highest, frequency = float(response.gain[peak]), float(response.frequency[peak])
+        resonant = highest > _LEAST_GAIN_RATIO and 0 < peak < response.gain.size - 1
         words = (
             f"rises {highest:.3g}-fold up to a resonance near {frequency:.3g} Hz"
             if resonant
@@ -86,9 +86,8 @@ def _response(record: Record) -> Response | None:
     power = u.real**2 + u.imag**2
     driven = power > _LEAST_POWER * float(power.max())
     driven[:2] = False
-    edges = np.unique(np.geomspace(2, u.size, _BANDS + 1).astype(np.intp))
-    frequency, transfer = [], []
-    for low, high in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
+    frequency, gain, transfer = [], [], []
+    for low, high in pairwise(_edges(u.size)):
         inside = np.flatnonzero(driven[low:high]) + low
         # Bands of a few lines, as a triangle has, tell nothing of how output follows input.
         if inside.size < max(_FEWEST_BINS, 0.5 * (high - low)):
@@ -99,9 +98,19 @@ def _response(record: Record) -> Response | None:
         if own == 0.0 or abs(cross) ** 2 < _LEAST_COHERENCE * energy * own:
             continue
         frequency.append(float(inside.mean()) / (record.samples * record.dt))
+        gain.append(np.sqrt(own / energy))
         transfer.append(complex(cross) / energy)
     if len(frequency) < _FEWEST_BANDS or frequency[-1] < _LEAST_SPREAD * frequency[0]:
         return None
-    relative = np.array(transfer) / np.mean(transfer[:2])
-    phase = np.degrees(np.unwrap(np.angle(relative)))
-    return Response(np.array(frequency), np.abs(relative), phase)
+    # Of a gain below zero the phase starts at 180 degrees; that is its sign and no lag.
+    sign = 1.0 if np.mean(transfer[:2]).real >= 0.0 else -1.0
+    phase = np.degrees(np.unwrap(np.angle(sign * np.array(transfer))))
+    return Response(np.array(frequency), np.array(gain) / np.mean(gain[:2]), phase)
+
+
+def _edges(bins: int) -> list[int]:
+    """Bands of a few bins, and from where they are narrow of a few percent."""
+    edges = [2]
+    while edges[-1] + _FEWEST_BINS <= bins:
+        edges.append(edges[-1] + max(_FEWEST_BINS, round(_WIDTH * edges[-1])))
+    return edges

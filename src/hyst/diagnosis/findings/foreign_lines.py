@@ -24,9 +24,11 @@ _LEAST_OF_NOISE = 0.5
 _FEWEST_SAMPLES, _DEGREE = 40, 9
 _MOST_BRANCHES = 400
 _LONGEST = 1 << 17
+_MOST_PACES = 4
 _MAINS = (50.0, 60.0)
 # A harmonic of the drive has neighbours of its size; a line has none (amplitudes).
-_OVER_HARMONICS = 4.0
+_OVER_HARMONICS = 3.0
+_IN_EVERY_QUARTER, _OF_DRIVE = 0.4, 0.2  # amplitudes
 
 
 def find(evidence: Evidence) -> Iterator[Finding]:
@@ -83,11 +85,11 @@ def _between_repeats(record: Record, repetition: Repetition | None) -> list[Line
         return []
     of_u, of_y, _ = changes(record, start, stop, lag)
     found = []
-    driven = lines_of(of_u, record.dt)
+    gain = _ratio(record)
     for line in lines_of(of_y, record.dt):
         # A sine and itself a lag ago: what is left of it depends on its phase over the lag.
         left = 2.0 * abs(np.sin(np.pi * line.frequency * lag * record.dt))
-        if left > 0.3 and not _in(driven, line, record):
+        if left > 0.3 and not _of_drive(of_u, line, record.dt, gain):
             found.append(Line(line.frequency, line.amplitude / float(left)))
     return found
 
@@ -100,17 +102,35 @@ def _within_branches(record: Record) -> list[Line]:
     if usual < _FEWEST_SAMPLES or lengths.size > _MOST_BRANCHES:
         return []
     rest = _without_smooth(record.y, ends)
-    drive = lines_of(_without_smooth(record.u, ends), record.dt)
-    found = []
-    for line in lines_of(rest, record.dt):
-        enough_cycles = line.frequency * usual * record.dt > 0.5 * _DEGREE
-        if enough_cycles and not _in(drive, line, record) and _alone(rest, line, record.dt, usual):
-            found.append(line)
-    return found
+    drive, gain, paces = _without_smooth(record.u, ends), _ratio(record), _paces(lengths)
+    # Of few branches what is left of a bend is not told from a line by its repetition.
+    few = lengths.size < 6
+    if few and usual < 3 * _FEWEST_SAMPLES:
+        return []
+    fewest_cycles = _DEGREE * (1.5 if few else 0.5)
+    return [
+        line
+        for line in lines_of(rest, record.dt)
+        if line.frequency * usual * record.dt > fewest_cycles
+        and _throughout(rest, line, record.dt)
+        and _alone(rest, line, record.dt, paces)
+        and not _of_drive(drive, line, record.dt, gain)
+    ]
 
 
-def _in(lines: tuple[Line, ...], line: Line, record: Record) -> bool:
-    return any(abs(each.frequency - line.frequency) < 2.0 / record.duration for each in lines)
+def _ratio(record: Record) -> float:
+    return float(np.ptp(record.y)) / float(np.ptp(record.u))
+
+
+def _paces(lengths: NDArray[np.intp]) -> list[float]:
+    """Give the lengths of branches that are frequent, those within a tenth alike."""
+    left = np.sort(lengths).astype(np.float64)
+    found: list[tuple[int, float]] = []
+    while left.size:
+        alike = left <= 1.1 * left[0]
+        found.append((int(alike.sum()), float(np.median(left[alike]))))
+        left = left[~alike]
+    return [pace for _, pace in sorted(found, reverse=True)[:_MOST_PACES]]
 
 
 def _without_smooth(signal: Array, ends: NDArray[np.intp]) -> Array:
@@ -131,20 +151,37 @@ def _basis(samples: int, degree: int) -> Array:
     return np.linalg.qr(np.polynomial.legendre.legvander(t, degree))[0]
 
 
-def _alone(rest: Array, line: Line, dt: float, branch: float) -> bool:
-    """Whether the harmonics of the drive next to a line are far smaller than it."""
-    drive = 1.0 / (2.0 * branch * dt)
-    around = [
-        _amplitude(rest, line.frequency + which * drive, dt)
-        for which in (-4, -3, -2, -1, 1, 2, 3, 4)
-        if 0.0 < line.frequency + which * drive < 0.5 / dt
-    ]
-    return line.amplitude > _OVER_HARMONICS * max(around, default=0.0)
+def _alone(rest: Array, line: Line, dt: float, branches: list[float]) -> bool:
+    """Whether what is around a line, harmonics of the drive among it, is far smaller."""
+    frequency, amplitude = _spectrum(rest, dt)
+    away = np.abs(frequency - line.frequency)
+    for drive in (1.0 / (2.0 * branch * dt) for branch in branches):
+        # Four harmonics to either side; of a drive that wavers they are broad.
+        around = (away > max(4.0 / (rest.size * dt), 0.3 * drive)) & (away < 4.3 * drive)
+        if line.amplitude < _OVER_HARMONICS * float(amplitude[around].max(initial=0.0)):
+            return False
+    return True
 
 
-def _amplitude(signal: Array, frequency: float, dt: float) -> float:
-    """Amplitude of a signal at a frequency, von Hann's window applied."""
-    at = (np.arange(signal.size) + 0.5) / signal.size
-    window = 1.0 - np.cos(2.0 * np.pi * at)
-    wave = np.exp(-2j * np.pi * frequency * dt * np.arange(signal.size))
-    return 2.0 * abs(complex(np.vdot(wave.conj(), window * signal))) / signal.size
+def _throughout(rest: Array, line: Line, dt: float) -> bool:
+    """Whether a line is there in every quarter of the record, at one phase."""
+    wave = np.exp(-2j * np.pi * line.frequency * dt * np.arange(rest.size))
+    quarters = np.array([2.0 * np.mean(part) for part in np.array_split(wave * rest, 4)])
+    whole = quarters.mean()
+    along = (quarters * np.conj(whole)).real / max(abs(whole), 1e-300)
+    return bool(np.all(along > _IN_EVERY_QUARTER * line.amplitude))
+
+
+def _of_drive(drive: Array, line: Line, dt: float, gain: float) -> bool:
+    """Whether the drive itself has at that frequency what would explain a line."""
+    frequency, amplitude = _spectrum(drive, dt)
+    near = np.abs(frequency - line.frequency) < 3.0 / (drive.size * dt)
+    return gain * float(amplitude[near].max(initial=0.0)) > _OF_DRIVE * line.amplitude
+
+
+def _spectrum(signal: Array, dt: float) -> tuple[Array, Array]:
+    """Give frequencies and amplitudes, von Hann's window applied."""
+    window = 1.0 - np.cos(2.0 * np.pi * (np.arange(signal.size) + 0.5) / signal.size)
+    amplitude = 2.0 * np.abs(np.fft.rfft(window * signal)) / signal.size
+    frequency: Array = np.arange(amplitude.size) / (signal.size * dt)
+    return frequency, amplitude

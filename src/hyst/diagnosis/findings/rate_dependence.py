@@ -21,6 +21,8 @@ _SAME_RATE = 1.15
 _LEAST = 0.005  # of the height of the loop, rms
 _LEAST_NOISES = 5.0
 _LAG_EXPLAINS = 0.8
+# A branch between two samples is taken as straight; of so much per square of samples in a cell.
+_COARSE = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +45,10 @@ class Pace:
         Range of the output.
     span
         Range of the input that the cells cover.
+    coarseness
+        What few samples may bend the curve by, over its height.
+    first
+        One of the loops.
     """
 
     rate: float
@@ -52,6 +58,8 @@ class Pace:
     width: float
     height: float
     span: float
+    coarseness: float
+    first: Loop
 
 
 def find(evidence: Evidence) -> Iterator[Finding]:
@@ -66,7 +74,8 @@ def find(evidence: Evidence) -> Iterator[Finding]:
     size = float(np.sqrt(np.mean(change**2)))
     height = max(slow.height, fast.height)
     noise = float(np.hypot(slow.noise, fast.noise))
-    if size < max(_LEAST * height, _LEAST_NOISES * noise):
+    coarse = max(each.coarseness for each in (slow, fast)) + slow.first.mismatch(fast.first)
+    if size < max(_LEAST * height, _LEAST_NOISES * noise, coarse * height):
         return
     lag, explained = _lag(paces)
     record = next(record for _, record in evidence.numbered())
@@ -139,7 +148,7 @@ def _pace(loops: tuple[Loop, ...], noises: list[float | None]) -> Pace:
     width = float(np.abs(down - up).max()) / height if height > 0.0 else 0.0
     rate = float(np.mean([each.rate for each in loops]))
     span = float(np.mean([each.high - each.low for each in loops])) * INNER_SHARE
-    return Pace(rate, curve, rates, float(noise), width, height, span)
+    return Pace(rate, curve, rates, float(noise), width, height, span, _COARSE / cells**2, loops[0])
 
 
 def _lag(paces: list[Pace]) -> tuple[float, float]:
