@@ -86,7 +86,7 @@ def test_units_change_nothing_but_the_numbers(of_u: float, of_y: float, of_time:
     assert [each.name for each in one] == [each.name for each in other]
     scales = {
         "rate": of_y / of_time,
-        "rate error": of_y / of_time,
+        "total error": of_y,
         "total": of_y,
         "early": of_y / of_time,
         "late": of_y / of_time,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ from hyst.signals import Record
 
 Array = NDArray[np.float64]
 
-BLOCKS = 4
+BLOCKS = 8
 """Of every repetition: noise that lasts longer than a sample is averaged within a block."""
 
 CHANCE = 1e-4
@@ -38,7 +39,7 @@ class Drift:
     curve
         Shape (N,), output units, of mean 0: a model is right on the average over its record.
     total
-        Its range over the record, output units.
+        Its range over the record, output units, negative where it ends lower than it begins.
     rate
         Its mean slope, output units per second.
     standard_error
@@ -86,7 +87,7 @@ def slow_drift(record: Record, found: Repetition | None = None) -> Drift | None:
         return None
     rows, moved = _block_means(record, repeats)
     degree = _degree(record, repeats)
-    if moved.size < degree + 3:
+    if moved.size < degree + 2:
         return None
     moved = _pulled_in(rows[:, :degree], moved)
     weights = np.linalg.lstsq(rows[:, :degree], moved, rcond=None)[0]
@@ -108,6 +109,7 @@ def slow_drift(record: Record, found: Repetition | None = None) -> Drift | None:
     first, middle, last = (float(curve[k]) for k in (0, len(record) // 2, -1))
     half = 0.5 * record.duration
     early, late = (middle - first) / half, (last - middle) / half
+    total = math.copysign(total, last - first)
     return Drift(curve - curve.mean(), total, 0.5 * (early + late), error, early, late, degree)
 
 

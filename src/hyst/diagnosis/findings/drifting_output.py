@@ -26,7 +26,7 @@ def find(evidence: Evidence) -> Iterator[Finding]:
             continue
         span = float(np.ptp(record.y))
         noise = evidence.noise(number) or 0.0
-        size = drift.total
+        size = abs(drift.total)
         if size < _LEAST * span or (size < _MUCH * span and size < noise):
             continue
         yield Finding(
@@ -57,5 +57,5 @@ def _sentence(record: Record, drift: Drift, span: float, where: str) -> str:
     return (
         f"{where}the output drifts by {amount(drift.rate, unit, 's')} "
         f"on the average and by {amount(drift.total, unit)} in all (+- "
-        f"{drift.standard_error:.2g}), {percent(drift.total / span)} of its range{shape}."
+        f"{drift.standard_error:.2g}), {percent(abs(drift.total) / span)} of its range{shape}."
     )
