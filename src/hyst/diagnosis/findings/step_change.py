@@ -144,6 +144,9 @@ def _step(pairs: Array, values: Array, errors: Array, *, drifts: bool) -> Step |
         return None
     across = (before < best) & (now > best)
     size = float(np.median(values[across]))
+    alike = np.abs(values[across] - size) < 0.4 * abs(size)
+    if alike.sum() < max(2.0, 0.5 * across.sum()):
+        return None
     scatter = 1.4826 * float(np.median(np.abs(values[~across])))
     # A scatter told by few comparisons may be too small by chance.
     scatter *= 1.0 + 4.0 / int((~across).sum())
