@@ -87,11 +87,10 @@ def test_piezo_drifts_by_its_size(measured_data: Path) -> None:
     record = hyst.read_record(path, input=0, output=4, rate=200.0)
     found = hyst.diagnose(record)
     assert warnings(found) == {"drift"}
-    # Independent of hyst: means of whole periods of 200 samples, the start-up of 2 s left out.
-    means = record.y[400:8000].reshape(-1, 200).mean(axis=1)
-    total = float(means[-3:].mean() - means[:3].mean())
+    # Independent of hyst: range of the means of whole periods of 200 samples, but for the first.
+    total = float(np.ptp(record.y[200:8000].reshape(-1, 200).mean(axis=1)))
     (drift,) = found.named("drift")
-    assert 0.7 * total < drift.amounts["total"] < 1.5 * total
+    assert 0.8 * total < drift.amounts["total"] < 1.25 * total
     assert drift.amounts["early"] > drift.amounts["late"]
     # Scatter of equal phases about a running mean over three periods, likewise.
     rows = record.y[400:8000].reshape(-1, 200)
@@ -104,4 +103,5 @@ def test_piezo_drifts_by_its_size(measured_data: Path) -> None:
 def test_friction_of_a_seal(measured_data: Path) -> None:
     path = measured_data / "pneumatic-seal" / "O-ring_3bar.csv"
     record = hyst.read_record(path, input=4, output=6, rate=100.0)
-    assert warnings(hyst.diagnose(record)) == {"run direction"}
+    # Single samples of its laser are far off, too.
+    assert warnings(hyst.diagnose(record)) == {"run direction", "outliers"}

@@ -26,6 +26,12 @@ NEGLIGIBLE = 1e-4
 
 TINY = float(np.finfo(float).tiny)
 
+SURE = 4.0
+"""Standard errors that a drift must exceed."""
+
+LEAST_SEEN = 0.5
+"""Of a record: what drifts in less of it is not known for the rest."""
+
 MOST_CLIPPED = 4.0
 """Robust standard deviations beyond which a block is pulled in."""
 
@@ -87,7 +93,7 @@ def slow_drift(record: Record, found: Repetition | None = None) -> Drift | None:
         return None
     rows, moved = _block_means(record, repeats)
     degree = _degree(record, repeats)
-    if moved.size < degree + 2:
+    if moved.size < degree + 2 or _seen(repeats) < LEAST_SEEN * len(record):
         return None
     moved = _pulled_in(rows[:, :degree], moved)
     weights = np.linalg.lstsq(rows[:, :degree], moved, rcond=None)[0]
@@ -95,7 +101,8 @@ def slow_drift(record: Record, found: Repetition | None = None) -> Drift | None:
     freedom = moved.size - degree
     variance = float(residual @ residual) / freedom
     explained = float(moved @ moved - residual @ residual) / degree
-    curve = _polynomials(np.arange(len(record)), len(record), degree) @ weights
+    polynomials = _polynomials(np.arange(len(record)), len(record), degree)
+    curve = polynomials @ weights
     total = float(np.ptp(curve))
     span = float(np.ptp(record.y))
     if (
@@ -104,13 +111,21 @@ def slow_drift(record: Record, found: Repetition | None = None) -> Drift | None:
     ):
         return None
     inverse = np.linalg.pinv(rows[:, :degree].T @ rows[:, :degree])
-    ends = np.ptp(_polynomials(np.arange(len(record)), len(record), degree), axis=0)
-    error = float(np.sqrt(variance * (ends @ inverse @ ends)))
+    between = polynomials[int(curve.argmax())] - polynomials[int(curve.argmin())]
+    error = float(np.sqrt(variance * (between @ inverse @ between)))
+    if total < SURE * error:
+        return None
     first, middle, last = (float(curve[k]) for k in (0, len(record) // 2, -1))
     half = 0.5 * record.duration
     early, late = (middle - first) / half, (last - middle) / half
     total = math.copysign(total, last - first)
     return Drift(curve - curve.mean(), total, 0.5 * (early + late), error, early, late, degree)
+
+
+def _seen(repeats: Repetition) -> float:
+    """Give over how many samples, from first to last, the output is compared with itself."""
+    first = min(start - lag for start, _, lag in repeats.segments)
+    return max(stop for _, stop, _ in repeats.segments) - first
 
 
 def _degree(record: Record, repeats: Repetition) -> int:
@@ -121,7 +136,8 @@ def _degree(record: Record, repeats: Repetition) -> int:
 
 def _block_means(record: Record, repeats: Repetition) -> tuple[Array, Array]:
     """Give mean changes over blocks, of the polynomials and of y without what the drive did."""
-    rows, moved, drives = [], [], []
+    gain = _slope(record)
+    rows, moved = [], []
     for start, stop, lag in repeats.segments:
         change_u, change_y, _ = changes(record, start, stop, lag)
         times = np.arange(start, stop)
@@ -129,17 +145,15 @@ def _block_means(record: Record, repeats: Repetition) -> tuple[Array, Array]:
         count = max(int(BLOCKS * (stop - start) / lag), 1)
         for block in np.array_split(np.arange(stop - start), min(count, stop - start)):
             rows.append((now - before)[block].mean(axis=0))
-            moved.append(float(change_y[block].mean()))
-            drives.append(float(change_u[block].mean()))
-    matrix, output, drive = np.array(rows), np.array(moved), np.array(drives)
-    energy = float(drive @ drive)
-    if energy > 0.0:
-        # What the drive itself did not repeat; only where it is no drift of the drive.
-        spread = drive - drive.mean()
-        size = float(spread @ spread)
-        if size > 0.5 * energy:
-            output = output - float(spread @ output) / size * drive
-    return matrix, output
+            # What the drive itself moved on is no drift.
+            moved.append(float(change_y[block].mean()) - gain * float(change_u[block].mean()))
+    return np.array(rows), np.array(moved)
+
+
+def _slope(record: Record) -> float:
+    u, y = record.u - record.u.mean(), record.y - record.y.mean()
+    energy = float(u @ u)
+    return float(u @ y) / energy if energy > 0.0 else 0.0
 
 
 def _polynomials(at: ArrayLike, samples: int, degree: int) -> Array:
