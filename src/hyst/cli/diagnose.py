@@ -76,9 +76,11 @@ def _tell(found: hyst.Diagnosis, data: list[Path]) -> None:
     for each in found.findings:
         print()
         _print(f"{each.severity}: {each.name}: {each.sentence}", "")
-        if each.advice:
+        if "hyst excite" in each.advice:
             # Commands stay in one line, to be copied.
-            print(f"  {each.advice}") if "hyst excite" in each.advice else _print(each.advice, "  ")
+            print(f"  {each.advice}")
+        elif each.advice:
+            _print(each.advice, "  ")
 
 
 def _print(text: str, indent: str) -> None:

@@ -42,7 +42,17 @@ def drive_period(u: Array) -> float | None:
 
 
 def repeat_tolerance(u: Array, change: Array, noise: float) -> float:
-    """Give how far a drive may be from itself a period ago, given these changes."""
+    """Give how far a drive may be from itself a period ago.
+
+    Parameters
+    ----------
+    u
+        Shape (N,).
+    change
+        Against a period ago, shape (m,).
+    noise
+        Standard deviation of the noise of ``u``.
+    """
     spread = 1.4826 * float(np.median(np.abs(change)))
     span = float(np.ptp(u))
     return max(0.01 * span, min(4.0 * min(spread, math.sqrt(2.0) * noise), 0.06 * span))

@@ -110,7 +110,15 @@ def _periodic(u: Array) -> Repetition | None:
 
 
 def noise_of(found: Repetition, record: Record) -> float:
-    """Give the rms of what an output does not repeat, slow drift taken out."""
+    """Give the rms of what an output does not repeat, slow drift taken out.
+
+    Parameters
+    ----------
+    found
+        Where the record repeats.
+    record
+        The record.
+    """
     of_u, of_y = [], []
     for start, stop, lag in found.segments:
         change_u, change_y, power = changes(record, start, stop, lag)
@@ -127,7 +135,17 @@ def noise_of(found: Repetition, record: Record) -> float:
 
 
 def changes(record: Record, start: int, stop: int, lag: float) -> tuple[Array, Array, float]:
-    """Give how input and output changed against a lag ago, and the noise power of the latter."""
+    """Give how input and output changed against a lag ago, and the noise power of what was then.
+
+    Parameters
+    ----------
+    record
+        The record.
+    start, stop
+        Samples of a segment.
+    lag
+        Its lag, samples.
+    """
     begin = start - first_comparable(lag)
     before_u, power = earlier(record.u[begin:stop], lag)
     before_y, _ = earlier(record.y[begin:stop], lag)

@@ -6,13 +6,31 @@ from hyst.diagnosis.evidence import Evidence
 
 
 def amount(value: float, unit: str, per: str = "") -> str:
-    """Give a number with its unit, as ``1.5 um/s``."""
+    """Give a number with its unit, as ``1.5 um/s``.
+
+    Parameters
+    ----------
+    value
+        The number.
+    unit
+        Its unit; empty if unknown.
+    per
+        What the unit is divided by.
+    """
     whole = f"{unit}/{per}" if per and unit else (f"per {per}" if per else unit)
     return f"{value:.3g} {whole}".rstrip()
 
 
 def of_record(evidence: Evidence, number: int) -> str:
-    """Name the record at the beginning of a sentence, if there are several."""
+    """Name the record at the beginning of a sentence, if there are several.
+
+    Parameters
+    ----------
+    evidence
+        All records.
+    number
+        Which, counted from 1.
+    """
     return "" if len(evidence.records) == 1 else f"in record {number} "
 
 
