@@ -10,6 +10,12 @@ import numpy as np
 from hyst.identification.judgement.remainder import Remainder
 from hyst.identification.judgement.taken_apart import SMALLEST_PART, SMALLEST_SHARE, TakenApart
 
+FEWEST_SAMPLES = 200
+"""Some eight for each column of general loops: with less, a misfit is easily missed."""
+
+NOT_SMALL = 0.01
+"""Of the output's range: where a short record leaves less, that is no matter."""
+
 MOST_CAUSES = 3
 """Told: further ones are small beside them, and their names the less certain."""
 
@@ -46,9 +52,26 @@ def told_of(remainder: Remainder, found: TakenApart) -> Told:
         What the fit leaves, and the same taken apart.
     """
     causes = causes_of(found)
-    pairs = [*_outliers(found), *_bias(remainder), *_without_name(remainder, found)]
+    pairs = [
+        *_too_short(remainder, found),
+        *_outliers(found),
+        *_bias(remainder),
+        *_without_name(remainder, found),
+    ]
     left, advice = (tuple(pair[i] for pair in pairs) for i in (0, 1))
     return Told(causes.left + left, tuple(dict.fromkeys(causes.advice + advice)))
+
+
+def _too_short(remainder: Remainder, found: TakenApart) -> list[tuple[str, str]]:
+    samples, error = remainder.error.size, math.sqrt(float(np.mean(remainder.error**2)))
+    if samples >= FEWEST_SAMPLES or error < NOT_SMALL * remainder.output_range or found.named:
+        return []
+    return [
+        (
+            f"With {samples} samples, noise and what the model lacks cannot be told apart.",
+            "Record more samples, and the same cycle several times.",
+        )
+    ]
 
 
 def _outliers(found: TakenApart) -> list[tuple[str, str]]:
