@@ -89,8 +89,10 @@ def test_outliers_are_counted(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", [0, 1])
 def test_a_loop_that_depends_on_the_rate_is_told_with_errors_by_rate(seed: int) -> None:
-    sentence = told(verdict_on(at_rates((1.0, 10.0, 40.0), 0.25, seed, NOISE)), "on the rate")
-    assert "At 1 Hz" in sentence
+    verdict = verdict_on(at_rates((1.0, 10.0, 40.0), 0.25, seed, NOISE))
+    told(verdict, "depends on the rate at which it is run")
+    sentence = told(verdict, "grows with the rate")
+    assert "at 1 Hz" in sentence
     assert "at 40 Hz" in sentence
 
 

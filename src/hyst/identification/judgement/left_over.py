@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hyst.identification.judgement.causes.rate import RATE
+from hyst.identification.judgement.growth_with_rate import growth_with_rate
 from hyst.identification.judgement.remainder import Remainder
 from hyst.identification.judgement.taken_apart import SMALLEST_PART, SMALLEST_SHARE, TakenApart
 
@@ -53,6 +55,7 @@ def told_of(remainder: Remainder, found: TakenApart) -> Told:
     """
     causes = causes_of(found)
     pairs = [
+        *_by_rate(remainder),
         *_too_short(remainder, found),
         *_outliers(found),
         *_bias(remainder),
@@ -60,6 +63,11 @@ def told_of(remainder: Remainder, found: TakenApart) -> Told:
     ]
     left, advice = (tuple(pair[i] for pair in pairs) for i in (0, 1))
     return Told(causes.left + left, tuple(dict.fromkeys(causes.advice + advice)))
+
+
+def _by_rate(remainder: Remainder) -> list[tuple[str, str]]:
+    growth = growth_with_rate(remainder)
+    return [(growth, RATE.advice)] if growth else []
 
 
 def _too_short(remainder: Remainder, found: TakenApart) -> list[tuple[str, str]]:
