@@ -90,10 +90,19 @@ def test_outliers_are_counted(seed: int) -> None:
 @pytest.mark.parametrize("seed", [0, 1])
 def test_a_loop_that_depends_on_the_rate_is_told_with_errors_by_rate(seed: int) -> None:
     verdict = verdict_on(at_rates((1.0, 10.0, 40.0), 0.25, seed, NOISE))
-    told(verdict, "depends on the rate at which it is run")
-    sentence = told(verdict, "grows with the rate")
-    assert "at 1 Hz" in sentence
-    assert "at 40 Hz" in sentence
+    sentence = told(verdict, "depends on the rate at which it is run")
+    assert "rms at 1 Hz and by" in sentence
+    assert "rms at 40 Hz." in sentence
+
+
+def test_an_error_that_grows_with_the_rate_is_told() -> None:
+    """White noise that grows with the rate has no other name."""
+    records = []
+    for number, frequency in enumerate((2.0, 5.0, 10.0)):
+        u = np.sin(2.0 * np.pi * frequency * np.arange(2000) * DT)
+        records.append(record(u, plays(seed=1)(u), NOISE * (1.0 + number)))
+    sentence = told(verdict_on(records), "grows with the rate")
+    assert sentence.endswith("at 10 Hz: the loop depends on it.")
 
 
 @pytest.mark.parametrize("seed", [0, 1])

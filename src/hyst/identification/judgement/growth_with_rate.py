@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -35,7 +36,7 @@ def growth_with_rate(remainder: Remainder) -> str:
         return ""
     errors = [each.error - each.error.mean() for each in parts]
     rms = [float(np.sqrt(np.mean(each**2))) for each in errors]
-    if any(two < one for one, two in zip(rms[:-1], rms[1:], strict=True)):
+    if any(two < one for one, two in itertools.pairwise(rms)):
         return ""
     if rms[-1] < LARGER * rms[0]:
         return ""

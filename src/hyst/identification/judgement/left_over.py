@@ -55,7 +55,7 @@ def told_of(remainder: Remainder, found: TakenApart) -> Told:
     """
     causes = causes_of(found)
     pairs = [
-        *_by_rate(remainder),
+        *_by_rate(remainder, found),
         *_too_short(remainder, found),
         *_outliers(found),
         *_bias(remainder),
@@ -65,7 +65,9 @@ def told_of(remainder: Remainder, found: TakenApart) -> Told:
     return Told(causes.left + left, tuple(dict.fromkeys(causes.advice + advice)))
 
 
-def _by_rate(remainder: Remainder) -> list[tuple[str, str]]:
+def _by_rate(remainder: Remainder, found: TakenApart) -> list[tuple[str, str]]:
+    if any(cause is RATE for cause, _ in found.named):
+        return []
     growth = growth_with_rate(remainder)
     return [(growth, RATE.advice)] if growth else []
 

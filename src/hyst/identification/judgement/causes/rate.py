@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.judgement.cause import Cause, Contribution
-from hyst.identification.judgement.drive_cycles import branch_frequencies, octaves_of
+from hyst.identification.judgement.drive_cycles import branch_frequencies, frequency_of, octaves_of
 from hyst.identification.judgement.general_loops import loops_of_part
 from hyst.identification.judgement.remainder import Part, Remainder
 
@@ -37,8 +37,20 @@ def _columns(remainder: Remainder) -> Array:
 def _sentence(found: Contribution) -> str:
     return (
         "The loop depends on the rate at which it is run, which makes "
-        f"{found.size} rms of what is left."
+        f"{found.size} rms of what is left.{_by_frequency(found.remainder)}"
     )
+
+
+def _by_frequency(remainder: Remainder) -> str:
+    """Tell the errors of the slowest and the fastest record, where there are several."""
+    if len(remainder.parts) < 2:
+        return ""
+    told = [
+        f"{remainder.plain(float(np.sqrt(np.mean(each.error**2))))} rms at "
+        f"{frequency_of(each):.3g} Hz"
+        for each in sorted(remainder.parts, key=frequency_of)
+    ]
+    return f" The model misses by {told[0]} and by {told[-1]}."
 
 
 RATE = Cause(
