@@ -14,7 +14,8 @@ import hyst
 from hyst import InputError, NotInvertibleError
 from hyst.identification import Identified
 from hyst.identification.families.family import Family
-from reference.family_examples import FamilyExample, family_example, names_with_an_example
+from reference.family_examples import DT, FamilyExample, family_example, names_with_an_example
+from reference.foreign_records import switching
 
 NAMES = tuple(hyst.families)
 RUNS = 40
@@ -243,6 +244,16 @@ def test_what_it_says_is_plain(name: str) -> None:
     assert f"family {name}" in found.summary()
     assert found.to_dict()["family"] == name
     assert found.status == "converged"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_verdict_is_good_on_its_own_record_and_on_no_foreign_one(name: str) -> None:
+    assert noisy_fits(name)[0].verdict.level == "good"
+    example = family_example(name)
+    assert identified(name, example.records()).verdict.level == "good"
+    butterflies = [hyst.Record(u, switching(u) ** 2, DT) for u in example.drives]
+    foreign = identified(name, butterflies, allow_unconverged=True)
+    assert foreign.verdict.level == "unfit"
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name != "linear"])

@@ -62,6 +62,9 @@ class Cause:
         one frequency is also a loop of another shape.
     disturbs
         Whether it comes to the output from elsewhere: no model of the input could describe it.
+    counts
+        Factor at most 1 for what it explains where it is compared with other causes: a cause of
+        many columns resembles much.
     """
 
     name: str
@@ -70,3 +73,4 @@ class Cause:
     advice: str
     beyond_loops: bool = False
     disturbs: bool = False
+    counts: float = 1.0

@@ -26,6 +26,14 @@ def cycles_of(part: Part) -> float:
     return turns_of(part).size / 2.0
 
 
+def frequency_of(part: Part) -> float:
+    """Give the mean frequency of the drive between its first turn and its last, Hz."""
+    turns = turns_of(part)
+    if turns.size < 2:
+        return 0.5 / (part.u.size * part.dt)
+    return float((turns.size - 1) / (2.0 * (turns[-1] - turns[0]) * part.dt))
+
+
 def octaves_of(parts: Sequence[Part]) -> float:
     """Give how far the frequencies of branches are apart, octaves, the extreme ones left out."""
     octaves = np.concatenate([np.log2(branch_frequencies(each)) for each in parts])
@@ -41,11 +49,16 @@ def swings_alike(parts: Sequence[Part]) -> bool:
 
 
 def last_turns(part: Part) -> tuple[Array, Array]:
-    """Give for every sample the input at the last turn of the drive, and at the one before it."""
-    turns = np.concatenate([[0, 0], turns_of(part)])
-    branch = np.searchsorted(turns, np.arange(part.u.size), side="right") - 1
-    values = part.u[turns]
-    return values[branch], values[np.maximum(branch - 1, 0)]
+    """Give for every sample the input at the last turn of the drive, and at the one before it.
+
+    Before the first turn the drive is taken to have done what it does after it.
+    """
+    turns = turns_of(part)
+    if turns.size < 2:
+        return np.zeros(part.u.size), np.zeros(part.u.size)
+    values = part.u[np.concatenate([turns[:2], turns])]
+    branch = np.searchsorted(turns, np.arange(part.u.size), side="right") + 1
+    return values[branch], values[branch - 1]
 
 
 def branch_frequencies(part: Part) -> Array:

@@ -37,7 +37,15 @@ def general_loops(remainder: Remainder) -> Array:
 
 
 def loops_of_part(remainder: Remainder, part: Part) -> Array:
-    """Give plays and plays of bent inputs over all samples of one part, shape (n, 22)."""
+    """Give plays and plays of bent inputs over all samples of one part, shape (n, 22).
+
+    Parameters
+    ----------
+    remainder
+        What a fit leaves.
+    part
+        One of its parts.
+    """
     return remainder.once(("loops", part.number), lambda: _loops_of_part(remainder, part))
 
 
@@ -53,7 +61,22 @@ def _loops_of_part(remainder: Remainder, part: Part) -> Array:
 
 
 def play_outputs(part: Part, drive: Array, r: Array) -> Array:
-    """Give outputs of plays over the samples used of a part, from a drive over all of them."""
+    """Give outputs of plays over the samples used of a part, from a drive over all of them.
+
+    Parameters
+    ----------
+    part
+        The part.
+    drive
+        Shape (k + n,), one number for each of its samples and of those before them.
+    r
+        Shape (m,), radii.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (n, m).
+    """
     z = np.empty((drive.size, r.size))
     _engine.play_outputs(r.tolist(), np.zeros(r.size), drive, z)
     return z[part.places]

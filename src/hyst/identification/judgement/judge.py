@@ -104,7 +104,11 @@ def _capped(
     )
     allowed: Level = "fair" if warnings else "good"
     worst = max(level, seen.level, allowed, key=LEVELS.index)
-    above = seen.sentences + warnings
     own = first + told.left
-    sentences = own + above if level == worst else above + own
+    if level == "unfit":
+        sentences = own + seen.sentences + warnings
+    elif level == worst and not seen.sentences:
+        sentences = own + warnings
+    else:
+        sentences = seen.sentences + warnings + own
     return Verdict(worst, sentences + told.advice)

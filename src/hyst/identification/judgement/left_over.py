@@ -7,8 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hyst.identification.judgement.causes.rate import RATE
+from hyst.identification.judgement.growth_with_rate import growth_with_rate
 from hyst.identification.judgement.remainder import Remainder
 from hyst.identification.judgement.taken_apart import SMALLEST_PART, SMALLEST_SHARE, TakenApart
+
+FEWEST_SAMPLES = 200
+"""Some eight for each column of general loops: with less, a misfit is easily missed."""
+
+NOT_SMALL = 0.01
+"""Of the output's range: where a short record leaves less, that is no matter."""
 
 MOST_CAUSES = 3
 """Told: further ones are small beside them, and their names the less certain."""
@@ -46,9 +54,34 @@ def told_of(remainder: Remainder, found: TakenApart) -> Told:
         What the fit leaves, and the same taken apart.
     """
     causes = causes_of(found)
-    pairs = [*_outliers(found), *_bias(remainder), *_without_name(remainder, found)]
+    pairs = [
+        *_by_rate(remainder, found),
+        *_too_short(remainder, found),
+        *_outliers(found),
+        *_bias(remainder),
+        *_without_name(remainder, found),
+    ]
     left, advice = (tuple(pair[i] for pair in pairs) for i in (0, 1))
     return Told(causes.left + left, tuple(dict.fromkeys(causes.advice + advice)))
+
+
+def _by_rate(remainder: Remainder, found: TakenApart) -> list[tuple[str, str]]:
+    if any(cause is RATE for cause, _ in found.named):
+        return []
+    growth = growth_with_rate(remainder)
+    return [(growth, RATE.advice)] if growth else []
+
+
+def _too_short(remainder: Remainder, found: TakenApart) -> list[tuple[str, str]]:
+    samples, error = remainder.error.size, math.sqrt(float(np.mean(remainder.error**2)))
+    if samples >= FEWEST_SAMPLES or error < NOT_SMALL * remainder.output_range or found.named:
+        return []
+    return [
+        (
+            f"With {samples} samples, noise and what the model lacks cannot be told apart.",
+            "Record more samples, and the same cycle several times.",
+        )
+    ]
 
 
 def _outliers(found: TakenApart) -> list[tuple[str, str]]:

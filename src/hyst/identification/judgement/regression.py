@@ -86,7 +86,15 @@ class Regression:
         return math.sqrt(self.left(names)[0] * self.total / self.error.size)
 
     def coefficients(self, names: Sequence[str], of: str) -> Array:
-        """Give those of one group, in a fit of several."""
+        """Give those of one group, in a fit of several.
+
+        Parameters
+        ----------
+        names
+            Of the groups that are fitted together.
+        of
+            The group.
+        """
         solved, at, _ = self._solved(names)
         size = self._all[1]
         mine = np.isin(at, self._all[2][of])

@@ -29,9 +29,6 @@ UNLIKELY = 1e-5
 """Probability that noise alone looks like a cause."""
 
 ABOUT_THE_SAME = 0.95
-FOR_FREEDOM = 0.75
-"""By which what another shape explains counts less: it has many columns, which resemble much."""
-
 BEYOND_LOOPS = 0.5
 """Share of what a cause explains that general loops must not explain as well."""
 
@@ -153,7 +150,7 @@ def _named(
         if max(gains) < least:
             break
         counted = [
-            gain * (FOR_FREEDOM if each.name == SHAPE else 1.0) * (gain >= least)
+            gain * each.counts * (gain >= least)
             for gain, each in zip(gains, remaining, strict=True)
         ]
         best = max(counted)

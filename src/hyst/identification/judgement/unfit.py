@@ -56,7 +56,15 @@ def reasons_unfit(remainder: Remainder, found: TakenApart) -> tuple[str, ...]:
 
 
 def beside_noise(found: TakenApart, rms: float) -> float:
-    """Give the part of an rms that is not the record's own noise."""
+    """Give the part of an rms that is not the record's own noise.
+
+    Parameters
+    ----------
+    found
+        With the noise.
+    rms
+        Of all that is left.
+    """
     return math.sqrt(max(rms**2 - found.noise**2, 0.0))
 
 

@@ -19,4 +19,5 @@ ANOTHER_SHAPE = Cause(
     _sentence,
     "Try other families or more plays (--family auto, --plays); where none leaves less, expect "
     "this error.",
+    counts=0.75,
 )

@@ -50,4 +50,5 @@ CREEP = Cause(
     "mean, and leave it to a controller.",
     beyond_loops=True,
     disturbs=True,
+    counts=0.9,
 )

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.judgement.cause import Cause, Contribution
-from hyst.identification.judgement.drive_cycles import branch_frequencies, octaves_of
+from hyst.identification.judgement.drive_cycles import branch_frequencies, frequency_of, octaves_of
 from hyst.identification.judgement.general_loops import loops_of_part
 from hyst.identification.judgement.remainder import Part, Remainder
 
@@ -45,13 +45,12 @@ def _by_frequency(remainder: Remainder) -> str:
     """Tell the errors of the slowest and the fastest record, where there are several."""
     if len(remainder.parts) < 2:
         return ""
-    speeds = [float(np.median(branch_frequencies(each))) for each in remainder.parts]
-    slow, fast = int(np.argmin(speeds)), int(np.argmax(speeds))
-    rms = [float(np.sqrt(np.mean(each.error**2))) for each in remainder.parts]
-    return (
-        f" At {speeds[slow]:.3g} Hz the model misses by {remainder.plain(rms[slow])} rms, at "
-        f"{speeds[fast]:.3g} Hz by {remainder.plain(rms[fast])}."
-    )
+    told = [
+        f"{remainder.plain(float(np.sqrt(np.mean(each.error**2))))} rms at "
+        f"{frequency_of(each):.3g} Hz"
+        for each in sorted(remainder.parts, key=frequency_of)
+    ]
+    return f" The model misses by {told[0]} and by {told[-1]}."
 
 
 RATE = Cause(

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.judgement.cause import Cause, Contribution
-from hyst.identification.judgement.drive_cycles import branch_frequencies
+from hyst.identification.judgement.drive_cycles import frequency_of
 from hyst.identification.judgement.general_loops import play_outputs
 from hyst.identification.judgement.remainder import Part, Remainder
 
@@ -40,7 +40,7 @@ def _sentence(found: Contribution) -> str:
     sizes = np.array([float(np.std(each.error)) for each in parts])
     worst = int(sizes.argmax())
     alone = sizes[worst] > OFTEN * float(np.median(sizes))
-    speeds = np.array([float(np.median(branch_frequencies(each))) for each in parts])
+    speeds = np.array([frequency_of(each) for each in parts])
     if alone:
         which = f"record {parts[worst].number} is of another actuator, or of one in another state"
     elif speeds.max() > ANOTHER_RATE * speeds.min():

@@ -58,4 +58,5 @@ WANDER = Cause(
     "Slow wandering is temperature or creep and none of the model: leave it to a controller.",
     beyond_loops=True,
     disturbs=True,
+    counts=0.85,
 )

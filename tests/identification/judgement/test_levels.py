@@ -1,0 +1,214 @@
+"""Good, fair and unfit: over simulated records of every kind, and what may lower a level."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import hyst
+from hyst.diagnosis import Diagnosis, Finding
+from hyst.identification.families.family import Fit
+from hyst.identification.identify_records import find
+from hyst.identification.judgement.judge import judge
+from hyst.identification.options import Options, silent
+from hyst.identification.result.identified_from_fit import metrics_by_record
+from hyst.operators import Verdict
+from reference.family_examples import family_example
+from reference.foreign_records import DRIVES, DT, FOREIGN, drive, plays, record, switching
+
+NAMES = tuple(hyst.families)
+SEEDS = range(3)
+
+
+def verdict_on(
+    records: hyst.Record | list[hyst.Record], family: str = "pi", **options: object
+) -> Verdict:
+    if family == "pi":
+        options = {"plays": 3} | options
+    return hyst.identify(records, family=family, delay=0, allow_unconverged=True, **options).verdict
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_a_family_leaves_of_its_own_records_is_noise(name: str) -> None:
+    """Evidence of one in 100,000 for each cause: not one of these verdicts should be another."""
+    example = family_example(name)
+    levels = {
+        (noise, seed): verdict_on(example.records(noise, seed), name, **example.options).level
+        for noise in (0.003, 0.01, 0.05)
+        for seed in SEEDS
+    }
+    assert set(levels.values()) == {"good"}, levels
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_perfect_fit_is_good(name: str) -> None:
+    example = family_example(name)
+    assert verdict_on(example.records(), name, **example.options).level == "good"
+
+
+def test_nearly_all_own_records_are_good_whatever_the_drive() -> None:
+    levels = []
+    for kind in DRIVES:
+        for noise in (0.003, 0.01, 0.03, 0.05):
+            for seed in range(5):
+                amplitude = 10.0 ** (seed - 2)
+                u = drive(kind, amplitude, seed, 2500)
+                y = (-1.0) ** seed * plays(amplitude, seed)(u)
+                levels.append(verdict_on(record(u, y, noise, seed)).level)
+    assert levels.count("good") >= 0.95 * len(levels)
+
+
+@pytest.mark.parametrize("what", FOREIGN)
+def test_no_foreign_record_is_good(what: str) -> None:
+    levels = {}
+    for kind in ("triangle", "decaying sine", "multisine"):
+        for seed, noise in enumerate((0.0, 0.002, 0.005)):
+            amplitude = 10.0 ** (2 * seed - 1)
+            records = FOREIGN[what](drive(kind, amplitude, seed), seed, noise)
+            levels[kind, noise] = verdict_on(records).level
+    assert "good" not in levels.values(), levels
+
+
+@pytest.mark.parametrize("what", ["square", "butterfly", "noise"])
+@pytest.mark.parametrize("family", ["pi", "gpi", "linear"])
+def test_what_no_command_may_come_from_is_unfit(what: str, family: str) -> None:
+    u = drive("decaying sine", 30.0, 4)
+    verdict = verdict_on(FOREIGN[what](u, 4, 0.002), family)
+    assert verdict.level == "unfit"
+    assert verdict.sentences[0].startswith("No command should come from this model.")
+    if what != "noise":
+        assert "butterfly" in verdict.sentences[0]
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_line_is_good_on_a_line_and_unfit_on_a_wide_loop(sign: float) -> None:
+    u = drive("triangle", 5.0, 1)
+    assert verdict_on(record(u, sign * 3.0 * u + 1.0, 0.01), "linear").level == "good"
+    assert verdict_on(record(u, sign * switching(u), 0.01), "linear").level == "unfit"
+
+
+def test_a_line_on_a_narrow_loop_is_fair() -> None:
+    u = drive("triangle", 5.0, 1)
+    y = u + 0.3 * hyst.PrandtlIshlinskii([1.0], [1.0], 0.0)(u)
+    assert verdict_on(record(u, y, 0.002), "linear").level == "fair"
+
+
+def test_a_model_with_memory_that_is_hardly_better_than_a_line_is_unfit() -> None:
+    """The output turns before the input, and plays turn after it."""
+    u = drive("sine", 1.0, 1)
+    y = u - 0.5 * hyst.PrandtlIshlinskii([1.0], [0.3], 0.0)(u)
+    verdict = verdict_on(record(u, y, 0.002), weights="non-negative")
+    assert verdict.level == "unfit"
+    assert "hardly better than a straight line" in verdict.sentences[0]
+
+
+def test_drift_and_hum_do_not_make_a_model_unfit() -> None:
+    """They are none of the model, whatever a line leaves beside them."""
+    u = drive("triangle", 40.0, 3)
+    y = plays(40.0, 3)(u)
+    t = np.arange(u.size) * DT
+    for more in (0.3 * np.ptp(y) * t / t[-1], 0.15 * np.ptp(y) * np.sin(2.0 * np.pi * 50.0 * t)):
+        assert verdict_on(record(u, y + more, 0.002)).level == "fair"
+
+
+@pytest.mark.parametrize("pole", [0.7, 0.95])
+def test_coloured_noise_is_the_records_own_where_the_drive_repeats(pole: float) -> None:
+    """Without repetition nobody can tell it from what the model lacks, and that is said."""
+    rng = np.random.default_rng(2)
+    coloured = np.empty(4000)
+    state = 0.0
+    for k, each in enumerate(rng.normal(size=4000)):
+        state = pole * state + each
+        coloured[k] = state
+    coloured *= 0.01 / coloured.std()
+    again, once = drive("triangle", seed=1), drive("multisine", seed=1)
+    assert verdict_on(record(again, plays()(again) + coloured)).level == "good"
+    verdict = verdict_on(record(once, plays()(once) + coloured))
+    assert verdict.level == "fair"
+    assert any("several times" in each for each in verdict.sentences)
+
+
+def test_a_few_samples_cannot_tell_noise_from_misfit() -> None:
+    k = np.arange(60)
+    u = np.sin(k / 3.0)
+    y = u + 0.3 * np.sign(np.cos(k / 3.0))
+    verdict = verdict_on(record(u, y, 0.005), plays=1)
+    assert verdict.level != "good"
+
+
+def test_validation_far_above_training_is_told_with_both_numbers() -> None:
+    u = drive("triangle", 1.0, 1)
+    true = plays(seed=1)
+    other = true(0.3 * u) * 1.5
+    seen = record(0.3 * u, other, 0.002, 7)
+    found = hyst.identify(record(u, true(u), 0.002), family="pi", plays=3, delay=0, validation=seen)
+    training, judged = found.metrics["training"].rms, found.metrics["validation"].rms
+    assert judged > 3.0 * training
+    assert found.verdict.level == "fair"
+    first = found.verdict.sentences[0]
+    assert f"{training:.3g} um" in first
+    assert f"{judged:.3g} um" in first
+    assert "less far" in first
+
+
+def test_validation_as_good_as_training_is_not_told() -> None:
+    u, v = drive("triangle", 1.0, 1), drive("decaying sine", 1.0, 2)
+    true = plays(seed=1)
+    found = hyst.identify(
+        record(u, true(u), 0.002),
+        family="pi",
+        plays=3,
+        delay=0,
+        validation=record(v, true(v), 0.002, 3),
+    )
+    assert found.verdict.level == "good"
+
+
+def test_a_validation_record_that_it_knows_nothing_of_is_unfit() -> None:
+    u = drive("triangle", 1.0, 1)
+    true = plays(seed=1)
+    noise = hyst.Record(u, np.random.default_rng(1).normal(size=u.size), DT)
+    found = hyst.identify(
+        record(u, true(u), 0.002), family="pi", plays=3, delay=0, validation=noise
+    )
+    assert found.verdict.level == "unfit"
+
+
+def fitted(records: tuple[hyst.Record, ...]) -> tuple[object, Fit, dict[str, object]]:
+    options = Options((), silent, 0, "auto", 200, False)
+    family = hyst.families.PrandtlIshlinskii(plays=3)
+    found = find(records, [family], options)
+    return found.data, found.fit, metrics_by_record(found.data, found.fit.operator, ())
+
+
+@pytest.mark.parametrize(
+    ("severity", "level"), [("warning", "fair"), ("remark", "good"), ("left out", "good")]
+)
+def test_a_warning_of_the_diagnosis_allows_no_better_than_fair(severity: str, level: str) -> None:
+    u = drive("triangle", 1.0, 1)
+    data, fit, metrics = fitted((record(u, plays(seed=1)(u), 0.002),))
+    finding = Finding("output ahead of input", severity, "The output is 10 samples ahead.")
+    verdict = judge(data, fit, Diagnosis((finding,)), metrics)
+    assert verdict.level == level
+    assert ("output ahead of input" in verdict.sentences[0]) == (severity == "warning")
+
+
+@pytest.mark.parametrize("what", ["drift", "hum", "square", "rate", "change", "another shape"])
+@pytest.mark.parametrize("scales", [(2.0**-40, 2.0**33), (2.0**200, 2.0**-200)])
+def test_levels_and_causes_do_not_depend_on_units(what: str, scales: tuple[float, float]) -> None:
+    records = FOREIGN[what](drive("decaying sine", 1.0, 2), 2, 0.002)
+    given = records if isinstance(records, list) else [records]
+    scaled = [
+        dataclasses.replace(each, u=each.u * scales[0], y=each.y * scales[1]) for each in given
+    ]
+    plain, other = verdict_on(given), verdict_on(scaled)
+    assert other.level == plain.level
+    assert len(other.sentences) == len(plain.sentences)
+    # Percentages are the same to the last digit; amounts are in another unit.
+    for one, two in zip(plain.sentences, other.sentences, strict=True):
+        assert one.count("%") == two.count("%")
+        assert [part.split()[-1] for part in one.split(" %")[:-1]] == [
+            part.split()[-1] for part in two.split(" %")[:-1]
+        ]
