@@ -71,12 +71,6 @@ def test_a_start_that_leaves_next_to_nothing_is_used_or_refused(family: str, lef
     assert found.delay <= left // 2
 
 
-def test_records_of_different_sample_times() -> None:
-    other = hyst.Record(GIVEN.u, GIVEN.y, dt=2e-3)
-    with pytest.raises(hyst.InputError, match="record 2 has dt"):
-        hyst.identify([GIVEN, other])
-
-
 def test_a_constant_input() -> None:
     with pytest.raises(hyst.NotIdentifiableError, match="constant"):
         hyst.identify(hyst.Record(np.full(100, 2.0), GIVEN.y[:100], 1e-3))

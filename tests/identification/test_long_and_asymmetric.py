@@ -92,10 +92,3 @@ def test_strong_asymmetry_is_not_taken_for_delay(scale: float, most: int) -> Non
     y = y + 1e-3 * np.ptp(y) * np.random.default_rng(0).standard_normal(u.size)
     found = hyst.identify(hyst.Record(u, y, 1e-3), family="mpi", plays=4, knots=12)
     assert found.delay <= most
-
-
-def test_validation_with_another_sample_time_is_refused_where_there_is_a_delay() -> None:
-    training = record(TRUE_PI, delay=3)
-    other = hyst.Record(training.u, training.y, dt=2e-3)
-    with pytest.raises(hyst.InputError, match="delay of 3 samples"):
-        hyst.identify(training, family="pi", plays=3, validation=other)

@@ -14,6 +14,7 @@ from hyst._typed_command import carrying_out
 from hyst.cli.adapt import adapt
 from hyst.cli.compensate import compensate
 from hyst.cli.demo import demo
+from hyst.cli.diagnose import diagnose
 from hyst.cli.excite import excite
 from hyst.cli.exit_codes import BAD_INPUT, DONE, FAILURE
 from hyst.cli.export import export
@@ -34,6 +35,7 @@ app = typer.Typer(
     "1 failure.",
 )
 VERBS = (
+    diagnose,
     excite,
     identify,
     fit,

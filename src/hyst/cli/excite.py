@@ -122,7 +122,7 @@ def excite(
         register=register,
         seed=seed,
     )
-    _write(drive, out, name)
+    show_files(write_drive(drive, out, name))
     _tell(drive, fir_order, name)
 
 
@@ -132,13 +132,14 @@ def _samples(duration: float, rate: float) -> int:
     return max(round(min(count, 1e18)), 1)
 
 
-def _write(drive: hyst.signals.Drive, out: Path, name: str) -> None:
+def write_drive(drive: hyst.signals.Drive, out: Path, name: str) -> list[Path]:
+    """Write a drive as CSV, and a figure of it beside that; give both files."""
     label, unit = hyst.io.split_unit(name)
     figure = out.with_suffix(".png")
     hyst.io.write_columns(out, ["time [s]", hyst.io.join_unit(label, unit)], (drive.time, drive.u))
     with replacing(figure) as temporary:
         temporary.write_bytes(hyst.report.draw_drive(drive, label, unit))
-    show_files([out, figure])
+    return [out, figure]
 
 
 def _tell(drive: hyst.signals.Drive, fir_order: int, name: str) -> None:

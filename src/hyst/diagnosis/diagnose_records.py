@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import NO_SAMPLES, SEVERITIES, Finding, Severity
+from hyst.diagnosis.next_drive import NextDrive, next_drive
 from hyst.diagnosis.registry import FINDERS
 from hyst.errors import InputError
 from hyst.signals import Record
@@ -24,9 +25,12 @@ class Diagnosis:
     ----------
     findings
         Each with a name, a severity, a sentence and advice.
+    next_drive
+        The drive that would add most, with ``.command`` and ``.drive``; None where nothing moves.
     """
 
     findings: tuple[Finding, ...]
+    next_drive: NextDrive | None = None
 
     def of(self, severity: Severity) -> tuple[Finding, ...]:
         """Give the findings of one severity.
@@ -79,7 +83,10 @@ class Diagnosis:
 
     def to_dict(self) -> dict[str, Any]:
         """Give everything as plain numbers and text."""
-        return {"findings": [each.to_dict() for each in self.findings]}
+        return {
+            "findings": [each.to_dict() for each in self.findings],
+            "next_drive": None if self.next_drive is None else self.next_drive.command,
+        }
 
 
 def diagnose(records: Record | Sequence[Record]) -> Diagnosis:
@@ -116,5 +123,10 @@ def diagnose(records: Record | Sequence[Record]) -> Diagnosis:
         if not isinstance(record, Record):
             raise InputError(f"record {number} is {type(record).__name__}; give a hyst.Record")
     evidence = Evidence(given)
-    found = [each for find in FINDERS for each in find(evidence)]
-    return Diagnosis(tuple(sorted(found, key=lambda each: SEVERITIES.index(each.severity))))
+    found: list[Finding] = []
+    for find in FINDERS:
+        new = tuple(find(evidence))
+        evidence.tell(new)
+        found += new
+    worst_first = sorted(found, key=lambda each: SEVERITIES.index(each.severity))
+    return Diagnosis(tuple(worst_first), evidence.once("next drive", lambda: next_drive(evidence)))

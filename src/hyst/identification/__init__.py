@@ -6,8 +6,7 @@ from hyst.identification.families.registry import chosen_families, names_of, req
 from hyst.identification.identify_records import identify
 from hyst.identification.record_use.part_of_a_sample import later
 from hyst.identification.record_use.used_samples import UsedSamples
-from hyst.identification.result.identified import Candidate, Identified
-from hyst.identification.result.late_output import late_output
+from hyst.identification.result.identified import Candidate, Identified, late_output
 from hyst.identification.result.record_errors import RecordErrors
 from hyst.identification.slopes import Slopes, identify_weights_from_slopes
 

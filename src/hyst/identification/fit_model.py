@@ -16,7 +16,8 @@ from hyst.identification.choice.selection import settled
 from hyst.identification.families.family import Family, Fit, Start, Words
 from hyst.identification.fit.bounded_least_squares import Solution
 from hyst.identification.fit.parametrization import Parametrization, selection
-from hyst.identification.options import Options, as_delay, listed, require_sample_time, silent
+from hyst.identification.options import Options, as_delay, listed, silent
+from hyst.identification.record_use.cleaned import as_drift, cleaned
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data, prepare, require_same_units
 from hyst.identification.result.identified import Identified
@@ -69,8 +70,9 @@ def fit(
     *,
     free: Iterable[str] | None = None,
     bounds: Mapping[str, Bound] | None = None,
-    delay: int = 0,
+    delay: float = 0,
     start: int | Literal["auto"] = "auto",
+    drift: Literal["auto", False] = "auto",
     validation: Record | Sequence[Record] = (),
     max_iterations: int = 200,
     allow_unconverged: bool = False,
@@ -89,7 +91,7 @@ def fit(
         Any operator or composition; its constants are where the search starts, its initial state is
         kept.
     records
-        One or more records of one actuator with one sample time, that of the model if it has one.
+        One or more records of one actuator, with the sample time of the model if it has one.
     free
         Names of the constants that may move, as in ``model.parameters().names``; a name without its
         index, as ``"prandtl_ishlinskii.p"``, stands for all entries, that of a stage for all its
@@ -98,8 +100,8 @@ def fit(
         By name, as for ``free``: lowest and highest value, in the constant's unit. A constant stays
         within its own bounds (``model.parameters()``) too.
     delay
-        Whole samples by which the output lags the input.
-    start, validation, max_iterations, allow_unconverged, progress
+        Samples by which the output lags the input, parts of one included.
+    start, drift, validation, max_iterations, allow_unconverged, progress
         As in ``hyst.identify``.
 
     Returns
@@ -138,14 +140,14 @@ def fit(
     require_same_units((*given, *judged))
     parametrization, theta = parametrize_own(model, free, bounds or {})
     options = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
-    data = prepare(given, start, 0, fewest_turns=0)
+    diagnosis = diagnose(given)
+    clean = cleaned(given, diagnosis, as_drift(drift))
+    data = clean.marked(prepare(clean.records, start, fewest_turns=0))
     data = data.delayed(as_delay(delay, data, ""))
     for record in (*given, *judged):
         model.require_sample_time(record.dt)
     with threadpool_limits(1, user_api="blas"):
-        diagnosis = diagnose(given)
         found = _fitted(OwnModel(parametrization, theta), data, options)
-        require_sample_time(judged, data)
         told = identified_from_fit(data, found, (), judged, (), diagnosis)
     # With other constants it is of the family it was of.
     family = model.description.family

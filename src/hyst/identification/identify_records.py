@@ -10,7 +10,8 @@ from threadpoolctl import threadpool_limits
 from hyst.diagnosis import diagnose
 from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families
-from hyst.identification.options import Options, listed, require_sample_time, silent
+from hyst.identification.options import Options, listed, silent
+from hyst.identification.record_use.cleaned import as_drift, cleaned
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import require_same_units
 from hyst.identification.result.identified import Identified
@@ -24,8 +25,9 @@ def identify(
     records: Record | Sequence[Record],
     *,
     family: str | Family = "auto",
-    delay: int | Literal["auto"] = "auto",
+    delay: float | Literal["auto"] = "auto",
     start: int | Literal["auto"] = "auto",
+    drift: Literal["auto", False] = "auto",
     validation: Record | Sequence[Record] = (),
     max_iterations: int = 200,
     allow_unconverged: bool = False,
@@ -40,20 +42,26 @@ def identify(
     Parameters
     ----------
     records
-        One or more records of one actuator with one sample time. They are not joined: each has its
-        own memory.
+        One or more records of one actuator, each with its own memory and, but for dynamics, its own
+        sample time. What ``hyst.diagnose`` finds in them is acted on: samples that are no
+        measurements do not count.
     family
         A name; several with commas between them, which are compared by blocked cross-validation,
         the simplest within one standard error of the best being taken; ``"auto"``: those that
         suit most actuators; or a family with its options, as
         ``hyst.families.RateDependent(spacing="free")``.
     delay
-        Whole samples by which the output lags the input, or ``"auto"``. The model is identified
-        without it; ``Identified.predict`` adds it. With dynamics it is part of the model.
+        Samples by which the output lags the input, parts of one included and negative where it is
+        ahead, or ``"auto"``: 0 unless the records exclude it. The model is identified without it;
+        ``Identified.predict`` adds it. With dynamics it is part of the model, and whole.
     start
         First sample to use. ``"auto"``: the first at which the memory is known whatever was before,
         because the input has passed its range; all samples with no memory before them if that would
         leave less than half of the record.
+    drift
+        ``"auto"``: slow drift of the output, and sines in it that are none of its drive, as mains
+        hum, are taken out before the fit where ``hyst.diagnose`` finds them; ``False``: the output
+        is left as it is.
     validation
         Records to judge the model by; they do not take part in the fit.
     max_iterations
@@ -94,12 +102,11 @@ def identify(
     given, judged = listed(records), listed(validation, "validation record")
     require_same_units((*given, *judged))
     wanted = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
-    families = chosen_families(family, options)
+    families, about_drift = chosen_families(family, options), as_drift(drift)
     with threadpool_limits(1, user_api="blas"):
         diagnosis = diagnose(given)
         # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
-        found = find(given, families, wanted)
-        require_sample_time(judged, found.data)
+        found = find(cleaned(given, diagnosis, about_drift), families, wanted)
         for number, record in enumerate(judged, 1):
             found.fit.operator.require_sample_time(record.dt, f"validation record {number}")
         identified = identified_from_fit(

@@ -33,7 +33,7 @@ class Options:
 
     validation: tuple[Record, ...]
     say: Callable[[str], None]
-    delay: int | str = AUTO
+    delay: float | str = AUTO
     start: int | Literal["auto"] = "auto"
     max_iterations: int = 200
     allow_unconverged: bool = False
@@ -93,7 +93,7 @@ def silent(_: str) -> None:
     """Report progress to nobody."""
 
 
-def as_delay(delay: int | str, data: Data, more: str = ", or 'auto'") -> int:
+def as_delay(delay: float | str, data: Data, more: str = ", or 'auto'") -> float:
     """Check a delay that is given.
 
     Parameters
@@ -108,32 +108,15 @@ def as_delay(delay: int | str, data: Data, more: str = ", or 'auto'") -> int:
     Raises
     ------
     InputError
-        If it is no number of samples a record has.
+        If it is no number, or so large that a record has no samples left.
     """
     shortest = min(len(r) - s for r, s in zip(data.records, data.starts, strict=True))
-    return whole_number(delay, "delay", 0, shortest - 1, f" samples{more}")
-
-
-def require_sample_time(validation: Sequence[Record], data: Data) -> None:
-    """Refuse to apply a delay in samples to records of another sample time.
-
-    Parameters
-    ----------
-    validation
-        Records to judge by.
-    data
-        The training records with their delay.
-
-    Raises
-    ------
-    InputError
-        If a record has another sample time and the delay is not 0.
-    """
-    dt = data.records[0].dt
-    for number, record in enumerate(validation, 1):
-        if data.delay and not np.isclose(record.dt, dt, rtol=1e-6, atol=0.0):
-            raise InputError(
-                f"validation record {number} has dt = {record.dt:.6g} s, the training records "
-                f"{dt:.6g} s; the delay of {data.delay} samples means another time there, so give "
-                "records of one sample time"
-            )
+    if isinstance(delay, bool | str) or not isinstance(delay, int | float | np.number):
+        raise InputError(f"delay is {delay!r}; give a number of samples{more}")
+    lag = float(delay)
+    if not abs(lag) <= shortest - 1:
+        raise InputError(
+            f"delay is {delay}; give {1 - shortest} to {shortest - 1} samples, parts of one "
+            f"included{more}"
+        )
+    return int(lag) if lag.is_integer() else lag

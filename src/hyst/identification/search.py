@@ -28,10 +28,10 @@ from hyst.identification.families.option import AUTO
 from hyst.identification.fit.bounded_least_squares import CONVERGED
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.options import Options, as_delay
+from hyst.identification.record_use.cleaned import Cleaned
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.identified import Candidate
-from hyst.signals import Record
 
 MOST_STARTS = 3
 """Of the final fit."""
@@ -69,7 +69,7 @@ class _Task:
     scales: tuple[float, float]
     notes: tuple[str, ...]
 
-    def delayed(self, delay: int) -> _Task:
+    def delayed(self, delay: float) -> _Task:
         return replace(self, given=self.given.delayed(delay), data=self.data.delayed(delay))
 
     def searched(self) -> Data:
@@ -77,7 +77,7 @@ class _Task:
         return self.family.searched(self.data)
 
 
-def find(records: tuple[Record, ...], families: Sequence[Family], options: Options) -> Found:
+def find(records: Cleaned, families: Sequence[Family], options: Options) -> Found:
     """Choose delay, family and size, and fit it.
 
     Long records are searched in thinned form; the last fit takes every sample. An automatic delay
@@ -86,7 +86,7 @@ def find(records: tuple[Record, ...], families: Sequence[Family], options: Optio
     Parameters
     ----------
     records
-        The training records.
+        The training records, cleaned.
     families
         From the simplest to the richest.
     options
@@ -123,14 +123,15 @@ def find(records: tuple[Record, ...], families: Sequence[Family], options: Optio
 
 
 def _tasks(
-    families: Sequence[Family], records: tuple[Record, ...], options: Options
+    families: Sequence[Family], records: Cleaned, options: Options
 ) -> tuple[list[_Task], tuple[str, ...]]:
     """Prepare the families that the records can serve, and say why others are not compared."""
     used = dict[Family, tuple[Data, tuple[str, ...]]]()
     refusals = dict[str, NotIdentifiableError]()
     for family in families:
         try:
-            used[family] = family.records_to_use(records, options.start)
+            data, left_out = family.records_to_use(records.records, options.start)
+            used[family] = records.marked(data), left_out
         except NotIdentifiableError as refusal:
             refusals[family.name] = refusal
     if not used:

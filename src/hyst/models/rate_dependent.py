@@ -116,6 +116,12 @@ class RateDependentPrandtlIshlinskii(Operator):
             f"dt={self.dt!r}, p0={self.p0!r}, z0={self.z0!r})"
         )
 
+    def at_sample_time(self, dt: float) -> RateDependentPrandtlIshlinskii:
+        """Give the same model for records of another sample time: rates are in seconds."""
+        if dt == self.dt:
+            return self
+        return RateDependentPrandtlIshlinskii(self.p, self.r, self.rate_curve, dt, self.p0, self.z0)
+
     def at_rest(self) -> PrandtlIshlinskii:
         """Give the rate-independent model that this one becomes at low rates (S4 eq. 26).
 

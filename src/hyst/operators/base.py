@@ -75,6 +75,27 @@ class Operator(Described, Constants, ABC):
                 "own sample time only, so resample the record or identify the model anew"
             )
 
+    def at_sample_time(self, dt: float) -> Operator:
+        """Give the same operator for records of another sample time.
+
+        Parameters
+        ----------
+        dt
+            Sample time of the record, seconds.
+
+        Returns
+        -------
+        Operator
+            The operator itself where any sample time will do, or this one.
+
+        Raises
+        ------
+        InputError
+            If its constants hold for its own sample time only.
+        """
+        self.require_sample_time(dt)
+        return self
+
     @abstractmethod
     def inverse(self) -> Operator:
         """Give the exact inverse, with its initial state, so that both cancel from sample 0 on.

@@ -60,6 +60,12 @@ class Chained(Operator):
         """The sample time of the parts that have one, seconds."""
         return _common_sample_time(self.parts)
 
+    def at_sample_time(self, dt: float) -> Operator:
+        """Give the same composition with every part for another sample time."""
+        if self.dt is None:
+            return self
+        return self._with_parts(tuple(part.at_sample_time(dt) for part in self.parts))
+
     def initial_state(self) -> Array:
         """Give the states of the parts, one after the other."""
         return np.concatenate([part.initial_state() for part in self.parts])

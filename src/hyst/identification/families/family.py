@@ -110,7 +110,7 @@ class Family(ABC):
         tuple of str
             Sentences for the user.
         """
-        return prepare(records, start, 0), ()
+        return prepare(records, start), ()
 
     def suited(self, data: Data) -> tuple[Self, tuple[str, ...]]:
         """Fit the options to the records: refuse, or leave out with a sentence, what cannot be.

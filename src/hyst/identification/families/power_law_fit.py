@@ -167,7 +167,7 @@ class _Regressor:
         self.unit = data.half_range
 
     def __call__(self, c3: float) -> Array:
-        return np.concatenate(self.by_record(c3))
+        return self._data.joined(self.by_record(c3))
 
     def by_record(self, c3: float) -> list[Array]:
         curve = PowerLaw(0.0, self.unit**-c3, c3)
@@ -180,7 +180,7 @@ class _Regressor:
         return [record.u[window] for record, window in windows]
 
     def input(self) -> Array:
-        return np.concatenate(self.inputs())
+        return self._data.inputs()
 
 
 Table = Callable[[float], tuple[Array, Array]]
@@ -206,16 +206,15 @@ def _slope_table(data: Data, regressor: _Regressor, sign: float, signal_to_noise
     The secant of g takes the place of p^c3 in the middle, which it is up to second order, and is
     right in both memories.
     """
-    outputs = [
-        sign * record.y[window.start + data.delay : window.stop + data.delay]
-        for record, window in zip(data.records, data.windows(), strict=True)
-    ]
+    outputs = [sign * each for each in data.outputs()]
     inputs = regressor.inputs()
     du = np.concatenate([np.diff(each) for each in inputs])
     dy = np.concatenate([np.diff(each) for each in outputs])
     noise = np.sqrt(2.0) * max(estimate_noise(each) for each in outputs)
     mean_slope = np.ptp(np.concatenate(outputs)) / (2.0 * data.half_range)
-    used = (np.abs(du) > 0.0) & (np.abs(du) * mean_slope > signal_to_noise * noise)
+    used = (
+        _both_count(data) & (np.abs(du) > 0.0) & (np.abs(du) * mean_slope > signal_to_noise * noise)
+    )
     if used.sum() < FEWEST_SLOPES:
         raise NotIdentifiableError(
             f"only {int(used.sum())} differences of the output are {signal_to_noise:g} times their "
@@ -228,6 +227,16 @@ def _slope_table(data: Data, regressor: _Regressor, sign: float, signal_to_noise
         return np.column_stack([np.ones(target.size), dg[used] / du[used]]), target
 
     return table
+
+
+def _both_count(data: Data) -> NDArray[np.bool_]:
+    """Tell of which differences both samples count."""
+    counted = zip(data.counted(), data.windows(), strict=True)
+    each = [
+        np.ones(w.stop - w.start, dtype=np.bool_) if counts is None else counts
+        for counts, w in counted
+    ]
+    return np.concatenate([counts[1:] & counts[:-1] for counts in each])
 
 
 def _solve(matrix: Array, target: Array) -> tuple[Array, float]:

@@ -167,8 +167,8 @@ class RateDependent(Family):
         if weights == HYSTERESIS:
             percent = np.array(
                 [
-                    hysteresis_percent(r.u[w], r.y[w])
-                    for r, w in zip(data.records, data.windows(), strict=True)
+                    hysteresis_percent(r.u[w], y)
+                    for r, w, y in zip(data.records, data.windows(), data.outputs(), strict=True)
                 ]
             )
             if percent[0] == 0.0:
@@ -179,8 +179,7 @@ class RateDependent(Family):
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
         """Give the best points of a grid over radii and beta, weights by least squares."""
         data = overview.data
-        dt = data.records[0].dt
-        fastest = max(float(np.abs(np.diff(each.u)).max()) for each in data.records) / dt
+        fastest = max(float(np.abs(np.diff(each.u)).max()) / each.dt for each in data.records)
         has_rate = not _frequency_note(data)
         parametrization = self._parametrize(overview, size, has_rate)
         guesses = [
@@ -278,11 +277,11 @@ def _sorted_plays(n: int) -> Any:
 def _frequency_note(data: Data) -> tuple[str, ...]:
     """Say what it means if the records hold one frequency only; nothing if they hold more."""
     durations = np.concatenate(
-        [np.diff(reversals(r.u, 0.05 * float(np.ptp(r.u)))) for r in data.records]
+        [r.dt * np.diff(reversals(r.u, 0.05 * float(np.ptp(r.u)))) for r in data.records]
     )
     if durations.size and durations.max() > _ONE_FREQUENCY * durations.min():
         return ()
-    frequency = 0.5 / (float(np.median(durations)) * data.records[0].dt) if durations.size else 0.0
+    frequency = 0.5 / float(np.median(durations)) if durations.size else 0.0
     return (
         f"all records turn at one frequency, {frequency:.4g} Hz: beta and a linear lag cannot be "
         "told apart; beta was left at 0, so the model holds at that frequency only; add records at "

@@ -32,7 +32,7 @@ def bank_matrix(data: Data, r: Array) -> Array:
         z = np.empty((len(record), r.size))
         _engine.play_outputs(r.tolist(), np.zeros(r.size), record.u, z)
         blocks.append(np.column_stack([record.u[window], z[window]]))
-    return np.concatenate(blocks)
+    return data.joined(blocks)
 
 
 def bank_gram(data: Data, r: Array, u_origin: float = 0.0, y_origin: float = 0.0) -> Array:
@@ -56,11 +56,21 @@ def bank_gram(data: Data, r: Array, u_origin: float = 0.0, y_origin: float = 0.0
     """
     width = r.size + 3
     total = np.zeros((width, width))
-    for record, window in zip(data.records, data.windows(), strict=True):
-        gram = np.zeros((1, width, width))
+    passes = zip(data.records, data.windows(), data.brought_forward(), data.counted(), strict=True)
+    for record, window, output, counts in passes:
         u = record.u[: window.stop] - u_origin
-        y = record.y[data.delay :] - y_origin
-        edges = [window.start, window.stop]
+        y = output - y_origin
+        edges = _edges(window, counts)
+        gram = np.zeros((len(edges) - 1, width, width))
         _engine.play_gram(r.tolist(), np.full(r.size, -u_origin), u, y, edges, gram)
-        total += gram[0]
+        first = 0 if counts is None or counts[0] else 1
+        total += gram[first::2].sum(axis=0) if len(gram) > 1 else gram[0]
     return total
+
+
+def _edges(window: slice, counts: NDArray[np.bool_] | None) -> list[int]:
+    """Give where samples that count and samples that do not take turns, both ends included."""
+    if counts is None:
+        return [window.start, window.stop]
+    turns = window.start + 1 + np.flatnonzero(np.diff(counts))
+    return [window.start, *turns.tolist(), window.stop]

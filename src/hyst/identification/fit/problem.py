@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,8 +41,11 @@ def model_output(data: Data, operator: Operator) -> Array:
     numpy.ndarray
         Shape (samples used,).
     """
-    return np.concatenate(
-        [operator(r.u[: w.stop])[w] for r, w in zip(data.records, data.windows(), strict=True)]
+    return data.joined(
+        [
+            operator.at_sample_time(r.dt)(r.u[: w.stop])[w]
+            for r, w in zip(data.records, data.windows(), strict=True)
+        ]
     )
 
 
@@ -60,12 +64,22 @@ def model_jacobian(data: Data, operator: Operator) -> Array:
     numpy.ndarray
         Shape (samples used, constants).
     """
-    return np.concatenate(
+    return data.joined(
         [
-            operator.jacobian(r.u[: w.stop])[w]
+            operator.at_sample_time(r.dt).jacobian(r.u[: w.stop])[w]
             for r, w in zip(data.records, data.windows(), strict=True)
         ]
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Pass:
+    """One record: the chain at its sample time, its input, its window, and what counts of it."""
+
+    chain: _engine.Chain
+    u: Array
+    window: slice
+    counts: NDArray[np.bool_] | None
 
 
 class Evaluation:
@@ -84,45 +98,71 @@ class Evaluation:
 
     def __init__(self, data: Data, parametrization: Parametrization) -> None:
         self._parametrization = parametrization
-        self._chain = _engine.Chain(parametrization.template.stages())
+        self._joined = data.joined
+        self._lengths = data.lengths()
         self._start = parametrization.template.initial_state()
+        chains = {
+            dt: _engine.Chain(parametrization.template.at_sample_time(dt).stages())
+            for dt in _sample_times(data, parametrization.template)
+        }
+        self._chains = tuple(chains.values())
         self._passes = [
-            (np.ascontiguousarray(record.u[: window.stop]), window)
-            for record, window in zip(data.records, data.windows(), strict=True)
+            _Pass(
+                chains.get(record.dt, self._chains[0]),
+                np.ascontiguousarray(record.u[: window.stop]),
+                window,
+                counts,
+            )
+            for record, window, counts in zip(
+                data.records, data.windows(), data.counted(), strict=True
+            )
         ]
 
     def output(self, theta: Array) -> Array:
         """Give the output of the model of canonical theta, shape (samples used,)."""
-        self._chain.set_parameters(self._parametrization.constants(theta))
+        self._set(theta)
         parts = []
-        for u, window in self._passes:
-            y = np.empty((1, u.size))
-            if self._chain.run(self._start[None, :].copy(), u[None, :], y) >= 0:
-                self._parametrization.operator(theta)(u)  # names the sample that overflows
-            parts.append(y[0, window])
-        return parts[0] if len(parts) == 1 else np.concatenate(parts)
+        for each in self._passes:
+            y = np.empty((1, each.u.size))
+            if each.chain.run(self._start[None, :].copy(), each.u[None, :], y) >= 0:
+                self._parametrization.operator(theta)(each.u)  # names the sample that overflows
+            parts.append(y[0, each.window])
+        return self._joined(parts)
 
     def jacobian(self, theta: Array) -> Array:
         """Give its derivative by theta, shape (samples used, m)."""
-        self._chain.set_parameters(self._parametrization.constants(theta))
-        lengths = [window.stop - window.start for _, window in self._passes]
-        result = np.empty((sum(lengths), theta.size))
+        self._set(theta)
+        result = np.empty((sum(self._lengths), theta.size))
         row = 0
-        for (u, window), length in zip(self._passes, lengths, strict=True):
-            by_constants = self._rows[: u.size]
-            self._chain.jacobian(self._start.copy(), u, by_constants)
+        for each, length in zip(self._passes, self._lengths, strict=True):
+            by_constants = self._rows[: each.u.size]
+            each.chain.jacobian(self._start.copy(), each.u, by_constants)
+            rows = by_constants[each.window]
             np.matmul(
-                by_constants[window],
+                rows if each.counts is None else rows[each.counts],
                 self._parametrization.transform,
                 out=result[row : row + length],
             )
             row += length
         return result
 
+    def _set(self, theta: Array) -> None:
+        constants = self._parametrization.constants(theta)
+        for chain in self._chains:
+            chain.set_parameters(constants)
+
     @functools.cached_property
     def _rows(self) -> Array:
         """Room for the derivatives by all constants; fresh memory costs more than to fill it."""
-        return np.empty((max(u.size for u, _ in self._passes), self._chain.parameter_count))
+        return np.empty(
+            (max(each.u.size for each in self._passes), self._chains[0].parameter_count)
+        )
+
+
+def _sample_times(data: Data, operator: Operator) -> list[float]:
+    """Give the sample times at which an operator differs; one for one that has none."""
+    times = dict.fromkeys(record.dt for record in data.records)
+    return list(times) if operator.dt is not None else [data.records[0].dt]
 
 
 def problem_of(

@@ -30,14 +30,13 @@ class Overview:
     """
 
     data: Data
-    delay: int | str = "auto"
+    delay: float | str = "auto"
     _found: dict[Hashable, object] = field(default_factory=dict, init=False, repr=False)
 
     @functools.cached_property
     def input(self) -> Array:
         """Inputs over the samples used, all records one after the other, shape (samples,)."""
-        windows = zip(self.data.records, self.data.windows(), strict=True)
-        return np.concatenate([record.u[window] for record, window in windows])
+        return self.data.inputs()
 
     @functools.cached_property
     def sign(self) -> float:

@@ -49,3 +49,10 @@ def later(u: Array, part: float) -> Array:
     corners = turns if part < 0.5 else np.minimum(turns + 1, u.size - 1)
     moved[corners] = u[turns]
     return np.asarray(moved)
+
+
+def by_whole_samples(y: Array, late: int) -> Array:
+    """Give a signal ``late`` samples later, its first or last value where there is no other."""
+    if late == 0:
+        return y
+    return np.asarray(y[np.clip(np.arange(y.size) - late, 0, y.size - 1)])

@@ -9,6 +9,8 @@ searched and compared in this form; the last fit always takes every sample.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -49,14 +51,24 @@ def thinned(data: Data, most: int = MOST_SAMPLES) -> Data:
     total = sum(window.stop for window in data.windows())
     if total <= most:
         return data
-    records, starts = [], []
-    for record, window in zip(data.records, data.windows(), strict=True):
+    records, starts, counted = [], [], list[NDArray[np.bool_] | None]()
+    passes = zip(data.records, data.windows(), data.brought_forward(), data.counted(), strict=True)
+    for record, window, y, counts in passes:
         share = max(int(most * window.stop / total), 2 * STRETCHES)
-        u, y = record.u[: window.stop], record.y[data.delay : data.delay + window.stop]
+        u = record.u[: window.stop]
         for kept, first in _pieces(u, window.start, share, 2.0 * data.half_range):
             records.append(Record(u[kept], y[kept], record.dt * total / most))
             starts.append(first)
-    return Data(tuple(records), tuple(starts), 0, data.half_range, data.settled)
+            counted.append(None if counts is None else counts[np.maximum(kept - window.start, 0)])
+    return replace(
+        data,
+        records=tuple(records),
+        starts=tuple(starts),
+        lag=0.0,
+        kept=tuple(counted) if data.kept else (),
+        disturbances=(),
+        measured_inputs=(),
+    )
 
 
 def _pieces(u: Array, start: int, most: int, span: float) -> list[tuple[Indices, int]]:

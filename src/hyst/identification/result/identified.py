@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.arrays import finite_vector
 from hyst.diagnosis import Diagnosis
+from hyst.identification.record_use.part_of_a_sample import by_whole_samples, later
 from hyst.identification.record_use.used_samples import UsedSamples
-from hyst.identification.result.late_output import late_output
+from hyst.identification.result.bands import NEW, Bands, as_level
 from hyst.identification.result.record_errors import RecordErrors
 from hyst.operators import ModelDescription, Operator, Verdict
 from hyst.operators.plain_data import as_number
@@ -59,8 +62,8 @@ class Identified:
     family
         Its name in ``hyst.families``; empty for a model of no family, as of ``hyst.fit``.
     delay
-        Samples by which the measured output lags the model's output; may be a fraction, and is
-        negative where the output is ahead of the input, as channels that are not aligned show it.
+        Samples by which the measured output lags the model's output; parts of one count, and it is
+        negative where the output is ahead of the input.
     parameter_names, parameter_values, standard_errors
         The free parameters with their standard errors, which take the autocorrelation of the
         residual into account; NaN where a value lies on a bound or is not determined.
@@ -86,6 +89,8 @@ class Identified:
         where it was given.
     diagnosis
         What the records showed before any model.
+    bands
+        What ``band`` is made of.
     per_record
         Errors over each of the records it was identified from, in their order.
     """
@@ -106,6 +111,7 @@ class Identified:
     verdict: Verdict
     delay_interval: tuple[float, float]
     diagnosis: Diagnosis
+    bands: Bands = field(repr=False)
     per_record: tuple[RecordErrors, ...]
 
     def __repr__(self) -> str:
@@ -130,8 +136,70 @@ class Identified:
         numpy.ndarray
             Shape (N,). The first ``delay`` samples repeat the first output; where the output is
             ahead of the input, the last ones repeat the last.
+
+        Raises
+        ------
+        InputError
+            If the drive is no finite vector.
         """
-        return late_output(self.model, u, self.delay)
+        return late_output(self.model, finite_vector(u, "u"), self.delay)
+
+    def band(self, u: ArrayLike, level: float = 0.95) -> tuple[Array, Array]:
+        """Give between which outputs most samples will be measured, slow drift left aside.
+
+        The band holds the noise of the records, what the model leaves beside it, how sure its
+        constants are, how far rival models go apart that fit the records equally well, and, where
+        the drive leads the memory to states that no record contained, how much more may be wrong
+        there (``is_new``).
+
+        Parameters
+        ----------
+        u
+            Drive, shape (N,), input units, from the state of rest.
+        level
+            Share of the samples to hold, above 0 and below 1.
+
+        Returns
+        -------
+        low, high : numpy.ndarray
+            Shape (N,), output units.
+
+        Raises
+        ------
+        InputError
+            If the drive is no finite vector, or the level is not between 0 and 1.
+        """
+        share, given = as_level(level), self._input(u)
+        y = self.model(given)
+        half = self.bands.half_width(given, y, share)
+        return self._as_measured(y - half), self._as_measured(y + half)
+
+    def is_new(self, u: ArrayLike) -> NDArray[np.bool_]:
+        """Tell where a drive leads the memory to states that no record contained.
+
+        Parameters
+        ----------
+        u
+            Drive, shape (N,), input units, from the state of rest.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (N,): where the output is extrapolated.
+
+        Raises
+        ------
+        InputError
+            If the drive is no finite vector.
+        """
+        return np.asarray(self._as_measured(self.bands.distances(self._input(u))) > NEW)
+
+    def _input(self, u: ArrayLike) -> Array:
+        """Give an input later by the part of a sample that the delay has beyond whole ones."""
+        return later(finite_vector(u, "u"), self.delay - math.floor(self.delay))
+
+    def _as_measured(self, y: Array) -> Array:
+        return by_whole_samples(y, math.floor(self.delay))
 
     def to_dict(self) -> dict[str, Any]:
         """Give everything but the model as plain numbers and text, for metrics.json.
@@ -193,6 +261,27 @@ class Identified:
             lines.append("(-: on a bound, or not determined by the records)")
         lines += [f"note: {sentence}" for sentence in self.undetermined]
         return "\n".join(lines)
+
+
+def late_output(model: Operator, u: Array, delay: float) -> Array:
+    """Give a model's output as late as it is measured.
+
+    Parameters
+    ----------
+    model
+        Without delay.
+    u
+        Shape (N,), input units.
+    delay
+        Samples, parts of one included; negative where the output is ahead.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (N,). What no sample of the input tells repeats the first or the last output.
+    """
+    whole = math.floor(delay)
+    return by_whole_samples(model(later(u, delay - whole)), whole)
 
 
 def _record_line(each: RecordErrors, unit: str) -> str:

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.diagnosis import Diagnosis
-from hyst.identification.families.family import Estimates, Fit
-from hyst.identification.fit.problem import Evaluation, model_output
+from hyst.identification.families.family import Fit
+from hyst.identification.fit.problem import model_output
 from hyst.identification.judgement.judge import judge
+from hyst.identification.record_use.part_of_a_sample import lag_in_samples
 from hyst.identification.record_use.used_samples import Data, prepare
+from hyst.identification.result.bands import bands_of
+from hyst.identification.result.fit_spread import spread_of_fit
 from hyst.identification.result.identified import Candidate, Identified
 from hyst.identification.result.record_errors import errors_by_record
-from hyst.identification.result.standard_errors import Spread, spread_of_estimates
 from hyst.operators import ModelDescription, Operator
 from hyst.operators.description import errors_of
 from hyst.operators.provenance import provenance
@@ -33,6 +35,7 @@ def identified_from_fit(
     validation: Sequence[Record],
     notes: tuple[str, ...],
     diagnosis: Diagnosis,
+    rivals: Sequence[Operator] = (),
 ) -> Identified:
     """Put the result of an identification together.
 
@@ -50,6 +53,8 @@ def identified_from_fit(
         Sentences about what was left out before the fit.
     diagnosis
         What the records showed before any model.
+    rivals
+        Models of other kinds that fit the records equally well.
 
     Returns
     -------
@@ -57,15 +62,15 @@ def identified_from_fit(
     """
     operator, estimates = fit.operator, fit.family.estimates(fit)
     errors, not_told_apart = np.full(len(estimates.names), np.nan), tuple[str, ...]()
+    spread = spread_of_fit(data, fit)
     if fit.family.estimates_noise:
-        spread = spread_of_fit(data, fit)
         errors = spread.of(estimates.by_theta)
         not_told_apart = spread.not_told_apart(estimates)
     metrics = metrics_by_record(data, operator, validation)
     return Identified(
         model=operator,
         family=fit.family.name,
-        delay=data.delay,
+        delay=data.lag,
         parameter_names=estimates.names,
         parameter_values=estimates.values,
         standard_errors=errors,
@@ -77,8 +82,9 @@ def identified_from_fit(
         used=data.used(),
         description=describe(data, fit.family.name),
         verdict=judge(data, fit, diagnosis, metrics),
-        delay_interval=(data.delay, data.delay),
+        delay_interval=(data.lag, data.lag),
         diagnosis=diagnosis,
+        bands=bands_of(data, fit, spread, rivals),
         per_record=errors_by_record(data, operator),
     )
 
@@ -110,114 +116,6 @@ def traced(found: Identified, records: Sequence[Record], options: Mapping[str, A
     return replace(found, description=about, model=found.model.with_description(about))
 
 
-@dataclass(frozen=True, eq=False)
-class FitSpread:
-    """How sure the free parameters of a fit are.
-
-    Parameters
-    ----------
-    spread
-        Of the parameters that lie on no bound.
-    inside
-        Shape (m,), which they are.
-    noise_rms
-        Of the residual, output units, the free parameters allowed for.
-    """
-
-    spread: Spread
-    inside: NDArray[np.bool_]
-    noise_rms: float
-
-    def of(self, by_theta: Array) -> Array:
-        """Give the standard errors of functions of theta.
-
-        Parameters
-        ----------
-        by_theta
-            Shape (q, m), their derivative.
-
-        Returns
-        -------
-        numpy.ndarray
-            Shape (q,), NaN where a function is held, depends on a parameter on its bound or is not
-            determined.
-        """
-        errors = np.full(len(by_theta), np.nan)
-        moves = by_theta[:, self.inside].any(axis=1)
-        known = moves & ~by_theta[:, ~self.inside].any(axis=1)
-        errors[known] = self.spread.of(by_theta[np.ix_(known, self.inside)])
-        return errors
-
-    def not_told_apart(self, estimates: Estimates) -> tuple[str, ...]:
-        """Name the estimates in every combination that the records do not determine.
-
-        Parameters
-        ----------
-        estimates
-            With their names.
-
-        Returns
-        -------
-        tuple of str
-            Sentences, none of which names what another does.
-        """
-        disturbed = self.spread.disturbed(estimates.by_theta[:, self.inside])
-        sentences = []
-        for together in _joined(disturbed):
-            names = ", ".join(
-                name for name, one in zip(estimates.names, together, strict=True) if one
-            )
-            sentences.append(
-                f"the records do not tell apart {names}; their values are one choice of many"
-                if together.sum() > 1
-                else f"the records do not determine {names}; its value is one choice of many"
-            )
-        return tuple(sentences)
-
-
-def _joined(disturbed: NDArray[np.bool_]) -> list[NDArray[np.bool_]]:
-    """Join directions that share an estimate, for any mixture of them is one, too.
-
-    Takes shape (q, k), which estimates each direction disturbs; gives shape (q,) for each group.
-    """
-    groups: list[NDArray[np.bool_]] = []
-    for column in disturbed.T[disturbed.any(axis=0)]:
-        shared = [each for each in groups if (each & column).any()]
-        groups = [each for each in groups if not (each & column).any()]
-        groups.append(np.logical_or.reduce([column, *shared]))
-    return groups
-
-
-def spread_of_fit(data: Data, fit: Fit) -> FitSpread:
-    """Find how sure the free parameters of a fit are.
-
-    Parameters
-    ----------
-    data
-        The records.
-    fit
-        The final fit, in their units.
-
-    Returns
-    -------
-    FitSpread
-    """
-    data = fit.family.fitted(data)
-    theta, parametrization = fit.solution.theta, fit.parametrization
-    evaluation = Evaluation(data, parametrization)
-    inside = parametrization.inside(theta)
-    jacobian = evaluation.jacobian(theta)[:, inside]
-    residual = evaluation.output(theta) - data.measured()
-    root = fit.family.root_weights(data)
-    if root is not None:
-        jacobian, residual = root[:, None] * jacobian, root * residual
-    gauges = parametrization.gauges
-    held = np.empty((0, theta.size)) if gauges is None else gauges(theta)[1]
-    spread = spread_of_estimates(jacobian, residual, data.lengths(), theta[inside], held[:, inside])
-    freedom = max(residual.size - int(inside.sum()) + len(held), 1)
-    return FitSpread(spread, inside, float(np.linalg.norm(residual) / np.sqrt(freedom)))
-
-
 def metrics_by_record(
     data: Data, operator: Operator, validation: Sequence[Record]
 ) -> dict[str, Metrics]:
@@ -238,10 +136,18 @@ def metrics_by_record(
         By name: ``training``, ``validation 1``, ..., each with and without a free offset.
     """
     metrics = _pair("training", data, operator)
+    if data.disturbances:
+        metrics |= _pair("training, disturbances left in", data.with_disturbances(), operator)
     for number, record in enumerate(validation, 1):
         name = "validation" if len(validation) == 1 else f"validation {number}"
-        metrics |= _pair(name, prepare(record, "auto", data.delay), operator)
+        metrics |= _pair(name, _validation_data(record, data), operator)
     return metrics
+
+
+def _validation_data(record: Record, data: Data) -> Data:
+    """Prepare a record that takes no part: it lags by the same time as the others."""
+    lag = lag_in_samples(data.lag, data.records[0].dt, record.dt)
+    return prepare(record, "auto", lag)
 
 
 def _pair(name: str, data: Data, operator: Operator) -> dict[str, Metrics]:
@@ -281,7 +187,7 @@ def describe(data: Data, family: str) -> ModelDescription:
         output_low=float(data.measured().min()),
         output_high=float(data.measured().max()),
         dt=first.dt,
-        delay=data.delay,
+        delay=data.lag,
         family=family,
         smallest_swing=_smallest_swing(data.records),
     )

@@ -63,7 +63,7 @@ class Spread:
         numpy.ndarray
             Shape (q,), NaN where a function is not determined.
         """
-        errors = self._if_determined(rows)
+        errors = self.if_determined(rows)
         errors[self.disturbed(rows).any(axis=1)] = np.nan
         return errors
 
@@ -84,10 +84,16 @@ class Spread:
         parts = np.abs(rows) @ np.abs(self.open_directions)
         moved = np.abs(rows @ self.open_directions)
         moved[moved <= ROUNDING_OF_DIRECTIONS * parts] = 0.0
-        return np.asarray(moved > NOT_DISTURBED * self._if_determined(rows)[:, None])
+        return np.asarray(moved > NOT_DISTURBED * self.if_determined(rows)[:, None])
 
-    def _if_determined(self, rows: Array) -> Array:
-        """Give the standard errors as if the open directions did not exist."""
+    def if_determined(self, rows: Array) -> Array:
+        """Give the standard errors as if the open directions did not exist.
+
+        Parameters
+        ----------
+        rows
+            Shape (q, m), linear functions of theta.
+        """
         plain = rows / self.unit
         size = np.abs(plain).max(axis=1, initial=0.0)
         size = np.ldexp(1.0, np.frexp(size)[1])

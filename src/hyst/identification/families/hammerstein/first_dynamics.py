@@ -32,7 +32,7 @@ _SIGNIFICANT = 4.0  # standard errors
 _NEGLIGIBLE = 0.02  # of the largest Markov parameter
 
 
-def delay_of(markov: MarkovParameters, wanted: int | str) -> int:
+def delay_of(markov: MarkovParameters, wanted: float | str) -> int:
     """Give whole samples before the response begins; one is left to a strictly proper system.
 
     Parameters
@@ -191,7 +191,9 @@ def signal_behind(data: Data, dynamics: LinearDynamics) -> Data:
             starts.append(max(valid.start, start))
     if not records:
         return data.delayed(dynamics.delay)
-    return replace(data, records=tuple(records), starts=tuple(starts), delay=0)
+    return replace(
+        data, records=tuple(records), starts=tuple(starts), lag=0.0, kept=(), disturbances=()
+    )
 
 
 def shortened(data: Data, samples: int) -> Data:
@@ -214,4 +216,8 @@ def shortened(data: Data, samples: int) -> Data:
     records = tuple(
         r.slice(0, min(len(r), s + samples)) for r, s in zip(data.records, data.starts, strict=True)
     )
-    return replace(data, records=records)
+    kept = tuple(
+        None if each is None else each[: len(r)]
+        for each, r in zip(data.kept, records, strict=False)
+    )
+    return replace(data, records=records, kept=kept, disturbances=())

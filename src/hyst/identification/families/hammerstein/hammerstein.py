@@ -66,6 +66,16 @@ def _as_hysteresis(value: Any, name: str) -> Any:
     )
 
 
+def _require_one_sample_time(data: Data) -> None:
+    """Refuse records of several sample times: sampled dynamics hold for one."""
+    times = [record.dt for record in data.records]
+    if max(times) - min(times) > 1e-6 * min(times):
+        raise InputError(
+            f"the records have sample times from {min(times):.6g} to {max(times):.6g} s; linear "
+            "dynamics are identified for one sample time, so resample the records to one"
+        )
+
+
 def _as_period(value: Any, name: str) -> int | None:
     if value is None:
         return None
@@ -141,7 +151,8 @@ class Hammerstein(Family):
             records = tuple(average_periods(each, self.period) for each in records)
             # The first of two equal periods is the past of the second, of both parts.
             start = int(self.period)
-        data = prepare(records, start, 0)
+        data = prepare(records, start)
+        _require_one_sample_time(data)
         markov, doubts = choose_markov(data.records, self.fir_order)
         if start == AUTO:
             starts = tuple(

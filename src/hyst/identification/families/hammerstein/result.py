@@ -15,8 +15,8 @@ from hyst.identification.families.hammerstein.identified_hammerstein import (
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint_of
 from hyst.identification.families.hammerstein.markov import choose_markov
 from hyst.identification.record_use.overview import Overview
+from hyst.identification.result.fit_spread import FitSpread, spread_of_fit
 from hyst.identification.result.identified import Identified
-from hyst.identification.result.identified_from_fit import FitSpread, spread_of_fit
 from hyst.models import LinearDynamics, StableInverse
 from hyst.signals import Record
 

@@ -1,0 +1,137 @@
+"""Records as an identification takes them: without what is no measurement, and without drift."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.diagnosis import Diagnosis
+from hyst.diagnosis.findings.drifting_output import NAME as DRIFT
+from hyst.diagnosis.findings.foreign_lines import NAME as FOREIGN_LINE
+from hyst.diagnosis.slow_drift import slow_drift
+from hyst.errors import InputError
+from hyst.identification.record_use.foreign_sines import foreign_sines
+from hyst.identification.record_use.used_samples import Data
+from hyst.signals import Record
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Cleaned:
+    """Records to fit to, and what was taken from them.
+
+    Parameters
+    ----------
+    records
+        Samples that are no measurements are filled in from their neighbours, for what knows of no
+        gaps, and slow drift and sines that are none of the drive are taken out.
+    kept
+        Shape (N,) for each record: which output samples count; None for all.
+    disturbances
+        Shape (N,) for each record: what was taken out; None where there was nothing.
+    """
+
+    records: tuple[Record, ...]
+    kept: tuple[NDArray[np.bool_] | None, ...]
+    disturbances: tuple[Array | None, ...]
+
+    def marked(self, data: Data) -> Data:
+        """Give data made of these records with what was taken from them.
+
+        Parameters
+        ----------
+        data
+            Made of the records; of averages of them nothing more can be said.
+        """
+        same = len(data.records) == len(self.records) and all(
+            len(a) == len(b) for a, b in zip(data.records, self.records, strict=True)
+        )
+        if not same:
+            return data
+        kept = self.kept if any(each is not None for each in self.kept) else ()
+        disturbances = (
+            self.disturbances if any(each is not None for each in self.disturbances) else ()
+        )
+        return replace(data, kept=kept, disturbances=disturbances)
+
+
+def as_drift(drift: Any) -> Literal["auto", False]:
+    """Check what is to be done about drift.
+
+    Parameters
+    ----------
+    drift
+        ``"auto"`` or ``False``.
+
+    Raises
+    ------
+    InputError
+        If it is something else.
+    """
+    if drift is False or (isinstance(drift, str) and drift == "auto"):
+        return "auto" if drift else False
+    raise InputError(
+        f"drift is {drift!r}; give 'auto' to take slow drift out, or False to leave it"
+    )
+
+
+def cleaned(
+    records: Sequence[Record], diagnosis: Diagnosis, drift: Literal["auto", False]
+) -> Cleaned:
+    """Act on what a diagnosis found.
+
+    Parameters
+    ----------
+    records
+        As they were given.
+    diagnosis
+        Of these records.
+    drift
+        ``"auto"`` takes out slow drift and foreign sines where the records show them.
+
+    Raises
+    ------
+    InputError
+        If a finding says that nothing can be identified from the records as they are.
+    """
+    for finding in diagnosis.of("refusal"):
+        where = f"record {finding.record}: " if len(records) > 1 and finding.record else ""
+        raise InputError(f"{where}{finding.sentence} {finding.advice}".strip())
+    taken = [_cleaned(r, i, diagnosis, drift) for i, r in enumerate(records, 1)]
+    kept, given, disturbances = zip(*taken, strict=True)
+    return Cleaned(given, kept, disturbances)
+
+
+def _cleaned(
+    record: Record, number: int, diagnosis: Diagnosis, drift: Literal["auto", False]
+) -> tuple[NDArray[np.bool_] | None, Record, Array | None]:
+    kept = None
+    left_out = diagnosis.left_out(number)
+    if left_out.size:
+        kept = np.ones(len(record), dtype=np.bool_)
+        kept[left_out] = False
+        places = np.flatnonzero(kept)
+        record = replace(record, y=np.interp(np.arange(len(record)), places, record.y[places]))
+    disturbance = _disturbance(record, number, diagnosis) if drift == "auto" else None
+    if disturbance is None:
+        return kept, record, None
+    return kept, replace(record, y=record.y - disturbance), disturbance
+
+
+def _disturbance(record: Record, number: int, diagnosis: Diagnosis) -> Array | None:
+    """Give the drift and the sines that a diagnosis found in an output; None without any."""
+    parts = []
+    if any(each.record in (number, 0) for each in diagnosis.named(DRIFT)):
+        found = slow_drift(record)
+        if found is not None:
+            parts.append(found.curve)
+    lines = [e.amounts["frequency"] for e in diagnosis.named(FOREIGN_LINE) if e.record == number]
+    if lines:
+        rest = replace(record, y=record.y - parts[0]) if parts else record
+        parts.append(foreign_sines(rest, lines))
+    return np.sum(parts, axis=0) if parts else None

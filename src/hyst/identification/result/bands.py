@@ -1,0 +1,236 @@
+"""Where an output will be measured for any drive: noise, constants, shape, and what is new to it.
+
+The half-width of the band is the root of the sum of squares of
+
+- the noise of the records, and twice what the model leaves beside it: on another drive a wrong
+  shape is wrong by more than where it was fitted;
+- the standard error of the model's output, from the covariance of its constants;
+- how far rival models go apart that fit the records equally well;
+- how far the drive leads the memory from all that the records contained.
+
+The last is a distance, not a probability: it was set on simulated actuators of no model's class
+(benchmarks/bands.py), so that their minor loops are held where a record showed none.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst import _engine
+from hyst.checks.arrays import finite_vector
+from hyst.checks.numbers import as_positive
+from hyst.diagnosis.repetition import noise_by_repetition
+from hyst.errors import InputError
+from hyst.identification.families.family import Fit
+from hyst.identification.fit.problem import model_output
+from hyst.identification.record_use.used_samples import Data
+from hyst.identification.result.fit_spread import FitSpread
+from hyst.operators import Operator
+from hyst.signals import estimate_noise
+
+Array = NDArray[np.float64]
+
+MISFIT_ELSEWHERE = 2.0
+"""Times what the model leaves beside noise where it was fitted."""
+
+SHARE_OF_OPENING = 8.0
+"""Half-width, in openings of the loop, at a distance of the whole input range."""
+
+NEW = 0.1
+"""Distance, of half the input range, from which on a state of the memory is called new."""
+
+SURE_OF_NOISE = 6.0
+"""Over the root of the number of samples: how much noise may be larger than it is measured."""
+
+RADII = 6
+MOST_STATES = 5_000
+FEWEST_FOR_QUANTILES = 400
+
+
+@dataclass(frozen=True, eq=False)
+class Bands:
+    """What is needed to say where the output will be measured.
+
+    Parameters
+    ----------
+    fit
+        The final fit, in the user's units.
+    spread
+        How sure its constants are.
+    noise, misfit
+        Of the records, and what the model leaves beside it, output units rms.
+    residual
+        Shape (m,), sizes of what the model leaves, ascending, over their rms.
+    opening
+        What a straight line leaves of the records, output units rms.
+    half_range, centre
+        Of the inputs.
+    states
+        Shape (n, 1 + RADII), input and memory at samples of the records, over ``half_range``.
+    spacing
+        Distance of a state of the records to the next one.
+    rivals
+        Models of other kinds that fit the records equally well.
+    """
+
+    fit: Fit
+    spread: FitSpread
+    noise: float
+    misfit: float
+    residual: Array
+    opening: float
+    half_range: float
+    centre: float
+    states: Array
+    spacing: float
+    rivals: tuple[Operator, ...]
+
+    def half_width(self, u: Array, output: Array, level: float) -> Array:
+        """Give half the width of the band around the model's output.
+
+        Parameters
+        ----------
+        u
+            Shape (N,), input units.
+        output
+            Shape (N,), of the model for it.
+        level
+            Share of the samples that it is to hold, above 0 and below 1.
+        """
+        quantile = self._quantile(level)
+        fitted = quantile**2 * (self.noise**2 + (MISFIT_ELSEWHERE * self.misfit) ** 2)
+        constants = (_normal_quantile(level) * self._standard_errors(u)) ** 2
+        apart = [np.abs(rival(u) - output) for rival in self.rivals]
+        shape = np.max(apart, axis=0) ** 2 if apart else 0.0
+        new = (SHARE_OF_OPENING * self.opening * self.distances(u)) ** 2
+        return np.asarray(np.sqrt(fitted + constants + shape + new))
+
+    def distances(self, u: Array) -> Array:
+        """Give how far input and memory are from any state of the records, over half the range."""
+        found = self._tree.query(_states(u, self.centre, self.half_range))[0]
+        return np.asarray(np.maximum(found / math.sqrt(1 + RADII) - self.spacing, 0.0))
+
+    def _standard_errors(self, u: Array) -> Array:
+        parametrization = self.fit.parametrization
+        rows = self.fit.operator.jacobian(u) @ parametrization.transform
+        return self.spread.of_what_is_determined(rows)
+
+    def _quantile(self, level: float) -> float:
+        """Give the factor of the rms: that of the residual itself where there is enough of it."""
+        if self.residual.size < FEWEST_FOR_QUANTILES:
+            return _normal_quantile(level)
+        return float(np.quantile(self.residual, level))
+
+    @functools.cached_property
+    def _tree(self):  # type: ignore[no-untyped-def]
+        from scipy.spatial import cKDTree  # only who asks for a band needs it
+
+        return cKDTree(self.states)
+
+
+def bands_of(data: Data, fit: Fit, spread: FitSpread, rivals: Sequence[Operator]) -> Bands:
+    """Gather what bands are made of.
+
+    Parameters
+    ----------
+    data
+        The records.
+    fit
+        The final fit, in their units.
+    spread
+        How sure its constants are.
+    rivals
+        Models of other kinds that fit the records equally well.
+
+    Returns
+    -------
+    Bands
+    """
+    residual = model_output(data, fit.operator) - data.measured()
+    rms = float(np.sqrt(np.mean(np.square(residual))))
+    noise = min(_noise(data, residual), rms)
+    # Noise is known only so well: what it may explain is no misfit.
+    explained = noise**2 * (1.0 + SURE_OF_NOISE / math.sqrt(residual.size))
+    u, y = data.inputs(), data.measured()
+    low = min(float(each.u.min()) for each in data.records)
+    centre = low + data.half_range
+    pairs = zip(data.records, data.windows(), strict=True)
+    states = data.joined([_states(r.u[: w.stop], centre, data.half_range)[w] for r, w in pairs])
+    states = states[:: 1 + states.shape[0] // MOST_STATES]
+    return Bands(
+        fit=fit,
+        spread=spread,
+        noise=noise,
+        misfit=math.sqrt(max(rms**2 - explained, 0.0)),
+        residual=np.sort(np.abs(residual)) / rms if rms > 0.0 else np.zeros(0),
+        opening=_line_leaves(u, y),
+        half_range=data.half_range,
+        centre=centre,
+        states=states,
+        spacing=_spacing(states),
+        rivals=tuple(rivals),
+    )
+
+
+def as_level(level: float) -> float:
+    """Check the level of a band.
+
+    Parameters
+    ----------
+    level
+        Share of samples.
+
+    Raises
+    ------
+    InputError
+        If it is not between 0 and 1.
+    """
+    share = as_positive(level, "level", "a share of samples above 0 and below 1, as 0.95")
+    if share >= 1.0:
+        raise InputError(f"level is {level}; give a share of samples above 0 and below 1, as 0.95")
+    return share
+
+
+def _noise(data: Data, residual: Array) -> float:
+    """Give the noise of the records by repetition, or what of the residual is white."""
+    found = [noise_by_repetition(record) for record in data.records]
+    known = [each for each in found if each is not None]
+    if known:
+        return math.sqrt(float(np.mean(np.square(known))))
+    return estimate_noise(residual)
+
+
+def _states(u: Array, centre: float, half_range: float) -> Array:
+    """Give input and memory, relative to the records' range, shape (N, 1 + RADII)."""
+    signal = np.ascontiguousarray((finite_vector(u, "u") - centre) / half_range)
+    radii = (np.arange(RADII) + 1.0) / (RADII + 1.0)
+    z = np.empty((signal.size, RADII))
+    start = np.full(RADII, np.clip(-centre / half_range, -1.0, 1.0))
+    _engine.play_outputs(radii.tolist(), start, signal, z)
+    return np.column_stack([signal, z])
+
+
+def _spacing(states: Array) -> float:
+    """Give twice the median distance between neighbours in time: within it, nothing is new."""
+    steps = np.linalg.norm(np.diff(states, axis=0), axis=1)
+    return 2.0 * float(np.median(steps)) / math.sqrt(states.shape[1]) if steps.size else 0.0
+
+
+def _line_leaves(u: Array, y: Array) -> float:
+    centred, spread = u - u.mean(), y - y.mean()
+    energy = float(centred @ centred)
+    slope = float(centred @ spread) / energy if energy > 0.0 else 0.0
+    return float(np.sqrt(np.mean(np.square(spread - slope * centred))))
+
+
+def _normal_quantile(level: float) -> float:
+    """Give how many standard deviations hold a share of normal errors."""
+    from scipy.special import ndtri
+
+    return float(ndtri(0.5 + level / 2.0))

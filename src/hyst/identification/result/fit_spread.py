@@ -1,0 +1,138 @@
+"""How sure the free parameters of a fit are, and which of them the records do not tell apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.identification.families.family import Estimates, Fit
+from hyst.identification.fit.problem import Evaluation
+from hyst.identification.record_use.used_samples import Data
+from hyst.identification.result.standard_errors import Spread, spread_of_estimates
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class FitSpread:
+    """How sure the free parameters of a fit are.
+
+    Parameters
+    ----------
+    spread
+        Of the parameters that lie on no bound.
+    inside
+        Shape (m,), which they are.
+    noise_rms
+        Of the residual, output units, the free parameters allowed for.
+    """
+
+    spread: Spread
+    inside: NDArray[np.bool_]
+    noise_rms: float
+
+    def of(self, by_theta: Array) -> Array:
+        """Give the standard errors of functions of theta.
+
+        Parameters
+        ----------
+        by_theta
+            Shape (q, m), their derivative.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (q,), NaN where a function is held, depends on a parameter on its bound or is not
+            determined.
+        """
+        errors = np.full(len(by_theta), np.nan)
+        moves = by_theta[:, self.inside].any(axis=1)
+        known = moves & ~by_theta[:, ~self.inside].any(axis=1)
+        errors[known] = self.spread.of(by_theta[np.ix_(known, self.inside)])
+        return errors
+
+    def of_what_is_determined(self, by_theta: Array) -> Array:
+        """Give the standard errors of functions of theta, as if what is not determined were known.
+
+        Parameters
+        ----------
+        by_theta
+            Shape (q, m), their derivative.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (q,).
+        """
+        return self.spread.if_determined(by_theta[:, self.inside])
+
+    def not_told_apart(self, estimates: Estimates) -> tuple[str, ...]:
+        """Name the estimates in every combination that the records do not determine.
+
+        Parameters
+        ----------
+        estimates
+            With their names.
+
+        Returns
+        -------
+        tuple of str
+            Sentences, none of which names what another does.
+        """
+        disturbed = self.spread.disturbed(estimates.by_theta[:, self.inside])
+        sentences = []
+        for together in _joined(disturbed):
+            names = ", ".join(
+                name for name, one in zip(estimates.names, together, strict=True) if one
+            )
+            sentences.append(
+                f"the records do not tell apart {names}; their values are one choice of many"
+                if together.sum() > 1
+                else f"the records do not determine {names}; its value is one choice of many"
+            )
+        return tuple(sentences)
+
+
+def _joined(disturbed: NDArray[np.bool_]) -> list[NDArray[np.bool_]]:
+    """Join directions that share an estimate, for any mixture of them is one, too.
+
+    Takes shape (q, k), which estimates each direction disturbs; gives shape (q,) for each group.
+    """
+    groups: list[NDArray[np.bool_]] = []
+    for column in disturbed.T[disturbed.any(axis=0)]:
+        shared = [each for each in groups if (each & column).any()]
+        groups = [each for each in groups if not (each & column).any()]
+        groups.append(np.logical_or.reduce([column, *shared]))
+    return groups
+
+
+def spread_of_fit(data: Data, fit: Fit) -> FitSpread:
+    """Find how sure the free parameters of a fit are.
+
+    Parameters
+    ----------
+    data
+        The records.
+    fit
+        The final fit, in their units.
+
+    Returns
+    -------
+    FitSpread
+    """
+    data = fit.family.fitted(data)
+    theta, parametrization = fit.solution.theta, fit.parametrization
+    evaluation = Evaluation(data, parametrization)
+    inside = parametrization.inside(theta)
+    jacobian = evaluation.jacobian(theta)[:, inside]
+    residual = evaluation.output(theta) - data.measured()
+    root = fit.family.root_weights(data)
+    if root is not None:
+        jacobian, residual = root[:, None] * jacobian, root * residual
+    gauges = parametrization.gauges
+    held = np.empty((0, theta.size)) if gauges is None else gauges(theta)[1]
+    spread = spread_of_estimates(jacobian, residual, data.lengths(), theta[inside], held[:, inside])
+    freedom = max(residual.size - int(inside.sum()) + len(held), 1)
+    return FitSpread(spread, inside, float(np.linalg.norm(residual) / np.sqrt(freedom)))
