@@ -64,7 +64,7 @@ def test_records_that_agree_have_errors_of_their_noise() -> None:
 
 def test_the_verdict_comes_first(found: Identified) -> None:
     unfit = replace(found, verdict=Verdict("unfit", ("Two actuators.", "Identify each.")))
-    assert unfit.summary().splitlines()[0] == "verdict: unfit - Two actuators. Identify each."
+    assert unfit.summary().startswith("verdict: unfit - Two actuators.\n  Identify each.\n")
     assert repr(unfit).startswith("Identified(unfit: 'Two actuators.'; pi, ")
     assert "array" not in repr(unfit)
     told = unfit.to_dict()
