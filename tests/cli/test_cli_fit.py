@@ -88,7 +88,7 @@ def test_bounds_and_validation(files: tuple[Path, Path], run: Callable, folder: 
         (["--free", "zz"], "no constant 'zz'"),
         (["--bound", "x"], "--bound is 'x'; give a name and two numbers"),
         (["--bound", "prandtl_ishlinskii.p0=3,4"], "outside its bounds 3 to 4"),
-        (["--delay", "-1"], "delay is -1"),
+        (["--delay", "-9999"], "delay is -9999"),
         (["--plays", "3"], "--plays"),
     ],
 )

@@ -233,7 +233,7 @@ def test_bad_validation_data_are_refused(
         (("--time", "t", "--plays", 2, "--knots", -1), "knots"),
         (("--rate", 100, "--time-unit", "ms"), "time_unit"),
         (("--time", "t", "--weights", "heavy"), "non-negative"),
-        (("--time", "t", "--delay", -1), "delay"),
+        (("--time", "t", "--delay", "soon"), "delay"),
         (("--time", "t", "--start", 100000), "start"),
         (("--time", "t", "--nonsense", 1), "--nonsense"),
     ],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -28,9 +29,10 @@ GIVEN = record(TRUE_PI)
         ({"radii": [np.nan]}, "radii"),
         ({"family": "linear", "radii": [0.1]}, "linear"),
         ({"knots": 0}, "knots is 0"),
-        ({"delay": -1}, "delay is -1"),
+        ({"delay": -3000}, "delay is -3000"),
         ({"delay": 3000}, "delay is 3000"),
-        ({"delay": 1.5}, "delay is 1.5"),
+        ({"delay": math.nan}, "delay is nan"),
+        ({"delay": True}, "delay is True"),
         ({"start": 3000}, "start is 3000"),
         ({"start": -1}, "start is -1"),
         ({"max_iterations": -1}, "max_iterations is -1"),

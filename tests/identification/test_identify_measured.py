@@ -21,11 +21,14 @@ def test_training_error_in_percent_of_the_range_of_the_record(
     piezo: hyst.Record, family: str, most: float
 ) -> None:
     found = hyst.identify(piezo, family=family)
-    assert found.metrics["training"].rms_percent <= most
+    # The piezo creeps by half a micrometre; a model of hysteresis can only be right beside that.
+    left_in = found.metrics["training, disturbances left in"]
+    assert left_in.rms_percent <= most
+    assert found.metrics["training"].rms_percent < 0.9 * left_in.rms_percent
     error = found.predict(piezo.u) - piezo.y
     used = slice(found.used[0].start, found.used[0].stop)
     by_hand = 100.0 * np.sqrt(np.mean(error[used] ** 2)) / np.ptp(piezo.y)
-    assert found.metrics["training"].rms_percent == pytest.approx(by_hand, rel=1e-9)
+    assert left_in.rms_percent == pytest.approx(by_hand, rel=1e-9)
 
 
 @pytest.mark.parametrize("unit", [1.0, 1e-9, 1.7])

@@ -148,7 +148,7 @@ def test_validation_and_prediction() -> None:
         ({"plays": 0}, "plays is 0"),
         ({"plays": "auto", "radii": [50.0]}, "half the input range"),
         ({"radii": [5.0]}, "1 radii are given"),
-        ({"delay": -1}, "delay is -1"),
+        ({"delay": "1"}, "delay is '1'"),
     ],
 )
 def test_bad_options_are_refused(options: dict, message: str) -> None:

@@ -81,6 +81,17 @@ def whole_or_auto(text: str, name: str) -> int | Literal["auto"]:
         raise hyst.InputError(f"--{name} is {text!r}; give a whole number or auto") from None
 
 
+def number_or_auto(text: str, name: str) -> float | Literal["auto"]:
+    """Read a number, a whole one as such, or the word auto."""
+    if text == "auto":
+        return "auto"
+    try:
+        value = float(text)
+    except ValueError:
+        raise hyst.InputError(f"--{name} is {text!r}; give a number or auto") from None
+    return int(value) if value.is_integer() else value
+
+
 def numbers(text: str, name: str) -> list[float]:
     """Read numbers with commas between them."""
     try:

@@ -59,7 +59,7 @@ Bound = Annotated[
     ),
 ]
 Delay = Annotated[
-    int | None,
+    float | None,
     typer.Option(
         metavar="N", show_default=False, help="Samples by which the output lags; the model's own."
     ),

@@ -15,6 +15,7 @@ from hyst.cli.arguments import (
     Repair,
     TimeColumn,
     TimeUnit,
+    number_or_auto,
     whole_or_auto,
 )
 from hyst.cli.console import at_work, show_files
@@ -37,7 +38,19 @@ from hyst.cli.fitted import (
 )
 
 Family = Annotated[str, typer.Option(help="Of the model.")]  # the registry explains it
-Delay = Annotated[str, typer.Option(metavar="N|auto", help="Samples by which the output lags.")]
+Delay = Annotated[
+    str,
+    typer.Option(
+        metavar="X|auto",
+        help="Samples by which the output lags; parts of one, or negative where it is ahead.",
+    ),
+]
+LeaveDisturbances = Annotated[
+    bool,
+    typer.Option(
+        "--leave-disturbances", help="Take neither drift nor foreign sines out of the output."
+    ),
+]
 Start = Annotated[str, typer.Option(metavar="N|auto", help="First sample to use.")]
 
 
@@ -54,6 +67,7 @@ def identify(
     family: Family = "auto",
     delay: Delay = "auto",
     start: Start = "auto",
+    leave_disturbances: LeaveDisturbances = False,
     validate: Validate = None,
     validate_input: ValidateInput = None,
     validate_output: ValidateOutput = None,
@@ -66,7 +80,7 @@ def identify(
     require_folder(folder)
     options = options_given(context, family)
     chosen = hyst.identification.chosen_families(family, options)
-    lag, first = whole_or_auto(delay, "delay"), whole_or_auto(start, "start")
+    lag, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
     columns = {"input": input_column, "output": output_column, "time": time, "rate": rate}
     columns |= {"time_unit": time_unit, "repair": repair}
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
@@ -80,6 +94,7 @@ def identify(
             family=family,
             delay=lag,
             start=first,
+            drift=False if leave_disturbances else "auto",
             validation=validation,
             allow_unconverged=allow_unconverged,
             progress=say,
