@@ -45,9 +45,10 @@ def test_unfit_ends_in_3_with_all_files_and_nothing_about_commands(
     judged(UNFIT)
     ended = run("identify", record_file, *COLUMNS, *QUICK, "-o", "out")
     assert (ended.code, ended.err) == (3, "")
-    assert ended.out.splitlines()[0] == (
-        "verdict: unfit - Hardly better than a line. Record loops of several amplitudes."
-    )
+    assert ended.out.splitlines()[:2] == [
+        "verdict: unfit - Hardly better than a line.",
+        "  Record loops of several amplitudes.",
+    ]
     assert COMMAND not in ended.out
     page = (folder / "out" / "report.html").read_text()
     assert COMMAND not in page
@@ -60,6 +61,19 @@ def test_unfit_ends_in_3_with_all_files_and_nothing_about_commands(
     assert again.code == 3
     assert (folder / "refitted" / "model.json").exists()
     assert "verdict: unfit - Hardly better" in run("info", "out/model.json").out.splitlines()[0]
+
+
+def test_no_advice_on_a_delay_of_what_is_unfit(
+    judged: Callable[[Verdict], None], run: Run, record_file: Path
+) -> None:
+    late = ("--family", "pi", "--plays", 2, "--delay", 3)
+    judged(UNFIT)
+    told = run("identify", record_file, *COLUMNS, *late, "-o", "out").out
+    assert "a delay of 3 samples, 30 ms; of a model that does not describe its record" in told
+    assert "giving the command" not in told
+    judged(Verdict("fair", ("Drift is left.",)))
+    told = run("identify", record_file, *COLUMNS, *late, "-o", "out").out
+    assert "by giving the command that much earlier" in told
 
 
 @pytest.mark.parametrize("level", ["good", "fair"])
@@ -122,7 +136,7 @@ def test_an_estimate_from_it_is_as_unfit(run: Run, unfit_file: Path, folder: Pat
     columns = ("--input", "u", "--output", "y", "--rate", 100)
     ended = run("adapt", unfit_file, "more.csv", *columns, "-o", "out")
     assert ended.code == 0
-    assert "verdict: unfit - Hardly better" in ended.err
+    assert "unfit, and the estimate has its shape: Hardly better than a line." in ended.err
     assert hyst.load(folder / "out" / "model.json").description.verdict == UNFIT
 
 

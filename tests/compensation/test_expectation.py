@@ -53,6 +53,14 @@ def test_rounding_is_called_rounding_and_the_models_error_is_told() -> None:
     assert "array" not in repr(done)
 
 
+def test_what_was_taken_out_of_the_record_is_told_beside() -> None:
+    records = {"training": TRAINING, "training, disturbances left in": errors(0.5)}
+    done = invert_trajectory(described(errors=records), STAGE(U))
+    assert done.expected == ModelError("training", 0.1, 0.4, disturbed=(0.5, 1.5))
+    told = done.expectation("um")
+    assert "0.1 um rms, 0.4 at most (training; 0.5 and 1.5 with its drift, which was" in told
+
+
 def test_what_is_clipped_is_not_called_exact() -> None:
     model = described(errors={"training": TRAINING})
     done = invert_trajectory(model, STAGE(U), input_range=(0.0, 3.0), outside="clip")

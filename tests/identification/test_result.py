@@ -43,6 +43,16 @@ def test_errors_by_record_are_those_of_each(
     assert sum(squares) == pytest.approx(whole.samples * whole.rms**2, rel=1e-12)
 
 
+def test_the_summary_has_a_line_for_each(found: Identified) -> None:
+    lines = found.summary().splitlines()
+    for each in found.per_record:
+        assert each.metrics is not None
+        told = [line for line in lines if line.startswith(f"record {each.number} ")]
+        assert len(told) == 1
+        assert f"rms {each.metrics.rms:.4g} (" in told[0]
+        assert f"{each.samples} samples" in told[0]
+
+
 def test_records_that_agree_have_errors_of_their_noise() -> None:
     both = [record(TRUE_PI, drive(seed=s), 0.01, seed=s) for s in (1, 2)]
     found = hyst.identify(both, family="pi", plays=3, delay=0)
@@ -54,7 +64,7 @@ def test_records_that_agree_have_errors_of_their_noise() -> None:
 
 def test_the_verdict_comes_first(found: Identified) -> None:
     unfit = replace(found, verdict=Verdict("unfit", ("Two actuators.", "Identify each.")))
-    assert unfit.summary().splitlines()[0] == "verdict: unfit - Two actuators. Identify each."
+    assert unfit.summary().startswith("verdict: unfit - Two actuators.\n  Identify each.\n")
     assert repr(unfit).startswith("Identified(unfit: 'Two actuators.'; pi, ")
     assert "array" not in repr(unfit)
     told = unfit.to_dict()

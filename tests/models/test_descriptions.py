@@ -197,6 +197,10 @@ def test_exports_refuse_what_is_unfit(description: ModelDescription | None, tmp_
         assert not (tmp_path / name).exists()
         export(inverse, tmp_path / name, description=description, despite_verdict=True)
         assert (tmp_path / name).exists()
+    if description is None:
+        for name in ("c", "mex"):
+            readme = (tmp_path / name / "README.md").read_text()
+            assert "| verdict | unfit: A line is hardly worse. |" in readme
     with pytest.raises(InputError, match="nothing is exported"):
         hyst.export.c_project(PLAYS, tmp_path / "told", description=ABOUT)
     with pytest.raises(InputError, match="nothing is exported"):

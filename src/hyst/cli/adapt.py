@@ -129,7 +129,7 @@ def adapt(
     if about.verdict is not None and about.is_unfit:
         note(
             "the model it started from is unfit, and the estimate has its shape: "
-            f"{hyst.report.verdict_sentence(about.verdict)}"
+            f"{about.verdict.sentences[0]}"
         )
     show_files([folder / name for name in names])
 

@@ -36,7 +36,7 @@ def demo(
         )
         files += _write_signals(story, folder)
     print(hyst.demo.BANNER)
-    print(hyst.report.verdict_sentence(story.identified.verdict))
+    print(hyst.report.verdict_lines(story.identified.verdict))
     for sentence in hyst.report.in_short(story.identified, (story.training,)):
         print(sentence)
     show_table(hyst.report.metrics_table(story.identified))

@@ -126,7 +126,7 @@ def write_fitted(
 
 def tell_fitted(found: hyst.Identified, records: Sequence[hyst.Record]) -> None:
     """Print how far to trust what was found, what it is, and how good it is."""
-    print(hyst.report.verdict_sentence(found.verdict))
+    print(hyst.report.verdict_lines(found.verdict))
     for sentence in hyst.report.in_short(found, tuple(records)):
         print(sentence)
     if found.candidates:

@@ -14,7 +14,7 @@ def info(model_file: ModelFile) -> None:
     found = hyst.load(model_file)
     about = found.description
     if about.verdict is not None:
-        print(hyst.report.verdict_sentence(about.verdict))
+        print(hyst.report.verdict_lines(about.verdict))
     show_table(hyst.report.description_table(about))
     for table in (hyst.report.errors_table(about), hyst.report.provenance_table(about)):
         if table.rows:

@@ -27,11 +27,15 @@ class ModelError:
         Which: the validation record it missed most, or that it was identified from.
     rms, max_abs
         Output units.
+    disturbed
+        The same two with what was taken out of the record before the fit, as drift; None if
+        nothing was.
     """
 
     record: str
     rms: float
     max_abs: float
+    disturbed: tuple[float, float] | None = None
 
 
 def error_to_expect(about: ModelDescription) -> ModelError | None:
@@ -47,10 +51,15 @@ def error_to_expect(about: ModelDescription) -> ModelError | None:
     ModelError or None
         None if the description does not tell.
     """
-    known = [
-        ModelError(record, errors["rms"], errors["max_abs"])
+    told = {
+        record: (errors["rms"], errors["max_abs"])
         for record, errors in about.errors.items()
-        if "free offset" not in record and {"rms", "max_abs"} <= set(errors)
+        if {"rms", "max_abs"} <= set(errors)
+    }
+    known = [
+        ModelError(record, *errors, told.get(f"{record}, disturbances left in"))
+        for record, errors in told.items()
+        if "," not in record  # the others are of the same records, otherwise
     ]
     unseen = [each for each in known if each.record.startswith("validation")]
     return max(unseen or known, key=lambda each: each.rms, default=None)
@@ -86,9 +95,13 @@ def expectation_of(
             f"{model}; how far the actuator is from the model is not known, for the model tells no "
             "errors"
         )
+    more = ""
+    if expected.disturbed is not None:
+        with_all, largest = expected.disturbed
+        more = f"; {with_all:.3g} and {largest:.3g} with its drift, which was taken out"
     return (
         f"{model}; the model itself missed its record by {expected.rms:.3g}{behind} rms, "
-        f"{expected.max_abs:.3g} at most ({expected.record}): expect "
+        f"{expected.max_abs:.3g} at most ({expected.record}{more}): expect "
         + ("that" if exact else "both together")
     )
 

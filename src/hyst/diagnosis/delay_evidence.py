@@ -181,7 +181,7 @@ def _judged(costs: DelayCosts, found: CompatibleDelays, longest: int) -> tuple[f
     if high < 0.0 and not found.describes:
         # Loops of another kind, as those of a force that follows the speed, turn early as well.
         return 0.0, -float(longest), 0.0
-    if -_LEAST_LEAD < high and low < _LEAST_LAG:
+    if high > -_LEAST_LEAD and low < _LEAST_LAG:
         return 0.0, min(low, 0.0), max(high, 0.0)
     inside = np.arange(math.ceil(low * 4.0), math.floor(high * 4.0) + 1) / 4.0
     about = min(inside.tolist(), key=lambda d: costs.cost(d, plain=True), default=found.best)

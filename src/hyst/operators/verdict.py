@@ -49,6 +49,10 @@ class Verdict:
         told = tuple(as_text("a sentence of the verdict", each) for each in self.sentences)
         object.__setattr__(self, "sentences", told)
 
+    def told(self) -> str:
+        """Give level and sentences for people, a line a sentence."""
+        return f"verdict: {self.level} - " + "\n  ".join(self.sentences)
+
     def to_dict(self) -> dict[str, Any]:
         """Give level and sentences as plain text."""
         return {"level": self.level, "sentences": list(self.sentences)}

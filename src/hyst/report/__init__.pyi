@@ -27,4 +27,4 @@ from hyst.report.tables import traits_table as traits_table
 from hyst.report.tracking_figure import draw_tracking as draw_tracking
 from hyst.report.words import in_short as in_short
 from hyst.report.words import invertible_sentence as invertible_sentence
-from hyst.report.words import verdict_sentence as verdict_sentence
+from hyst.report.words import verdict_lines as verdict_lines

@@ -15,7 +15,7 @@ from hyst.models import LinearDynamics
 from hyst.operators import Operator
 from hyst.operators.composition import leaves_of
 from hyst.operators.verdict import UNFIT, Verdict
-from hyst.report.delay_words import delay_sentence
+from hyst.report.delay_words import delay_sentence, lag_in_words
 from hyst.report.tables import number, with_unit
 from hyst.signals import Record
 
@@ -154,6 +154,12 @@ def lag_sentence(identified: Identified) -> str:
     inside = [each for each in leaves_of(identified.model) if isinstance(each, LinearDynamics)]
     if identified.delay or not inside:
         about = identified.description
+        if identified.delay and identified.verdict.level == UNFIT:
+            lag = lag_in_words(identified.delay, about.dt, identified.delay_interval)
+            return (
+                f"The fit took a delay of {lag}; of a model that does not describe its record it "
+                "means nothing."
+            )
         return delay_sentence(identified.delay, about.dt, identified.delay_interval)
     delay = sum(each.delay for each in inside)
     if delay == 0:
@@ -162,8 +168,8 @@ def lag_sentence(identified: Identified) -> str:
     return f"The dynamics contain a delay of {delay} sample{'s' * (delay > 1)} ({time} s)."
 
 
-def verdict_sentence(verdict: Verdict) -> str:
-    """Say how far a model can be trusted, and why.
+def verdict_lines(verdict: Verdict) -> str:
+    """Say how far a model can be trusted, and why, a line a sentence.
 
     Parameters
     ----------
@@ -176,10 +182,11 @@ def verdict_sentence(verdict: Verdict) -> str:
 
     Examples
     --------
-    >>> verdict_sentence(Verdict("good", ("What is left is noise.", "Go on.")))
-    'verdict: good - What is left is noise. Go on.'
+    >>> print(verdict_lines(Verdict("good", ("What is left is noise.", "Go on."))))
+    verdict: good - What is left is noise.
+      Go on.
     """
-    return f"verdict: {verdict.level} - {' '.join(verdict.sentences)}"
+    return verdict.told()
 
 
 def invertible_sentence(model: Operator) -> str:

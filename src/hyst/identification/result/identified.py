@@ -258,7 +258,7 @@ class Identified:
         """
         unit = f" {self.description.output_unit}" if self.description.output_unit else ""
         what = f"family {self.family}" if self.family else self.model.kind
-        lines = [f"verdict: {self.verdict.level} - {' '.join(self.verdict.sentences)}"]
+        lines = [self.verdict.told()]
         low, high = self.delay_interval
         open_to = "" if low == high else f" ({low:.3g} to {high:.3g})"
         lines += [f"{what}, delay {self.delay:.4g}{open_to} samples, {self.status}", ""]
