@@ -159,7 +159,7 @@ def _misfit(e: Array, noise: float) -> tuple[float, bool]:
     """Give the squares beyond noise, and whether there are hardly any.
 
     Counted two ways: beyond the noise that is known, and what means of a few successive residuals
-    hold beyond what independent ones would.
+    hold beyond what independent ones would, one standard deviation of it granted.
     """
     total = float(e @ e)
     most = (1.0 + _ALIKE + _UNSURE / np.sqrt(e.size)) ** 2 * e.size * noise**2
@@ -169,7 +169,7 @@ def _misfit(e: Array, noise: float) -> tuple[float, bool]:
         blocks = e[: count * _BLOCK].reshape(count, _BLOCK)
         means = blocks.mean(axis=1)
         within = float(((blocks - means[:, None]) ** 2).sum()) / (count * (_BLOCK - 1))
-        slow = _BLOCK * float(means @ means) - count * within
+        slow = _BLOCK * float(means @ means) - within * (count + np.sqrt(2.0 * count))
     describes = total <= most + e.size * _RESOLUTION**2
     return max(total - most, slow, 0.0), bool(describes)
 

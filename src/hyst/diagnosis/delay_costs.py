@@ -145,7 +145,7 @@ class DelayCosts:
         delay
             Samples of the first record.
         plain
-            Whether of plays alone instead of the better one of both cones.
+            Whether of plays alone, and a map after them, instead of the better one of both cones.
         """
         key = (delay, plain)
         if key not in self._left:
@@ -174,46 +174,40 @@ class DelayCosts:
         lagging, leading, products = (np.concatenate(each) for each in zip(*found, strict=True))
         return lagging, leading, products
 
-    def _plain(self, lagging: Array) -> Cone:
-        """Give plays alone, without those that stand in for a part of a sample of delay."""
-        drifts = _block_diagonal([part.drifts() for part in self.parts])
-        columns = np.hstack([lagging[:, :1], lagging[:, 1 + SMALL : 1 + RADII.size]])
-        return Cone.of(columns, np.linalg.qr(drifts)[0])
+    def _drifts(self) -> Array:
+        return _block_diagonal([part.drifts() for part in self.parts])
 
     def _cones_at(self, fractions: tuple[float, ...]) -> _Cones:
         if fractions not in self._cones:
             lagging, leading, products = self._columns(fractions)
-            drifts = _block_diagonal([part.drifts() for part in self.parts])
-            either = [drifts, products, *([self._bent(lagging)] if self.bends else [])]
-            free = np.linalg.qr(np.hstack(either))[0]
-            self._cones[fractions] = _Cones(
-                Cone.of(lagging, free), Cone.of(leading, free), self._plain(lagging)
-            )
+            slow = [self._drifts(), *([self._bent(lagging)] if self.bends else [])]
+            free = np.linalg.qr(np.hstack([*slow, products]))[0]
+            plain = Cone.of(_plays(lagging), np.linalg.qr(np.hstack(slow))[0])
+            self._cones[fractions] = _Cones(Cone.of(lagging, free), Cone.of(leading, free), plain)
         return self._cones[fractions]
 
     def _bent(self, lagging: Array) -> Array:
         """Give bends of the plays' best output: what a map after the plays would do to it."""
         if not self._shape:
             still = self._columns((0.0,) * len(self.parts))[0]
-            plain = self._plain(still)
+            plain = Cone.of(_plays(still), np.linalg.qr(self._drifts())[0])
             delays = np.unique(np.round(np.linspace(-self.longest, self.longest, 17)))
             outputs = [self._shifted(float(d))[1] for d in delays]
             costs = [float(e @ e) for e in map(plain.left, outputs)]
             y = outputs[int(np.argmin(costs))]
             weights = plain.weights(y)
             for _ in range(_ROUNDS):
-                weights = plain.weights(_unbent(y, self._output(still, weights)))
-            v = self._output(still, weights)
+                weights = plain.weights(_unbent(y, _plays(still) @ weights))
+            v = _plays(still) @ weights
             knots = v.min() + np.ptp(v) * np.arange(1, _BENDS + 1) / (_BENDS + 1)
             self._shape.append((weights, knots))
         weights, knots = self._shape[0]
-        return np.maximum(self._output(lagging, weights)[:, None] - knots, 0.0)
+        return np.maximum((_plays(lagging) @ weights)[:, None] - knots, 0.0)
 
-    @staticmethod
-    def _output(lagging: Array, weights: Array) -> Array:
-        return np.asarray(
-            lagging[:, 0] * weights[0] + lagging[:, 1 + SMALL : 1 + RADII.size] @ weights[1:]
-        )
+
+def _plays(lagging: Array) -> Array:
+    """Give the input and plays, without those that stand in for a part of a sample of delay."""
+    return np.hstack([lagging[:, :1], lagging[:, 1 + SMALL : 1 + RADII.size]])
 
 
 def _unbent(y: Array, v: Array) -> Array:
@@ -226,10 +220,10 @@ def _unbent(y: Array, v: Array) -> Array:
     middle, height = middle[rising], height[rising]
     if middle.size < 2:
         return y
-    first, last = np.diff(middle[:2]) / np.diff(height[:2]), np.diff(middle[-2:]) / np.diff(height[-2:])
+    slope = np.diff(middle) / np.diff(height)
     inside = np.interp(y, height, middle)
     below, above = np.minimum(y - height[0], 0.0), np.maximum(y - height[-1], 0.0)
-    return np.asarray(inside + first * below + last * above)
+    return np.asarray(inside + slope[0] * below + slope[-1] * above)
 
 
 def clean_output(record: Record, kept: Flags | None) -> Array:

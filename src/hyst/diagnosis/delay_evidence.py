@@ -31,11 +31,11 @@ _FEWEST_ROWS = 16
 _AS_WELL = 0.1
 """By how much more squares, as a part, plays alone may leave to be asked for the delay."""
 
-_LEAST_LEAD, _LEAST_LAG = 0.5, 0.25
+_LEAST_LEAD, _LEAST_LAG = 0.5, 0.2
 """Samples: what is steep between two samples looks like less than that."""
 
 _WHOLE = 0.15
-"""Samples, or as a part of a wider interval: an estimate nearer to a whole number is taken for it."""
+"""Samples, or as a part of a wider interval: an estimate so near a whole number is taken for it."""
 
 
 @dataclass(frozen=True)
@@ -74,9 +74,14 @@ class DelayEvidence:
     one_amplitude: bool
 
     @property
-    def width(self) -> float:
-        """Of the interval, samples."""
-        return self.high - self.low
+    def wide(self) -> bool:
+        """Whether the interval is wider than a sample."""
+        return self.high - self.low > 1.0
+
+    @property
+    def turns_early(self) -> bool:
+        """Whether the output turns before its input, though as no mere lead explains."""
+        return not self.describes and self.low < 0.0 and self.high <= 0.0 and not self.delay
 
     def said(self, dt: float) -> str:
         """Give a sentence for people.
@@ -99,14 +104,19 @@ class DelayEvidence:
                 f"the output is ahead of the input by {how}, which no actuator is: the channels "
                 "are not aligned"
             )
+        if self.turns_early:
+            return (
+                "the output turns before its input: it follows the input's rate, as a viscous "
+                "force does, or the channels are not aligned; no delay is taken"
+            )
         if self.limit == 0.0:
             return "nothing can be said of a delay: the records are too short for it"
-        if not self.describes and self.width > 1.0:
+        if not self.describes and self.wide:
             return (
                 "nothing certain can be said of a delay: general loops leave more than the noise, "
                 f"and with {interval} samples they leave hardly more or less"
             )
-        if self.one_amplitude and self.width > 1.0:
+        if self.one_amplitude and self.wide:
             return (
                 "delay and radius cannot be told apart by strokes of one amplitude: "
                 f"{interval} samples are as good as none"
@@ -173,9 +183,7 @@ def evidence_of_delay(
     )
 
 
-def _judged(
-    costs: DelayCosts, found: CompatibleDelays, longest: int
-) -> tuple[float, float, float]:
+def _judged(costs: DelayCosts, found: CompatibleDelays, longest: int) -> tuple[float, float, float]:
     """Give the delay to use and the interval to tell."""
     low, high = found.low, found.high
     if low <= 0.0 <= high:
@@ -183,7 +191,7 @@ def _judged(
     if high < 0.0 and not found.describes:
         # Loops of another kind, as those of a force that follows the speed, turn early as well.
         return 0.0, -float(longest), 0.0
-    if -_LEAST_LEAD < high and low < _LEAST_LAG:
+    if high > -_LEAST_LEAD and low < _LEAST_LAG:
         return 0.0, min(low, 0.0), max(high, 0.0)
     inside = np.arange(math.ceil(low * 4.0), math.floor(high * 4.0) + 1) / 4.0
     about = min(inside.tolist(), key=lambda d: costs.cost(d, plain=True), default=found.best)
@@ -204,9 +212,9 @@ def _longest(records: Sequence[Record], starts: Sequence[int], turns: Sequence[I
     """Give a quarter of the shortest usual stroke, but an eighth of the shortest record's use."""
     most = math.inf
     for record, start, places in zip(records, starts, turns, strict=True):
-        own = (len(record) - start) / 8.0
-        if places.size > 1:
-            own = min(own, float(np.median(np.diff(places))) / 4.0)
+        if places.size < 2 or np.ptp(record.y) == 0.0:
+            return 0
+        own = min((len(record) - start) / 8.0, float(np.median(np.diff(places))) / 4.0)
         most = min(most, own * record.dt / records[0].dt)
     return int(most)
 

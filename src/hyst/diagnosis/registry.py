@@ -10,7 +10,11 @@ from collections.abc import Callable, Iterable
 
 from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding
+from hyst.diagnosis.findings import delay_or_radius, output_ahead
 
 Finder = Callable[[Evidence], Iterable[Finding]]
 
-FINDERS: tuple[Finder, ...] = ()
+FINDERS: tuple[Finder, ...] = (
+    output_ahead.find,
+    delay_or_radius.find,
+)
