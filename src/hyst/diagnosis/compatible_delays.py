@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.diagnosis.costs_by_record import CostsByRecord
 from hyst.diagnosis.delay_costs import DelayCosts
 
 Array = NDArray[np.float64]
+Costs = DelayCosts | CostsByRecord
 
 _CHI_SQUARED = 3.841
 """95 % of a squared normal deviate."""
@@ -63,7 +65,7 @@ class CompatibleDelays:
     residual: float
 
 
-def compatible_delays(costs: DelayCosts, longest: int, noise: float) -> CompatibleDelays:
+def compatible_delays(costs: Costs, longest: int, noise: float) -> CompatibleDelays:
     """Search delays from ``-longest`` to ``longest``, ever finer about the best and the ends.
 
     A delay d stays possible while
@@ -105,7 +107,7 @@ def compatible_delays(costs: DelayCosts, longest: int, noise: float) -> Compatib
     return CompatibleDelays(profile.best, low, high, profile.describes, residual)
 
 
-def lowest_between(costs: DelayCosts, about: float, plain: bool) -> float:
+def lowest_between(costs: Costs, about: float, plain: bool) -> float:
     """Refine a delay by smaller steps, and by the parabola through the costs beside it at last."""
     h = _FINEST_STEP
     for _ in range(2):
@@ -128,7 +130,7 @@ class _Profile:
     describes: bool
 
     @classmethod
-    def of(cls, costs: DelayCosts, tried: set[float], noise: float) -> _Profile:
+    def of(cls, costs: Costs, tried: set[float], noise: float) -> _Profile:
         delays = np.array(sorted(tried))
         cost = np.array([costs.cost(d) for d in delays])
         place = int(cost.argmin())

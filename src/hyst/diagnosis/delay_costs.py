@@ -101,6 +101,8 @@ class DelayCosts:
         longest: float,
         turns: Sequence[int],
         bends: bool,
+        dt: float,
+        y_range: float,
     ) -> DelayCosts:
         """Bring records to one scale and choose their rows.
 
@@ -117,14 +119,17 @@ class DelayCosts:
         bends
             Whether a map after plays is wanted: on strokes of one amplitude every rising branch
             is within the cones, and bends would only hide a delay.
+        dt
+            Sample time in which delays are counted, s.
+        y_range
+            Of all outputs, by which costs are measured.
         """
         u_low = min(float(each.u.min()) for each in records)
         half = max((max(float(each.u.max()) for each in records) - u_low) / 2.0, 1e-300)
-        y_range = span_of(outputs)
         share = MOST_ROWS / sum(max(len(r) - s, 1) for r, s in zip(records, starts, strict=True))
         parts = []
         for i, record in enumerate(records):
-            ratio = records[0].dt / record.dt
+            ratio = dt / record.dt
             rows = _rows(record, starts[i], kept[i], math.ceil(longest * ratio) + 1, share)
             u = (record.u - u_low) / half - 1.0
             loops = TurningLoops.of(u, rows)

@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from hyst.diagnosis.compatible_delays import (
     CompatibleDelays,
+    Costs,
     compatible_delays,
     lowest_between,
 )
+from hyst.diagnosis.costs_by_record import CostsByRecord
 from hyst.diagnosis.delay_costs import DelayCosts, clean_output, span_of
 from hyst.diagnosis.repetition import noise_by_repetition
 from hyst.signals import Record, estimate_noise, reversals
@@ -26,6 +28,9 @@ _SMALLEST_TURN = 0.05
 
 _ONE_AMPLITUDE = 0.1
 """Strokes that differ by less, as a part of the longest, are of one amplitude."""
+
+_SAME_RATE = 1.3
+"""Mean rates of inputs whose ratio is less are alike."""
 
 _FEWEST_ROWS = 16
 _AS_WELL = 0.1
@@ -157,18 +162,31 @@ def evidence_of_delay(
     if longest < 1:
         return DelayEvidence(0.0, 0.0, 0.0, 0.0, 0.0, None, False, False, False)
     outputs = [clean_output(each, own) for each, own in zip(records, flags, strict=True)]
-    sizes = [each.size for each in turns]
-    one = _one_amplitude(records, starts, turns)
-    costs = DelayCosts.of(records, outputs, starts, flags, float(longest), sizes, bends=not one)
-    noises = [_noise(r, y) for r, y in zip(records, outputs, strict=True)]
-    shares = [part.loops.rows.size for part in costs.parts]
-    noise = math.sqrt(
-        sum(n * s**2 for n, s in zip(shares, noises, strict=True)) / max(sum(shares), 1)
-    )
     unit = span_of(outputs)
+    one = _one_amplitude(records, starts, turns)
+
+    def costs_of(chosen: slice) -> DelayCosts:
+        return DelayCosts.of(
+            records[chosen],
+            outputs[chosen],
+            starts[chosen],
+            flags[chosen],
+            float(longest),
+            [each.size for each in turns[chosen]],
+            bends=not one,
+            dt=records[0].dt,
+            y_range=unit,
+        )
+
+    costs: Costs = costs_of(slice(None))
+    noise = _noise_of_all(records, outputs, [part.loops.rows.size for part in costs.parts])
     if costs.rows < _FEWEST_ROWS:
         return DelayEvidence(0.0, 0.0, 0.0, 0.0, 0.0, noise or None, False, False, False)
     found = compatible_delays(costs, longest, noise / unit)
+    if not found.describes and _rates_differ(records):
+        # What changes with the rate must not pass for a delay: every record has its own loops.
+        costs = CostsByRecord(tuple(costs_of(slice(i, i + 1)) for i in range(len(records))))
+        found = compatible_delays(costs, longest, noise / unit)
     delay, low, high = _judged(costs, found, longest)
     return DelayEvidence(
         delay=delay,
@@ -183,7 +201,7 @@ def evidence_of_delay(
     )
 
 
-def _judged(costs: DelayCosts, found: CompatibleDelays, longest: int) -> tuple[float, float, float]:
+def _judged(costs: Costs, found: CompatibleDelays, longest: int) -> tuple[float, float, float]:
     """Give the delay to use and the interval to tell."""
     low, high = found.low, found.high
     if low <= 0.0 <= high:
@@ -201,6 +219,19 @@ def _judged(costs: DelayCosts, found: CompatibleDelays, longest: int) -> tuple[f
     whole = float(round(delay))
     close = abs(delay - whole) <= _WHOLE * max(1.0, high - low) and low <= whole <= high
     return (whole if close else delay), low, high
+
+
+def _noise_of_all(
+    records: Sequence[Record], outputs: Sequence[NDArray[np.float64]], rows: Sequence[int]
+) -> float:
+    noises = [_noise(r, y) for r, y in zip(records, outputs, strict=True)]
+    squares = sum(n * s**2 for n, s in zip(rows, noises, strict=True))
+    return math.sqrt(squares / max(sum(rows), 1))
+
+
+def _rates_differ(records: Sequence[Record]) -> bool:
+    rates = [float(np.abs(np.diff(each.u)).mean()) / each.dt for each in records]
+    return max(rates) > _SAME_RATE * min(rates)
 
 
 def _noise(record: Record, clean: NDArray[np.float64]) -> float:
@@ -233,7 +264,7 @@ def _one_amplitude(
 
 
 def _number(value: float) -> str:
-    return f"{value:.2g}" if abs(value) < 10.0 else f"{value:.0f}"
+    return f"{value:.2g}" if abs(value) < 1.0 else f"{value:.3g}"
 
 
 def _samples(amount: float) -> str:
