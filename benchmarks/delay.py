@@ -60,7 +60,7 @@ def with_delay() -> None:
                     held = np.mean([each.low <= delay <= each.high for each in found])
                     excluded = np.mean([each.excludes_zero for each in found])
                     near = np.mean([abs(each.delay - delay) <= 0.1 for each in found])
-                    width = np.mean([each.width for each in found])
+                    width = np.mean([each.high - each.low for each in found])
                     print(
                         f"{delay:3g} {named(shape, decay, kind)} {noise:6.3f} {held:8.2f} "
                         f"{excluded:11.2f} {near:11.2f} {width:8.2f}",
@@ -78,7 +78,9 @@ def no_plays() -> None:
                     for decay in (0.0, 0.75):
                         rng = np.random.default_rng(seed)
                         u = drive(shape, decay, RATE)
-                        found.append(evidence_of_delay([noisy(u, plant(u, rng), noise, rng)], [150]))
+                        found.append(
+                            evidence_of_delay([noisy(u, plant(u, rng), noise, rng)], [150])
+                        )
             print(f"{name:18s} {noise:7.3f} {shares(found)}", flush=True)
 
 
@@ -88,9 +90,9 @@ def times() -> None:
     for samples in (1_600, 10_000, 100_000, 1_000_000):
         u = np.sin(np.arange(samples) * (2.0 * np.pi / min(samples / 8.0, 20_000.0)))
         record = noisy(u, random_plant(rng, "mpi")(u), 0.003, rng)
-        begin = time.perf_counter()
+        begin = time.process_time()
         evidence_of_delay([record], [samples // 10])
-        print(f"{samples:9d} {time.perf_counter() - begin:8.2f} s")
+        print(f"{samples:9d} {time.process_time() - begin:8.2f} s")
 
 
 def named(shape: str, decay: float, kind: str) -> str:
@@ -100,7 +102,7 @@ def named(shape: str, decay: float, kind: str) -> str:
 def shares(found: list[DelayEvidence]) -> str:
     held = np.mean([each.low <= 0.0 <= each.high for each in found])
     zero = np.mean([each.delay == 0.0 for each in found])
-    return f"{held:8.2f} {zero:8.2f} {np.mean([each.width for each in found]):10.1f}"
+    return f"{held:8.2f} {zero:8.2f} {np.mean([each.high - each.low for each in found]):10.1f}"
 
 
 def found_in(

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.diagnosis.costs_by_record import CostsByRecord
 from hyst.diagnosis.delay_costs import DelayCosts
 
 Array = NDArray[np.float64]
+Costs = DelayCosts | CostsByRecord
 
 _CHI_SQUARED = 3.841
 """95 % of a squared normal deviate."""
@@ -63,7 +65,7 @@ class CompatibleDelays:
     residual: float
 
 
-def compatible_delays(costs: DelayCosts, longest: int, noise: float) -> CompatibleDelays:
+def compatible_delays(costs: Costs, longest: int, noise: float) -> CompatibleDelays:
     """Search delays from ``-longest`` to ``longest``, ever finer about the best and the ends.
 
     A delay d stays possible while
@@ -105,7 +107,7 @@ def compatible_delays(costs: DelayCosts, longest: int, noise: float) -> Compatib
     return CompatibleDelays(profile.best, low, high, profile.describes, residual)
 
 
-def lowest_between(costs: DelayCosts, about: float, plain: bool) -> float:
+def lowest_between(costs: Costs, about: float, plain: bool) -> float:
     """Refine a delay by smaller steps, and by the parabola through the costs beside it at last."""
     h = _FINEST_STEP
     for _ in range(2):
@@ -128,7 +130,7 @@ class _Profile:
     describes: bool
 
     @classmethod
-    def of(cls, costs: DelayCosts, tried: set[float], noise: float) -> _Profile:
+    def of(cls, costs: Costs, tried: set[float], noise: float) -> _Profile:
         delays = np.array(sorted(tried))
         cost = np.array([costs.cost(d) for d in delays])
         place = int(cost.argmin())
@@ -159,7 +161,7 @@ def _misfit(e: Array, noise: float) -> tuple[float, bool]:
     """Give the squares beyond noise, and whether there are hardly any.
 
     Counted two ways: beyond the noise that is known, and what means of a few successive residuals
-    hold beyond what independent ones would.
+    hold beyond what independent ones would, one standard deviation of it granted.
     """
     total = float(e @ e)
     most = (1.0 + _ALIKE + _UNSURE / np.sqrt(e.size)) ** 2 * e.size * noise**2
@@ -169,7 +171,7 @@ def _misfit(e: Array, noise: float) -> tuple[float, bool]:
         blocks = e[: count * _BLOCK].reshape(count, _BLOCK)
         means = blocks.mean(axis=1)
         within = float(((blocks - means[:, None]) ** 2).sum()) / (count * (_BLOCK - 1))
-        slow = _BLOCK * float(means @ means) - count * within
+        slow = _BLOCK * float(means @ means) - within * (count + np.sqrt(2.0 * count))
     describes = total <= most + e.size * _RESOLUTION**2
     return max(total - most, slow, 0.0), bool(describes)
 

@@ -101,6 +101,8 @@ class DelayCosts:
         longest: float,
         turns: Sequence[int],
         bends: bool,
+        dt: float,
+        y_range: float,
     ) -> DelayCosts:
         """Bring records to one scale and choose their rows.
 
@@ -117,14 +119,17 @@ class DelayCosts:
         bends
             Whether a map after plays is wanted: on strokes of one amplitude every rising branch
             is within the cones, and bends would only hide a delay.
+        dt
+            Sample time in which delays are counted, s.
+        y_range
+            Of all outputs, by which costs are measured.
         """
         u_low = min(float(each.u.min()) for each in records)
         half = max((max(float(each.u.max()) for each in records) - u_low) / 2.0, 1e-300)
-        y_range = span_of(outputs)
         share = MOST_ROWS / sum(max(len(r) - s, 1) for r, s in zip(records, starts, strict=True))
         parts = []
         for i, record in enumerate(records):
-            ratio = records[0].dt / record.dt
+            ratio = dt / record.dt
             rows = _rows(record, starts[i], kept[i], math.ceil(longest * ratio) + 1, share)
             u = (record.u - u_low) / half - 1.0
             loops = TurningLoops.of(u, rows)
@@ -145,7 +150,7 @@ class DelayCosts:
         delay
             Samples of the first record.
         plain
-            Whether of plays alone instead of the better one of both cones.
+            Whether of plays alone, and a map after them, instead of the better one of both cones.
         """
         key = (delay, plain)
         if key not in self._left:
@@ -174,46 +179,40 @@ class DelayCosts:
         lagging, leading, products = (np.concatenate(each) for each in zip(*found, strict=True))
         return lagging, leading, products
 
-    def _plain(self, lagging: Array) -> Cone:
-        """Give plays alone, without those that stand in for a part of a sample of delay."""
-        drifts = _block_diagonal([part.drifts() for part in self.parts])
-        columns = np.hstack([lagging[:, :1], lagging[:, 1 + SMALL : 1 + RADII.size]])
-        return Cone.of(columns, np.linalg.qr(drifts)[0])
+    def _drifts(self) -> Array:
+        return _block_diagonal([part.drifts() for part in self.parts])
 
     def _cones_at(self, fractions: tuple[float, ...]) -> _Cones:
         if fractions not in self._cones:
             lagging, leading, products = self._columns(fractions)
-            drifts = _block_diagonal([part.drifts() for part in self.parts])
-            either = [drifts, products, *([self._bent(lagging)] if self.bends else [])]
-            free = np.linalg.qr(np.hstack(either))[0]
-            self._cones[fractions] = _Cones(
-                Cone.of(lagging, free), Cone.of(leading, free), self._plain(lagging)
-            )
+            slow = [self._drifts(), *([self._bent(lagging)] if self.bends else [])]
+            free = np.linalg.qr(np.hstack([*slow, products]))[0]
+            plain = Cone.of(_plays(lagging), np.linalg.qr(np.hstack(slow))[0])
+            self._cones[fractions] = _Cones(Cone.of(lagging, free), Cone.of(leading, free), plain)
         return self._cones[fractions]
 
     def _bent(self, lagging: Array) -> Array:
         """Give bends of the plays' best output: what a map after the plays would do to it."""
         if not self._shape:
             still = self._columns((0.0,) * len(self.parts))[0]
-            plain = self._plain(still)
+            plain = Cone.of(_plays(still), np.linalg.qr(self._drifts())[0])
             delays = np.unique(np.round(np.linspace(-self.longest, self.longest, 17)))
             outputs = [self._shifted(float(d))[1] for d in delays]
             costs = [float(e @ e) for e in map(plain.left, outputs)]
             y = outputs[int(np.argmin(costs))]
             weights = plain.weights(y)
             for _ in range(_ROUNDS):
-                weights = plain.weights(_unbent(y, self._output(still, weights)))
-            v = self._output(still, weights)
+                weights = plain.weights(_unbent(y, _plays(still) @ weights))
+            v = _plays(still) @ weights
             knots = v.min() + np.ptp(v) * np.arange(1, _BENDS + 1) / (_BENDS + 1)
             self._shape.append((weights, knots))
         weights, knots = self._shape[0]
-        return np.maximum(self._output(lagging, weights)[:, None] - knots, 0.0)
+        return np.maximum((_plays(lagging) @ weights)[:, None] - knots, 0.0)
 
-    @staticmethod
-    def _output(lagging: Array, weights: Array) -> Array:
-        return np.asarray(
-            lagging[:, 0] * weights[0] + lagging[:, 1 + SMALL : 1 + RADII.size] @ weights[1:]
-        )
+
+def _plays(lagging: Array) -> Array:
+    """Give the input and plays, without those that stand in for a part of a sample of delay."""
+    return np.hstack([lagging[:, :1], lagging[:, 1 + SMALL : 1 + RADII.size]])
 
 
 def _unbent(y: Array, v: Array) -> Array:
@@ -226,13 +225,10 @@ def _unbent(y: Array, v: Array) -> Array:
     middle, height = middle[rising], height[rising]
     if middle.size < 2:
         return y
-    first, last = (
-        np.diff(middle[:2]) / np.diff(height[:2]),
-        np.diff(middle[-2:]) / np.diff(height[-2:]),
-    )
+    slope = np.diff(middle) / np.diff(height)
     inside = np.interp(y, height, middle)
     below, above = np.minimum(y - height[0], 0.0), np.maximum(y - height[-1], 0.0)
-    return np.asarray(inside + first * below + last * above)
+    return np.asarray(inside + slope[0] * below + slope[-1] * above)
 
 
 def clean_output(record: Record, kept: Flags | None) -> Array:

@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from hyst.diagnosis.compatible_delays import (
     CompatibleDelays,
+    Costs,
     compatible_delays,
     lowest_between,
 )
+from hyst.diagnosis.costs_by_record import CostsByRecord
 from hyst.diagnosis.delay_costs import DelayCosts, clean_output, span_of
 from hyst.diagnosis.repetition import noise_by_repetition
 from hyst.signals import Record, estimate_noise, reversals
@@ -27,15 +29,18 @@ _SMALLEST_TURN = 0.05
 _ONE_AMPLITUDE = 0.1
 """Strokes that differ by less, as a part of the longest, are of one amplitude."""
 
+_SAME_RATE = 1.3
+"""Mean rates of inputs whose ratio is less are alike."""
+
 _FEWEST_ROWS = 16
 _AS_WELL = 0.1
 """By how much more squares, as a part, plays alone may leave to be asked for the delay."""
 
-_LEAST_LEAD, _LEAST_LAG = 0.5, 0.25
+_LEAST_LEAD, _LEAST_LAG = 0.5, 0.2
 """Samples: what is steep between two samples looks like less than that."""
 
 _WHOLE = 0.15
-"""Samples, or as a part of a wider interval: an estimate nearer to a whole number is taken for it."""
+"""Samples, or as a part of a wider interval: an estimate so near a whole number is taken for it."""
 
 
 @dataclass(frozen=True)
@@ -74,9 +79,14 @@ class DelayEvidence:
     one_amplitude: bool
 
     @property
-    def width(self) -> float:
-        """Of the interval, samples."""
-        return self.high - self.low
+    def wide(self) -> bool:
+        """Whether the interval is wider than a sample."""
+        return self.high - self.low > 1.0
+
+    @property
+    def turns_early(self) -> bool:
+        """Whether the output turns before its input, though as no mere lead explains."""
+        return not self.describes and self.low < 0.0 and self.high <= 0.0 and not self.delay
 
     def said(self, dt: float) -> str:
         """Give a sentence for people.
@@ -99,14 +109,19 @@ class DelayEvidence:
                 f"the output is ahead of the input by {how}, which no actuator is: the channels "
                 "are not aligned"
             )
+        if self.turns_early:
+            return (
+                "the output turns before its input: it follows the input's rate, as a viscous "
+                "force does, or the channels are not aligned; no delay is taken"
+            )
         if self.limit == 0.0:
             return "nothing can be said of a delay: the records are too short for it"
-        if not self.describes and self.width > 1.0:
+        if not self.describes and self.wide:
             return (
                 "nothing certain can be said of a delay: general loops leave more than the noise, "
                 f"and with {interval} samples they leave hardly more or less"
             )
-        if self.one_amplitude and self.width > 1.0:
+        if self.one_amplitude and self.wide:
             return (
                 "delay and radius cannot be told apart by strokes of one amplitude: "
                 f"{interval} samples are as good as none"
@@ -147,18 +162,31 @@ def evidence_of_delay(
     if longest < 1:
         return DelayEvidence(0.0, 0.0, 0.0, 0.0, 0.0, None, False, False, False)
     outputs = [clean_output(each, own) for each, own in zip(records, flags, strict=True)]
-    sizes = [each.size for each in turns]
-    one = _one_amplitude(records, starts, turns)
-    costs = DelayCosts.of(records, outputs, starts, flags, float(longest), sizes, bends=not one)
-    noises = [_noise(r, y) for r, y in zip(records, outputs, strict=True)]
-    shares = [part.loops.rows.size for part in costs.parts]
-    noise = math.sqrt(
-        sum(n * s**2 for n, s in zip(shares, noises, strict=True)) / max(sum(shares), 1)
-    )
     unit = span_of(outputs)
+    one = _one_amplitude(records, starts, turns)
+
+    def costs_of(chosen: slice) -> DelayCosts:
+        return DelayCosts.of(
+            records[chosen],
+            outputs[chosen],
+            starts[chosen],
+            flags[chosen],
+            float(longest),
+            [each.size for each in turns[chosen]],
+            bends=not one,
+            dt=records[0].dt,
+            y_range=unit,
+        )
+
+    costs: Costs = costs_of(slice(None))
+    noise = _noise_of_all(records, outputs, [part.loops.rows.size for part in costs.parts])
     if costs.rows < _FEWEST_ROWS:
         return DelayEvidence(0.0, 0.0, 0.0, 0.0, 0.0, noise or None, False, False, False)
     found = compatible_delays(costs, longest, noise / unit)
+    if not found.describes and _rates_differ(records):
+        # What changes with the rate must not pass for a delay: every record has its own loops.
+        costs = CostsByRecord(tuple(costs_of(slice(i, i + 1)) for i in range(len(records))))
+        found = compatible_delays(costs, longest, noise / unit)
     delay, low, high = _judged(costs, found, longest)
     return DelayEvidence(
         delay=delay,
@@ -173,7 +201,7 @@ def evidence_of_delay(
     )
 
 
-def _judged(costs: DelayCosts, found: CompatibleDelays, longest: int) -> tuple[float, float, float]:
+def _judged(costs: Costs, found: CompatibleDelays, longest: int) -> tuple[float, float, float]:
     """Give the delay to use and the interval to tell."""
     low, high = found.low, found.high
     if low <= 0.0 <= high:
@@ -193,6 +221,19 @@ def _judged(costs: DelayCosts, found: CompatibleDelays, longest: int) -> tuple[f
     return (whole if close else delay), low, high
 
 
+def _noise_of_all(
+    records: Sequence[Record], outputs: Sequence[NDArray[np.float64]], rows: Sequence[int]
+) -> float:
+    noises = [_noise(r, y) for r, y in zip(records, outputs, strict=True)]
+    squares = sum(n * s**2 for n, s in zip(rows, noises, strict=True))
+    return math.sqrt(squares / max(sum(rows), 1))
+
+
+def _rates_differ(records: Sequence[Record]) -> bool:
+    rates = [float(np.abs(np.diff(each.u)).mean()) / each.dt for each in records]
+    return max(rates) > _SAME_RATE * min(rates)
+
+
 def _noise(record: Record, clean: NDArray[np.float64]) -> float:
     repeated = noise_by_repetition(record)
     return estimate_noise(clean) if repeated is None else repeated
@@ -202,9 +243,9 @@ def _longest(records: Sequence[Record], starts: Sequence[int], turns: Sequence[I
     """Give a quarter of the shortest usual stroke, but an eighth of the shortest record's use."""
     most = math.inf
     for record, start, places in zip(records, starts, turns, strict=True):
-        own = (len(record) - start) / 8.0
-        if places.size > 1:
-            own = min(own, float(np.median(np.diff(places))) / 4.0)
+        if places.size < 2 or np.ptp(record.y) == 0.0:
+            return 0
+        own = min((len(record) - start) / 8.0, float(np.median(np.diff(places))) / 4.0)
         most = min(most, own * record.dt / records[0].dt)
     return int(most)
 
@@ -223,7 +264,7 @@ def _one_amplitude(
 
 
 def _number(value: float) -> str:
-    return f"{value:.2g}" if abs(value) < 10.0 else f"{value:.0f}"
+    return f"{value:.2g}" if abs(value) < 1.0 else f"{value:.3g}"
 
 
 def _samples(amount: float) -> str:

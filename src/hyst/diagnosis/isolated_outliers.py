@@ -37,7 +37,7 @@ def isolated_outliers(y: Array) -> Flags:
 
 def _standing_out(y: Array, places: NDArray[np.intp]) -> Array:
     around = np.clip(places[:, None] + np.arange(-2, 3), 0, y.size - 1)
-    return np.abs(y[places] - np.median(y[around], axis=1))
+    return np.asarray(np.abs(y[places] - np.median(y[around], axis=1)))
 
 
 def bridged(y: Array, kept: Flags) -> Array:

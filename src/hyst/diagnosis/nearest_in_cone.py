@@ -89,4 +89,4 @@ def _weights(factor: Array, target: Array) -> Array:
         return np.asarray(scipy.optimize.nnls(factor, target, maxiter=20 * len(factor) + 200)[0])
     except (RuntimeError, np.linalg.LinAlgError):
         found = scipy.optimize.lsq_linear(factor, target, (0.0, np.inf), method="bvls")
-        return np.maximum(found.x, 0.0)
+        return np.asarray(np.maximum(found.x, 0.0))

@@ -13,6 +13,7 @@ from hyst.diagnosis.finding import Finding
 from hyst.diagnosis.findings import (
     butterfly,
     codes,
+    delay_or_radius,
     direction,
     disagreement,
     drifting_output,
@@ -26,6 +27,7 @@ from hyst.diagnosis.findings import (
     noise_floor,
     one_amplitude,
     outliers,
+    output_ahead,
     output_is_noise,
     quantisation,
     rate_dependence,
@@ -60,4 +62,6 @@ FINDERS: tuple[Finder, ...] = (
     noise_floor.find,
     gain_sign.find,
     next_record.find,
+    output_ahead.find,
+    delay_or_radius.find,
 )
