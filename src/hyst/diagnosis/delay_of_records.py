@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,10 +15,9 @@ _COVERED = 0.95
 """Of the range of a record's input: from then on the memory of what is looked for is known."""
 
 
-def delay_of(evidence: Evidence) -> DelayEvidence:
-    """Give the evidence on the delay common to all records."""
-    records = evidence.records
-    return evidence.once("delay", lambda: evidence_of_delay(records, settled_starts(records)))
+def delay_of(evidence: Evidence) -> DelayEvidence | None:
+    """Give the evidence on the delay common to all records in which something moves."""
+    return evidence.once("delay", lambda: _delay_of(evidence))
 
 
 def settled_starts(records: Sequence[Record]) -> list[int]:
@@ -28,3 +28,14 @@ def settled_starts(records: Sequence[Record]) -> list[int]:
         first = int((covered >= _COVERED * float(np.ptp(each.u))).argmax())
         starts.append(first if first <= len(each) / 2 else 0)
     return starts
+
+
+def _delay_of(evidence: Evidence) -> DelayEvidence | None:
+    records, kept = [], []
+    for number, record in evidence.numbered():
+        drift = evidence.drift(number)
+        records.append(record if drift is None else replace(record, y=record.y - drift.curve))
+        counts = np.ones(record.samples, dtype=np.bool_)
+        counts[evidence.left_out(number)] = False
+        kept.append(None if counts.all() else counts)
+    return evidence_of_delay(records, settled_starts(records), kept) if records else None

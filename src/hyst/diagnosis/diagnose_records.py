@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import NO_SAMPLES, SEVERITIES, Finding, Severity
+from hyst.diagnosis.findings import delay_or_radius, output_ahead
 from hyst.diagnosis.next_drive import NextDrive, next_drive
-from hyst.diagnosis.registry import FINDERS
+from hyst.diagnosis.registry import FINDERS, FINDERS_OF_DELAY, Finder
 from hyst.errors import InputError
 from hyst.signals import Record
 
@@ -62,6 +64,19 @@ class Diagnosis:
         """
         parts = [each.samples for each in self.of("left out") if each.record == record]
         return np.unique(np.concatenate([NO_SAMPLES, *parts]))
+
+    def with_delay(self, found: DelayEvidence, dt: float) -> Diagnosis:
+        """Give the same diagnosis with what there is to say of a delay.
+
+        Parameters
+        ----------
+        found
+            On the same records.
+        dt
+            Sample time of the first one, s.
+        """
+        more = (*output_ahead.told(found, dt), *delay_or_radius.told(found, dt))
+        return replace(self, findings=_worst_first((*self.findings, *more)))
 
     def summary(self) -> str:
         """Give all sentences, one paragraph for each severity, for people.
@@ -122,11 +137,30 @@ def diagnose(records: Record | Sequence[Record]) -> Diagnosis:
     for number, record in enumerate(given, 1):
         if not isinstance(record, Record):
             raise InputError(f"record {number} is {type(record).__name__}; give a hyst.Record")
-    evidence = Evidence(given)
+    return _found(given, FINDERS + FINDERS_OF_DELAY)
+
+
+def diagnose_all_but_delay(records: Sequence[Record]) -> Diagnosis:
+    """Diagnose records for who will look for their delay anyway, which costs as much as the rest.
+
+    Parameters
+    ----------
+    records
+        One or more.
+    """
+    return _found(tuple(records), FINDERS)
+
+
+def _found(records: tuple[Record, ...], finders: Sequence[Finder]) -> Diagnosis:
+    evidence = Evidence(records)
     found: list[Finding] = []
-    for find in FINDERS:
+    for find in finders:
         new = tuple(find(evidence))
         evidence.tell(new)
         found += new
-    worst_first = sorted(found, key=lambda each: SEVERITIES.index(each.severity))
-    return Diagnosis(tuple(worst_first), evidence.once("next drive", lambda: next_drive(evidence)))
+    drive = evidence.once("next drive", lambda: next_drive(evidence))
+    return Diagnosis(_worst_first(found), drive)
+
+
+def _worst_first(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+    return tuple(sorted(findings, key=lambda each: SEVERITIES.index(each.severity)))

@@ -62,6 +62,6 @@ FINDERS: tuple[Finder, ...] = (
     noise_floor.find,
     gain_sign.find,
     next_record.find,
-    output_ahead.find,
-    delay_or_radius.find,
 )
+FINDERS_OF_DELAY: tuple[Finder, ...] = (output_ahead.find, delay_or_radius.find)
+"""An identification, which asks for the delay anyway, does without them: see ``with_delay``."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from hyst.diagnosis import diagnose
+from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.selection import settled
 from hyst.identification.families.family import Family, Fit, Start, Words
@@ -140,7 +140,7 @@ def fit(
     require_same_units((*given, *judged))
     parametrization, theta = parametrize_own(model, free, bounds or {})
     options = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
-    diagnosis = diagnose(given)
+    diagnosis = diagnose_all_but_delay(given)
     clean = cleaned(given, diagnosis, as_drift(drift))
     data = clean.marked(prepare(clean.records, start, fewest_turns=0))
     data = data.delayed(as_delay(delay, data, ""))

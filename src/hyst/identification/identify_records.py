@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from threadpoolctl import threadpool_limits
 
-from hyst.diagnosis import diagnose
+from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
 from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families
 from hyst.identification.options import Options, listed, silent
@@ -104,11 +104,14 @@ def identify(
     wanted = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
     families, about_drift = chosen_families(family, options), as_drift(drift)
     with threadpool_limits(1, user_api="blas"):
-        diagnosis = diagnose(given)
+        diagnosis = diagnose_all_but_delay(given)
         # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
         found = find(cleaned(given, diagnosis, about_drift), families, wanted)
         for number, record in enumerate(judged, 1):
             found.fit.operator.require_sample_time(record.dt, f"validation record {number}")
+        if found.delay is not None:
+            # In units of powers of two, in which its times and samples are the same.
+            diagnosis = diagnosis.with_delay(found.delay, given[0].dt)
         identified = identified_from_fit(
             found.data,
             found.fit,

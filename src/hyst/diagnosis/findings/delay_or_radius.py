@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
+from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.diagnosis.delay_of_records import delay_of
 from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding
@@ -11,12 +12,16 @@ from hyst.diagnosis.finding import Finding
 NAME = "delay or radius"
 
 
-def find(evidence: Evidence) -> Iterator[Finding]:
-    """Remark on how much delay could hide in a loop of one amplitude."""
+def find(evidence: Evidence) -> Iterable[Finding]:
+    """See ``told``."""
     found = delay_of(evidence)
+    return () if found is None else told(found, evidence.records[0].dt)
+
+
+def told(found: DelayEvidence, dt: float) -> Iterator[Finding]:
+    """Remark on how much delay could hide in a loop of one amplitude."""
     if not found.one_amplitude or not found.wide:
         return
-    dt = evidence.records[0].dt
     yield Finding(
         NAME,
         "remark",

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
+from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.diagnosis.delay_of_records import delay_of
 from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding
@@ -11,10 +12,14 @@ from hyst.diagnosis.finding import Finding
 NAME = "output ahead of input"
 
 
-def find(evidence: Evidence) -> Iterator[Finding]:
-    """Warn where no delay, or no rate-independent model, can be right."""
+def find(evidence: Evidence) -> Iterable[Finding]:
+    """See ``told``."""
     found = delay_of(evidence)
-    dt = evidence.records[0].dt
+    return () if found is None else told(found, evidence.records[0].dt)
+
+
+def told(found: DelayEvidence, dt: float) -> Iterator[Finding]:
+    """Warn where no delay, or no rate-independent model, can be right."""
     said = found.said(dt)
     if found.excludes_zero and found.delay < 0.0:
         yield Finding(
