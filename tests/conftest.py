@@ -24,3 +24,12 @@ def measured_data() -> Path:
     if not folder.is_dir():
         pytest.skip(f"measured records are not at {folder}")
     return folder
+
+
+@pytest.fixture(scope="session")
+def cases(measured_data: Path) -> Path:
+    """Folder of the cases, each with the right answer in its README."""
+    folder = measured_data.parent / "cases"
+    if not folder.is_dir():
+        pytest.skip(f"cases are not at {folder}")
+    return folder

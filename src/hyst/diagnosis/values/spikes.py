@@ -148,8 +148,9 @@ def _sticks_out(signal: Array, first: Samples, length: int, size: Array) -> NDAr
     run = signal[first[:, None] + inside] - before[:, None]
     near -= slope[:, None] * (around + 1)
     run -= slope[:, None] * (inside + 1)
-    above = run.min(axis=1) - near.max(axis=1)
-    below = near.min(axis=1) - run.max(axis=1)
+    # One of the eight may be an outlier itself.
+    highest, lowest = np.partition(near, -2, axis=1)[:, -2], np.partition(near, 1, axis=1)[:, 1]
+    above, below = run.min(axis=1) - highest, lowest - run.max(axis=1)
     return np.asarray(np.maximum(above, below) > size / 2.0)
 
 
