@@ -34,6 +34,11 @@ def of_record(evidence: Evidence, number: int) -> str:
     return "" if len(evidence.records) == 1 else f"in record {number} "
 
 
+def counted(count: int, what: str) -> str:
+    """Give a number of things, as ``1 level`` and ``2 levels``."""
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
 def percent(share: float) -> str:
     """Give a share in percent, as ``0.38 %``."""
     value = 100.0 * share

@@ -9,7 +9,7 @@ import numpy as np
 from hyst.diagnosis.amplitudes import Amplitudes, amplitudes_of
 from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding
-from hyst.diagnosis.wording import amount, of_record
+from hyst.diagnosis.wording import amount, counted, of_record
 from hyst.signals import Record
 
 NAME = "drive"
@@ -30,8 +30,8 @@ def _told(evidence: Evidence, number: int, record: Record, found: Amplitudes) ->
     slow, fast = (float(each) for each in np.percentile(moving, [5.0, 95.0]))
     sentence = (
         f"{of_record(evidence, number)}the input runs from {amount(low, '')} to "
-        f"{amount(high, unit)} with {found.turns} reversals at {found.levels} levels "
-        f"({ranges} {'range' if ranges == 1 else 'ranges'}"
+        f"{amount(high, unit)} with {counted(found.turns, 'reversal')} at "
+        f"{counted(found.levels, 'level')} ({counted(ranges, 'range')}"
         f"{', one within another' if found.nested else ''}), at "
         + (
             f"{amount(fast, unit, 's')}"
