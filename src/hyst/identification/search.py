@@ -15,7 +15,7 @@ import numpy as np
 
 from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.errors import InputError, NotIdentifiableError
-from hyst.identification.choice.delay import find_delay, whole_delay
+from hyst.identification.choice.delay import find_delay, settled_by_family, whole_delay
 from hyst.identification.choice.selection import (
     Contender,
     best_of_starts,
@@ -69,6 +69,7 @@ class _Task:
     data: Data
     scales: tuple[float, float]
     notes: tuple[str, ...]
+    evidence: DelayEvidence | None = None
 
     def delayed(self, delay: int) -> _Task:
         return replace(self, given=self.given.delayed(delay), data=self.data.delayed(delay))
@@ -82,7 +83,8 @@ def find(records: tuple[Record, ...], families: Sequence[Family], options: Optio
     """Choose delay, family and size, and fit it.
 
     Long records are searched in thinned form; the last fit takes every sample. An automatic delay
-    is found before the family is known, and is 0 unless the records exclude it.
+    is found before the family is known, and is 0 unless the records exclude it; among those that
+    they leave possible a family that describes them may choose.
 
     Parameters
     ----------
@@ -111,6 +113,12 @@ def find(records: tuple[Record, ...], families: Sequence[Family], options: Optio
     tasks = _with_delay(tasks, options)
     _require_samples(tasks)
     fit, task, candidates, refusals = _search(tasks, options)
+    if task.evidence is not None and fit.family.has_memory:
+        delay = settled_by_family(task.data, fit, task.evidence)
+        if delay != task.data.delay:
+            options.say("delay, settled by the family")
+            shifted = [t if t.family.answers_late else t.delayed(delay) for t in tasks]
+            fit, task, candidates, refusals = _search(shifted, options)
     if task.searched() is not task.data:
         fit = _polished(fit, task, options)
     fit = replace(fit, parametrization=_in_given_units(fit, task))
@@ -187,6 +195,7 @@ def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
             key = min(task.given.starts)
             if key not in found:
                 found[key] = find_delay(task.data)
+            task = replace(task, evidence=found[key])
             delay = whole_delay(found[key], task.data)
         result.append(task.delayed(delay))
     return result
