@@ -5,9 +5,11 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.io
 from delayed_records import (
     RATE,
     SETTLED,
@@ -88,15 +90,24 @@ def test_an_output_ahead_of_its_input_is_found_and_told(lead: int, gain: float) 
     assert f"--delay -{lead}" in finding.advice
 
 
-def test_a_force_that_follows_the_speed_is_no_negative_delay() -> None:
-    u = drive("sine")
+@pytest.mark.parametrize("decay", [0.0, 0.75])
+def test_a_force_that_follows_the_speed_is_no_negative_delay(decay: float) -> None:
+    u = drive("sine", decay)
     speed = np.gradient(u) * RATE / (2.0 * np.pi)
-    viscous = noisy(u, dahl(u, 5) + 0.2 * u + 1.5 * speed, 0.001)
-    result = found(viscous)
-    assert result.delay == 0.0
-    assert not result.excludes_zero
-    (finding,) = hyst.diagnose(viscous).named("output ahead of input")
+    for share in (0.3, 1.5):
+        result = found(noisy(u, dahl(u, 5) + 0.2 * u + share * speed, 0.001))
+        assert result.delay == 0.0
+        assert not result.excludes_zero
+        assert result.low < -1.0
+
+
+def test_a_measured_damper_may_follow_the_rate_or_be_misaligned(measured_data: Path) -> None:
+    held = scipy.io.loadmat(measured_data / "mr-damper" / "ensaio.A.5.mat")
+    damper = hyst.Record(held["dist"].ravel(), held["forc"].ravel(), 0.01)
+    assert found(damper).delay == 0.0
+    (finding,) = hyst.diagnose(damper).named("output ahead of input")
     assert "rate" in finding.sentence
+    assert "not aligned" in finding.sentence
 
 
 def test_a_few_spikes_change_nothing() -> None:
@@ -141,6 +152,7 @@ def test_a_loop_that_grows_with_the_rate_is_no_delay() -> None:
     result = evidence_of_delay(records, starts)
     assert result.delay == 0.0
     assert result.low <= 0.0 <= result.high
+    assert "grow with the rate" in result.said(1e-3)
 
 
 @pytest.mark.parametrize(("u_power", "y_power"), [(-20, 0), (3, -40), (0, 17)])

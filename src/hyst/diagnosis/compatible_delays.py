@@ -108,7 +108,17 @@ def compatible_delays(costs: Costs, longest: int, noise: float) -> CompatibleDel
 
 
 def lowest_between(costs: Costs, about: float, plain: bool) -> float:
-    """Refine a delay by smaller steps, and by the parabola through the costs beside it at last."""
+    """Refine a delay by smaller steps, and by the parabola through the costs beside it at last.
+
+    Parameters
+    ----------
+    costs
+        Of the records.
+    about
+        Where to begin, samples.
+    plain
+        Whether of plays and a map after them alone.
+    """
     h = _FINEST_STEP
     for _ in range(2):
         h /= 2.0

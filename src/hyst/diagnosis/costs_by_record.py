@@ -42,5 +42,11 @@ class CostsByRecord:
         return np.concatenate([one.left(delay, plain) for one in self.each])
 
     def cost(self, delay: float, plain: bool = False) -> float:
-        """Give the sum of squares of the residual."""
+        """Give the sum of squares of the residual.
+
+        Parameters
+        ----------
+        delay, plain
+            As of ``left``.
+        """
         return sum(one.cost(delay, plain) for one in self.each)

@@ -161,7 +161,13 @@ class DelayCosts:
         return self._left[key]
 
     def cost(self, delay: float, plain: bool = False) -> float:
-        """Give the sum of squares of the residual."""
+        """Give the sum of squares of the residual.
+
+        Parameters
+        ----------
+        delay, plain
+            As of ``left``.
+        """
         e = self.left(delay, plain)
         return float(e @ e)
 
@@ -232,13 +238,27 @@ def _unbent(y: Array, v: Array) -> Array:
 
 
 def clean_output(record: Record, kept: Flags | None) -> Array:
-    """Give an output with what is not kept, and what stands out alone, bridged."""
+    """Give an output with what is not kept, and what stands out alone, bridged.
+
+    Parameters
+    ----------
+    record
+        The record.
+    kept
+        Shape (N,), or None for all.
+    """
     y = record.y if kept is None else bridged(record.y, kept)
     return bridged(y, ~isolated_outliers(y))
 
 
 def span_of(outputs: Sequence[Array]) -> float:
-    """Give the range of all outputs together."""
+    """Give the range of all outputs together.
+
+    Parameters
+    ----------
+    outputs
+        Of each record.
+    """
     low, high = (min(float(y.min()) for y in outputs), max(float(y.max()) for y in outputs))
     return max(high - low, 1e-300)
 

@@ -36,8 +36,9 @@ _FEWEST_ROWS = 16
 _AS_WELL = 0.1
 """By how much more squares, as a part, plays alone may leave to be asked for the delay."""
 
-_LEAST_LEAD, _LEAST_LAG = 0.5, 0.2
-"""Samples: what is steep between two samples looks like less than that."""
+_LEAST_LEAD, _LEAST_LAG, _LEAST_OF_ONE_AMPLITUDE = 0.5, 0.2, 0.5
+"""Samples: what is steep between two samples looks like less than that, and more so where all
+strokes are sampled at the same levels."""
 
 _WHOLE = 0.15
 """Samples, or as a part of a wider interval: an estimate so near a whole number is taken for it."""
@@ -66,6 +67,9 @@ class DelayEvidence:
         Whether the records exclude that there is no delay.
     one_amplitude
         Whether all strokes are equally long: then a delay and a small radius are much alike.
+    rate_or_lag
+        Whether records at several rates show a lag that loops growing with the rate explain as
+        well: then no delay is taken, though ``high`` tells how much there may be.
     """
 
     delay: float
@@ -77,6 +81,7 @@ class DelayEvidence:
     describes: bool
     excludes_zero: bool
     one_amplitude: bool
+    rate_or_lag: bool = False
 
     @property
     def wide(self) -> bool:
@@ -113,6 +118,11 @@ class DelayEvidence:
             return (
                 "the output turns before its input: it follows the input's rate, as a viscous "
                 "force does, or the channels are not aligned; no delay is taken"
+            )
+        if self.rate_or_lag:
+            return (
+                f"a delay of up to {_number(self.high)} samples or loops that grow with the rate "
+                "explain the records alike; no delay is taken unless a model tells them apart"
             )
         if self.limit == 0.0:
             return "nothing can be said of a delay: the records are too short for it"
@@ -178,16 +188,21 @@ def evidence_of_delay(
             y_range=unit,
         )
 
-    costs: Costs = costs_of(slice(None))
-    noise = _noise_of_all(records, outputs, [part.loops.rows.size for part in costs.parts])
+    together = costs_of(slice(None))
+    costs: Costs = together
+    noise = _noise_of_all(records, outputs, [p.loops.rows.size for p in together.parts])
     if costs.rows < _FEWEST_ROWS:
         return DelayEvidence(0.0, 0.0, 0.0, 0.0, 0.0, noise or None, False, False, False)
     found = compatible_delays(costs, longest, noise / unit)
-    if not found.describes and _rates_differ(records):
+    certain = found.describes and found.low <= 0.0 <= found.high
+    if not certain and _rates_differ(records):
         # What changes with the rate must not pass for a delay: every record has its own loops.
         costs = CostsByRecord(tuple(costs_of(slice(i, i + 1)) for i in range(len(records))))
         found = compatible_delays(costs, longest, noise / unit)
-    delay, low, high = _judged(costs, found, longest)
+    delay, low, high = _judged(costs, found, longest, one)
+    rate_or_lag = delay > 0.0 and _rates_differ(records)
+    if rate_or_lag:
+        delay, low = 0.0, 0.0
     return DelayEvidence(
         delay=delay,
         low=low,
@@ -198,10 +213,13 @@ def evidence_of_delay(
         describes=found.describes,
         excludes_zero=not low <= 0.0 <= high,
         one_amplitude=one,
+        rate_or_lag=rate_or_lag,
     )
 
 
-def _judged(costs: Costs, found: CompatibleDelays, longest: int) -> tuple[float, float, float]:
+def _judged(
+    costs: Costs, found: CompatibleDelays, longest: int, one_amplitude: bool
+) -> tuple[float, float, float]:
     """Give the delay to use and the interval to tell."""
     low, high = found.low, found.high
     if low <= 0.0 <= high:
@@ -209,7 +227,7 @@ def _judged(costs: Costs, found: CompatibleDelays, longest: int) -> tuple[float,
     if high < 0.0 and not found.describes:
         # Loops of another kind, as those of a force that follows the speed, turn early as well.
         return 0.0, -float(longest), 0.0
-    if high > -_LEAST_LEAD and low < _LEAST_LAG:
+    if high > -_LEAST_LEAD and low < (_LEAST_OF_ONE_AMPLITUDE if one_amplitude else _LEAST_LAG):
         return 0.0, min(low, 0.0), max(high, 0.0)
     inside = np.arange(math.ceil(low * 4.0), math.floor(high * 4.0) + 1) / 4.0
     about = min(inside.tolist(), key=lambda d: costs.cost(d, plain=True), default=found.best)

@@ -19,7 +19,13 @@ _SOME = 20_000
 
 
 def isolated_outliers(y: Array) -> Flags:
-    """Mark samples far from the median of the five around them."""
+    """Mark samples far from the median of the five around them.
+
+    Parameters
+    ----------
+    y
+        Shape (N,).
+    """
     result = np.zeros(y.size, dtype=bool)
     if y.size < 5:
         return result
@@ -41,7 +47,15 @@ def _standing_out(y: Array, places: NDArray[np.intp]) -> Array:
 
 
 def bridged(y: Array, kept: Flags) -> Array:
-    """Draw lines over what is not kept."""
+    """Draw lines over what is not kept.
+
+    Parameters
+    ----------
+    y
+        Shape (N,).
+    kept
+        Shape (N,).
+    """
     places = np.flatnonzero(kept)
     if places.size in (0, y.size):
         return y

@@ -75,7 +75,15 @@ class TurningLoops:
 
     @classmethod
     def of(cls, u: Array, rows: Indices) -> TurningLoops:
-        """Run the memory through the whole input and keep it at the rows."""
+        """Run the memory through the whole input and keep it at the rows.
+
+        Parameters
+        ----------
+        u
+            Shape (N,), input between -1 and 1.
+        rows
+            Shape (m,), samples >= 1, ascending.
+        """
         wanted = np.unique(np.concatenate([rows - 1, rows]))
         plays, cells = _memory(u, wanted)
         earlier, now = np.searchsorted(wanted, rows - 1), np.searchsorted(wanted, rows)
@@ -109,7 +117,17 @@ class TurningLoops:
 
 
 def between_samples(u: Array, rows: Indices, fraction: float) -> Array:
-    """Give a signal a part of a sample before each row: a cubic, but a line beside a turn."""
+    """Give a signal a part of a sample before each row: a cubic, but a line beside a turn.
+
+    Parameters
+    ----------
+    u
+        Shape (N,).
+    rows
+        Shape (m,), samples >= 1.
+    fraction
+        Of a sample, in [0, 1).
+    """
     if fraction == 0.0:
         return u[rows]
     a, b, c = u[np.maximum(rows - 2, 0)], u[rows - 1], u[rows]

@@ -15,7 +15,7 @@ import numpy as np
 
 from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.errors import InputError, NotIdentifiableError
-from hyst.identification.choice.delay import find_delay, usable_delay
+from hyst.identification.choice.delay import find_delay, settled_by_family, usable_delay
 from hyst.identification.choice.selection import (
     Contender,
     best_of_starts,
@@ -87,7 +87,8 @@ def find(records: Cleaned, families: Sequence[Family], options: Options) -> Foun
     """Choose delay, family and size, and fit it.
 
     Long records are searched in thinned form; the last fit takes every sample. An automatic delay
-    is found before the family is known, and is 0 unless the records exclude it.
+    is found before the family is known, and is 0 unless the records exclude it; among those that
+    they leave possible a family that describes them may choose.
 
     Parameters
     ----------
@@ -116,6 +117,12 @@ def find(records: Cleaned, families: Sequence[Family], options: Options) -> Foun
     tasks = _with_delay(tasks, options)
     _require_samples(tasks)
     fit, task, candidates, refusals = _search(tasks, options)
+    if task.evidence is not None and fit.family.has_memory:
+        delay = settled_by_family(task.data, fit, task.evidence)
+        if delay != task.data.lag:
+            options.say("delay, settled by the family")
+            shifted = [t if t.family.answers_late else t.delayed(delay, t.evidence) for t in tasks]
+            fit, task, candidates, refusals = _search(shifted, options)
     if task.searched() is not task.data:
         fit = _polished(fit, task, options)
     fit = replace(fit, parametrization=_in_given_units(fit, task))
