@@ -83,6 +83,17 @@ def test_what_no_command_may_come_from_is_unfit(what: str, family: str) -> None:
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_damper_over_the_displacement_is_unfit_with_its_reason(sign: float) -> None:
+    u = drive("sine", 10.0, 3)
+    speed = np.gradient(u) / DT
+    y = sign * (np.tanh(speed / 30.0) + 0.005 * speed) + 0.02 * u
+    verdict = verdict_on(record(u, y, 0.01))
+    assert verdict.level == "unfit"
+    assert "follows the speed of the input" in verdict.sentences[0]
+    assert "butterfly" not in verdict.sentences[0]
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_line_is_good_on_a_line_and_unfit_on_a_wide_loop(sign: float) -> None:
     u = drive("triangle", 5.0, 1)
     assert verdict_on(record(u, sign * 3.0 * u + 1.0, 0.01), "linear").level == "good"

@@ -40,6 +40,27 @@ def falling_share(remainder: Remainder) -> float:
     return min(up, down) / (up + down) if up + down > 0.0 else 0.0
 
 
+def follows_the_speed(remainder: Remainder) -> bool:
+    """Tell whether the output goes with the change of the input more than with the input.
+
+    Parameters
+    ----------
+    remainder
+        What a fit leaves.
+    """
+    y = remainder.y - remainder.y.mean()
+    speed = np.concatenate([_speed(each) for each in remainder.parts])
+    u, speed = remainder.u - remainder.u.mean(), speed - speed.mean()
+    by_input, by_speed = (
+        float(each @ y) ** 2 / max(float(each @ each), np.finfo(float).tiny) for each in (u, speed)
+    )
+    return by_speed > max(BY_THE_BRANCH * float(y @ y), by_input)
+
+
+def _speed(part: Part) -> Array:
+    return np.asarray(np.gradient(part.u) / part.dt) if part.u.size > 2 else 0.0 * part.u
+
+
 def _branch(part: Part, remainder: Remainder, way: float) -> tuple[Array, float]:
     """Give the steps of the mean output along one direction of the input, and what it explains."""
     if part.u.size < 3:

@@ -9,7 +9,7 @@ import numpy as np
 
 from hyst.diagnosis import Diagnosis
 from hyst.identification.families.family import Fit
-from hyst.identification.judgement.left_over import Told, causes_of, told_of
+from hyst.identification.judgement.left_over import Told, causes_of, is_too_short, told_of
 from hyst.identification.judgement.remainder import Remainder, remainder_of
 from hyst.identification.judgement.taken_apart import SMALLEST_PART, TakenApart, taken_apart
 from hyst.identification.judgement.unfit import reasons_unfit
@@ -80,6 +80,8 @@ def _levelled(
             if found.is_noise
             else "which is not noise alone"
         )
+        if is_too_short(remainder, found):
+            more = "of which the record is too short to tell what it is"
         return "fair", (f"The model leaves {remainder.said(error)} rms, {more}.",), told
     how = (
         "it is as large from one repetition of the drive to the next"

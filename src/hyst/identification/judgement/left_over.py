@@ -72,13 +72,26 @@ def _by_rate(remainder: Remainder, found: TakenApart) -> list[tuple[str, str]]:
     return [(growth, RATE.advice)] if growth else []
 
 
+def is_too_short(remainder: Remainder, found: TakenApart) -> bool:
+    """Tell whether a record is too short to tell noise from what a model lacks.
+
+    Parameters
+    ----------
+    remainder, found
+        What the fit leaves, and the same taken apart.
+    """
+    error = math.sqrt(float(np.mean(remainder.error**2)))
+    matters = error >= NOT_SMALL * remainder.output_range
+    return remainder.error.size < FEWEST_SAMPLES and matters and not found.named
+
+
 def _too_short(remainder: Remainder, found: TakenApart) -> list[tuple[str, str]]:
-    samples, error = remainder.error.size, math.sqrt(float(np.mean(remainder.error**2)))
-    if samples >= FEWEST_SAMPLES or error < NOT_SMALL * remainder.output_range or found.named:
+    if not is_too_short(remainder, found):
         return []
     return [
         (
-            f"With {samples} samples, noise and what the model lacks cannot be told apart.",
+            f"With {remainder.error.size} samples, noise and what the model lacks cannot be told "
+            "apart.",
             "Record more samples, and the same cycle several times.",
         )
     ]

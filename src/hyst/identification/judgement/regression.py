@@ -20,8 +20,8 @@ SMALLEST_EIGENVALUE = 1e-9
 NOT_CORRELATED = 0.05
 
 MOST_LAGS = 60
-TELLING = 0.1
-"""Sum of squared autocorrelations of an error that is not white by a part worth telling."""
+TELLING = 0.08
+"""Largest autocorrelation of an error that is white but for a part of such a share."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +148,8 @@ def is_white(error: Array) -> bool:
     transform = np.abs(scipy.fft.rfft(error, scipy.fft.next_fast_len(n + lags, real=True))) ** 2
     correlation = np.asarray(scipy.fft.irfft(transform))[1 : lags + 1] / power
     by_noise = (lags + 5.0 * math.sqrt(2.0 * lags)) / n
-    return float(correlation @ correlation) <= max(TELLING, by_noise)
+    worth_telling = float(np.abs(correlation).max()) > TELLING
+    return not worth_telling or float(correlation @ correlation) <= by_noise
 
 
 def chance(before: float, after: float, directions: int, freedom: float) -> float:

@@ -54,6 +54,9 @@ class TakenApart:
         Number of samples far from their neighbours, and share of the squared error they make.
     noise
         Rms of what no cause explains.
+    sensor
+        Rms of what of it is certainly noise: all, or where it is not white what changes from one
+        sample to the next.
     undisturbed, line, spread
         Rms that the model, a straight line and the mean would leave of a record without outliers
         and without what comes to the output from elsewhere.
@@ -68,6 +71,7 @@ class TakenApart:
     named: tuple[tuple[Cause, Contribution], ...]
     outliers: tuple[int, float]
     noise: float
+    sensor: float
     undisturbed: float
     line: float
     spread: float
@@ -113,17 +117,26 @@ def taken_apart(remainder: Remainder) -> TakenApart:
     if repeats < max(shape, math.sqrt(SMALLEST_SHARE) * noise, smallest):
         repeats = 0.0
     noise = math.sqrt(max(noise**2 - repeats**2, 0.0))
+    white = is_white(rest)
     return TakenApart(
         told,
         (int(outside.sum()), share),
         noise,
+        noise if white or (known and not repeats) else min(noise, _from_neighbours(rest)),
         regression.rms([TANGENT, *disturbing] if disturbing else []),
         y.rms([LINE, *disturbing]),
         y.rms(disturbing),
         repeats,
         known,
-        is_white(rest),
+        white,
     )
+
+
+def _from_neighbours(rest: Array) -> float:
+    """Give the rms of the white noise that second differences of an error allow."""
+    if rest.size < 3:
+        return 0.0
+    return float(np.sqrt(np.mean(np.diff(rest, 2) ** 2) / 6.0))
 
 
 def _groups(remainder: Remainder, inner: NDArray[np.bool_]) -> dict[str, Array]:

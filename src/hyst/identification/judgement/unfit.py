@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from hyst.identification.judgement.causes.change import CHANGE
-from hyst.identification.judgement.falling_output import falling_share
+from hyst.identification.judgement.falling_output import falling_share, follows_the_speed
 from hyst.identification.judgement.remainder import Remainder
 from hyst.identification.judgement.taken_apart import TakenApart
 
@@ -46,6 +46,11 @@ def reasons_unfit(remainder: Remainder, found: TakenApart) -> tuple[str, ...]:
     if not reason:
         return ()
     against = falling_share(remainder)
+    if follows_the_speed(remainder):
+        return (
+            f"No command should come from this model. {reason} The output follows the speed of the "
+            "input more than the input, as a damper's force does: give the speed as the input.",
+        )
     if against > AGAINST and beside_noise(found, found.undisturbed) > OFF * remainder.output_range:
         reason += (
             f" The output runs against its main direction on {100.0 * against:.0f} % of its way: "
@@ -65,7 +70,7 @@ def beside_noise(found: TakenApart, rms: float) -> float:
     rms
         Of all that is left.
     """
-    return math.sqrt(max(rms**2 - found.noise**2, 0.0))
+    return math.sqrt(max(rms**2 - found.sensor**2, 0.0))
 
 
 def _reason(remainder: Remainder, found: TakenApart) -> str:
