@@ -13,15 +13,6 @@ from hyst.errors import InputError
 TOLERANCE = 0.01
 # A record resampled to more than this many times its length would be mostly invention.
 _MOST_GROWTH = 10
-_SECONDS = {
-    **dict.fromkeys(("s", "sec", "second", "seconds"), 1.0),
-    **dict.fromkeys(("ms", "msec", "millisecond", "milliseconds"), 1e-3),
-    # Both letters that print as a Greek mu, the micro sign and the mu itself.
-    **dict.fromkeys(("us", "\N{MICRO SIGN}s", "\N{GREEK SMALL LETTER MU}s", "usec"), 1e-6),
-    "ns": 1e-9,
-    "min": 60.0,
-    "h": 3600.0,
-}
 
 
 @dataclass(frozen=True)
@@ -44,17 +35,6 @@ class Gap:
     def even(self) -> bool:
         """Whether it is within the tolerance, so that all are."""
         return abs(self.size - self.median) <= TOLERANCE * self.median
-
-
-def seconds_per_unit(unit: str) -> float | None:
-    """Give the seconds in a unit of time, 1 for no unit, None if it is unknown.
-
-    Examples
-    --------
-    >>> seconds_per_unit("ms"), seconds_per_unit(""), seconds_per_unit("furlong")
-    (0.001, 1.0, None)
-    """
-    return 1.0 if not unit else _SECONDS.get(unit.strip().lower())
 
 
 def worst_gap(time: NDArray[np.float64]) -> Gap:
