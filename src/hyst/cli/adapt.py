@@ -117,11 +117,10 @@ def adapt(
         model = load_operator(model_file or data)
     about = model.description
     how: dict[str, Any] = {"time": time, "rate": rate, "time_unit": time_unit, "repair": repair}
-    how |= {"longest_gap": longest_gap, "dead_band": dead_band, "max_samples": max_samples}
-    how |= {"table": table, "format": file_format}
+    how |= {"longest_gap": longest_gap, "dead_band": dead_band, "format": file_format}
+    how |= {"table": table, "max_samples": max_samples}
     measured = _only(read_told(data, input=input_column, output=output_column, **how))
-    record = _without_delay(measured, about.delay)
-    history, record = _from_start(record, start)
+    history, record = _from_start(_without_delay(measured, about.delay), start)
     if estimator is None:
         estimator = hyst.online.JointEstimator(
             model,

@@ -69,6 +69,13 @@ def is_missing(cell: str) -> bool:
 def kind_of(cell: str, decimal: str) -> Kind:
     """Tell what a cell is.
 
+    Parameters
+    ----------
+    cell
+        Its text.
+    decimal
+        Decimal sign of the file, ``.`` or ``,``.
+
     Examples
     --------
     >>> [kind_of(each, ".") for each in ("1e3", "1'006.5", "5 mV", "12:00:01", "u: 5", "off")]

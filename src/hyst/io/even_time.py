@@ -12,7 +12,7 @@ from hyst.io.coarse_stamps import coarse_stamps
 from hyst.io.rounded_stamps import even_steps
 from hyst.io.table import Table
 from hyst.io.time_axis import TOLERANCE, Gap, first_step_back, resample, worst_gap
-from hyst.io.usable_rows import most_left_out
+from hyst.io.usable_rows import LONGEST_GAP, most_left_out
 from hyst.io.wrapped_stamps import counted_on
 
 Array = NDArray[np.float64]
@@ -23,6 +23,21 @@ class Samples:
     """Samples taken from a file: their rows there, and their time in units of so many seconds.
 
     The time is the rows themselves when the rate is given.
+
+    Parameters
+    ----------
+    table
+        Where they come from.
+    rows
+        Their rows there.
+    time
+        Their stamps, shape (N,).
+    seconds
+        Seconds in the unit of the stamps.
+    signals
+        Input and output, shape (N,).
+    rate_given
+        Whether the time is the rows, at a rate that was given.
     """
 
     table: Table
@@ -144,7 +159,7 @@ def _hindrance(time: Array, gap: Gap, longest_gap: int) -> str:
         return f"{longest:.6g} samples are missing there, and repair fills in {longest_gap} at most"
     filled = int(np.rint(np.maximum(lost, 0.0)).sum())
     # Whoever asks for longer gaps knows what is filled in.
-    most = most_left_out(time.size) if longest_gap <= 5 else time.size
+    most = most_left_out(time.size) if longest_gap <= LONGEST_GAP else filled
     if filled > most:
         return f"{filled} samples are missing, and repair fills in {most} at most"
     return ""

@@ -13,6 +13,7 @@ from hyst.errors import InputError
 from hyst.io import hdf5, mat, npz, parquet, text
 from hyst.io.compressed import SUFFIX as GZIP_SUFFIX
 from hyst.io.compressed import decompress, is_compressed
+from hyst.io.plain_text import Choice, read_plain
 from hyst.io.table import Table
 
 MAX_SAMPLES = 10**8
@@ -93,6 +94,7 @@ def read_tables(
     format: str | None = None,
     repair: bool = False,
     max_samples: int = MAX_SAMPLES,
+    columns: Choice | None = None,
 ) -> tuple[Table, ...]:
     """Read all tables of a data file, which is one except in some text files.
 
@@ -104,6 +106,8 @@ def read_tables(
         Make lines of a text file that have another number of cells rows without values.
     max_samples
         Refuse a text file of more lines.
+    columns
+        Chooses by headers which columns will be used; of a large text file others are NaN then.
 
     Returns
     -------
@@ -126,14 +130,31 @@ def read_tables(
     try:
         if file.stat().st_size == 0:
             raise InputError(f"{file} is empty; give a file with columns of numbers")
-        return _read(file, format, repair, max_samples)
+        return _read(file, format, repair, max_samples, columns)
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise InputError(f"{file} cannot be read: {reason}; check the file") from error
 
 
 def choose_table(tables: tuple[Table, ...], table: int | None) -> Table:
-    """Give one of the tables of a file, or refuse and say which there are."""
+    """Give one of the tables of a file, or refuse and say which there are.
+
+    Parameters
+    ----------
+    tables
+        All of the file.
+    table
+        Which, from 1; None to refuse.
+
+    Returns
+    -------
+    Table
+
+    Raises
+    ------
+    InputError
+        If there is no such table, or none is named.
+    """
     if table is not None:
         return tables[whole_number(table, "table", 1, len(tables)) - 1]
     listed = "; ".join(f"{k}: {_described(each)}" for k, each in enumerate(tables[:6], 1))
@@ -150,7 +171,9 @@ def _described(table: Table) -> str:
     return f"{rows} rows from {table.place(0)} on, {names}"
 
 
-def _read(file: Path, format: str | None, repair: bool, max_samples: int) -> tuple[Table, ...]:
+def _read(
+    file: Path, format: str | None, repair: bool, max_samples: int, columns: Choice | None
+) -> tuple[Table, ...]:
     with file.open("rb") as opened:
         head = opened.read(64)
     suffix = file.suffix.lower()
@@ -162,13 +185,14 @@ def _read(file: Path, format: str | None, repair: bool, max_samples: int) -> tup
     found = format or recognised(head) or _SUFFIXES.get(suffix, "text")
     if found == "text":
         data = data if packed else file.read_bytes()
-        lines = data.count(b"\n") + data.count(b"\r") * (b"\n" not in data)
+        lines = data.count(b"\n" if b"\n" in data else b"\r")
         if lines > max_samples:
             raise InputError(
                 f"{file} has {lines} lines and max_samples is {max_samples}; give a higher "
                 "max_samples, or a shorter part of the record"
             )
-        return text.read_text(data, str(file), repair)
+        plain = read_plain(data, str(file), columns)
+        return text.read_text(data, str(file), repair) if plain is None else (plain,)
     return (_unpacked(data, file, found) if packed else _READERS[found](file),)
 
 

@@ -32,12 +32,29 @@ class LineKinds:
     kinds: NDArray[np.int8]
 
     def cut(self, start: int, stop: int) -> LineKinds:
-        """Give those of some of the lines."""
+        """Give those of some of the lines.
+
+        Parameters
+        ----------
+        start, stop
+            The first of them, and one past the last.
+        """
         return LineKinds(self.counts[start:stop], self.kinds[start:stop])
 
 
 def sort_lines(lines: Sequence[str], writing: Writing) -> LineKinds:
     """Sort lines; a line of nothing but signs for missing values is numeric.
+
+    Parameters
+    ----------
+    lines
+        Without comments and blank ones.
+    writing
+        How they are written.
+
+    Returns
+    -------
+    LineKinds
 
     Examples
     --------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -100,7 +101,9 @@ def read_record(
     (0.005, 'V', array([0., 3., 1., 3.]))
     """
     wanted = Wanted(input, output, time, rate, time_unit, repair, dead_band, longest_gap)
-    tables = read_tables(path, format=format, repair=repair, max_samples=max_samples)
+    tables = read_tables(
+        path, format=format, repair=repair, max_samples=max_samples, columns=_used_by(wanted)
+    )
     return record_of_table(_chosen(tables, table, wanted), wanted)
 
 
@@ -139,7 +142,9 @@ def read_records(
     """
     format, most = how.pop("format", None), how.pop("max_samples", MAX_SAMPLES)
     wanted = Wanted(input, output, **how)
-    tables = read_tables(path, format=format, repair=wanted.repair, max_samples=most)
+    tables = read_tables(
+        path, format=format, repair=wanted.repair, max_samples=most, columns=_used_by(wanted)
+    )
     fitting = [each for each in tables if _fits(each, wanted)] or [tables[0]]
     return tuple(record_of_table(each, wanted) for each in fitting)
 
@@ -186,6 +191,16 @@ def read_column(
     found = find_column(whole, column)
     refuse_flaws(whole, found, "correct it or take the row out")
     return whole.columns[found], whole.names[found], whole.units[found]
+
+
+def _used_by(wanted: Wanted) -> Callable[[Table], list[int]]:
+    """Choose the columns wanted, and those before them, which may be their own time stamps."""
+
+    def choose(table: Table) -> list[int]:
+        found = choose_columns(table, wanted.columns())
+        return sorted({*found, *(max(k - 1, 0) for k in found)})
+
+    return choose
 
 
 def _chosen(tables: tuple[Table, ...], table: int | None, wanted: Wanted) -> Table:

@@ -25,7 +25,18 @@ _MANY_SECONDS = 1e11
 
 @dataclass(frozen=True)
 class Wanted:
-    """What to take from a table, as in ``read_record``."""
+    """What to take from a table.
+
+    Parameters
+    ----------
+    input, output, time, rate, time_unit, repair, dead_band, longest_gap
+        As in ``read_record``.
+
+    Raises
+    ------
+    InputError
+        If they contradict each other, or one of them is unusable.
+    """
 
     input: int | str
     output: int | str
@@ -101,7 +112,25 @@ def record_of_table(table: Table, wanted: Wanted) -> Record:
 
 
 def choose_columns(table: Table, wanted: Mapping[str, int | str | None]) -> list[int]:
-    """Find the wanted columns, which must be different ones of one length."""
+    """Find the wanted columns, which must be different ones of one length.
+
+    Parameters
+    ----------
+    table
+        Where to look.
+    wanted
+        Columns by their roles; None where there is none.
+
+    Returns
+    -------
+    list of int
+        Their indices, in the order of the roles.
+
+    Raises
+    ------
+    InputError
+        If one is missing, two are the same, or their lengths differ.
+    """
     roles: dict[int, str] = {}
     for role, column in wanted.items():
         if column is None:
@@ -175,9 +204,7 @@ def _stamps(
             f"{table.source}: the time column {header!r} has the unit {unit!r}, which is no unit "
             "of time hyst knows; give time_unit s, ms, us, ns, min or h"
         )
-    gaps = np.abs(np.diff(stamps))
-    usual = float(np.median(gaps)) if gaps.size else 0.0
-    refuse_other_stamps(table, chosen, 0.05 * usual)
+    refuse_other_stamps(table, chosen)
     return stamps, seconds, told
 
 

@@ -42,7 +42,13 @@ class Page:
     writing: Writing
 
     def unequal(self, row: int, other: int) -> InputError:
-        """Give the refusal of a line that has another number of cells than another."""
+        """Give the refusal of a line that has another number of cells than another.
+
+        Parameters
+        ----------
+        row, other
+            Indices of the two lines.
+        """
         numbers, counts = self.lines.numbers, self.kinds.counts
         return InputError(
             f"{self.source}: line {numbers[row]} has {counts[row]} values and line "
@@ -74,11 +80,43 @@ def table_of_block(page: Page, block: Block, repair: bool, step: float | None) -
     odd = [k for k in block.faulty if page.kinds.counts[k] != block.count]
     if odd and not repair:
         raise page.unequal(odd[0], block.first)
+    numbers = [page.lines.numbers[k] for k in range(block.first, block.stop)]
+    columns = _columns(page, block, frozenset(odd))
+    return with_titles(page, block, columns, np.array(numbers, dtype=np.intp), step)
+
+
+def with_titles(
+    page: Page,
+    block: Block,
+    columns: Sequence[ColumnOfCells],
+    numbers: NDArray[np.intp],
+    step: float | None = None,
+) -> Table:
+    """Join the columns of a block and what stands above them.
+
+    Parameters
+    ----------
+    page, block
+        Where the table stands.
+    columns
+        What its rows hold.
+    numbers
+        The line of each row.
+    step
+        Seconds between rows, if known.
+
+    Returns
+    -------
+    Table
+
+    Raises
+    ------
+    InputError
+        If header and rows do not fit.
+    """
     notes = _left_out(page, block)
     lines, writing = page.lines, page.writing
     above = lines.texts[block.above : block.first]
-    rows = range(block.first, block.stop)
-    columns = _columns(page, block, frozenset(odd))
     comments = lines.comments if block.above == 0 else ()
     axis = start_and_step(above, writing)
     titles = find_titles(_cut(above, axis, writing), comments, block.count, writing)
@@ -86,7 +124,6 @@ def table_of_block(page: Page, block: Block, repair: bool, step: float | None) -
         _refuse_odd_header(page, block)
         _refuse_doubtful_row(page, block)
         titles = _numbered(columns)
-    numbers = np.array([lines.numbers[k] for k in rows], dtype=np.intp)
     table = _joined(page.source, titles, columns, numbers)
     stated = step or (axis[2] if axis else stated_step([*comments, *above]))
     table = replace(table, notes=(*notes, *table.notes), step=stated)
@@ -129,7 +166,20 @@ def _columns(page: Page, block: Block, odd: frozenset[int]) -> list[ColumnOfCell
 
 
 def parse_regular(body: Sequence[str], writing: Writing) -> NDArray[np.float64] | None:
-    """Parse at the speed of C when every cell is a number; None when one is not."""
+    """Parse at the speed of C when every cell is a number.
+
+    Parameters
+    ----------
+    body
+        Rows.
+    writing
+        How they are written.
+
+    Returns
+    -------
+    numpy.ndarray or None
+        Shape (columns, rows); None when a cell is no number.
+    """
     if writing.decimal == ",":
         if any("." in line for line in body):
             return None

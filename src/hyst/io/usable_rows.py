@@ -17,6 +17,8 @@ FEWEST_SAMPLES = 3
 # Repair leaves out single faults; what lacks more than this is another record than the one wanted.
 _LARGEST_SHARE = 0.05
 _ALWAYS_ALLOWED = 3
+# Channels that are scanned one after the other within a step are of one row all the same.
+_SAME_INSTANT = 0.5
 _OWN_TIME = re.compile(
     r"(?:.*[\s_./-])?(?:time|t|timestamp|zeit|x_value)(?:[\s_./-].*)?", re.IGNORECASE
 )
@@ -119,7 +121,7 @@ def _own_time(table: Table, chosen: list[int]) -> str:
     return ""
 
 
-def refuse_other_stamps(table: Table, chosen: list[int], step: float) -> None:
+def refuse_other_stamps(table: Table, chosen: list[int]) -> None:
     """Refuse a signal whose own stamps, in the column before it, are others than those chosen.
 
     Parameters
@@ -128,8 +130,6 @@ def refuse_other_stamps(table: Table, chosen: list[int], step: float) -> None:
         Where to look.
     chosen
         Columns of input, output and time.
-    step
-        Usual step of the time, in its unit.
 
     Raises
     ------
@@ -143,8 +143,10 @@ def refuse_other_stamps(table: Table, chosen: list[int], step: float) -> None:
         if own.size != time.size or table.units[k - 1] != table.units[chosen[2]]:
             continue
         both = np.isfinite(own) & np.isfinite(time)
-        apart = np.abs(own - time)[both]
-        if apart.size and float(apart.max()) > step:
+        with np.errstate(over="ignore", invalid="ignore"):
+            apart = np.abs(own - time)[both]
+            step = float(np.median(np.abs(np.diff(time[both])))) if apart.size > 1 else np.inf
+        if apart.size and float(apart.max()) > _SAME_INSTANT * step:
             raise InputError(
                 f"{table.source}: {table.names[k]!r} has its own stamps in "
                 f"{table.names[k - 1]!r}, which are up to {float(apart.max()):.6g} away from those "
