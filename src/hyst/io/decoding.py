@@ -78,7 +78,7 @@ def _decoded(data: bytes, source: str) -> str:
 
 def _utf_16_without_mark(data: bytes) -> str | None:
     """Recognise UTF-16: of text in Latin letters every other byte is zero."""
-    head = data[:_HEAD]
+    head = data[:_HEAD].rstrip(b"\x00")
     even, odd = head[::2], head[1::2]
     if not odd:
         return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import itertools
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -129,9 +130,9 @@ def _is_one_column(lines: Sequence[str], sample: list[str]) -> bool:
     """
     writing = Writing(None, ",")
     numbers = [line.strip() for line in sample if writing.kind(line) != "text"]
-    if not all(map(writing.is_number, numbers)):
+    if not numbers or not all(map(writing.is_number, numbers)):
         return False
-    texts = [line for line in lines[:SAMPLED] if writing.kind(line) == "text"]
+    texts = list(itertools.takewhile(lambda line: writing.kind(line) == "text", lines[:SAMPLED]))
     if texts and "," not in texts[-1] and len(writing.titles(texts[-1])) == 1:
         return True
     return any(_FRACTION.search(number) for number in numbers)

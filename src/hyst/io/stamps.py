@@ -76,13 +76,15 @@ def seconds_of_stamps(cells: Sequence[str]) -> Stamps:
     short = any(each and each["hour"] and each["second"] is None for each in found)
     days: dict[str, int | None] = {}
     ticks = [_nanoseconds(each, order, short, days) for each in found]
-    first = next((tick for tick in ticks if tick is not None), 0)
-    seconds = np.array([math.nan if t is None else (t - first) / _NANO for t in ticks])
     row = next((k for k, tick in enumerate(ticks) if tick is None), None)
     flaw = None if row is None else Flaw(row, cells[row])
-    if any(each and each["date"] for each in found):
-        return Stamps(seconds, flaw)
-    return _past_midnight(seconds, flaw)
+    midnights = 0
+    if not any(each and each["date"] for each in found):
+        ticks, midnights = _past_midnight(ticks)
+    first = next((tick for tick in ticks if tick is not None), 0)
+    seconds = np.array([math.nan if t is None else (t - first) / _NANO for t in ticks])
+    note = f"the time of day passes midnight {midnights} times; it was counted on"
+    return Stamps(seconds, flaw, (note,) if midnights else ())
 
 
 def _nanoseconds(
@@ -155,12 +157,14 @@ def _order_of_date(found: Sequence[re.Match[str] | None]) -> str | Flaw:
     return Flaw(row, date, why)
 
 
-def _past_midnight(seconds: NDArray[np.float64], flaw: Flaw | None) -> Stamps:
-    """Go on after midnight, where a time of day falls by nearly a day."""
-    falls = np.flatnonzero(np.diff(seconds) < -0.5 * _DAY)
-    if not falls.size:
-        return Stamps(seconds, flaw)
-    days = np.zeros(seconds.size)
-    days[falls + 1] = _DAY
-    note = f"the time of day passes midnight {falls.size} times; it was counted on"
-    return Stamps(seconds + np.cumsum(days), flaw, (note,))
+def _past_midnight(ticks: Sequence[int | None]) -> tuple[list[int | None], int]:
+    """Go on after midnight, where a time of day falls by more than half a day; say how often."""
+    midnights, before = 0, None
+    counted: list[int | None] = []
+    for tick in ticks:
+        if tick is not None:
+            if before is not None and before - tick > _DAY * _NANO // 2:
+                midnights += 1
+            before = tick
+        counted.append(None if tick is None else tick + midnights * _DAY * _NANO)
+    return counted, midnights

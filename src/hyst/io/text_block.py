@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from hyst.errors import InputError
 from hyst.io.cell_values import ColumnOfCells, read_cells
 from hyst.io.cells import is_missing
+from hyst.io.dates_and_clocks import with_clocks
 from hyst.io.line_kinds import NUMERIC, LineKinds
 from hyst.io.notation import Writing
 from hyst.io.stated_step import start_and_step, stated_step
@@ -162,7 +163,8 @@ def _columns(page: Page, block: Block, odd: frozenset[int]) -> list[ColumnOfCell
         return [ColumnOfCells(column, None) for column in values]
     empty = [""] * block.count
     cells = [empty if k in odd else writing.cells(texts[k]) for k in rows]
-    return [read_cells(column, writing.decimal) for column in zip(*cells, strict=True)]
+    columns = [read_cells(column, writing.decimal) for column in zip(*cells, strict=True)]
+    return with_clocks(columns, list(zip(*cells, strict=True)))
 
 
 def parse_regular(body: Sequence[str], writing: Writing) -> NDArray[np.float64] | None:
