@@ -324,3 +324,21 @@ def test_a_limit_of_samples(tmp_path: Path) -> None:
     path = write(tmp_path, [HEADER, *BODY])
     with pytest.raises(InputError, match="has 61 lines and max_samples is 50"):
         read_record(path, "u", "y", time="time", max_samples=50)
+
+
+@pytest.mark.parametrize("odd", ["0.0000,0.0", "x", "-----", "err,err,err", "err.err,err,err.1x"])
+@pytest.mark.parametrize("top", [["time_ms,u_V,y_um"], ["time,u,y", "ms,V,um"]])
+def test_an_odd_line_below_the_header_does_not_hide_its_units(
+    tmp_path: Path, top: list[str], odd: str
+) -> None:
+    path = write(tmp_path, [*top, odd, *rows((1e3 * T, U, Y))])
+    record = read_record(path, 1, 2, time=0)
+    assert (record.dt, record.input_unit) == (DT, "V")
+    same_signals(record, U, Y)
+
+
+def test_half_a_first_row_does_not_hide_a_header_that_does_not_fit(tmp_path: Path) -> None:
+    body = [line + "," for line in BODY]
+    path = write(tmp_path, ["time_ms,u,y", "0.0000,0.0000,1", *body])
+    with pytest.raises(InputError, match="line 1 names 3 columns, but the lines below it have 4"):
+        read_record(path, 1, 2, time=0)

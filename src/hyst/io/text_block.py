@@ -117,7 +117,8 @@ def with_titles(
     """
     notes = _left_out(page, block)
     lines, writing = page.lines, page.writing
-    above = lines.texts[block.above : block.first]
+    # Half a line of numbers right above the rows must not hide the header above it.
+    above = [lines.texts[k] for k in range(block.above, block.first) if not _is_part(page, k)]
     comments = lines.comments if block.above == 0 else ()
     axis = start_and_step(above, writing)
     titles = find_titles(_cut(above, axis, writing), comments, block.count, writing)
@@ -131,15 +132,18 @@ def with_titles(
     return _with_counted_time(table, axis[1], axis[2]) if axis else table
 
 
+def _is_part(page: Page, row: int) -> bool:
+    """Tell whether a line holds numbers alone, which a key with its value does not."""
+    cells = page.writing.cells(page.lines.texts[row])
+    return any(cells) and all(page.writing.is_number(cell) for cell in cells if cell)
+
+
 def _left_out(page: Page, block: Block) -> tuple[str, ...]:
     """Say which lines above and below the rows were left out although they hold numbers or text."""
     notes = []
     numbers, kinds = page.lines.numbers, page.kinds
     for k in range(block.above, block.first):
-        if kinds.kinds[k] == NUMERIC and kinds.counts[k] != block.count:
-            cells = page.writing.cells(page.lines.texts[k])
-            if not all(page.writing.is_number(cell) for cell in cells if cell):
-                continue  # a key with its value
+        if kinds.counts[k] != block.count and _is_part(page, k):
             if block.stop - block.first < ENOUGH_ROWS:
                 raise page.unequal(block.first, k)
             notes.append(
@@ -250,9 +254,10 @@ def _with_counted_time(table: Table, start: float, step: float) -> Table:
 
 def _refuse_odd_header(page: Page, block: Block) -> None:
     """Refuse a header right above the rows that has another number of cells."""
-    row = block.first - 1
-    if row < block.above or page.kinds.kinds[row] == NUMERIC or page.writing.separator is None:
+    texts = [k for k in range(block.above, block.first) if not _is_part(page, k)]
+    if not texts or page.kinds.kinds[texts[-1]] == NUMERIC or page.writing.separator is None:
         return
+    row = texts[-1]
     named = len(page.writing.cells(page.lines.texts[row]))
     if named > 1:
         hint = ""

@@ -86,7 +86,8 @@ def find_blocks(
     for low, high in _groups(np.flatnonzero(~usual[first:]) + first):
         inner = _tables_between(lines, kinds, after_gap, writing, low, high)
         ends = high == len(lines)
-        whole = (kinds.counts[low:high] == count).all() and not inner
+        # Words between blanks make as many cells as it happens.
+        whole = writing.separator is not None and (kinds.counts[low:high] == count).all()
         header = lines[start - 1] if start > above else ""
         if inner or (not ends and _begins_table(lines, kinds, after_gap, low, high, header, count)):
             found += [Block(above, start, low, count, tuple(faulty)), *inner]

@@ -111,5 +111,10 @@ def resample(
             f"resampling {time.size} samples onto their median gap would make {steps:.3g} of "
             "them; cut the record at its long gaps first"
         )
-    grid = time[0] + dt * np.arange(int(steps) + 1)
-    return [np.interp(grid, time, signal) for signal in signals]
+    # Samples that stand on the grid, but for rounding, keep their values to the last bit.
+    places = (time - time[0]) / dt
+    on_grid = np.rint(places)
+    if float(np.abs(places - on_grid).max()) <= TOLERANCE:
+        places = on_grid
+    grid = np.arange(int(steps) + 1)
+    return [np.interp(grid, places, signal) for signal in signals]

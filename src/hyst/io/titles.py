@@ -73,7 +73,10 @@ def find_titles(
     if units is None or len(rows) == 1:
         if any(writing.is_number(title) for title in rows[0]):
             return None
-        return _titles(rows[0], None, _descriptions(rows[1:], writing))
+        # The row that carries units is that of the names; a row of text below it may be anything.
+        texts = [row for row in rows if not any(map(writing.has_value, row))] or rows[:1]
+        best = max(texts, key=lambda row: sum(bool(split_unit(cell)[1]) for cell in row))
+        return _titles(best, None, tuple(tuple(row) for row in texts if row is not best))
     names = units + 1 if units + 1 < len(rows) else 0
     if all(map(writing.is_number, rows[names])):
         return _titles(rows[units], None, ())
@@ -88,6 +91,8 @@ def _rows(
     rows: list[list[str]] = []
     for line in reversed(lines[-_ROWS:]):
         cells = _as_many(line, count, writing)
+        if cells is None and len(writing.cells(line)) == 1:
+            continue  # a rule below the names, or a remark
         if cells is None or (whole and not all(cells)):
             break
         rows.append(cells)
