@@ -57,7 +57,10 @@ def test_the_seal_records_have_uneven_time(
     columns = {"input": 4, "output": 6, "time": 0, "time_unit": "ms"}
     with pytest.raises(InputError, match=rf"worst gap is {worst} s after line \d+ and the median"):
         read_record(path, **columns)  # type: ignore[arg-type]
-    record = read_record(path, **columns, repair=True)  # type: ignore[arg-type]
+    # Gaps of that length are filled in only for those who ask for it.
+    with pytest.raises(InputError, match=r"samples are missing there, and repair fills in 5 at"):
+        read_record(path, **columns, repair=True)  # type: ignore[arg-type]
+    record = read_record(path, **columns, repair=True, longest_gap=300)  # type: ignore[arg-type]
     assert record.dt == 0.01
     stamps, _, _ = read_column(path, 0)
     assert stamps.size == rows

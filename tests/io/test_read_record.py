@@ -201,8 +201,11 @@ def test_nothing_is_noted_and_nothing_changed_when_nothing_needs_repair(loop: Pa
 
 
 def test_repair_does_not_invent_a_record(tmp_path: Path) -> None:
+    path = uneven(tmp_path, [0.0, 1.0, 2.0, 3.0, 1e6])
+    with pytest.raises(InputError, match="999996 samples are missing there, and repair fills in 5"):
+        read_record(path, 1, 2, time=0, repair=True)
     with pytest.raises(InputError, match="resampling 5 samples onto their median gap would make"):
-        read_record(uneven(tmp_path, [0.0, 1.0, 2.0, 3.0, 1e6]), 1, 2, time=0, repair=True)
+        read_record(path, 1, 2, time=0, repair=True, longest_gap=10**7)
     rows = ["u,y", "0,a", "1,b", "0,c", "1,d"]
     with pytest.raises(InputError, match="'y' is 'a' at line 2"):
         read_record(written(tmp_path, rows), "u", "y", rate=1.0, repair=True)
@@ -219,7 +222,7 @@ def test_repair_does_not_invent_a_record(tmp_path: Path) -> None:
         (["1,2", "1,3", "1,4", "1,1"], "input 'column 0' is 1 throughout"),
         (["1,2", "2,2", "1,2", "2,2"], "output 'column 1' is 2 throughout"),
         (["1,1", "2,2", "3,3", "4,4"], "input 'column 0' has 0 reversals beyond its dead band"),
-        (["1,1", "2,2", "3,3", "1,1"], "input 'column 0' has 1 reversals .* needs at least 2"),
+        (["1,1", "2,2", "9,3", "6,1"], "input 'column 0' has 1 reversals .* needs at least 2"),
     ],
 )
 def test_a_record_without_hysteresis_to_see_is_refused(
@@ -243,15 +246,15 @@ def test_noise_on_a_ramp_is_no_reversal_unless_the_user_says_so(tmp_path: Path) 
     [
         ("absent.csv", r"absent\.csv does not exist; check the path"),
         ("folder.csv", r"folder\.csv is a folder; name a file in it"),
-        ("data.xlsx", r"data\.xlsx has the unknown suffix '\.xlsx'; hyst reads \.csv .*\.npz"),
-        ("data", "data has no suffix; hyst reads"),
+        ("picture.csv", r"picture\.csv is not a text file: it holds the control character 0x1a"),
+        ("data", "data holds no line of numbers"),
         ("empty.npz", r"empty\.npz is empty"),
     ],
 )
 def test_what_is_no_data_file_is_refused(tmp_path: Path, name: str, message: str) -> None:
     (tmp_path / "folder.csv").mkdir()
-    for other in ("data.xlsx", "data"):
-        (tmp_path / other).write_text("1,2\n")
+    (tmp_path / "picture.csv").write_bytes(b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR")
+    (tmp_path / "data").write_text("to whom it may concern\n")
     (tmp_path / "empty.npz").touch()
     with pytest.raises(InputError, match=message):
         read_record(tmp_path / name, 0, 1, rate=1.0)

@@ -14,13 +14,19 @@ from numpy.typing import NDArray
 import hyst
 from hyst._files import replacing_files, require_folder
 from hyst.cli.arguments import (
+    DeadBand,
+    FileFormat,
     InputColumn,
+    LongestGap,
+    MaxSamples,
     OutputColumn,
     Rate,
     Repair,
+    TableNumber,
     TimeColumn,
     TimeUnit,
     load_operator,
+    read_told,
 )
 from hyst.cli.console import at_work, note, show_files, show_table
 
@@ -72,6 +78,14 @@ _SPREAD = 0.3
 _HEADING = "Estimates along {}, bands of two standard errors"
 
 
+def _only(records: tuple[hyst.Record, ...]) -> hyst.Record:
+    if len(records) > 1:
+        raise hyst.InputError(
+            f"--table all gives {len(records)} records, adapt takes one; name one"
+        )
+    return records[0]
+
+
 def adapt(
     files: Files,
     input_column: InputColumn,
@@ -81,6 +95,11 @@ def adapt(
     time: TimeColumn = None,
     time_unit: TimeUnit = None,
     repair: Repair = False,
+    longest_gap: LongestGap = hyst.io.LONGEST_GAP,
+    dead_band: DeadBand = None,
+    table: TableNumber = None,
+    file_format: FileFormat = None,
+    max_samples: MaxSamples = hyst.io.MAX_SAMPLES,
     start: Start = 0,
     memory: Memory = None,
     spread: Spread = None,
@@ -98,9 +117,10 @@ def adapt(
         model = load_operator(model_file or data)
     about = model.description
     how: dict[str, Any] = {"time": time, "rate": rate, "time_unit": time_unit, "repair": repair}
-    measured = hyst.read_record(data, input=input_column, output=output_column, **how)
-    record = _without_delay(measured, about.delay)
-    history, record = _from_start(record, start)
+    how |= {"longest_gap": longest_gap, "dead_band": dead_band, "format": file_format}
+    how |= {"table": table, "max_samples": max_samples}
+    measured = _only(read_told(data, input=input_column, output=output_column, **how))
+    history, record = _from_start(_without_delay(measured, about.delay), start)
     if estimator is None:
         estimator = hyst.online.JointEstimator(
             model,

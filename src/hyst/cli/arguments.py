@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import typer
 
 import hyst
 from hyst.checks.numbers import as_positive
+from hyst.cli.console import note
 
 ModelFile = Annotated[
     Path,
@@ -39,8 +40,43 @@ TimeUnit = Annotated[
     typer.Option(metavar="UNIT", show_default=False, help="Its unit: s, ms, us, ns, min or h."),
 ]
 Repair = Annotated[
-    bool, typer.Option("--repair", help="Leave out bad rows and resample uneven time.")
+    bool,
+    typer.Option(
+        "--repair",
+        help="Leave out a few bad rows, and resample uneven time; what was done is told.",
+    ),
 ]
+LongestGap = Annotated[
+    int,
+    typer.Option(metavar="N", help="Samples in a row that --repair may leave out or fill in."),
+]
+DeadBand = Annotated[
+    float | None,
+    typer.Option(
+        metavar="X",
+        show_default=False,
+        help="Swings of the input up to this size are no reversals; from its noise by default.",
+    ),
+]
+TableNumber = Annotated[
+    str | None,
+    typer.Option(
+        "--table",
+        metavar="N|all",
+        show_default=False,
+        help="Which of several tables below each other in a text file; all: each is a record.",
+    ),
+]
+FileFormat = Annotated[
+    str | None,
+    typer.Option(
+        "--format",
+        metavar="FORMAT",
+        show_default=False,
+        help=f"Of the data, where neither content nor suffix tells: {', '.join(hyst.io.FORMATS)}.",
+    ),
+]
+MaxSamples = Annotated[int, typer.Option(metavar="N", help="Refuse text files of more lines.")]
 
 SampleRate = Annotated[
     float | None,
@@ -58,6 +94,29 @@ DespiteVerdict = Annotated[
 ]
 
 _STAMPS_ROUNDED = 1e-3
+
+
+def read_told(path: Path, *, table: str | None = None, **how: Any) -> tuple[hyst.Record, ...]:
+    """Read the record of a file, or with the table ``all`` those of all its tables.
+
+    What was found out, left out or repaired is told.
+    """
+    if table == "all":
+        records = hyst.io.read_records(path, **how)
+    else:
+        records = (hyst.read_record(path, table=_table_number(table), **how),)
+    for number, record in enumerate(records, 1):
+        which = f", table {number}" if len(records) > 1 else ""
+        for sentence in record.notes:
+            note(f"{path.name}{which}: {sentence}")
+    return records
+
+
+def _table_number(text: str | None) -> int | None:
+    try:
+        return None if text is None else int(text)
+    except ValueError:
+        raise hyst.InputError(f"--table is {text!r}; give a whole number or all") from None
 
 
 def load_operator(path: Path) -> hyst.operators.Operator:

@@ -10,11 +10,16 @@ import typer
 import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
+    DeadBand,
+    FileFormat,
     InputColumn,
+    LongestGap,
+    MaxSamples,
     ModelFile,
     OutputColumn,
     Rate,
     Repair,
+    TableNumber,
     TimeColumn,
     TimeUnit,
     load_operator,
@@ -77,6 +82,11 @@ def fit(
     time: TimeColumn = None,
     time_unit: TimeUnit = None,
     repair: Repair = False,
+    longest_gap: LongestGap = hyst.io.LONGEST_GAP,
+    dead_band: DeadBand = None,
+    table: TableNumber = None,
+    file_format: FileFormat = None,
+    max_samples: MaxSamples = hyst.io.MAX_SAMPLES,
     free: Free = None,
     bound: Bound = None,
     delay: Delay = None,
@@ -94,7 +104,9 @@ def fit(
     guess = load_operator(model)
     bounds = dict(_as_bound(each) for each in bound or [])
     columns = {"input": input_column, "output": output_column, "time": time, "rate": rate}
-    columns |= {"time_unit": time_unit, "repair": repair}
+    columns |= {"time_unit": time_unit, "repair": repair, "longest_gap": longest_gap}
+    columns |= {"dead_band": dead_band, "table": table, "format": file_format}
+    columns |= {"max_samples": max_samples}
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(columns, others, (input_label, output_label))
     with at_work("fitting") as say:
@@ -116,9 +128,8 @@ def fit(
             progress=say,
         )
         say("report")
-        found = named_by_files(found, data)
-        sources = [*data, *(validate or [])]
-        written = write_fitted(found, records, validation, folder, sources)
+        found = named_by_files(found, files.sources)
+        written = write_fitted(found, records, validation, folder, files.sources)
     tell_fitted(found, records)
     show_files(written)
     return ended(found)

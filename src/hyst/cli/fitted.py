@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 import hyst
+from hyst.cli.arguments import read_told
 from hyst.cli.console import show_table
 from hyst.cli.exit_codes import DONE, UNFIT
 
@@ -58,24 +59,45 @@ class HowToRead:
         Columns of validation records that are called otherwise, by role; None where they are not.
     labels
         What input and output are to be called, with their units; None as in the file.
+    sources
+        Where each record that was read comes from, in the order of reading.
     """
 
     columns: dict[str, Any]
     validation_columns: dict[str, str | None]
     labels: tuple[str | None, str | None]
+    sources: list[str] = field(default_factory=list)
 
     def records(self, paths: Sequence[Path]) -> list[hyst.Record]:
         """Read the records to fit to."""
-        return [_read(path, self.columns, self.labels) for path in paths]
+        return [
+            each
+            for path in paths
+            for each in self._named(path, _read(path, self.columns, self.labels))
+        ]
 
     def validation(self, paths: Sequence[Path] | None) -> list[hyst.Record]:
         """Read the records to judge by."""
         how = _otherwise(self.columns, self.validation_columns, paths)
-        return [_read_validation(path, how, self.labels) for path in paths or []]
+        return [
+            each
+            for path in paths or []
+            for each in self._named(path, _read_validation(path, how, self.labels))
+        ]
+
+    def _named(self, path: Path, records: list[hyst.Record]) -> list[hyst.Record]:
+        several = len(records) > 1
+        self.sources.extend(
+            f"{path}, table {number}" if several else str(path)
+            for number in range(1, len(records) + 1)
+        )
+        return records
 
 
-def _read(path: Path, how: dict[str, Any], labels: tuple[str | None, str | None]) -> hyst.Record:
-    return _labelled(hyst.read_record(path, **how), *labels)
+def _read(
+    path: Path, how: dict[str, Any], labels: tuple[str | None, str | None]
+) -> list[hyst.Record]:
+    return [_labelled(each, *labels) for each in read_told(path, **how)]
 
 
 def _otherwise(
@@ -93,7 +115,7 @@ def _otherwise(
 
 def _read_validation(
     path: Path, how: dict[str, Any], labels: tuple[str | None, str | None]
-) -> hyst.Record:
+) -> list[hyst.Record]:
     try:
         return _read(path, how, labels)
     except hyst.InputError as error:
@@ -110,7 +132,7 @@ def write_fitted(
     records: Sequence[hyst.Record],
     validation: Sequence[hyst.Record],
     folder: Path,
-    sources: list[Path],
+    sources: list[str],
     told: tuple[hyst.report.Section, ...] = (),
 ) -> tuple[Path, ...]:
     """Write model file, numbers, figures and report."""
@@ -119,7 +141,7 @@ def write_fitted(
         records,
         validation,
         folder,
-        sources=[str(path) for path in sources],
+        sources=sources,
         sections=[*hyst.report.dynamics_sections(found), *told],
     )
 
@@ -147,10 +169,11 @@ def ended(found: hyst.Identified) -> int:
     return UNFIT if found.verdict.level == hyst.operators.verdict.UNFIT else DONE
 
 
-def named_by_files(found: hyst.Identified, paths: Sequence[Path]) -> hyst.Identified:
-    """Give a result whose errors by record name the files."""
+def named_by_files(found: hyst.Identified, sources: Sequence[str]) -> hyst.Identified:
+    """Give a result whose errors by record name the files, training records before others."""
     named = (
-        replace(each, name=path.name) for each, path in zip(found.per_record, paths, strict=True)
+        replace(each, name=Path(source).name)
+        for each, source in zip(found.per_record, sources, strict=False)
     )
     return replace(found, per_record=tuple(named))
 

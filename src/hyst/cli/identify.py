@@ -9,10 +9,15 @@ import typer
 import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
+    DeadBand,
+    FileFormat,
     InputColumn,
+    LongestGap,
+    MaxSamples,
     OutputColumn,
     Rate,
     Repair,
+    TableNumber,
     TimeColumn,
     TimeUnit,
     number_or_auto,
@@ -64,6 +69,11 @@ def identify(
     time: TimeColumn = None,
     time_unit: TimeUnit = None,
     repair: Repair = False,
+    longest_gap: LongestGap = hyst.io.LONGEST_GAP,
+    dead_band: DeadBand = None,
+    table: TableNumber = None,
+    file_format: FileFormat = None,
+    max_samples: MaxSamples = hyst.io.MAX_SAMPLES,
     family: Family = "auto",
     delay: Delay = "auto",
     start: Start = "auto",
@@ -82,7 +92,9 @@ def identify(
     chosen = hyst.identification.chosen_families(family, options)
     lag, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
     columns = {"input": input_column, "output": output_column, "time": time, "rate": rate}
-    columns |= {"time_unit": time_unit, "repair": repair}
+    columns |= {"time_unit": time_unit, "repair": repair, "longest_gap": longest_gap}
+    columns |= {"dead_band": dead_band, "table": table, "format": file_format}
+    columns |= {"max_samples": max_samples}
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(columns, others, (input_label, output_label))
     with at_work("identifying") as say:
@@ -101,12 +113,11 @@ def identify(
             **options,
         )
         say("report")
-        found = named_by_files(found, data)
+        found = named_by_files(found, files.sources)
         used = next(each for each in chosen if each.name == found.family)
         records = used.records_to_use(tuple(measured), first)[0].records
         told = hyst.report.distortion_sections(measured, options.get("period"))
-        sources = [*data, *(validate or [])]
-        written = write_fitted(found, records, validation, folder, sources, told)
+        written = write_fitted(found, records, validation, folder, files.sources, told)
     tell_fitted(found, records)
     show_files(written)
     return ended(found)

@@ -15,7 +15,8 @@ def find_column(table: Table, column: int | str) -> int:
     """Find the index of a column.
 
     Tried in this order: the full header (``voltage [V]``), the name without its unit
-    (``voltage``), the same two ignoring case, and last a string of digits as an index.
+    (``voltage``), the same two ignoring case, other rows of names above the columns, a unit, and
+    last a string of digits as an index.
 
     Parameters
     ----------
@@ -51,6 +52,8 @@ def find_column(table: Table, column: int | str) -> int:
         [k for k, name in enumerate(table.names) if name == wanted],
         [k for k, header in enumerate(table.headers) if header.casefold() == folded],
         [k for k, name in enumerate(table.names) if name.casefold() == folded],
+        *([k for k, each in enumerate(row) if each.casefold() == folded] for row in table.aliases),
+        [k for k, unit in enumerate(table.units) if unit and unit == wanted],
     ):
         if len(matches) == 1:
             return matches[0]
@@ -86,6 +89,8 @@ def refuse_flaws(table: Table, column: int, remedy: str) -> None:
     name, place = table.names[column], table.place(flaw.row)
     if not flaw.text:
         raise InputError(f"{table.source}: {name!r} has no value at {place}; {remedy}")
+    if flaw.why:
+        raise InputError(f"{table.source}: {name!r} is {shorten(flaw.text)} at {place}, {flaw.why}")
     raise InputError(
         f"{table.source}: {name!r} is {shorten(flaw.text)} at {place}, not a finite number; "
         f"{remedy}"

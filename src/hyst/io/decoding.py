@@ -8,6 +8,8 @@ import re
 from hyst.errors import InputError
 
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
+_HEAD = 4096
+_FEW, _MANY = 0.05, 0.7
 _BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF8, "utf-8"),
     (codecs.BOM_UTF16_LE, "utf-16-le"),
@@ -16,7 +18,9 @@ _BYTE_ORDER_MARKS = (
 
 
 def decode(data: bytes, source: str) -> str:
-    r"""Decode UTF-8 or UTF-16 by its byte order mark, else UTF-8, else Latin-1.
+    r"""Decode UTF-8 or UTF-16, with a byte order mark or without, else Latin-1.
+
+    What pads the end of a file that was made in advance, bytes of zero, is dropped.
 
     Parameters
     ----------
@@ -42,7 +46,7 @@ def decode(data: bytes, source: str) -> str:
     't [µs]\n1\n'
     """
     # DOS editors end a file with this mark.
-    text = _decoded(data, source).removesuffix("\x1a")
+    text = _decoded(data, source).rstrip("\x00").removesuffix("\x1a")
     control = _CONTROL.search(text)
     if control:
         line = text.count("\n", 0, control.start()) + 1
@@ -63,7 +67,22 @@ def _decoded(data: bytes, source: str) -> str:
                     f"{source} starts as {encoding} but breaks off at byte {error.start}; "
                     "save it again as UTF-8"
                 ) from error
+    unmarked = _utf_16_without_mark(data)
+    if unmarked is not None:
+        return data[: len(data) // 2 * 2].decode(unmarked, errors="replace")
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError:
         return data.decode("latin-1")
+
+
+def _utf_16_without_mark(data: bytes) -> str | None:
+    """Recognise UTF-16: of text in Latin letters every other byte is zero."""
+    head = data[:_HEAD].rstrip(b"\x00")
+    even, odd = head[::2], head[1::2]
+    if not odd:
+        return None
+    zeros = even.count(0) / len(even), odd.count(0) / len(odd)
+    if min(zeros) > _FEW or max(zeros) < _MANY:
+        return None
+    return "utf-16-le" if zeros[1] > zeros[0] else "utf-16-be"

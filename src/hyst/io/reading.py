@@ -3,44 +3,19 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.checks.numbers import as_positive
 from hyst.errors import InputError
 from hyst.io.columns import find_column, refuse_flaws
-from hyst.io.formats import read_table
+from hyst.io.formats import MAX_SAMPLES, choose_table, read_table, read_tables
+from hyst.io.record_of_table import Wanted, choose_columns, record_of_table
 from hyst.io.table import Table
-from hyst.io.time_axis import TOLERANCE, first_step_back, resample, seconds_per_unit, worst_gap
-from hyst.signals import Record, reversals, suggest_dead_band
-
-_FEWEST_SAMPLES = 3
-_FEWEST_REVERSALS = 2
-
-
-@dataclass(frozen=True)
-class _Samples:
-    """Samples taken from a file: their rows there, and their time in units of so many seconds.
-
-    The time is the rows themselves when the rate is given.
-    """
-
-    table: Table
-    rows: NDArray[np.intp]
-    time: NDArray[np.float64]
-    seconds: float
-    signals: list[NDArray[np.float64]]
-    rate_given: bool
-
-    def place(self, sample: int) -> str:
-        return self.table.place(int(self.rows[sample]))
-
-    def step(self, gap: float) -> float:
-        """Turn a gap into seconds; differences of stamps hold 12 digits, and 0.01 is 0.01."""
-        step = gap * self.seconds
-        return step if self.rate_given else float(f"{step:.12g}")
+from hyst.io.usable_rows import LONGEST_GAP
+from hyst.signals import Record
 
 
 def read_record(
@@ -53,6 +28,10 @@ def read_record(
     time_unit: str | None = None,
     repair: bool = False,
     dead_band: float | None = None,
+    table: int | None = None,
+    format: str | None = None,
+    longest_gap: int = LONGEST_GAP,
+    max_samples: int = MAX_SAMPLES,
 ) -> Record:
     r"""Read input and output of a measurement from a data file.
 
@@ -67,32 +46,48 @@ def read_record(
         Columns of the input and of the output.
     time
         Column of the time stamps; their steps may differ from the median by at most 1 %, and the
-        record's dt is their mean. Give either this or ``rate``.
+        record's dt is their mean. Stamps that are rounded, or jitter by up to a tenth of a step,
+        are taken as even, and the notes say so. Give either this or ``rate``, or neither where
+        the file states its step.
     rate
         Samples per second, Hz, > 0.
     time_unit
         Unit of the time column, ``"s"``, ``"ms"``, ``"us"``, ...; by default what its header
         says, and seconds if it says nothing.
     repair
-        Leave out rows where a value is missing or not a number, and interpolate linearly onto
-        the median step where the time is uneven. What was done is in the record's notes.
+        Leave out rows where a value is missing, not a number or a code of the instrument, take
+        stamps that repeat at their mean rate, and interpolate linearly onto the median step where
+        the time is uneven. At most 3 rows or 5 % of them, and ``longest_gap`` one after the other.
+        What was done is in the record's notes.
     dead_band
         Swings of the input up to this size do not count as reversals, units of the input, >= 0;
         by default ``suggest_dead_band`` of the input.
+    table
+        Which of several tables that stand below each other in a text file, from 1; by default
+        the only one that has the columns.
+    format
+        Format of the file where neither content nor suffix tells, as for ``read_table``.
+    longest_gap
+        How many samples in a row ``repair`` may leave out or fill in, >= 0; above 5 without a
+        limit of their number altogether.
+    max_samples
+        A text file of more lines is refused.
 
     Returns
     -------
     Record
-        The signals with their names and units; ``notes`` is empty unless something was repaired.
+        The signals with their names and units; ``notes`` is empty unless something was found out,
+        left out or repaired.
 
     Raises
     ------
     InputError
-        If the file cannot be read (see ``read_table``); if not exactly one of ``time`` and
-        ``rate`` is given, or one of them is unusable; if a column is missing, given twice,
-        differs in length, or holds text, NaN or infinity (the first line is named); if time
-        does not increase or is uneven (the worst gap is named); if fewer than 3 samples are
-        left, a signal is constant, or the input has fewer than 2 reversals.
+        If the file cannot be read (see ``read_table``); if both or none of ``time`` and ``rate``
+        are given, or one of them is unusable; if a column is missing, given twice, differs in
+        length, or holds text, NaN, infinity or codes of an instrument (the first line is named);
+        if units contradict each other; if time does not increase or is uneven (the worst gap is
+        named); if fewer than 3 samples are left, a signal is constant, or the input neither turns
+        twice nor goes through one whole loop.
     MissingExtraError
         If the format needs a package that is not installed.
 
@@ -105,37 +100,61 @@ def read_record(
     >>> record.dt, record.input_unit, record.y
     (0.005, 'V', array([0., 3., 1., 3.]))
     """
-    period = _period(rate, time, time_unit)
-    table = read_table(path)
-    chosen = _choose(table, {"input": input, "output": output, "time": time})
-    rows = _usable_rows(table, chosen, repair)
-    if period is not None:
-        stamps, seconds = rows.astype(np.float64), period
-    else:
-        stamps, seconds = _stamps(table, chosen[2], rows, time_unit)
-    signals = [table.columns[k][rows] for k in chosen[:2]]
-    samples = _Samples(table, rows, stamps, seconds, signals, rate_given=period is not None)
-    dt, (u, y), notes = _on_even_steps(samples, repair)
-    for column, signal, role in zip(chosen, (u, y), ("input", "output"), strict=False):
-        _refuse_still(table, column, signal, role)
-    _refuse_few_reversals(table, chosen[0], u, dead_band)
-    dropped = table.columns[chosen[0]].size - rows.size
-    if dropped:
-        notes = (f"left out {dropped} rows that held no number or no finite one", *notes)
-    return Record(
-        u,
-        y,
-        dt,
-        input_name=table.names[chosen[0]],
-        output_name=table.names[chosen[1]],
-        input_unit=table.units[chosen[0]],
-        output_unit=table.units[chosen[1]],
-        notes=notes,
+    wanted = Wanted(input, output, time, rate, time_unit, repair, dead_band, longest_gap)
+    tables = read_tables(
+        path, format=format, repair=repair, max_samples=max_samples, columns=_used_by(wanted)
     )
+    return record_of_table(_chosen(tables, table, wanted), wanted)
+
+
+def read_records(
+    path: str | os.PathLike[str], input: int | str, output: int | str, **how: Any
+) -> tuple[Record, ...]:
+    r"""Read every table of a text file as a record, one below the other.
+
+    Parameters
+    ----------
+    path, input, output
+        As for ``read_record``.
+    how
+        Its options, ``table`` aside.
+
+    Returns
+    -------
+    tuple of Record
+        One for each table that has the columns.
+
+    Raises
+    ------
+    InputError
+        As ``read_record``, and if no table has the columns.
+    MissingExtraError
+        If the format needs a package that is not installed.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "two.csv"
+    >>> rows = "u,y\n0,0\n1,3\n0,1\n1,3\n"
+    >>> _ = path.write_text(rows + rows)
+    >>> len(read_records(path, "u", "y", rate=10.0))
+    2
+    """
+    format, most = how.pop("format", None), how.pop("max_samples", MAX_SAMPLES)
+    wanted = Wanted(input, output, **how)
+    tables = read_tables(
+        path, format=format, repair=wanted.repair, max_samples=most, columns=_used_by(wanted)
+    )
+    fitting = [each for each in tables if _fits(each, wanted)] or [tables[0]]
+    return tuple(record_of_table(each, wanted) for each in fitting)
 
 
 def read_column(
-    path: str | os.PathLike[str], column: int | str
+    path: str | os.PathLike[str],
+    column: int | str,
+    *,
+    table: int | None = None,
+    format: str | None = None,
 ) -> tuple[NDArray[np.float64], str, str]:
     r"""Read a single column of a data file, for instance a wanted trajectory.
 
@@ -145,6 +164,8 @@ def read_column(
         The file, of any format of ``read_table``.
     column
         Header, name or 0-based index.
+    table, format
+        As for ``read_table``.
 
     Returns
     -------
@@ -166,121 +187,33 @@ def read_column(
     >>> read_column(path, "stroke")
     (array([0. , 1.5]), 'stroke', 'um')
     """
-    table = read_table(path)
-    found = find_column(table, column)
-    refuse_flaws(table, found, "correct it or take the row out")
-    return table.columns[found], table.names[found], table.units[found]
+    whole = read_table(path, table=table, format=format)
+    found = find_column(whole, column)
+    refuse_flaws(whole, found, "correct it or take the row out")
+    return whole.columns[found], whole.names[found], whole.units[found]
 
 
-def _period(rate: float | None, time: int | str | None, time_unit: str | None) -> float | None:
-    """Give the time between two rows by the rate; None when a column tells."""
-    if (rate is None) == (time is None):
-        given = "neither" if rate is None else "both"
-        raise InputError(f"{given} of rate and time given; give one, a rate in Hz or a time column")
-    if time_unit is not None and (time is None or seconds_per_unit(time_unit) is None):
-        raise InputError(
-            f"time_unit is {time_unit!r}; give s, ms, us, ns, min or h, and only with a time column"
-        )
-    if rate is None:
-        return None
-    return 1.0 / as_positive(rate, "rate", "the samples per second")
+def _used_by(wanted: Wanted) -> Callable[[Table], list[int]]:
+    """Choose the columns wanted, and those before them, which may be their own time stamps."""
+
+    def choose(table: Table) -> list[int]:
+        found = choose_columns(table, wanted.columns())
+        return sorted({*found, *(max(k - 1, 0) for k in found)})
+
+    return choose
 
 
-def _choose(table: Table, wanted: dict[str, int | str | None]) -> list[int]:
-    """Find the wanted columns, which must be different ones of one length."""
-    roles: dict[int, str] = {}
-    for role, column in wanted.items():
-        if column is None:
-            continue
-        found = find_column(table, column)
-        if found in roles:
-            raise InputError(
-                f"{table.source}: {roles[found]} and {role} are the same column, "
-                f"{table.headers[found]!r}; choose two different ones"
-            )
-        roles[found] = role
-    sizes = [table.columns[k].size for k in roles]
-    if len(set(sizes)) > 1:
-        pairs = " and ".join(f"{table.names[k]!r} {n}" for k, n in zip(roles, sizes, strict=True))
-        raise InputError(
-            f"{table.source}: the columns have different numbers of values, {pairs}; "
-            "choose columns of one length"
-        )
-    return list(roles)
+def _chosen(tables: tuple[Table, ...], table: int | None, wanted: Wanted) -> Table:
+    """Give the table to read: the one asked for, or the only one that has the columns."""
+    if table is not None or len(tables) == 1:
+        return choose_table(tables, table) if table is not None else tables[0]
+    fitting = tuple(each for each in tables if _fits(each, wanted))
+    return fitting[0] if len(fitting) == 1 else choose_table(tables, None)
 
 
-def _usable_rows(table: Table, chosen: list[int], repair: bool) -> NDArray[np.intp]:
-    """Rows to take: all of them, or with ``repair`` those without a flaw."""
-    finite = [np.isfinite(table.columns[k]) for k in chosen]
-    for k, usable in zip(chosen, finite, strict=True):
-        if not (repair and usable.any()):
-            refuse_flaws(table, k, "correct it, or leave such rows out with the option repair")
-    rows = np.flatnonzero(np.logical_and.reduce(finite))
-    if rows.size < _FEWEST_SAMPLES:
-        raise InputError(
-            f"{table.source} has {rows.size} usable samples; give a record of at least "
-            f"{_FEWEST_SAMPLES}, with several rises and falls"
-        )
-    return rows
-
-
-def _stamps(
-    table: Table, time: int, rows: NDArray[np.intp], time_unit: str | None
-) -> tuple[NDArray[np.float64], float]:
-    """Give the time column as it stands and the seconds in its unit."""
-    unit = table.units[time] if time_unit is None else time_unit
-    seconds = seconds_per_unit(unit)
-    if seconds is None:
-        raise InputError(
-            f"{table.source}: the time column {table.headers[time]!r} has the unit {unit!r}, which "
-            "is no unit of time hyst knows; give time_unit s, ms, us, ns, min or h"
-        )
-    return table.columns[time][rows], seconds
-
-
-def _on_even_steps(
-    samples: _Samples, repair: bool
-) -> tuple[float, list[NDArray[np.float64]], tuple[str, ...]]:
-    """Give the step of an even time axis; with ``repair`` make an uneven one even."""
-    time, source, seconds = samples.time, samples.table.source, samples.seconds
-    back = first_step_back(time)
-    if back is not None:
-        before, after = time[back - 1] * seconds, time[back] * seconds
-        raise InputError(
-            f"{source}: time goes from {before:.12g} s to {after:.12g} s at "
-            f"{samples.place(back)}; it must increase, so sort the file or give a rate instead"
-        )
-    gap = worst_gap(time)
-    if gap.even:
-        return samples.step(float(time[-1] - time[0]) / (time.size - 1)), samples.signals, ()
-    worst = f"{gap.size * seconds:.6g} s after {samples.place(gap.row)}"
-    if not repair:
-        raise InputError(
-            f"{source}: time is uneven, the worst gap is {worst} and the median gap "
-            f"{gap.median * seconds:.6g} s (tolerance {TOLERANCE:.0%}); "
-            "resample with the option repair, or give a rate instead"
-        )
-    step = samples.step(gap.median)
-    note = f"resampled linearly onto steps of {step:.6g} s; the worst gap was {worst}"
-    return step, resample(time, samples.signals, gap.median), (note,)
-
-
-def _refuse_still(table: Table, column: int, signal: NDArray[np.float64], role: str) -> None:
-    if signal.min() == signal.max():
-        raise InputError(
-            f"{table.source}: the {role} {table.names[column]!r} is {signal[0]:.6g} throughout; "
-            "choose a column that moves"
-        )
-
-
-def _refuse_few_reversals(
-    table: Table, column: int, u: NDArray[np.float64], dead_band: float | None
-) -> None:
-    threshold = suggest_dead_band(u) if dead_band is None else dead_band
-    count = reversals(u, threshold).size
-    if count < _FEWEST_REVERSALS:
-        raise InputError(
-            f"{table.source}: the input {table.names[column]!r} has {count} reversals beyond its "
-            f"dead band of {threshold:.3g}, and hysteresis needs at least {_FEWEST_REVERSALS}; "
-            "record whole cycles, or set dead_band"
-        )
+def _fits(table: Table, wanted: Wanted) -> bool:
+    try:
+        choose_columns(table, wanted.columns())
+    except InputError:
+        return False
+    return True

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,10 +19,14 @@ class Flaw:
         Its index in the column.
     text
         How it is written in the file; empty when there is nothing.
+    why
+        What is wrong with it and what to do, where that is known; then the whole column cannot be
+        read, and leaving rows out is no remedy.
     """
 
     row: int
     text: str
+    why: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +50,16 @@ class Table:
         The first entry of each column that is not a finite number, or None.
     lines
         For a text file, the 1-based line of each row.
+    aliases
+        Other rows of names in which a column may be looked up.
+    doubts
+        By column, what in the file contradicts its unit.
+    step
+        Seconds between rows where the file states them outside its columns.
+    notes
+        What was left out of the file, one sentence each.
+    notes_of_columns
+        By column, how its cells were read where that had to be found out.
 
     Examples
     --------
@@ -60,6 +75,11 @@ class Table:
     headers: tuple[str, ...]
     flaws: tuple[Flaw | None, ...]
     lines: NDArray[np.intp] | None = None
+    aliases: tuple[tuple[str, ...], ...] = ()
+    doubts: Mapping[int, str] = field(default_factory=dict)
+    step: float | None = None
+    notes: tuple[str, ...] = ()
+    notes_of_columns: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
 
     def place(self, row: int) -> str:
         """Say where a row is: its line in a text file, its index elsewhere.

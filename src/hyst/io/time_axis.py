@@ -13,15 +13,6 @@ from hyst.errors import InputError
 TOLERANCE = 0.01
 # A record resampled to more than this many times its length would be mostly invention.
 _MOST_GROWTH = 10
-_SECONDS = {
-    **dict.fromkeys(("s", "sec", "second", "seconds"), 1.0),
-    **dict.fromkeys(("ms", "msec", "millisecond", "milliseconds"), 1e-3),
-    # Both letters that print as a Greek mu, the micro sign and the mu itself.
-    **dict.fromkeys(("us", "\N{MICRO SIGN}s", "\N{GREEK SMALL LETTER MU}s", "usec"), 1e-6),
-    "ns": 1e-9,
-    "min": 60.0,
-    "h": 3600.0,
-}
 
 
 @dataclass(frozen=True)
@@ -44,17 +35,6 @@ class Gap:
     def even(self) -> bool:
         """Whether it is within the tolerance, so that all are."""
         return abs(self.size - self.median) <= TOLERANCE * self.median
-
-
-def seconds_per_unit(unit: str) -> float | None:
-    """Give the seconds in a unit of time, 1 for no unit, None if it is unknown.
-
-    Examples
-    --------
-    >>> seconds_per_unit("ms"), seconds_per_unit(""), seconds_per_unit("furlong")
-    (0.001, 1.0, None)
-    """
-    return 1.0 if not unit else _SECONDS.get(unit.strip().lower())
 
 
 def worst_gap(time: NDArray[np.float64]) -> Gap:
@@ -131,5 +111,10 @@ def resample(
             f"resampling {time.size} samples onto their median gap would make {steps:.3g} of "
             "them; cut the record at its long gaps first"
         )
-    grid = time[0] + dt * np.arange(int(steps) + 1)
-    return [np.interp(grid, time, signal) for signal in signals]
+    # Samples that stand on the grid, but for rounding, keep their values to the last bit.
+    places = (time - time[0]) / dt
+    on_grid = np.rint(places)
+    if float(np.abs(places - on_grid).max()) <= TOLERANCE:
+        places = on_grid
+    grid = np.arange(int(steps) + 1)
+    return [np.interp(grid, places, signal) for signal in signals]

@@ -6,7 +6,8 @@ import os
 
 from hyst.io.formats import read_table
 from hyst.io.table import first_flaw
-from hyst.io.time_axis import first_step_back, seconds_per_unit, worst_gap
+from hyst.io.time_axis import first_step_back, worst_gap
+from hyst.io.units_of_time import seconds_per_unit
 
 _NAMES = ("t", "time")
 

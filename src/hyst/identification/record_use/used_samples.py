@@ -227,7 +227,7 @@ def prepare(
     records: Record | Sequence[Record],
     start: Literal["auto"] | int,
     lag: float = 0.0,
-    fewest_turns: int = 2,
+    fewest_turns: int = 1,
 ) -> Data:
     """Check the records and decide which samples can be used.
 
@@ -246,7 +246,7 @@ def prepare(
     lag
         Samples of the first record by which the output lags.
     fewest_turns
-        How often every input must turn: hysteresis shows only after it has turned twice.
+        How often every input must turn: one rise and fall shows both branches of a loop.
 
     Returns
     -------
@@ -318,7 +318,7 @@ def _check(records: tuple[Record, ...], fewest_turns: int) -> None:
         if turns < fewest_turns:
             raise NotIdentifiableError(
                 f"the input of record {number} turns {turns} times; hysteresis shows only after "
-                "the input has turned at least twice"
+                "it has turned, so record a rise and a fall"
             )
 
 

@@ -1,0 +1,124 @@
+"""Read large plain tables at the speed of C: numbers alone below a head of the usual kind."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.errors import InputError
+from hyst.io.cell_values import ColumnOfCells
+from hyst.io.decoding import decode
+from hyst.io.fast_numbers import parse_numbers
+from hyst.io.line_kinds import NUMERIC, sort_lines
+from hyst.io.lvm import is_lvm
+from hyst.io.notation import Writing, find_writing
+from hyst.io.table import Table
+from hyst.io.text_block import Page, with_titles
+from hyst.io.text_lines import significant_lines
+from hyst.io.text_tables import Block, find_blocks
+
+Choice = Callable[[Table], Sequence[int]]
+
+_LARGE = 1 << 16
+_HEAD = 1 << 14
+_DIGITS = b"0123456789+-eE \r\n"
+
+
+def read_plain(
+    data: bytes, source: str, columns: Choice | None = None, large: int = _LARGE
+) -> Table | None:
+    """Read a table of plain numbers below a head of the usual kind.
+
+    Parameters
+    ----------
+    data
+        Content of the file.
+    source
+        Name of the file, for messages.
+    columns
+        Chooses by headers which columns will be used; others are NaN.
+    large
+        Fewest bytes for which this is worth while.
+
+    Returns
+    -------
+    Table or None
+        What ``read_text`` gives; None where the file is small or anything in it is unusual.
+
+    Raises
+    ------
+    InputError
+        If ``columns`` refuses.
+    """
+    if len(data) < large:
+        return None
+    found = _head(data[: data.rfind(b"\n", 0, _HEAD) + 1], source)
+    if found is None:
+        return None
+    page, block = found
+    number = page.lines.numbers[block.first]
+    start = _start_of_line(data, number)
+    body = _plain_body(data[start:].rstrip(b"\r\n "), page.writing)
+    if body is None:
+        return None
+    rows = body.count(b"\n") + 1
+    preview = _table(page, block, np.zeros((block.count, 2)), number)
+    used = range(block.count) if columns is None else columns(preview)
+    values = parse_numbers(body, rows, block.count, page.writing.separator, used)
+    if values is None or not np.isfinite(values[list(used)]).all():
+        return None
+    return _table(page, block, values, number)
+
+
+def _head(data: bytes, source: str) -> tuple[Page, Block] | None:
+    """Find out how the file is written; None unless all lines after the head are plain rows."""
+    try:
+        text = decode(data, source)
+        lines = significant_lines(text)
+        if is_lvm(text) or not lines.texts:
+            return None
+        writing = find_writing(lines.texts)
+        kinds = sort_lines(lines.texts, writing)
+        blocks = find_blocks(lines.texts, kinds, lines.after_gap, writing)
+    except InputError:
+        return None  # the reader of all texts says it better
+    if len(blocks) != 1 or blocks[0].faulty or blocks[0].loose:
+        return None
+    block = blocks[0]
+    numbers = lines.numbers[block.first :]
+    if not (kinds.kinds[block.first :] == NUMERIC).all() or block.stop - block.first < 2:
+        return None
+    if any(after != before + 1 for before, after in itertools.pairwise(numbers)):
+        return None
+    return Page(source, lines, kinds, writing), block
+
+
+def _plain_body(body: bytes, writing: Writing) -> bytes | None:
+    """Give rows with a decimal point and plain line ends; None if there is more than numbers."""
+    decimal, separator = writing.decimal.encode(), (writing.separator or "\t").encode()
+    if decimal == separator or body.translate(None, _DIGITS + decimal + separator):
+        return None
+    if b"\r" in body:
+        body = body.replace(b"\r\n", b"\n")
+        if b"\r" in body:
+            return None
+    return body if decimal == b"." else body.replace(b",", b".")
+
+
+def _start_of_line(data: bytes, number: int) -> int:
+    start = 0
+    for _ in range(number - 1):
+        start = data.index(b"\n", start) + 1
+    return start
+
+
+def _table(page: Page, block: Block, values: NDArray[np.float64], number: int) -> Table:
+    columns = [ColumnOfCells(column, None) for column in values]
+    numbers = np.arange(number, number + values.shape[1], dtype=np.intp)
+    table = with_titles(page, block, columns, numbers)
+    for column in table.columns:
+        column.flags.writeable = False
+    return table

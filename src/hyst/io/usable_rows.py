@@ -1,0 +1,198 @@
+"""Which rows of a table hold measurements, and how many others may be left out."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.errors import InputError
+from hyst.io.columns import refuse_flaws
+from hyst.io.instrument_codes import Code, find_codes
+from hyst.io.table import Table
+
+LONGEST_GAP = 5
+FEWEST_SAMPLES = 3
+# Repair leaves out single faults; what lacks more than this is another record than the one wanted.
+_LARGEST_SHARE = 0.05
+_ALWAYS_ALLOWED = 3
+# Channels that are scanned one after the other within a step are of one row all the same.
+_SAME_INSTANT = 0.5
+_OWN_TIME = re.compile(
+    r"(?:.*[\s_./-])?(?:time|t|timestamp|zeit|x_value)(?:[\s_./-].*)?", re.IGNORECASE
+)
+
+
+def most_left_out(rows: int) -> int:
+    """Give how many of so many rows repair may leave out or fill in."""
+    return max(_ALWAYS_ALLOWED, int(_LARGEST_SHARE * rows))
+
+
+def usable_rows(
+    table: Table, chosen: list[int], repair: bool, longest_gap: int
+) -> tuple[NDArray[np.intp], tuple[str, ...]]:
+    """Give the rows to take: all of them, or with ``repair`` those with a value in each column.
+
+    Parameters
+    ----------
+    table
+        Where to look.
+    chosen
+        Columns of input and output, and that of time if there is one.
+    repair
+        Whether rows may be left out.
+    longest_gap
+        How many of them one after the other between others.
+
+    Returns
+    -------
+    tuple
+        Indices of rows, and what was left out, one sentence each.
+
+    Raises
+    ------
+    InputError
+        If a value is missing or none and ``repair`` is not set, or too many are.
+    """
+    finite = [np.isfinite(table.columns[k]) for k in chosen]
+    codes = [find_codes(table.columns[k]) for k in chosen[:2]]
+    good = np.logical_and.reduce(finite)
+    for found in codes:
+        for code in found:
+            good[code.rows] = False
+    rows = np.flatnonzero(good)
+    missing = good.size - rows.size
+    if not missing:
+        return _enough(table, rows), ()
+    allowed = missing <= most_left_out(good.size)
+    _refuse_apart(table, chosen, finite)
+    for k, usable in zip(chosen, finite, strict=True):
+        flaw = table.flaws[k]
+        if not (repair and usable.any() and not (flaw and flaw.why)):
+            possible = allowed and bool(usable.any())
+            refuse_flaws(table, k, _remedy(possible, missing, good.size, _own_time(table, chosen)))
+    if not repair:
+        _refuse_codes(table, chosen, codes, allowed)
+    if not allowed:
+        raise InputError(
+            f"{table.source}: {missing} of {good.size} rows hold no value in one of the columns, "
+            f"and repair leaves out {most_left_out(good.size)} at most"
+            f"{_own_time(table, chosen)}; give a file that is complete"
+        )
+    _refuse_long_gap(table, rows, longest_gap)
+    return _enough(table, rows), _told(table, chosen, codes, np.logical_and.reduce(finite))
+
+
+def _enough(table: Table, rows: NDArray[np.intp]) -> NDArray[np.intp]:
+    if rows.size < FEWEST_SAMPLES:
+        raise InputError(
+            f"{table.source} has {rows.size} usable samples; give a record of at least "
+            f"{FEWEST_SAMPLES}, with several rises and falls"
+        )
+    return rows
+
+
+def _remedy(allowed: bool, missing: int, rows: int, own_time: str) -> str:
+    if allowed:
+        return "correct it, or leave such rows out with the option repair"
+    return (
+        f"{missing} of {rows} rows lack a value, too many to leave out{own_time}; give a file that "
+        "is complete"
+    )
+
+
+def _refuse_apart(table: Table, chosen: list[int], finite: list[NDArray[np.bool_]]) -> None:
+    """Refuse input and output that were logged at instants of their own."""
+    u, y = finite[:2]
+    if min(u.sum(), y.sum()) >= FEWEST_SAMPLES and not (u & y).any():
+        names = " and ".join(repr(table.names[k]) for k in chosen[:2])
+        raise InputError(
+            f"{table.source}: {names} never have a value in one row, for each was logged at its "
+            "own times; bring them to one raster before (resample)"
+        )
+
+
+def _own_time(table: Table, chosen: list[int]) -> str:
+    """Say that a signal has stamps of its own, where the column before it looks like them."""
+    for k in chosen[:2]:
+        if k and k - 1 not in chosen and _OWN_TIME.fullmatch(table.names[k - 1]):
+            return f"; {table.names[k]!r} has its own stamps in {table.names[k - 1]!r}"
+    return ""
+
+
+def refuse_other_stamps(table: Table, chosen: list[int]) -> None:
+    """Refuse a signal whose own stamps, in the column before it, are others than those chosen.
+
+    Parameters
+    ----------
+    table
+        Where to look.
+    chosen
+        Columns of input, output and time.
+
+    Raises
+    ------
+    InputError
+        If so: input and output of one row would belong to different instants.
+    """
+    for k in chosen[:2]:
+        if not k or k - 1 in chosen or not _OWN_TIME.fullmatch(table.names[k - 1]):
+            continue
+        own, time = table.columns[k - 1], table.columns[chosen[2]]
+        if own.size != time.size or table.units[k - 1] != table.units[chosen[2]]:
+            continue
+        both = np.isfinite(own) & np.isfinite(time)
+        with np.errstate(over="ignore", invalid="ignore"):
+            apart = np.abs(own - time)[both]
+            step = float(np.median(np.abs(np.diff(time[both])))) if apart.size > 1 else np.inf
+        if apart.size and float(apart.max()) > _SAME_INSTANT * step:
+            raise InputError(
+                f"{table.source}: {table.names[k]!r} has its own stamps in "
+                f"{table.names[k - 1]!r}, which are up to {float(apart.max()):.6g} away from those "
+                f"in {table.names[chosen[2]]!r}; bring both to one raster before (resample)"
+            )
+
+
+def _refuse_codes(table: Table, chosen: list[int], codes: list[list[Code]], allowed: bool) -> None:
+    for k, found in zip(chosen, codes, strict=False):
+        for code in found[:1]:
+            more = code.rows.size - 1
+            also = f" and in {_rows(more)} more" if more else ""
+            remedy = ", or leave such rows out with the option repair" if allowed else ""
+            raise InputError(
+                f"{table.source}: {table.names[k]!r} is {code.value:.6g} at "
+                f"{table.place(int(code.rows[0]))}{also}, far from all other values: a code of the "
+                f"instrument and no measurement; correct it{remedy}"
+            )
+
+
+def _refuse_long_gap(table: Table, rows: NDArray[np.intp], longest_gap: int) -> None:
+    gaps = np.diff(rows) - 1
+    if gaps.size and int(gaps.max()) > longest_gap:
+        before = int(np.argmax(gaps))
+        raise InputError(
+            f"{table.source}: {int(gaps[before])} rows in a row hold no value after "
+            f"{table.place(int(rows[before]))}, and repair bridges {longest_gap} at most "
+            "(longest_gap); cut the record there"
+        )
+
+
+def _rows(count: int) -> str:
+    return "1 row" if count == 1 else f"{count} rows"
+
+
+def _told(
+    table: Table, chosen: list[int], codes: list[list[Code]], finite: NDArray[np.bool_]
+) -> tuple[str, ...]:
+    notes = []
+    dropped = int(finite.size - finite.sum())
+    if dropped:
+        notes.append(f"left out {_rows(dropped)} that held no number or no finite one")
+    for k, found in zip(chosen, codes, strict=False):
+        notes += [
+            f"left out {_rows(code.rows.size)} where {table.names[k]!r} is {code.value:.6g}, a "
+            "code of the instrument and no measurement"
+            for code in found
+        ]
+    return tuple(notes)
