@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hyst.errors import NotIdentifiableError
-from hyst.identification.choice.cross_validation import cross_validate, fewest_left
+from hyst.identification.choice.cross_validation import Score, cross_validate, fewest_left
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.fit.bounded_least_squares import CONVERGED, Solution
 from hyst.identification.record_use.overview import Overview
@@ -16,6 +16,10 @@ from hyst.identification.result.identified import Candidate
 
 SMALLEST_GAIN = 1e-3
 """A larger model of the same family must lower the score by this share to be worth going on."""
+
+EQUAL = 0.02
+"""Scores that differ by this share are equal, however sure the difference is: repetitions of one
+loop make the least difference sure, and it says nothing of another drive."""
 
 ROUNDING = 1e-6
 """Scores below this share of the output range are equal: no sensor tells them apart."""
@@ -36,11 +40,34 @@ class Contender:
         The family and its records.
     candidate
         Size and score.
+    fit
+        Of all samples, from one start.
+    score
+        On left-out blocks.
     """
 
     family: Family
     overview: Overview
     candidate: Candidate
+    fit: Fit
+    score: Score
+
+    def equals(self, other: Contender) -> bool:
+        """Tell whether the left-out blocks do not show that it is worse than another one.
+
+        Parameters
+        ----------
+        other
+            A better one, of the same records.
+        """
+        excess, error = self.score.excess(other.score)
+        least = other.score.rms
+        output_range = self.overview.output_range
+        return (
+            excess <= error
+            or self.score.rms <= (1.0 + EQUAL) * least
+            or self.score.rms <= ROUNDING * output_range
+        )
 
 
 def best_of_starts(
@@ -68,7 +95,7 @@ def best_of_starts(
     fits = []
     for parametrization, theta in family.starts(overview, size, most):
         unsolved = Fit(family, size, parametrization, Solution(theta, np.inf, 0, ""))
-        problem = unsolved.problem(overview.data)
+        problem = unsolved.problem(overview.data, overview.kept)
         solution = family.solve(problem, theta, max_iterations)
         fits.append(replace(unsolved, solution=solution))
     return min(fits, key=lambda each: each.solution.cost)
@@ -94,7 +121,7 @@ def settled(fit: Fit, overview: Overview, max_iterations: int) -> Fit:
     """
     if fit.solution.status == CONVERGED:
         return fit
-    problem = fit.problem(overview.data)
+    problem = fit.problem(overview.data, overview.kept)
     again = fit.family.solve(problem, fit.solution.theta, max(max_iterations, LEAST_ITERATIONS))
     samples = overview.data.measured().size
     same = fit.solution.cost - again.cost <= SAME_COST * again.cost / samples
@@ -105,7 +132,7 @@ def settled(fit: Fit, overview: Overview, max_iterations: int) -> Fit:
 def compare(
     families: Sequence[tuple[Family, Overview]], progress: Callable[[str], None]
 ) -> tuple[tuple[Contender, ...], tuple[str, ...]]:
-    """Score families and sizes by blocked cross-validation.
+    """Score families and sizes by cross-validation.
 
     Sizes of a family are tried upwards until two in a row have not lowered the score, or until
     there are as many parameters as samples to fit them to.
@@ -152,8 +179,25 @@ def not_compared(refusals: Mapping[str, NotIdentifiableError]) -> tuple[str, ...
     return tuple(f"{name} is not compared: {why}" for name, why in refusals.items())
 
 
-def simplest_good(contenders: Sequence[Contender], output_range: float) -> Contender:
-    """Give the simplest contender within one standard error of the best.
+def as_good_as_best(contenders: Sequence[Contender]) -> list[Contender]:
+    """Give those that the left-out blocks do not tell from the best: a tie.
+
+    Parameters
+    ----------
+    contenders
+        At least one.
+
+    Returns
+    -------
+    list of Contender
+        In their order, the best among them.
+    """
+    best = min(contenders, key=lambda each: each.score.rms)
+    return [each for each in contenders if each is best or each.equals(best)]
+
+
+def simplest_good(contenders: Sequence[Contender]) -> Contender:
+    """Give the simplest contender within one standard error of its difference to the best.
 
     Simple means few free parameters; between equals the earlier is taken, so families must come
     from the simplest to the richest.
@@ -162,8 +206,6 @@ def simplest_good(contenders: Sequence[Contender], output_range: float) -> Conte
     ----------
     contenders
         At least one.
-    output_range
-        Of the records, output units.
 
     Returns
     -------
@@ -172,12 +214,46 @@ def simplest_good(contenders: Sequence[Contender], output_range: float) -> Conte
     Notes
     -----
     Breiman et al., Classification and Regression Trees (1984), sec. 3.4.3: the one standard error
-    rule.
+    rule, here of paired differences.
     """
-    best = min((each.candidate for each in contenders), key=lambda each: each.score)
-    limit = max(best.score + best.standard_error, ROUNDING * output_range)
-    good = [each for each in contenders if each.candidate.score <= limit]
-    return min(good, key=lambda each: each.candidate.parameters)
+    return min(as_good_as_best(contenders), key=lambda each: each.candidate.parameters)
+
+
+def contender_of(family: Family, overview: Overview, fit: Fit) -> Contender:
+    """Score a fit on left-out blocks.
+
+    Parameters
+    ----------
+    family, overview
+        The family and its records.
+    fit
+        Of all samples.
+    """
+    score = cross_validate(overview, fit)
+    candidate = Candidate(
+        family.name,
+        fit.size,
+        fit.parametrization.free_count,
+        score.rms,
+        score.standard_error,
+        chosen=False,
+    )
+    return Contender(family, overview, candidate, fit, score)
+
+
+def only_contender(family: Family, overview: Overview, fit: Fit) -> Contender | None:
+    """Score the only fit there is; None if there are too few samples to judge it.
+
+    Parameters
+    ----------
+    family, overview
+        The family and its records.
+    fit
+        Of all samples.
+    """
+    if fit.parametrization.free_count >= fewest_left(overview):
+        return None
+    return contender_of(family, overview, fit)
 
 
 def _grow(family: Family, overview: Overview, progress: Callable[[str], None]) -> list[Contender]:
@@ -186,20 +262,13 @@ def _grow(family: Family, overview: Overview, progress: Callable[[str], None]) -
     for size in family.sizes():
         progress(family.named_size(size))
         fit = best_of_starts(family, overview, size, most=1)
-        if fit.parametrization.free_count >= fewest_left(overview.data.measured().size):
+        if fit.parametrization.free_count >= fewest_left(overview):
             break
-        score = cross_validate(overview.data, fit)
-        candidate = Candidate(
-            family.name,
-            size,
-            fit.parametrization.free_count,
-            score.rms,
-            score.standard_error,
-            chosen=False,
-        )
-        found.append(Contender(family, overview, candidate))
-        idle = 0 if score.rms < best * (1.0 - SMALLEST_GAIN) else idle + 1
-        best = min(best, score.rms)
+        contender = contender_of(family, overview, fit)
+        found.append(contender)
+        score = contender.score.rms
+        idle = 0 if score < best * (1.0 - SMALLEST_GAIN) else idle + 1
+        best = min(best, score)
         if idle == 2:
             break
     return found

@@ -108,12 +108,12 @@ class Family(ABC):
         -------
         Data
         tuple of str
-            Sentences for the user.
+            Sentences.
         """
         return prepare(records, start, 0), ()
 
     def suited(self, data: Data) -> tuple[Self, tuple[str, ...]]:
-        """Fit the options to the records: refuse, or leave out with a sentence, what cannot be.
+        """Refuse options that these records cannot serve, or leave them out with a sentence.
 
         Parameters
         ----------
@@ -162,6 +162,14 @@ class Family(ABC):
     def sizes(self) -> tuple[int, ...]:
         """Give the sizes to compare, ascending; (0,) where there is nothing to choose."""
         return (0,)
+
+    def rules(self) -> tuple[str, ...]:
+        """Give what the signs of its weights may be, the safe one first, where that is open."""
+        return ()
+
+    def under(self, rule: str) -> Self:
+        """Give the family with one of its rules."""
+        return self
 
     @abstractmethod
     def least_parameters(self, size: int) -> int:

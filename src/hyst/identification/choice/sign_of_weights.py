@@ -1,0 +1,137 @@
+"""What the signs of the weights of plays may be, settled for all families before they compete.
+
+Negative weights can imitate the loop of almost anything that was driven over one amplitude only,
+and then say what they like about the loops inside it. So of a record that shows no minor loops
+they must explain what nothing else does. Where they pay at all (``negative_weights_pay``), what
+they explain beyond non-negative ones is compared with what maps of input or output explain of it:
+
+    share = (plain - mapped) / (plain - free)
+
+with what a fine bank with non-negative weights leaves (plain), the best family with non-negative
+weights (mapped) and a fine bank with weights of either sign (free). Loops that only bend, saturate
+or switch are explained by maps as well (0.8 to 1 on simulated ones), loops that are stiff after a
+reversal, as friction's, by negative weights alone (0 to 0.1); see ``benchmarks.choice``. A record
+that shows minor loops judges negative weights by them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hyst.identification.choice.selection import best_of_starts
+from hyst.identification.families.family import Family, Fit
+from hyst.identification.families.plays import fine_weights, negative_weights_pay
+from hyst.identification.fit.weight_rules import INVERTIBLE, NON_NEGATIVE
+from hyst.identification.record_use.overview import Overview
+
+SAID_BY_MAPS = 0.5
+"""Where maps explain this share of what negative weights do, non-negative ones are kept."""
+
+TRIED = (4, 8)
+"""Sizes of the families that are tried."""
+
+MOST_ITERATIONS = 50
+
+
+@dataclass(frozen=True, eq=False)
+class Ruling:
+    """Families with the signs of their weights settled.
+
+    Parameters
+    ----------
+    families
+        As they compete.
+    others
+        The same with the other signs, as far as these were worth a thought; none otherwise.
+    safe
+        Whether the families compete with the safe rule, non-negative weights, or nothing is open.
+    """
+
+    families: tuple[tuple[Family, Overview], ...]
+    others: tuple[tuple[Family, Overview], ...]
+    safe: bool = True
+
+
+def ruled(families: Sequence[tuple[Family, Overview]]) -> Ruling:
+    """Settle what the signs of weights may be, the same for all families where it is open.
+
+    Parameters
+    ----------
+    families
+        Each with its records.
+
+    Returns
+    -------
+    Ruling
+    """
+    asked = [each for each in families if each[0].rules()]
+    if not asked:
+        return Ruling(tuple(families), ())
+    overview = asked[0][1]
+    if not negative_weights_pay(overview):
+        return Ruling(_under(families, NON_NEGATIVE), ())
+    free = overview.shows_minor_loops or _said_by_maps(asked, overview) < SAID_BY_MAPS
+    rule, other = (INVERTIBLE, NON_NEGATIVE) if free else (NON_NEGATIVE, INVERTIBLE)
+    return Ruling(_under(families, rule), _under(asked, other), safe=not free)
+
+
+def _under(
+    families: Sequence[tuple[Family, Overview]], rule: str
+) -> tuple[tuple[Family, Overview], ...]:
+    return tuple(
+        (family.under(rule) if family.rules() else family, overview)
+        for family, overview in families
+    )
+
+
+def _said_by_maps(families: Sequence[tuple[Family, Overview]], overview: Overview) -> float:
+    """Give which share of what negative weights explain is explained without them."""
+    plain, free = (fine_weights(overview, rule).rms for rule in (NON_NEGATIVE, INVERTIBLE))
+    mapped = min(
+        plain,
+        *(
+            rms_left(fit, overview)
+            for family, _ in families
+            for fit in tried(family.under(NON_NEGATIVE), overview)
+        ),
+    )
+    return (plain - mapped) / (plain - min(free, mapped))
+
+
+def tried(family: Family, overview: Overview) -> list[Fit]:
+    """Fit a family in a small and a large size, or in the one that is asked for.
+
+    Parameters
+    ----------
+    family
+        The family.
+    overview
+        The records.
+
+    Returns
+    -------
+    list of Fit
+        Sizes with as many parameters as samples are left out, unless there are no others.
+    """
+    known = family.sizes()
+    sizes = [size for size in TRIED if size in known] or [known[0]]
+    samples = overview.input.size
+    sizes = [size for size in sizes if 2 * family.least_parameters(size) < samples] or sizes[:1]
+    return [best_of_starts(family, overview, size, 1, MOST_ITERATIONS) for size in sizes]
+
+
+def rms_left(fit: Fit, overview: Overview) -> float:
+    """Give the root mean square residual of a fit, output units.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    overview
+        Its records.
+    """
+    samples = overview.input.size if overview.kept is None else int(overview.kept.sum())
+    return float(np.sqrt(fit.solution.cost / samples))
