@@ -15,7 +15,7 @@ import numpy as np
 
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.delay import estimate_delay, refine_delay
-from hyst.identification.choice.rivals import Rivals, other_signs, rivals_of, safer
+from hyst.identification.choice.rivals import other_signs, rivals_of, safer
 from hyst.identification.choice.selection import (
     Contender,
     as_good_as_best,
@@ -133,9 +133,7 @@ def find(records: tuple[Record, ...], families: Sequence[Family], options: Optio
         replace(each, parametrization=_in_given_units(each, task)) for each in (fit, *choice.rivals)
     ]
     notes = task.notes + left_out + choice.notes + _outlying(task, options)
-    return Found(
-        in_given_units[0], task.given, choice.candidates, notes, tuple(in_given_units[1:])
-    )
+    return Found(in_given_units[0], task.given, choice.candidates, notes, tuple(in_given_units[1:]))
 
 
 def _tasks(
@@ -245,7 +243,7 @@ def _search(tasks: Sequence[_Task], options: Options) -> _Choice:
     tied, scale = as_good_as_best(contenders), task.scales[1]
     told = tuple(_told(each, chosen, each in tied, scale) for each in contenders)
     notes = refusals + about_the_choice(chosen, contenders, rivals, scale)
-    return _Choice(options.converged(fit), task, told, notes, _fits(rivals))
+    return _Choice(options.converged(fit), task, told, notes, rivals.fits)
 
 
 def _only(task: _Task, ruling: Ruling, options: Options) -> _Choice:
@@ -256,13 +254,7 @@ def _only(task: _Task, ruling: Ruling, options: Options) -> _Choice:
     if chosen is None:
         return _Choice(fit, task, (), (), ())
     rivals = rivals_of(chosen, fit, (chosen,), other_signs(ruling, chosen))
-    return _Choice(
-        fit, task, (), about_the_choice(chosen, (), rivals, task.scales[1]), _fits(rivals)
-    )
-
-
-def _fits(rivals: Rivals) -> tuple[Fit, ...]:
-    return tuple(each.fit for each in rivals.contenders)
+    return _Choice(fit, task, (), about_the_choice(chosen, (), rivals, task.scales[1]), rivals.fits)
 
 
 def _task_of(family: Family, ruling: Ruling, tasks: Sequence[_Task]) -> _Task:

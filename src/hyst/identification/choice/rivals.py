@@ -18,7 +18,8 @@ from hyst.identification.choice.sign_of_weights import Ruling, rms_left, tried
 from hyst.identification.families.family import Fit
 
 CREDIBLE = 0.25
-"""Of what a line leaves beyond the best model: with less, other signs are still a model of it."""
+"""Of what a line leaves beyond the model chosen: a model that leaves less of it describes the
+records, and on one amplitude nothing speaks against what it says of others."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,21 +28,23 @@ class Rivals:
 
     Parameters
     ----------
-    contenders
-        One of each kind.
+    fits
+        One of each kind, the best first.
     apart
         How far they are from the model taken on nested minor loops, as a share of the range of the
         output.
     """
 
-    contenders: tuple[Contender, ...]
+    fits: tuple[Fit, ...]
     apart: float
 
 
 def rivals_of(
-    chosen: Contender, fit: Fit, contenders: Sequence[Contender], others: Sequence[Contender]
+    chosen: Contender, fit: Fit, contenders: Sequence[Contender], others: Sequence[Fit]
 ) -> Rivals:
     """Give what else describes the records about as well as what was chosen.
+
+    Of records that show minor loops these are ties; of one amplitude all that describe it.
 
     Parameters
     ----------
@@ -62,35 +65,20 @@ def rivals_of(
     if fit.family.depends_on_rate:
         return Rivals((), 0.0)
     same = [each for each in contenders if each.overview is overview]
-    tied = [each for each in as_good_as_best(same) if each.family is not chosen.family]
-    likely = [each for each in others if each is not chosen and credible(each, chosen)]
-    kinds: dict[int, Contender] = {}
-    for each in sorted([*tied, *likely], key=lambda one: one.score.rms):
-        kinds.setdefault(id(each.family), each)
-    found = tuple(kinds.values())
-    apart = disagreement(fit, [each.fit for each in found], overview.data)
-    return Rivals(found, apart / overview.output_range)
+    if overview.shows_minor_loops:
+        likely = as_good_as_best(same)
+    else:
+        likely = [each for each in same if describes(each.fit, chosen)]
+    found = [each.fit for each in likely] + [each for each in others if describes(each, chosen)]
+    kinds: dict[object, Fit] = {}
+    for each in sorted(found, key=lambda one: rms_left(one, overview)):
+        if each.family != chosen.family:
+            kinds.setdefault(each.family, each)
+    apart = disagreement(fit, list(kinds.values()), overview.data)
+    return Rivals(tuple(kinds.values()), apart / overview.output_range)
 
 
-def safer(chosen: Contender, others: Sequence[Contender]) -> Contender:
-    """Give the best with non-negative weights, if nothing speaks for the negative ones chosen.
-
-    Parameters
-    ----------
-    chosen
-        What was chosen.
-    others
-        With the other signs of weights.
-
-    Returns
-    -------
-    Contender
-    """
-    good = [each for each in others if each.equals(chosen)]
-    return min(good, key=lambda each: each.score.rms, default=chosen)
-
-
-def other_signs(ruling: Ruling, chosen: Contender) -> list[Contender]:
+def other_signs(ruling: Ruling, chosen: Contender) -> list[Fit]:
     """Give the families with the other signs of weights, each in the better of few sizes.
 
     Parameters
@@ -100,27 +88,56 @@ def other_signs(ruling: Ruling, chosen: Contender) -> list[Contender]:
     chosen
         What was chosen: only families on the same records can be rivals of it.
     """
-    found = []
-    for family, overview in ruling.others:
-        if overview is not chosen.overview:
-            continue
-        fit = min(tried(family, overview), key=lambda each: each.solution.cost)
-        if fit.parametrization.free_count >= fewest_left(overview):
-            continue
-        if rms_left(fit, overview) < CREDIBLE * line_leaves(chosen):
-            found.append(contender_of(family, overview, fit))
-    return found
+    same = [family for family, overview in ruling.others if overview is chosen.overview]
+    return [
+        min(tried(family, chosen.overview), key=lambda each: each.solution.cost) for family in same
+    ]
 
 
-def line_leaves(contender: Contender) -> float:
+def safer(chosen: Contender, others: Sequence[Fit]) -> Contender:
+    """Give the best with non-negative weights, if nothing speaks for the negative ones chosen.
+
+    Parameters
+    ----------
+    chosen
+        What was chosen.
+    others
+        With non-negative weights.
+
+    Returns
+    -------
+    Contender
+    """
+    overview, found = chosen.overview, []
+    for fit in others:
+        judged = fit.parametrization.free_count < fewest_left(overview)
+        if judged and describes(fit, chosen):
+            found.append(contender_of(fit.family, overview, fit))
+    good = [each for each in found if each.equals(chosen)]
+    return min(good, key=lambda each: each.score.rms, default=chosen)
+
+
+def describes(fit: Fit, chosen: Contender) -> bool:
+    """Tell whether a fit leaves little of what a line leaves beyond the model chosen.
+
+    Parameters
+    ----------
+    fit
+        On the same records.
+    chosen
+        What was chosen.
+    """
+    overview = chosen.overview
+    least = rms_left(chosen.fit, overview)
+    line = overview.once("line", lambda: _line_leaves(chosen))
+    return rms_left(fit, overview) <= least + CREDIBLE * max(line - least, 0.0)
+
+
+def _line_leaves(contender: Contender) -> float:
     """Give what a straight line leaves of the output, root mean square."""
-    u, y = contender.overview.input, contender.overview.data.measured()
+    overview = contender.overview
+    rows = slice(None) if overview.kept is None else overview.kept
+    u, y = overview.input[rows], overview.data.measured()[rows]
     u, y = u - u.mean(), y - y.mean()
     rest = y - u * float(u @ y) / float(u @ u)
     return float(np.sqrt(rest @ rest / rest.size))
-
-
-def credible(rival: Contender, chosen: Contender) -> bool:
-    """Tell whether other signs leave little of what a line leaves beyond the model chosen."""
-    least = chosen.score.rms
-    return rival.score.rms <= least + CREDIBLE * max(line_leaves(chosen) - least, 0.0)

@@ -18,8 +18,12 @@ SMALLEST_GAIN = 1e-3
 """A larger model of the same family must lower the score by this share to be worth going on."""
 
 EQUAL = 0.02
-"""Scores that differ by this share are equal, however sure the difference is: repetitions of one
-loop make the least difference sure, and it says nothing of another drive."""
+"""Scores that differ by this share are equal, however sure the difference is."""
+
+REPEATED, NEGLIGIBLE = 0.15, 1e-3
+"""On one amplitude left-out blocks repeat others, which makes the least difference sure and says
+nothing of another drive: mean squares are equal, too, that differ by less than this share, and by
+less than the square of this share of the output's range."""
 
 ROUNDING = 1e-6
 """Scores below this share of the output range are equal: no sensor tells them apart."""
@@ -61,13 +65,11 @@ class Contender:
             A better one, of the same records.
         """
         excess, error = self.score.excess(other.score)
-        least = other.score.rms
-        output_range = self.overview.output_range
-        return (
-            excess <= error
-            or self.score.rms <= (1.0 + EQUAL) * least
-            or self.score.rms <= ROUNDING * output_range
-        )
+        output_range, least = self.overview.output_range, other.score.rms
+        if not self.overview.shows_minor_loops:
+            error = max(error, min(REPEATED * least**2, (NEGLIGIBLE * output_range) ** 2))
+        equal = max((1.0 + EQUAL) * least, ROUNDING * output_range)
+        return excess <= error or self.score.rms <= equal
 
 
 def best_of_starts(
@@ -99,6 +101,23 @@ def best_of_starts(
         solution = family.solve(problem, theta, max_iterations)
         fits.append(replace(unsolved, solution=solution))
     return min(fits, key=lambda each: each.solution.cost)
+
+
+def first_fit(family: Family, overview: Overview, size: int) -> Fit:
+    """Fit a family of a given size from its best guess, once for all who ask.
+
+    Parameters
+    ----------
+    family
+        The family.
+    overview
+        The records.
+    size
+        One of its sizes.
+    """
+    return overview.once(
+        ("first fit", family, size), lambda: best_of_starts(family, overview, size, most=1)
+    )
 
 
 def settled(fit: Fit, overview: Overview, max_iterations: int) -> Fit:
@@ -261,7 +280,7 @@ def _grow(family: Family, overview: Overview, progress: Callable[[str], None]) -
     best, idle = float("inf"), 0
     for size in family.sizes():
         progress(family.named_size(size))
-        fit = best_of_starts(family, overview, size, most=1)
+        fit = first_fit(family, overview, size)
         if fit.parametrization.free_count >= fewest_left(overview):
             break
         contender = contender_of(family, overview, fit)

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hyst.identification.choice.selection import best_of_starts
+from hyst.identification.choice.selection import first_fit
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.plays import fine_weights, negative_weights_pay
 from hyst.identification.fit.weight_rules import INVERTIBLE, NON_NEGATIVE
@@ -32,8 +32,6 @@ SAID_BY_MAPS = 0.5
 
 TRIED = (4, 8)
 """Sizes of the families that are tried."""
-
-MOST_ITERATIONS = 50
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,14 +88,13 @@ def _under(
 def _said_by_maps(families: Sequence[tuple[Family, Overview]], overview: Overview) -> float:
     """Give which share of what negative weights explain is explained without them."""
     plain, free = (fine_weights(overview, rule).rms for rule in (NON_NEGATIVE, INVERTIBLE))
-    mapped = min(
-        plain,
-        *(
-            rms_left(fit, overview)
-            for family, _ in families
-            for fit in tried(family.under(NON_NEGATIVE), overview)
-        ),
-    )
+    by_maps = [
+        rms_left(fit, overview)
+        for family, _ in families
+        if "knots" in family.options()  # the fine bank is as good as any plays alone
+        for fit in tried(family.under(NON_NEGATIVE), overview)
+    ]
+    mapped = min([plain, *by_maps])
     return (plain - mapped) / (plain - min(free, mapped))
 
 
@@ -120,7 +117,7 @@ def tried(family: Family, overview: Overview) -> list[Fit]:
     sizes = [size for size in TRIED if size in known] or [known[0]]
     samples = overview.input.size
     sizes = [size for size in sizes if 2 * family.least_parameters(size) < samples] or sizes[:1]
-    return [best_of_starts(family, overview, size, 1, MOST_ITERATIONS) for size in sizes]
+    return [first_fit(family, overview, size) for size in sizes]
 
 
 def rms_left(fit: Fit, overview: Overview) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from hyst.identification.choice.rivals import Rivals
 from hyst.identification.choice.selection import Contender, as_good_as_best
+from hyst.identification.families.family import Family
 
 NOTABLE = 0.01
 """Of the output's range: differences that are worth a sentence."""
@@ -37,19 +38,18 @@ def about_the_choice(
     -------
     tuple of str
     """
-    sentences = [*_edge(chosen, contenders, scale), *_apart(chosen, rivals)]
-    if len(contenders) > 1 and not sentences:
-        sentences += _tie(chosen, contenders)
-    return tuple(sentences)
+    apart = _apart(chosen, rivals)
+    if len(contenders) < 2:
+        return tuple(apart)
+    alone = _one_amplitude(chosen) if not apart else []
+    return (*_edge(chosen, contenders, scale), *apart, *alone, *_tie(chosen, contenders))
 
 
 def _edge(chosen: Contender, contenders: Sequence[Contender], scale: float) -> list[str]:
     """Say that the largest size tried was chosen, while the error still fell."""
     sizes, size = chosen.family.sizes(), chosen.candidate.plays
     smaller = [
-        each
-        for each in contenders
-        if each.family is chosen.family and each.candidate.plays < size
+        each for each in contenders if each.family is chosen.family and each.candidate.plays < size
     ]
     if size != sizes[-1] or not smaller or "plays" not in chosen.family.options():
         return []
@@ -69,41 +69,57 @@ def _apart(chosen: Contender, rivals: Rivals) -> list[str]:
     error = chosen.score.rms / chosen.overview.output_range
     if rivals.apart <= max(NOTABLE, BEYOND_ERROR * error):
         return []
-    kinds = ", ".join(dict.fromkeys(_kind(each) for each in rivals.contenders))
+    kinds = " and ".join(dict.fromkeys(kind_of(each.family) for each in rivals.fits))
     shown = (
-        "the records do not settle which of them is right"
+        "these records do not settle it"
         if chosen.overview.shows_minor_loops
-        else "the records show one amplitude, which does not determine minor loops"
+        else "records of one amplitude do not determine minor loops"
     )
     return [
-        f"{_kind(chosen)} was taken, but {kinds} describes the records about as well, and on minor "
-        f"loops inside their range the models differ by {100.0 * rivals.apart:.2g} % of the "
-        f"output's range (rms); {shown}: record a drive of decaying amplitude (hyst excite --kind "
-        "reversals) and give it as well"
+        f"{kind_of(chosen.family)} was taken, but {kinds} could be right as well, and on minor loops "
+        f"inside the range of the records they differ from it by up to {100.0 * rivals.apart:.2g} "
+        f"% of the output's range (rms); {shown}, so record a drive of decaying amplitude "
+        "(hyst excite --kind reversals) and give it as well"
+    ]
+
+
+def _one_amplitude(chosen: Contender) -> list[str]:
+    """Say that left-out blocks of a record of one amplitude are no independent witnesses."""
+    if chosen.overview.shows_minor_loops or not chosen.family.has_memory:
+        return []
+    return [
+        "the strokes of the records are about equally long, so left-out blocks repeat what others "
+        "show; the errors on them say nothing of minor loops"
     ]
 
 
 def _tie(chosen: Contender, contenders: Sequence[Contender]) -> list[str]:
-    """Say that another family predicts left-out blocks as well."""
+    """Say that another family predicts left-out blocks as well or better."""
     tied = [
         each
         for each in as_good_as_best(contenders)
-        if each.family is not chosen.family and each.score.rms <= chosen.score.rms
+        if each.family.name != chosen.family.name and each.score.rms <= chosen.score.rms
     ]
-    names = dict.fromkeys(each.family.name for each in tied)
+    names = list(dict.fromkeys(each.family.name for each in tied))
     if not names:
         return []
+    verb = "predict" if len(names) > 1 else "predicts"
     return [
-        f"{' and '.join(names)} predicts left-out blocks as well as {chosen.family.name}; the "
-        "simpler one was taken"
+        f"{' and '.join(names)} {verb} left-out blocks as well as {chosen.family.name}; the one "
+        "with fewer parameters was taken"
     ]
 
 
-def _kind(contender: Contender) -> str:
-    signs = getattr(contender.family, "weights", "")
-    return f"{contender.family.name} with {_SIGNS[signs]}" if signs in _SIGNS else (
-        contender.family.name
-    )
+def kind_of(family: Family) -> str:
+    """Name a family and the signs of its weights.
+
+    Parameters
+    ----------
+    family
+        The family.
+    """
+    name, signs = family.name, getattr(family, "weights", "")
+    return f"{name} with {_SIGNS[signs]}" if signs in _SIGNS else name
 
 
 _SIGNS = {

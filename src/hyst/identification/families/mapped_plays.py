@@ -187,9 +187,7 @@ class GeneralizedPrandtlIshlinskii(MappedPlays):
             return super()._refit(fit, overview, working, max_iterations)
         parametrization, theta = with_plays_left_out(fit, working)
         fit = replace(fit, parametrization=parametrization)
-        solution = self.solve(
-            fit.problem(overview.data, overview.kept), theta, max_iterations
-        )
+        solution = self.solve(fit.problem(overview.data, overview.kept), theta, max_iterations)
         return replace(fit, solution=solution)
 
     def knots_over(self, overview: Overview, weights: Weights) -> Array:
