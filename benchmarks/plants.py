@@ -6,6 +6,7 @@ with the models of hyst; the banks of plays are the models' own case.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -40,10 +41,7 @@ class Plant:
 
 def triangle(turns: Sequence[float], samples: int) -> Array:
     """Give straight strokes from turn to turn."""
-    strokes = [
-        np.linspace(a, b, samples, endpoint=False)
-        for a, b in zip(turns[:-1], turns[1:], strict=True)
-    ]
+    strokes = [np.linspace(a, b, samples, endpoint=False) for a, b in itertools.pairwise(turns)]
     return np.concatenate([*strokes, [turns[-1]]])
 
 
@@ -120,7 +118,7 @@ def rate_of(name: str, kind: str, slope: Callable[..., float], linear: float) ->
 
 
 def bouc_wen(alpha: float, beta: float, gamma: float, n: float, linear: float) -> Plant:
-    """Give ``dz = alpha du - beta |du| |z|^(n-1) z - gamma du |z|^n``; softens where the sum > 0."""
+    """Give ``dz = alpha du - beta |du| |z|^(n-1) z - gamma du |z|^n``."""
 
     def slope(u: float, z: float, direction: float) -> float:
         size = abs(z)

@@ -14,15 +14,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hyst.errors import InputError, NotIdentifiableError
+from hyst.identification.choice.cross_validation import fewest_left
 from hyst.identification.choice.delay import estimate_delay, refine_delay
-from hyst.identification.choice.rivals import other_signs, rivals_of, safer
+from hyst.identification.choice.rivals import other_signs, rivals_of
 from hyst.identification.choice.selection import (
     Contender,
     as_good_as_best,
     best_of_starts,
     compare,
+    contender_of,
     not_compared,
-    only_contender,
     settled,
     simplest_good,
 )
@@ -223,7 +224,7 @@ class _Choice:
 
 
 def _search(tasks: Sequence[_Task], options: Options) -> _Choice:
-    """Choose signs of weights, family and size and fit it; the next best if it does not converge."""
+    """Choose signs, family and size and fit it; the next best if that does not converge."""
     ruling = ruled(_with_overviews(tasks, options))
     if len(tasks) == 1 and len(tasks[0].family.sizes()) == 1:
         return _only(tasks[0], ruling, options)
@@ -231,15 +232,12 @@ def _search(tasks: Sequence[_Task], options: Options) -> _Choice:
     remaining = list(contenders)
     while True:
         chosen = simplest_good(remaining)
-        others = other_signs(ruling, chosen)
-        chosen = chosen if ruling.safe else safer(chosen, others)
         fit = _final_fit(chosen.family, chosen.overview, chosen.candidate.plays, options)
-        if fit.solution.status == CONVERGED or len(remaining) == 1 or chosen not in remaining:
+        if fit.solution.status == CONVERGED or len(remaining) == 1:
             break
         remaining.remove(chosen)
-    contenders = contenders if chosen in contenders else (*contenders, chosen)
     task = _task_of(chosen.family, ruling, tasks)
-    rivals = rivals_of(chosen, fit, contenders, others)
+    rivals = rivals_of(chosen, fit, contenders, other_signs(ruling, chosen))
     tied, scale = as_good_as_best(contenders), task.scales[1]
     told = tuple(_told(each, chosen, each in tied, scale) for each in contenders)
     notes = refusals + about_the_choice(chosen, contenders, rivals, scale)
@@ -250,9 +248,10 @@ def _only(task: _Task, ruling: Ruling, options: Options) -> _Choice:
     """Fit the only family and size there is; the other signs of its weights may be a rival."""
     family, overview = ruling.families[0]
     fit = options.converged(_final_fit(family, overview, family.sizes()[0], options))
-    chosen = only_contender(family, overview, fit) if ruling.others else None
-    if chosen is None:
+    judged = fit.parametrization.free_count < fewest_left(overview)
+    if not ruling.others or not judged:
         return _Choice(fit, task, (), (), ())
+    chosen = contender_of(family, overview, fit)
     rivals = rivals_of(chosen, fit, (chosen,), other_signs(ruling, chosen))
     return _Choice(fit, task, (), about_the_choice(chosen, (), rivals, task.scales[1]), rivals.fits)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 
 import numpy as np
@@ -48,10 +49,7 @@ def nested_drive(data: Data) -> tuple[Array, int]:
         for size in SIZES:
             turns += [level - size * reach, level + size * reach]
         turns += [-1.0, 1.0]
-    strokes = [
-        np.linspace(a, b, STROKE, endpoint=False)
-        for a, b in zip(turns[:-1], turns[1:], strict=True)
-    ]
+    strokes = [np.linspace(a, b, STROKE, endpoint=False) for a, b in itertools.pairwise(turns)]
     shape = np.concatenate([*strokes, turns[-1:]])
     return 0.5 * (low + high) + 0.5 * (high - low) * shape, len(WHOLE) * STROKE
 

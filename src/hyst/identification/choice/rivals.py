@@ -11,15 +11,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hyst.identification.choice.cross_validation import fewest_left
 from hyst.identification.choice.disagreement import disagreement
-from hyst.identification.choice.selection import Contender, as_good_as_best, contender_of
+from hyst.identification.choice.selection import Contender, as_good_as_best
 from hyst.identification.choice.sign_of_weights import Ruling, rms_left, tried
 from hyst.identification.families.family import Fit
 
 CREDIBLE = 0.25
 """Of what a line leaves beyond the model chosen: a model that leaves less of it describes the
 records, and on one amplitude nothing speaks against what it says of others."""
+
+
+ABOUT_AS_WELL = 1.2
+"""Times what the model chosen leaves of a record with minor loops: so much may other signs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,10 +69,12 @@ def rivals_of(
         return Rivals((), 0.0)
     same = [each for each in contenders if each.overview is overview]
     if overview.shows_minor_loops:
-        likely = as_good_as_best(same)
+        most = ABOUT_AS_WELL * rms_left(chosen.fit, overview)
+        found = [each.fit for each in as_good_as_best(same)]
+        found += [each for each in others if rms_left(each, overview) <= most]
     else:
-        likely = [each for each in same if describes(each.fit, chosen)]
-    found = [each.fit for each in likely] + [each for each in others if describes(each, chosen)]
+        fits = [each.fit for each in same] + list(others)
+        found = [each for each in fits if _describes(each, chosen)]
     kinds: dict[object, Fit] = {}
     for each in sorted(found, key=lambda one: rms_left(one, overview)):
         if each.family != chosen.family:
@@ -94,39 +99,8 @@ def other_signs(ruling: Ruling, chosen: Contender) -> list[Fit]:
     ]
 
 
-def safer(chosen: Contender, others: Sequence[Fit]) -> Contender:
-    """Give the best with non-negative weights, if nothing speaks for the negative ones chosen.
-
-    Parameters
-    ----------
-    chosen
-        What was chosen.
-    others
-        With non-negative weights.
-
-    Returns
-    -------
-    Contender
-    """
-    overview, found = chosen.overview, []
-    for fit in others:
-        judged = fit.parametrization.free_count < fewest_left(overview)
-        if judged and describes(fit, chosen):
-            found.append(contender_of(fit.family, overview, fit))
-    good = [each for each in found if each.equals(chosen)]
-    return min(good, key=lambda each: each.score.rms, default=chosen)
-
-
-def describes(fit: Fit, chosen: Contender) -> bool:
-    """Tell whether a fit leaves little of what a line leaves beyond the model chosen.
-
-    Parameters
-    ----------
-    fit
-        On the same records.
-    chosen
-        What was chosen.
-    """
+def _describes(fit: Fit, chosen: Contender) -> bool:
+    """Tell whether a fit leaves little of what a line leaves beyond the model chosen."""
     overview = chosen.overview
     least = rms_left(chosen.fit, overview)
     line = overview.once("line", lambda: _line_leaves(chosen))

@@ -238,6 +238,22 @@ def simplest_good(contenders: Sequence[Contender]) -> Contender:
     return min(as_good_as_best(contenders), key=lambda each: each.candidate.parameters)
 
 
+def first_contender(family: Family, overview: Overview, size: int) -> Contender:
+    """Score the first fit of a size on left-out blocks, once for all who ask.
+
+    Parameters
+    ----------
+    family, overview
+        The family and its records.
+    size
+        One of its sizes.
+    """
+    return overview.once(
+        ("first contender", family, size),
+        lambda: contender_of(family, overview, first_fit(family, overview, size)),
+    )
+
+
 def contender_of(family: Family, overview: Overview, fit: Fit) -> Contender:
     """Score a fit on left-out blocks.
 
@@ -260,21 +276,6 @@ def contender_of(family: Family, overview: Overview, fit: Fit) -> Contender:
     return Contender(family, overview, candidate, fit, score)
 
 
-def only_contender(family: Family, overview: Overview, fit: Fit) -> Contender | None:
-    """Score the only fit there is; None if there are too few samples to judge it.
-
-    Parameters
-    ----------
-    family, overview
-        The family and its records.
-    fit
-        Of all samples.
-    """
-    if fit.parametrization.free_count >= fewest_left(overview):
-        return None
-    return contender_of(family, overview, fit)
-
-
 def _grow(family: Family, overview: Overview, progress: Callable[[str], None]) -> list[Contender]:
     found: list[Contender] = []
     best, idle = float("inf"), 0
@@ -283,7 +284,7 @@ def _grow(family: Family, overview: Overview, progress: Callable[[str], None]) -
         fit = first_fit(family, overview, size)
         if fit.parametrization.free_count >= fewest_left(overview):
             break
-        contender = contender_of(family, overview, fit)
+        contender = first_contender(family, overview, size)
         found.append(contender)
         score = contender.score.rms
         idle = 0 if score < best * (1.0 - SMALLEST_GAIN) else idle + 1

@@ -8,10 +8,10 @@ they explain beyond non-negative ones is compared with what maps of input or out
     share = (plain - mapped) / (plain - free)
 
 with what a fine bank with non-negative weights leaves (plain), the best family with non-negative
-weights (mapped) and a fine bank with weights of either sign (free). Loops that only bend, saturate
-or switch are explained by maps as well (0.8 to 1 on simulated ones), loops that are stiff after a
+weights (mapped) and a fine bank with weights of either sign (free). Loops that bend, saturate or
+switch are explained by maps as well (0.8 to 1 on simulated ones), loops that are stiff after a
 reversal, as friction's, by negative weights alone (0 to 0.1); see ``benchmarks.choice``. A record
-that shows minor loops judges negative weights by them.
+that shows minor loops judges by left-out ones, and keeps non-negative weights if they do as well.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hyst.identification.choice.selection import first_fit
+from hyst.identification.choice.cross_validation import fewest_left
+from hyst.identification.choice.selection import first_contender, first_fit
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.plays import fine_weights, negative_weights_pay
 from hyst.identification.fit.weight_rules import INVERTIBLE, NON_NEGATIVE
@@ -44,13 +45,10 @@ class Ruling:
         As they compete.
     others
         The same with the other signs, as far as these were worth a thought; none otherwise.
-    safe
-        Whether the families compete with the safe rule, non-negative weights, or nothing is open.
     """
 
     families: tuple[tuple[Family, Overview], ...]
     others: tuple[tuple[Family, Overview], ...]
-    safe: bool = True
 
 
 def ruled(families: Sequence[tuple[Family, Overview]]) -> Ruling:
@@ -71,9 +69,12 @@ def ruled(families: Sequence[tuple[Family, Overview]]) -> Ruling:
     overview = asked[0][1]
     if not negative_weights_pay(overview):
         return Ruling(_under(families, NON_NEGATIVE), ())
-    free = overview.shows_minor_loops or _said_by_maps(asked, overview) < SAID_BY_MAPS
+    if overview.shows_minor_loops:
+        free = _missed(asked, overview)
+    else:
+        free = _said_by_maps(asked, overview) < SAID_BY_MAPS
     rule, other = (INVERTIBLE, NON_NEGATIVE) if free else (NON_NEGATIVE, INVERTIBLE)
-    return Ruling(_under(families, rule), _under(asked, other), safe=not free)
+    return Ruling(_under(families, rule), _under(asked, other))
 
 
 def _under(
@@ -83,6 +84,21 @@ def _under(
         (family.under(rule) if family.rules() else family, overview)
         for family, overview in families
     )
+
+
+def _missed(families: Sequence[tuple[Family, Overview]], overview: Overview) -> bool:
+    """Tell whether left-out parts of the records miss negative weights."""
+    safe, free = (
+        min(
+            (fit for family, _ in families for fit in tried(family.under(rule), overview)),
+            key=lambda each: each.solution.cost,
+        )
+        for rule in (NON_NEGATIVE, INVERTIBLE)
+    )
+    if max(each.parametrization.free_count for each in (safe, free)) >= fewest_left(overview):
+        return True
+    judged = [first_contender(each.family, overview, each.size) for each in (safe, free)]
+    return not judged[0].equals(judged[1])
 
 
 def _said_by_maps(families: Sequence[tuple[Family, Overview]], overview: Overview) -> float:

@@ -76,10 +76,10 @@ def _apart(chosen: Contender, rivals: Rivals) -> list[str]:
         else "records of one amplitude do not determine minor loops"
     )
     return [
-        f"{kind_of(chosen.family)} was taken, but {kinds} could be right as well, and on minor loops "
-        f"inside the range of the records they differ from it by up to {100.0 * rivals.apart:.2g} "
-        f"% of the output's range (rms); {shown}, so record a drive of decaying amplitude "
-        "(hyst excite --kind reversals) and give it as well"
+        f"{kind_of(chosen.family)} was taken, but {kinds} could be right as well, and on minor "
+        f"loops inside the range of the records they differ from it by up to "
+        f"{100.0 * rivals.apart:.2g} % of the output's range (rms); {shown}, so record a drive of "
+        "decaying amplitude (hyst excite --kind reversals) and give it as well"
     ]
 
 
