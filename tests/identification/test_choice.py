@@ -1,6 +1,7 @@
 """The choice holds outside the record: signs, sizes and families, judged where it was not trained.
 
-The actuators are simulated from their own equations and in no model's class (``benchmarks.plants``).
+The actuators are simulated from their own equations, most in no model's class
+(``benchmarks.plants``).
 """
 
 from __future__ import annotations
@@ -110,6 +111,13 @@ def test_records_with_minor_loops_decide_by_themselves(name: str) -> None:
     assert not any("one amplitude" in each for each in found.undetermined)
 
 
+def test_noise_does_not_hide_that_negative_weights_are_missed() -> None:
+    """A thin loop of friction, 1.2 % beside a line, in noise of 1 %: without them 3.2 % is left."""
+    thin = plant("Bouc-Wen 0.5 1 0.9 n 2, line 1")
+    found = hyst.identify(simulated_record(thin, shrinking_loops(), 0.01, 9), delay=0)
+    assert errors(thin, found)[1] < 1.6
+
+
 @pytest.mark.parametrize("name", ["MnZn_ferrite", "MnZn_HP_ferrite"])
 def test_inner_loops_of_measured_ferrites_follow_from_the_outermost(
     measured_data: Path, name: str
@@ -216,13 +224,20 @@ def test_misfit_and_corners_of_clean_records_are_not_taken_for_bad_samples(drive
 def test_differences_are_judged_in_pairs() -> None:
     """Hard blocks are hard for both: 1.1 more in every block is sure, whatever their scatter."""
     hard = np.array([1.0, 100.0, 3.0, 40.0, 7.0, 60.0, 2.0, 20.0])
-    difference, error = Score(hard + 1.1).excess(Score(hard))
-    assert difference == pytest.approx(1.1)
-    assert error < 1e-9
-    wavering = hard + np.array([8.0, -8.0] * 4)
-    difference, error = Score(wavering).excess(Score(hard))
-    # By hand: mean 0, standard deviation 8 sqrt(8 / 7), over the root of 8 blocks.
-    assert (difference, error) == pytest.approx((0.0, 8.0 * np.sqrt(8.0 / 7.0) / np.sqrt(8.0)))
+    best = Score(hard)
+    assert best.standard_error > 1.1  # two bars would overlap
+    assert Score(hard + 1.1).seems_worse(best)
+    # By hand: mean 1, standard deviation 8 sqrt(8 / 7), over the root of 8 blocks 3.02.
+    wavering = np.array([70.0, 100.0, 60.0, 50.0, 70.0, 60.0, 90.0, 80.0])
+    assert not Score(wavering + 1.0 + np.array([8.0, -8.0] * 4)).seems_worse(Score(wavering))
+
+
+def test_a_like_share_more_in_every_block_is_sure_though_one_block_outweighs_all() -> None:
+    errors_of_blocks = np.array([1e4, 1.0, 2.0, 1.0, 3.0, 1.0, 2.0, 1.0])
+    best, more = Score(errors_of_blocks), Score(1.2 * errors_of_blocks)
+    # The differences are 2000 once and about 0.3 otherwise: mean 250, standard error 250.
+    assert more.seems_worse(best)
+    assert not more.seems_worse(best, negligible=1e4)
 
 
 def test_amplitudes_are_left_out_whole_but_never_the_outermost() -> None:

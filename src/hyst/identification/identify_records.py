@@ -43,8 +43,8 @@ def identify(
         One or more records of one actuator with one sample time. They are not joined: each has its
         own memory.
     family
-        A name; several with commas between them, which are compared by blocked cross-validation,
-        the simplest within one standard error of the best being taken; ``"auto"``: those that
+        A name; several with commas between them, which are compared by cross-validation, the
+        simplest that it does not show to be worse than the best being taken; ``"auto"``: those that
         suit most actuators; or a family with its options, as
         ``hyst.families.RateDependent(spacing="free")``.
     delay

@@ -42,27 +42,31 @@ class Score:
         rms = self.rms
         return _error_of_mean(self.errors) / (2.0 * rms) if rms > 0.0 else 0.0
 
-    def excess(self, other: Score) -> tuple[float, float]:
-        """Give how much worse it is than another one, and the standard error of that.
+    def seems_worse(self, other: Score, negligible: float = 0.0) -> bool:
+        """Tell whether it is worse than another by more than one standard error of the difference.
 
         Blocks that are hard for one are hard for the other, so the difference is known better than
-        either.
+        either. Where some blocks are much harder than others, their differences scatter as much,
+        but the ratios do not; so either may show it.
 
         Parameters
         ----------
         other
             Of the same records, or its blocks could not be paired.
-
-        Returns
-        -------
-        difference, standard_error : float
-            Of the mean squared errors.
+        negligible
+            Difference of mean squared errors that is none, output units squared.
         """
-        difference = float(self.errors.mean() - other.errors.mean())
+        excess = float(self.errors.mean() - other.errors.mean())
+        if excess <= negligible:
+            return False
         if self.errors.size != other.errors.size:  # averages of other blocks
             alone = np.hypot(_error_of_mean(self.errors), _error_of_mean(other.errors))
-            return difference, float(alone)
-        return difference, _error_of_mean(self.errors - other.errors)
+            return excess > float(alone)
+        if excess > _error_of_mean(self.errors - other.errors):
+            return True
+        both = (self.errors > 0.0) & (other.errors > 0.0)
+        ratios = np.log(self.errors[both] / other.errors[both])
+        return ratios.size > 1 and float(ratios.mean()) > _error_of_mean(ratios)
 
 
 def fewest_left(overview: Overview) -> int:

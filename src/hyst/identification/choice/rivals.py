@@ -9,11 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from hyst.identification.choice.disagreement import disagreement
 from hyst.identification.choice.selection import Contender, as_good_as_best
-from hyst.identification.choice.sign_of_weights import Ruling, rms_left, tried
+from hyst.identification.choice.sign_of_weights import Ruling, line_leaves, rms_left, tried
 from hyst.identification.families.family import Fit
 
 CREDIBLE = 0.25
@@ -103,15 +101,5 @@ def _describes(fit: Fit, chosen: Contender) -> bool:
     """Tell whether a fit leaves little of what a line leaves beyond the model chosen."""
     overview = chosen.overview
     least = rms_left(chosen.fit, overview)
-    line = overview.once("line", lambda: _line_leaves(chosen))
+    line = line_leaves(overview)
     return rms_left(fit, overview) <= least + CREDIBLE * max(line - least, 0.0)
-
-
-def _line_leaves(contender: Contender) -> float:
-    """Give what a straight line leaves of the output, root mean square."""
-    overview = contender.overview
-    rows = slice(None) if overview.kept is None else overview.kept
-    u, y = overview.input[rows], overview.data.measured()[rows]
-    u, y = u - u.mean(), y - y.mean()
-    rest = y - u * float(u @ y) / float(u @ u)
-    return float(np.sqrt(rest @ rest / rest.size))

@@ -64,12 +64,12 @@ class Contender:
         other
             A better one, of the same records.
         """
-        excess, error = self.score.excess(other.score)
         output_range, least = self.overview.output_range, other.score.rms
+        negligible = 0.0
         if not self.overview.shows_minor_loops:
-            error = max(error, min(REPEATED * least**2, (NEGLIGIBLE * output_range) ** 2))
+            negligible = min(REPEATED * least**2, (NEGLIGIBLE * output_range) ** 2)
         equal = max((1.0 + EQUAL) * least, ROUNDING * output_range)
-        return excess <= error or self.score.rms <= equal
+        return self.score.rms <= equal or not self.score.seems_worse(other.score, negligible)
 
 
 def best_of_starts(

@@ -31,6 +31,12 @@ from hyst.identification.record_use.overview import Overview
 SAID_BY_MAPS = 0.5
 """Where maps explain this share of what negative weights do, non-negative ones are kept."""
 
+WORTH_IT = 0.8
+"""Negative weights must lower the error on left-out minor loops below this share of it."""
+
+MOST_OF_IT = 0.5
+"""Or non-negative ones explain less than this share of what a line leaves and these explain."""
+
 TRIED = (4, 8)
 """Sizes of the families that are tried."""
 
@@ -98,7 +104,12 @@ def _missed(families: Sequence[tuple[Family, Overview]], overview: Overview) -> 
     if max(each.parametrization.free_count for each in (safe, free)) >= fewest_left(overview):
         return True
     judged = [first_contender(each.family, overview, each.size) for each in (safe, free)]
-    return not judged[0].equals(judged[1])
+    if judged[0].equals(judged[1]):
+        return False
+    line = line_leaves(overview)
+    explained, could_be = line - rms_left(safe, overview), line - rms_left(free, overview)
+    pays = judged[1].score.rms < WORTH_IT * judged[0].score.rms
+    return pays or explained < MOST_OF_IT * could_be
 
 
 def _said_by_maps(families: Sequence[tuple[Family, Overview]], overview: Overview) -> float:
@@ -148,3 +159,18 @@ def rms_left(fit: Fit, overview: Overview) -> float:
     """
     samples = overview.input.size if overview.kept is None else int(overview.kept.sum())
     return float(np.sqrt(fit.solution.cost / samples))
+
+
+def line_leaves(overview: Overview) -> float:
+    """Give what a straight line leaves of the output, root mean square, output units.
+
+    Parameters
+    ----------
+    overview
+        The records.
+    """
+    rows = slice(None) if overview.kept is None else overview.kept
+    u, y = overview.input[rows], overview.data.measured()[rows]
+    u, y = u - u.mean(), y - y.mean()
+    rest = y - u * float(u @ y) / float(u @ u)
+    return float(np.sqrt(rest @ rest / rest.size))

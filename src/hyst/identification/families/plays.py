@@ -95,7 +95,7 @@ class Plays(Family):
     weights
         ``"non-negative"``; ``"invertible"``: single weights may be negative as long as the
         cumulative ones are positive, for loops that flatten after a reversal, as friction's do; or
-        ``"auto"``: the latter where it lowers the residual by more than a tenth.
+        ``"auto"``: the latter where it is missed, which all families compared settle together.
     """
 
     plays: Any = option(AUTO, PLAYS_OPTION)
