@@ -223,9 +223,9 @@ def _what_was_compared(page: Page, findings: _Findings) -> None:
         return
     page.heading("What else was tried")
     page.text(
-        "Every candidate was identified without some blocks of the record and judged on those, each "
-        "stretch of them with its own offset. The simplest one that the blocks do not show to be "
-        "worse than the best was taken: within one standard error of the difference, block by "
+        "Every candidate was identified without some blocks of the record and judged on those, "
+        "each stretch of them with its own offset. The simplest one that the blocks do not show "
+        "to be worse than the best was taken: within one standard error of the difference, block by "
         "block, which is known better than either error (+-)."
     )
     page.table(candidates_table(identified))

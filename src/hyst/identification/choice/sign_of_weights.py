@@ -31,6 +31,9 @@ from hyst.identification.record_use.overview import Overview
 SAID_BY_MAPS = 0.5
 """Where maps explain this share of what negative weights do, non-negative ones are kept."""
 
+NEXT_TO_NOTHING = 0.05
+"""Of what a line leaves and negative weights explain: not worth them."""
+
 WORTH_IT = 0.8
 """Negative weights must lower the error on left-out minor loops below this share of it."""
 
@@ -78,7 +81,7 @@ def ruled(families: Sequence[tuple[Family, Overview]]) -> Ruling:
     if overview.shows_minor_loops:
         free = _missed(asked, overview)
     else:
-        free = _said_by_maps(asked, overview) < SAID_BY_MAPS
+        free = not _described(overview) and _said_by_maps(asked, overview) < SAID_BY_MAPS
     rule, other = (INVERTIBLE, NON_NEGATIVE) if free else (NON_NEGATIVE, INVERTIBLE)
     return Ruling(_under(families, rule), _under(asked, other))
 
@@ -110,6 +113,12 @@ def _missed(families: Sequence[tuple[Family, Overview]], overview: Overview) -> 
     explained, could_be = line - rms_left(safe, overview), line - rms_left(free, overview)
     pays = judged[1].score.rms < WORTH_IT * judged[0].score.rms
     return pays or explained < MOST_OF_IT * could_be
+
+
+def _described(overview: Overview) -> bool:
+    """Tell whether plays with non-negative weights leave next to nothing of the loop."""
+    plain, free = (fine_weights(overview, rule).rms for rule in (NON_NEGATIVE, INVERTIBLE))
+    return plain - free < NEXT_TO_NOTHING * (line_leaves(overview) - free)
 
 
 def _said_by_maps(families: Sequence[tuple[Family, Overview]], overview: Overview) -> float:

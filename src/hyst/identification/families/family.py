@@ -130,13 +130,7 @@ class Family(ABC):
         return self, ()
 
     def searched(self, data: Data) -> Data:
-        """Give what families and sizes are compared on: fewer samples, where that changes no model.
-
-        Parameters
-        ----------
-        data
-            The records.
-        """
+        """Give what families and sizes are compared on: fewer samples, where that changes none."""
         return data if self.depends_on_rate else thinned(data)
 
     def fitted(self, data: Data) -> Data:
