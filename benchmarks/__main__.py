@@ -14,7 +14,7 @@ import sys  # noqa: E402
 
 import benchmarks  # noqa: E402
 
-SUPPORT = {"__main__", "timing", "peers"}
+SUPPORT = {"__main__", "timing", "peers", "plants"}
 
 
 def main(names: list[str]) -> None:

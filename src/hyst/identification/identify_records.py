@@ -46,8 +46,8 @@ def identify(
         sample time. What ``hyst.diagnose`` finds in them is acted on: samples that are no
         measurements do not count.
     family
-        A name; several with commas between them, which are compared by blocked cross-validation,
-        the simplest within one standard error of the best being taken; ``"auto"``: those that
+        A name; several with commas between them, which are compared by cross-validation, the
+        simplest that it does not show to be worse than the best being taken; ``"auto"``: those that
         suit most actuators; or a family with its options, as
         ``hyst.families.RateDependent(spacing="free")``.
     delay
@@ -119,7 +119,8 @@ def identify(
             judged,
             found.notes,
             diagnosis,
-            delay=found.delay,
+            [each.operator for each in found.rivals],
+            found.delay,
         )
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
     return traced(told, given, asked)

@@ -15,15 +15,21 @@ import numpy as np
 
 from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.errors import InputError, NotIdentifiableError
+from hyst.identification.choice.cross_validation import fewest_left
 from hyst.identification.choice.delay import find_delay, settled_by_family, usable_delay
+from hyst.identification.choice.rivals import other_signs, rivals_of
 from hyst.identification.choice.selection import (
     Contender,
+    as_good_as_best,
     best_of_starts,
     compare,
+    contender_of,
     not_compared,
     settled,
     simplest_good,
 )
+from hyst.identification.choice.sign_of_weights import Ruling, ruled
+from hyst.identification.choice.told import about_the_choice
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.option import AUTO
 from hyst.identification.fit.bounded_least_squares import CONVERGED
@@ -51,7 +57,10 @@ class Found:
     candidates
         What was compared; empty if there was nothing to choose.
     notes
-        Sentences about what was left out before the fit.
+        Sentences about what was left out before the fit, and about the choice.
+    rivals
+        Fits of other kinds that describe the records about as well, one of each kind: what they
+        say of other drives is as likely.
     delay
         What the records say of their delay; None where it was given, or is part of the model.
     """
@@ -60,6 +69,7 @@ class Found:
     data: Data
     candidates: tuple[Candidate, ...]
     notes: tuple[str, ...]
+    rivals: tuple[Fit, ...]
     delay: DelayEvidence | None
 
 
@@ -116,18 +126,22 @@ def find(records: Cleaned, families: Sequence[Family], options: Options) -> Foun
         options.say("delay")
     tasks = _with_delay(tasks, options)
     _require_samples(tasks)
-    fit, task, candidates, refusals = _search(tasks, options)
+    choice = _search(tasks, options)
+    fit, task = choice.fit, choice.task
     if task.evidence is not None and fit.family.has_memory:
         delay = settled_by_family(task.data, fit, task.evidence)
         if delay != task.data.lag:
             options.say("delay, settled by the family")
             shifted = [t if t.family.answers_late else t.delayed(delay, t.evidence) for t in tasks]
-            fit, task, candidates, refusals = _search(shifted, options)
+            choice = _search(shifted, options)
+            fit, task = choice.fit, choice.task
     if task.searched() is not task.data:
         fit = _polished(fit, task, options)
-    fit = replace(fit, parametrization=_in_given_units(fit, task))
-    notes = task.notes + left_out + refusals
-    return Found(fit, task.given, candidates, notes, task.evidence)
+    fit, *rivals = (
+        replace(each, parametrization=_in_given_units(each, task)) for each in (fit, *choice.rivals)
+    )
+    notes = task.notes + left_out + choice.notes + _outlying(task, options)
+    return Found(fit, task.given, choice.candidates, notes, tuple(rivals), task.evidence)
 
 
 def _tasks(
@@ -205,28 +219,67 @@ def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
     return result
 
 
-def _search(
-    tasks: Sequence[_Task], options: Options
-) -> tuple[Fit, _Task, tuple[Candidate, ...], tuple[str, ...]]:
-    """Choose family and size and fit it; the next best one if that fit does not converge."""
+@dataclass(frozen=True, eq=False)
+class _Choice:
+    """A final fit in the units of its task, what it was chosen from and what else may be right."""
+
+    fit: Fit
+    task: _Task
+    candidates: tuple[Candidate, ...]
+    notes: tuple[str, ...]
+    rivals: tuple[Fit, ...]
+
+
+def _search(tasks: Sequence[_Task], options: Options) -> _Choice:
+    """Choose signs, family and size and fit it; the next best if that does not converge."""
+    ruling = ruled(_with_overviews(tasks, options))
     if len(tasks) == 1 and len(tasks[0].family.sizes()) == 1:
-        task = tasks[0]
-        overview = Overview(task.searched(), options.delay)
-        size = task.family.sizes()[0]
-        fit = _final_fit(task.family, overview, size, options)
-        return options.converged(fit), task, (), ()
-    contenders, refusals = compare(_with_overviews(tasks, options), options.say)
+        return _only(tasks[0], ruling, options)
+    contenders, refusals = compare(ruling.families, options.say)
     remaining = list(contenders)
     while True:
-        chosen = simplest_good(remaining, contenders[0].overview.output_range)
+        chosen = simplest_good(remaining)
         fit = _final_fit(chosen.family, chosen.overview, chosen.candidate.plays, options)
         if fit.solution.status == CONVERGED or len(remaining) == 1:
             break
         remaining.remove(chosen)
-    task = next(each for each in tasks if each.family is chosen.family)
-    scale = task.scales[1]
-    told = tuple(_told(each, chosen, scale) for each in contenders)
-    return options.converged(fit), task, told, refusals
+    task = _task_of(chosen.family, ruling, tasks)
+    rivals = rivals_of(chosen, fit, contenders, other_signs(ruling, chosen))
+    tied, scale = as_good_as_best(contenders), task.scales[1]
+    told = tuple(_told(each, chosen, each in tied, scale) for each in contenders)
+    notes = refusals + about_the_choice(chosen, contenders, rivals, scale)
+    return _Choice(options.converged(fit), task, told, notes, rivals.fits)
+
+
+def _only(task: _Task, ruling: Ruling, options: Options) -> _Choice:
+    """Fit the only family and size there is; the other signs of its weights may be a rival."""
+    family, overview = ruling.families[0]
+    fit = options.converged(_final_fit(family, overview, family.sizes()[0], options))
+    judged = fit.parametrization.free_count < fewest_left(overview)
+    if not ruling.others or not judged:
+        return _Choice(fit, task, (), (), ())
+    chosen = contender_of(family, overview, fit)
+    rivals = rivals_of(chosen, fit, (chosen,), other_signs(ruling, chosen))
+    return _Choice(fit, task, (), about_the_choice(chosen, (), rivals, task.scales[1]), rivals.fits)
+
+
+def _task_of(family: Family, ruling: Ruling, tasks: Sequence[_Task]) -> _Task:
+    """Give the task that a family is of, whatever rule it got."""
+    names = [each.name for each, _ in ruling.families]
+    return tasks[names.index(family.name)]
+
+
+def _outlying(task: _Task, options: Options) -> tuple[str, ...]:
+    """Say which samples were left out of the fit for being far from every model."""
+    if task.family.depends_on_rate:
+        return ()
+    kept = Overview(task.data, options.delay).kept
+    if kept is None:
+        return ()
+    return (
+        f"{int((~kept).sum())} of {kept.size} samples are far from every model and were neither "
+        "fitted nor judged by; the errors given count them",
+    )
 
 
 def _with_overviews(tasks: Sequence[_Task], options: Options) -> list[tuple[Family, Overview]]:
@@ -236,12 +289,14 @@ def _with_overviews(tasks: Sequence[_Task], options: Options) -> list[tuple[Fami
     for task in tasks:
         key = (task.family.depends_on_rate, task.data.starts, task.data.delay)
         if key not in shared:
-            shared[key] = Overview(task.searched(), options.delay)
+            shared[key] = Overview(
+                task.searched(), options.delay, rates_matter=task.family.depends_on_rate
+            )
         result.append((task.family, shared[key]))
     return result
 
 
-def _told(contender: Contender, chosen: Contender, scale: float) -> Candidate:
+def _told(contender: Contender, chosen: Contender, tied: bool, scale: float) -> Candidate:
     """Give a candidate in the user's units, and say whether it was chosen."""
     candidate = contender.candidate
     return replace(
@@ -249,6 +304,7 @@ def _told(contender: Contender, chosen: Contender, scale: float) -> Candidate:
         score=candidate.score * scale,
         standard_error=candidate.standard_error * scale,
         chosen=contender is chosen,
+        tied=tied,
     )
 
 
@@ -264,8 +320,10 @@ def _final_fit(family: Family, overview: Overview, size: int, options: Options) 
 def _polished(fit: Fit, task: _Task, options: Options) -> Fit:
     """Go on with all samples."""
     options.say("final fit: all samples")
-    overview = Overview(fit.family.fitted(task.data), options.delay)
-    problem = fit.problem(overview.data)
+    overview = Overview(
+        fit.family.fitted(task.data), options.delay, rates_matter=fit.family.depends_on_rate
+    )
+    problem = fit.problem(overview.data, overview.kept)
     found = fit.family.solve(problem, fit.solution.theta, options.max_iterations)
     polished = settled(replace(fit, solution=found), overview, options.max_iterations)
     return options.converged(fit.family.simplified(polished, overview, options.max_iterations))

@@ -234,9 +234,10 @@ def _what_was_compared(page: Page, findings: _Findings) -> None:
     page.heading("What else was tried")
     page.text(
         "Every candidate was identified without some blocks of the record and judged on those, "
-        "each block with its own offset, so that slow drift does not decide: errors here can be "
-        "smaller than those of the fit above. The simplest one within one standard error (+-) of "
-        "the best was taken."
+        "each stretch of them with its own offset, so that slow drift does not decide: errors here "
+        "can be smaller than those of the fit above. The simplest one that the blocks do not show "
+        "to be worse than the best was taken: within one standard error of the difference, block "
+        "by block, which is known better than either error (+-)."
     )
     page.table(candidates_table(identified))
 

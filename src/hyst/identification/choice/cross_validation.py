@@ -1,4 +1,4 @@
-"""Blocked cross-validation: how well a family predicts stretches of record it was not fitted to."""
+"""Cross-validation: how well a family predicts what of a record it was not fitted to."""
 
 from __future__ import annotations
 
@@ -7,64 +7,97 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.identification.choice.blocks import Block, blocks_of
 from hyst.identification.families.family import Fit
 from hyst.identification.fit.bounded_least_squares import minimize
 from hyst.identification.fit.problem import Evaluation
-from hyst.identification.record_use.used_samples import Data
+from hyst.identification.record_use.outlying import winsorised
+from hyst.identification.record_use.overview import Overview
 
 Array = NDArray[np.float64]
-
-MOST_BLOCKS = 8
-FEWEST_BLOCKS = 2
-SMALLEST_BLOCK = 5
-"""Samples; each block is scored with a free offset, so one alone would always fit."""
 
 REFIT_ITERATIONS = 6
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Score:
     """Prediction error on left-out blocks.
 
     Parameters
     ----------
-    rms
-        Root of the mean over blocks of the mean squared error, output units.
-    standard_error
-        Of ``rms``, from the scatter over the blocks.
+    errors
+        Shape (blocks,), mean squared error of each, output units squared.
     """
 
-    rms: float
-    standard_error: float
+    errors: Array
+
+    @property
+    def rms(self) -> float:
+        """Root of the mean over the blocks, output units."""
+        return float(np.sqrt(self.errors.mean()))
+
+    @property
+    def standard_error(self) -> float:
+        """Of ``rms``, from the scatter over the blocks."""
+        rms = self.rms
+        return _error_of_mean(self.errors) / (2.0 * rms) if rms > 0.0 else 0.0
+
+    def seems_worse(self, other: Score, negligible: float = 0.0) -> bool:
+        """Tell whether it is worse than another by more than one standard error of the difference.
+
+        Blocks that are hard for one are hard for the other, so the difference is known better than
+        either. Where some blocks are much harder than others, their differences scatter as much,
+        but the ratios do not; so either may show it.
+
+        Parameters
+        ----------
+        other
+            Of the same records, or its blocks could not be paired.
+        negligible
+            Difference of mean squared errors that is none, output units squared.
+        """
+        excess = float(self.errors.mean() - other.errors.mean())
+        if excess <= negligible:
+            return False
+        if self.errors.size != other.errors.size:  # averages of other blocks
+            alone = np.hypot(_error_of_mean(self.errors), _error_of_mean(other.errors))
+            return excess > float(alone)
+        if excess > _error_of_mean(self.errors - other.errors):
+            return True
+        both = (self.errors > 0.0) & (other.errors > 0.0)
+        ratios = np.log(self.errors[both] / other.errors[both])
+        return ratios.size > 1 and float(ratios.mean()) > _error_of_mean(ratios)
 
 
-def fewest_left(samples: int) -> int:
+def fewest_left(overview: Overview) -> int:
     """Give how many samples are left to fit to while the largest block is hidden.
 
     A candidate with as many parameters cannot be judged.
 
     Parameters
     ----------
-    samples
-        Number of samples used.
+    overview
+        The records.
 
     Returns
     -------
     int
     """
-    return samples - -(-samples // _blocks(samples))
+    blocks = overview.once("blocks", lambda: blocks_of(overview))
+    return overview.input.size - max(int(each.rows.sum()) for each in blocks)
 
 
-def cross_validate(data: Data, fit: Fit) -> Score:
-    """Score a fitted family on contiguous blocks left out one after the other.
+def cross_validate(overview: Overview, fit: Fit) -> Score:
+    """Score a fitted family on blocks left out one after the other.
 
     The input is known everywhere, so the model's memory runs through the left-out block; only the
-    output there is hidden from the refit, which starts at the fit of all samples. Each block is
-    scored with a free offset: slow drift is no property of the hysteresis.
+    output there is hidden from the refit, which starts at the fit of all samples. Every stretch of
+    a block is scored with a free offset: slow drift is no property of the hysteresis. Samples that
+    are far from every model are neither fitted nor judged by.
 
     Parameters
     ----------
-    data
+    overview
         The records.
     fit
         The family fitted to all samples.
@@ -73,21 +106,28 @@ def cross_validate(data: Data, fit: Fit) -> Score:
     -------
     Score
     """
+    data, kept = overview.data, overview.kept
     y = data.measured()
-    blocks = _blocks(y.size)
-    block_of = np.arange(y.size) * blocks // y.size
-    errors = np.empty(blocks)
+    blocks = overview.once("blocks", lambda: blocks_of(overview))
     evaluation = Evaluation(data, fit.parametrization)
-    for block in range(blocks):
-        left_out = block_of == block
-        problem = fit.problem(data, ~left_out)
+    errors = np.empty(len(blocks))
+    for number, block in enumerate(blocks):
+        fitted = ~block.rows if kept is None else kept & ~block.rows
+        problem = fit.problem(data, fitted)
         theta = minimize(problem, fit.solution.theta, REFIT_ITERATIONS).theta
-        residual = (evaluation.output(theta) - y)[left_out]
-        errors[block] = residual.var()
-    rms = float(np.sqrt(errors.mean()))
-    scatter = float(errors.std(ddof=1) / np.sqrt(blocks))
-    return Score(rms, scatter / (2.0 * rms) if rms > 0.0 else 0.0)
+        residual = (evaluation.output(theta) - y)[block.rows]
+        judged = np.ones(residual.size, dtype=bool) if kept is None else kept[block.rows]
+        errors[number] = _mean_square(residual[judged], Block(block.rows, block.stretch[judged]))
+    return Score(errors)
 
 
-def _blocks(samples: int) -> int:
-    return max(FEWEST_BLOCKS, min(MOST_BLOCKS, samples // SMALLEST_BLOCK))
+def _mean_square(residual: Array, block: Block) -> float:
+    if residual.size == 0:
+        return 0.0
+    _, place = np.unique(block.stretch, return_inverse=True)
+    offsets = np.bincount(place, residual) / np.bincount(place)
+    return float(winsorised(residual - offsets[place]).mean())
+
+
+def _error_of_mean(values: Array) -> float:
+    return float(values.std(ddof=1) / np.sqrt(values.size)) if values.size > 1 else 0.0

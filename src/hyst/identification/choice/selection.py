@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hyst.errors import NotIdentifiableError
-from hyst.identification.choice.cross_validation import cross_validate, fewest_left
+from hyst.identification.choice.cross_validation import Score, cross_validate, fewest_left
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.fit.bounded_least_squares import CONVERGED, Solution
 from hyst.identification.record_use.overview import Overview
@@ -16,6 +16,14 @@ from hyst.identification.result.identified import Candidate
 
 SMALLEST_GAIN = 1e-3
 """A larger model of the same family must lower the score by this share to be worth going on."""
+
+EQUAL = 0.02
+"""Scores that differ by this share are equal, however sure the difference is."""
+
+REPEATED, NEGLIGIBLE = 0.15, 1e-3
+"""On one amplitude left-out blocks repeat others, which makes the least difference sure and says
+nothing of another drive: mean squares are equal, too, that differ by less than this share, and by
+less than the square of this share of the output's range."""
 
 ROUNDING = 1e-6
 """Scores below this share of the output range are equal: no sensor tells them apart."""
@@ -36,11 +44,32 @@ class Contender:
         The family and its records.
     candidate
         Size and score.
+    fit
+        Of all samples, from one start.
+    score
+        On left-out blocks.
     """
 
     family: Family
     overview: Overview
     candidate: Candidate
+    fit: Fit
+    score: Score
+
+    def equals(self, other: Contender) -> bool:
+        """Tell whether the left-out blocks do not show that it is worse than another one.
+
+        Parameters
+        ----------
+        other
+            A better one, of the same records.
+        """
+        output_range, least = self.overview.output_range, other.score.rms
+        negligible = 0.0
+        if not self.overview.shows_minor_loops:
+            negligible = min(REPEATED * least**2, (NEGLIGIBLE * output_range) ** 2)
+        equal = max((1.0 + EQUAL) * least, ROUNDING * output_range)
+        return self.score.rms <= equal or not self.score.seems_worse(other.score, negligible)
 
 
 def best_of_starts(
@@ -68,10 +97,27 @@ def best_of_starts(
     fits = []
     for parametrization, theta in family.starts(overview, size, most):
         unsolved = Fit(family, size, parametrization, Solution(theta, np.inf, 0, ""))
-        problem = unsolved.problem(overview.data)
+        problem = unsolved.problem(overview.data, overview.kept)
         solution = family.solve(problem, theta, max_iterations)
         fits.append(replace(unsolved, solution=solution))
     return min(fits, key=lambda each: each.solution.cost)
+
+
+def first_fit(family: Family, overview: Overview, size: int) -> Fit:
+    """Fit a family of a given size from its best guess, once for all who ask.
+
+    Parameters
+    ----------
+    family
+        The family.
+    overview
+        The records.
+    size
+        One of its sizes.
+    """
+    return overview.once(
+        ("first fit", family, size), lambda: best_of_starts(family, overview, size, most=1)
+    )
 
 
 def settled(fit: Fit, overview: Overview, max_iterations: int) -> Fit:
@@ -94,7 +140,7 @@ def settled(fit: Fit, overview: Overview, max_iterations: int) -> Fit:
     """
     if fit.solution.status == CONVERGED:
         return fit
-    problem = fit.problem(overview.data)
+    problem = fit.problem(overview.data, overview.kept)
     again = fit.family.solve(problem, fit.solution.theta, max(max_iterations, LEAST_ITERATIONS))
     samples = overview.data.measured().size
     same = fit.solution.cost - again.cost <= SAME_COST * again.cost / samples
@@ -105,7 +151,7 @@ def settled(fit: Fit, overview: Overview, max_iterations: int) -> Fit:
 def compare(
     families: Sequence[tuple[Family, Overview]], progress: Callable[[str], None]
 ) -> tuple[tuple[Contender, ...], tuple[str, ...]]:
-    """Score families and sizes by blocked cross-validation.
+    """Score families and sizes by cross-validation.
 
     Sizes of a family are tried upwards until two in a row have not lowered the score, or until
     there are as many parameters as samples to fit them to.
@@ -152,8 +198,25 @@ def not_compared(refusals: Mapping[str, NotIdentifiableError]) -> tuple[str, ...
     return tuple(f"{name} is not compared: {why}" for name, why in refusals.items())
 
 
-def simplest_good(contenders: Sequence[Contender], output_range: float) -> Contender:
-    """Give the simplest contender within one standard error of the best.
+def as_good_as_best(contenders: Sequence[Contender]) -> list[Contender]:
+    """Give those that the left-out blocks do not tell from the best: a tie.
+
+    Parameters
+    ----------
+    contenders
+        At least one.
+
+    Returns
+    -------
+    list of Contender
+        In their order, the best among them.
+    """
+    best = min(contenders, key=lambda each: each.score.rms)
+    return [each for each in contenders if each is best or each.equals(best)]
+
+
+def simplest_good(contenders: Sequence[Contender]) -> Contender:
+    """Give the simplest contender within one standard error of its difference to the best.
 
     Simple means few free parameters; between equals the earlier is taken, so families must come
     from the simplest to the richest.
@@ -162,8 +225,6 @@ def simplest_good(contenders: Sequence[Contender], output_range: float) -> Conte
     ----------
     contenders
         At least one.
-    output_range
-        Of the records, output units.
 
     Returns
     -------
@@ -172,12 +233,47 @@ def simplest_good(contenders: Sequence[Contender], output_range: float) -> Conte
     Notes
     -----
     Breiman et al., Classification and Regression Trees (1984), sec. 3.4.3: the one standard error
-    rule.
+    rule, here of paired differences.
     """
-    best = min((each.candidate for each in contenders), key=lambda each: each.score)
-    limit = max(best.score + best.standard_error, ROUNDING * output_range)
-    good = [each for each in contenders if each.candidate.score <= limit]
-    return min(good, key=lambda each: each.candidate.parameters)
+    return min(as_good_as_best(contenders), key=lambda each: each.candidate.parameters)
+
+
+def first_contender(family: Family, overview: Overview, size: int) -> Contender:
+    """Score the first fit of a size on left-out blocks, once for all who ask.
+
+    Parameters
+    ----------
+    family, overview
+        The family and its records.
+    size
+        One of its sizes.
+    """
+    return overview.once(
+        ("first contender", family, size),
+        lambda: contender_of(family, overview, first_fit(family, overview, size)),
+    )
+
+
+def contender_of(family: Family, overview: Overview, fit: Fit) -> Contender:
+    """Score a fit on left-out blocks.
+
+    Parameters
+    ----------
+    family, overview
+        The family and its records.
+    fit
+        Of all samples.
+    """
+    score = cross_validate(overview, fit)
+    candidate = Candidate(
+        family.name,
+        fit.size,
+        fit.parametrization.free_count,
+        score.rms,
+        score.standard_error,
+        chosen=False,
+    )
+    return Contender(family, overview, candidate, fit, score)
 
 
 def _grow(family: Family, overview: Overview, progress: Callable[[str], None]) -> list[Contender]:
@@ -185,21 +281,14 @@ def _grow(family: Family, overview: Overview, progress: Callable[[str], None]) -
     best, idle = float("inf"), 0
     for size in family.sizes():
         progress(family.named_size(size))
-        fit = best_of_starts(family, overview, size, most=1)
-        if fit.parametrization.free_count >= fewest_left(overview.data.measured().size):
+        fit = first_fit(family, overview, size)
+        if fit.parametrization.free_count >= fewest_left(overview):
             break
-        score = cross_validate(overview.data, fit)
-        candidate = Candidate(
-            family.name,
-            size,
-            fit.parametrization.free_count,
-            score.rms,
-            score.standard_error,
-            chosen=False,
-        )
-        found.append(Contender(family, overview, candidate))
-        idle = 0 if score.rms < best * (1.0 - SMALLEST_GAIN) else idle + 1
-        best = min(best, score.rms)
+        contender = first_contender(family, overview, size)
+        found.append(contender)
+        score = contender.score.rms
+        idle = 0 if score < best * (1.0 - SMALLEST_GAIN) else idle + 1
+        best = min(best, score)
         if idle == 2:
             break
     return found

@@ -108,12 +108,12 @@ class Family(ABC):
         -------
         Data
         tuple of str
-            Sentences for the user.
+            Sentences.
         """
         return prepare(records, start), ()
 
     def suited(self, data: Data) -> tuple[Self, tuple[str, ...]]:
-        """Fit the options to the records: refuse, or leave out with a sentence, what cannot be.
+        """Refuse options that these records cannot serve, or leave them out with a sentence.
 
         Parameters
         ----------
@@ -130,13 +130,7 @@ class Family(ABC):
         return self, ()
 
     def searched(self, data: Data) -> Data:
-        """Give what families and sizes are compared on: fewer samples, where that changes no model.
-
-        Parameters
-        ----------
-        data
-            The records.
-        """
+        """Give what families and sizes are compared on: fewer samples, where that changes none."""
         return data if self.depends_on_rate else thinned(data)
 
     def fitted(self, data: Data) -> Data:
@@ -162,6 +156,14 @@ class Family(ABC):
     def sizes(self) -> tuple[int, ...]:
         """Give the sizes to compare, ascending; (0,) where there is nothing to choose."""
         return (0,)
+
+    def rules(self) -> tuple[str, ...]:
+        """Give what the signs of its weights may be, the safe one first, where that is open."""
+        return ()
+
+    def under(self, rule: str) -> Self:
+        """Give the family with one of its rules."""
+        return self
 
     @abstractmethod
     def least_parameters(self, size: int) -> int:

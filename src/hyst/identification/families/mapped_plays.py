@@ -158,6 +158,10 @@ class GeneralizedPrandtlIshlinskii(MappedPlays):
                 f"weights is {INVERTIBLE!r} but a free envelope has no inverse; leave out weights"
             )
 
+    def rules(self) -> tuple[str, ...]:
+        """Give what the weights may be; behind a free envelope they are never negative."""
+        return super().rules() if self.envelope == MONOTONE else ()
+
     def in_units(self, input_scale: float, output_scale: float) -> Self:
         """Give the family with scaled radii and knots."""
         scaled = super().in_units(input_scale, output_scale)
@@ -183,7 +187,7 @@ class GeneralizedPrandtlIshlinskii(MappedPlays):
             return super()._refit(fit, overview, working, max_iterations)
         parametrization, theta = with_plays_left_out(fit, working)
         fit = replace(fit, parametrization=parametrization)
-        solution = self.solve(fit.problem(overview.data), theta, max_iterations)
+        solution = self.solve(fit.problem(overview.data, overview.kept), theta, max_iterations)
         return replace(fit, solution=solution)
 
     def knots_over(self, overview: Overview, weights: Weights) -> Array:

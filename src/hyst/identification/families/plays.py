@@ -47,7 +47,7 @@ FINE_BANK = 60
 """Plays of a bank finer than any model."""
 
 NEGATIVE_WEIGHTS_PAY = 0.9
-"""Negative weights are allowed where they lower the residual of a fine bank below this share."""
+"""Negative weights are thought of where they lower the residual of a fine bank below this share."""
 
 PLAY_TEXT = (
     "F with radius r is a play (backlash of half-width r): its output rests until its input has "
@@ -95,7 +95,7 @@ class Plays(Family):
     weights
         ``"non-negative"``; ``"invertible"``: single weights may be negative as long as the
         cumulative ones are positive, for loops that flatten after a reversal, as friction's do; or
-        ``"auto"``: the latter where it lowers the residual by more than a tenth.
+        ``"auto"``: the latter where it is missed, which all families compared settle together.
     """
 
     plays: Any = option(AUTO, PLAYS_OPTION)
@@ -171,7 +171,7 @@ class Plays(Family):
         """Move the radii across the kinks of the cost."""
         records = overview.data.records
         kinks = np.unique(np.concatenate([half_swings(fit.operator, each.u) for each in records]))
-        problem = fit.problem(overview.data)
+        problem = fit.problem(overview.data, overview.kept)
         plays = layout_of(fit).plays
         found = search_radii(problem, fit.solution, plays, kinks, max_iterations)
         return replace(fit, solution=found)
@@ -209,7 +209,7 @@ class Plays(Family):
         return [np.interp(levels, share, _fine_radii(overview)), even, even**2 / largest]
 
     def rule(self, overview: Overview) -> str:
-        """Give what the weights may be; ``auto`` allows negative ones where they help a lot.
+        """Give what the weights may be; alone, ``auto`` allows negative ones where they help a lot.
 
         Parameters
         ----------
@@ -218,8 +218,16 @@ class Plays(Family):
         """
         if self.weights != AUTO:
             return str(self.weights)
-        plain, free = (fine_weights(overview, rule).rms for rule in (NON_NEGATIVE, INVERTIBLE))
-        return INVERTIBLE if free < NEGATIVE_WEIGHTS_PAY * plain else NON_NEGATIVE
+        return INVERTIBLE if negative_weights_pay(overview) else NON_NEGATIVE
+
+    def rules(self) -> tuple[str, ...]:
+        """Give what the weights may be, as long as the user does not say it."""
+        return RULES if self.weights == AUTO else ()
+
+    @final
+    def under(self, rule: str) -> Self:
+        """Give the family with a rule of its weights."""
+        return replace(self, weights=rule)
 
     def _start_from(self, overview: Overview, r: Array) -> Start:
         guess = self._guess(overview, r)
@@ -231,7 +239,7 @@ class Plays(Family):
 
     def _guess(self, overview: Overview, r: Array) -> FirstGuess:
         rule = self.rule(overview)
-        weights = fit_weights(overview.data, r, overview.sign, rule)
+        weights = fit_weights(overview.data, r, overview.sign, rule, overview.kept)
         return FirstGuess(
             p0=weights.p0,
             p=weights.p,
@@ -260,7 +268,7 @@ class Plays(Family):
         rest = theta.size - 2 * layout.plays - 1
         refitted[-rest:] = theta[-rest:]
         fit = replace(fit, parametrization=parametrization)
-        solution = self.solve(fit.problem(overview.data), refitted, max_iterations)
+        solution = self.solve(fit.problem(overview.data, overview.kept), refitted, max_iterations)
         return replace(fit, solution=solution)
 
 
@@ -280,8 +288,22 @@ def fine_weights(overview: Overview, rule: str) -> Weights:
     """
     return overview.once(
         ("fine weights", rule),
-        lambda: fit_weights(overview.data, _fine_radii(overview), overview.sign, rule),
+        lambda: fit_weights(
+            overview.data, _fine_radii(overview), overview.sign, rule, overview.kept
+        ),
     )
+
+
+def negative_weights_pay(overview: Overview) -> bool:
+    """Tell whether negative weights lower the residual of a fine bank by more than a tenth.
+
+    Parameters
+    ----------
+    overview
+        The records.
+    """
+    plain, free = (fine_weights(overview, rule).rms for rule in (NON_NEGATIVE, INVERTIBLE))
+    return free < NEGATIVE_WEIGHTS_PAY * plain
 
 
 def weights_left(p: Array, working: NDArray[np.bool_]) -> Array:

@@ -45,7 +45,13 @@ class Weights:
     condition: float
 
 
-def fit_weights(data: Data, r: Array, sign: float = 1.0, rule: str = NON_NEGATIVE) -> Weights:
+def fit_weights(
+    data: Data,
+    r: Array,
+    sign: float = 1.0,
+    rule: str = NON_NEGATIVE,
+    chosen: NDArray[np.bool_] | None = None,
+) -> Weights:
     """Fit ``y = sign (p0 u + sum_i p_i z_i) + offset`` by least squares within a rule.
 
     The offset is eliminated by centring; the weights solve a non-negative least squares problem
@@ -62,6 +68,8 @@ def fit_weights(data: Data, r: Array, sign: float = 1.0, rule: str = NON_NEGATIV
         +1, or -1 for an actuator whose output falls as its input rises.
     rule
         ``non-negative`` or ``invertible``; see ``weight_rules``.
+    chosen
+        Shape (samples used,): which samples count; all if left out.
 
     Returns
     -------
@@ -75,7 +83,10 @@ def fit_weights(data: Data, r: Array, sign: float = 1.0, rule: str = NON_NEGATIV
     # Raw counts of a converter vary little around a large mean, whose square would swamp them.
     u_origin = float(np.mean([each.u.mean() for each in data.records]))
     y_origin = float(data.measured().mean())
-    gram = bank_gram(data, r, u_origin, y_origin)
+    if chosen is None:
+        gram = bank_gram(data, r, u_origin, y_origin)
+    else:
+        gram = _gram_of(data, r, chosen, (u_origin, y_origin))
     count = gram[-2, -2]
     mean = gram[-2] / count
     centred = gram - count * np.outer(mean, mean)
@@ -89,7 +100,7 @@ def fit_weights(data: Data, r: Array, sign: float = 1.0, rule: str = NON_NEGATIV
     if factor is not None:
         target = scipy.linalg.solve_triangular(factor, moment / scale, trans="T")
     else:
-        factor, target = _by_qr(data, r, sign, coefficients / scale)
+        factor, target = _by_qr(data, r, sign, coefficients / scale, chosen)
     solution = non_negative(factor, target)[0]
     free = solution / scale
     weights = coefficients @ free
@@ -113,8 +124,20 @@ def _cholesky(correlation: Array) -> Array | None:
         return None
 
 
-def _by_qr(data: Data, r: Array, sign: float, scaled_basis: Array) -> tuple[Array, Array]:
-    matrix = bank_matrix(data, r)
-    y = sign * data.measured()
+def _gram_of(
+    data: Data, r: Array, chosen: NDArray[np.bool_], origins: tuple[float, float]
+) -> Array:
+    """Give the inner products of ``bank_gram`` over some of the samples."""
+    matrix, y = bank_matrix(data, r)[chosen], data.measured()[chosen]
+    columns = np.column_stack([matrix - origins[0], np.ones(y.size), y - origins[1]])
+    return np.asarray(columns.T @ columns)
+
+
+def _by_qr(
+    data: Data, r: Array, sign: float, scaled_basis: Array, chosen: NDArray[np.bool_] | None
+) -> tuple[Array, Array]:
+    rows = slice(None) if chosen is None else chosen
+    matrix = bank_matrix(data, r)[rows]
+    y = sign * data.measured()[rows]
     q, factor = np.linalg.qr((matrix - matrix.mean(axis=0)) @ scaled_basis)
     return factor, q.T @ (y - y.mean())

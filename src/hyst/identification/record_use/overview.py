@@ -10,6 +10,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.identification.record_use.outlying import Rows, rows_to_fit
+from hyst.identification.record_use.strokes import shows_minor_loops, stroke_lengths
 from hyst.identification.record_use.used_samples import Data
 
 Array = NDArray[np.float64]
@@ -27,10 +29,13 @@ class Overview:
     delay
         What the user says of the delay: samples, or ``"auto"``. It is for families whose models
         answer late by themselves; of the others the data know it.
+    rates_matter
+        Whether it is for families of which no rate-independent model says what is far off.
     """
 
     data: Data
     delay: float | str = "auto"
+    rates_matter: bool = False
     _found: dict[Hashable, object] = field(default_factory=dict, init=False, repr=False)
 
     @functools.cached_property
@@ -53,6 +58,21 @@ class Overview:
     def mean_slope(self) -> float:
         """Output range over input range, output units per input unit."""
         return self.output_range / (2.0 * self.data.half_range)
+
+    @functools.cached_property
+    def kept(self) -> Rows | None:
+        """Which samples used are to be fitted and judged by; None if all are."""
+        return None if self.rates_matter else rows_to_fit(self.data)
+
+    @functools.cached_property
+    def stroke_lengths(self) -> Array:
+        """Length of the stroke each sample used belongs to, shape (samples,), input units."""
+        return stroke_lengths(self.data)
+
+    @functools.cached_property
+    def shows_minor_loops(self) -> bool:
+        """Whether enough of the records runs inside the largest loop to judge minor loops by."""
+        return shows_minor_loops(self.stroke_lengths)
 
     def once(self, key: Hashable, find: Callable[[], Found]) -> Found:
         """Give what ``find`` finds, and find it only the first time this key is asked for."""

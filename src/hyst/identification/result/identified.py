@@ -40,12 +40,15 @@ class Candidate:
     parameters
         Number of free parameters, the offset included.
     score
-        Root mean square error on left-out blocks, in output units, each block with a free offset so
-        that slow drift does not decide.
+        Root mean square error on left-out blocks, in output units, each stretch with a free offset
+        so that slow drift does not decide.
     standard_error
         Of the score, from its scatter over the blocks.
     chosen
         Whether this is the one the result holds.
+    tied
+        Whether the left-out blocks do not tell it from the best, by the standard error of the
+        difference to it.
     """
 
     family: str
@@ -54,6 +57,7 @@ class Candidate:
     score: float
     standard_error: float
     chosen: bool
+    tied: bool = False
 
 
 @dataclass(frozen=True, eq=False, repr=False)

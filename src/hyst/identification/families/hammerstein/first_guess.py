@@ -100,12 +100,14 @@ def first_dynamics(
     if best is None:
         raise refusal
     best = of_gain_one(best)
-    return FirstDynamics(best, Overview(signal_behind(data, best)))
+    return FirstDynamics(best, Overview(signal_behind(data, best), rates_matter=True))
 
 
 def _trial(family: Family, front: Family, data: Data, base: LinearDynamics, size: int) -> Fit:
     """Fit hysteresis and dynamics coarsely to the beginning of the records."""
-    start = joint(first_fronts(front, Overview(signal_behind(data, base)), size)[0], base)
+    start = joint(
+        first_fronts(front, Overview(signal_behind(data, base), rates_matter=True), size)[0], base
+    )
     fit = Fit(family, size, start[0], Solution(start[1], np.inf, 0, ""))
     problem = fit.problem(shortened(data, _WARM_UP))
     return replace(fit, solution=minimize(problem, start[1], _TRIAL_ITERATIONS, _COARSELY))

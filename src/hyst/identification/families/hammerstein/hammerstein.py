@@ -227,7 +227,7 @@ class Hammerstein(Family):
     def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
         """Improve the hysteresis as its own family knows, the dynamics following."""
         seen = replace(fit, family=self.front, parametrization=joint_of(fit).seen_by_front())
-        short = Overview(shortened(overview.data, _WARM_UP))
+        short = Overview(shortened(overview.data, _WARM_UP), rates_matter=True)
         improved = self.front.finish(seen, short, _BURST)
         if np.array_equal(improved.solution.theta, fit.solution.theta):
             return fit
@@ -238,7 +238,7 @@ class Hammerstein(Family):
     def simplified(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
         """Fit again without the parts of the hysteresis that came out idle."""
         dynamics, before = dynamics_of(fit), self._front_fit(fit)
-        behind = Overview(signal_behind(overview.data, dynamics))
+        behind = Overview(signal_behind(overview.data, dynamics), rates_matter=True)
         simpler = self.front.simplified(before, behind, max_iterations)
         if simpler is before:
             return fit

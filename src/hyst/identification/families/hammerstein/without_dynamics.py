@@ -71,7 +71,7 @@ def _alone(fit: Fit, front: Family, data: Data, delay: int) -> float:
     parametrization = joint_of(fit).front
     starts: list[Start] = [(parametrization, fit.solution.theta[: parametrization.size])]
     with contextlib.suppress(NotIdentifiableError):  # the output may show no such hysteresis
-        starts += front.starts(Overview(late), fit.size, 1)
+        starts += front.starts(Overview(late, rates_matter=True), fit.size, 1)
     root = front.root_weights(late)
     problems = [(problem_of(late, each, None, root), theta) for each, theta in starts]
     costs = [minimize(problem, theta, _ITERATIONS, 1.0).cost for problem, theta in problems]
