@@ -47,7 +47,7 @@ def stroke_lengths(data: Data) -> Array:
             swings[0], swings[-1] = max(swings[:2]), max(swings[-2:])
         of = np.clip(np.searchsorted(ends, np.arange(u.size), side="right") - 1, 0, swings.size - 1)
         parts.append(swings[of][window])
-    return np.concatenate(parts)
+    return data.joined(parts)
 
 
 def shows_minor_loops(lengths: Array) -> bool:
