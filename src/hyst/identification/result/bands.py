@@ -29,6 +29,7 @@ from hyst.diagnosis.repetition import noise_by_repetition
 from hyst.errors import InputError
 from hyst.identification.families.family import Fit
 from hyst.identification.fit.problem import model_output
+from hyst.identification.record_use.strokes import shows_minor_loops, stroke_lengths
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.fit_spread import FitSpread
 from hyst.operators import Operator
@@ -40,7 +41,13 @@ MISFIT_ELSEWHERE = 2.0
 """Times what the model leaves beside noise where it was fitted."""
 
 SHARE_OF_OPENING = 8.0
-"""Half-width, in openings of the loop, at a distance of the whole input range."""
+"""Half-width, in openings of the loop, at a distance of half the input range."""
+
+MISFITS = 60.0
+"""The same in misfits: where records show minor loops, their misfit tells how wrong a shape is."""
+
+SET_FOR = 0.95
+"""The level for which the distances of rivals and of what is new were set."""
 
 NEW = 0.1
 """Distance, of half the input range, from which on a state of the memory is called new."""
@@ -67,8 +74,8 @@ class Bands:
         Of the records, and what the model leaves beside it, output units rms.
     residual
         Shape (m,), sizes of what the model leaves, ascending, over their rms.
-    opening
-        What a straight line leaves of the records, output units rms.
+    growth
+        Half-width for each half input range that a drive leads the memory away from the records.
     half_range, centre
         Of the inputs.
     states
@@ -84,7 +91,7 @@ class Bands:
     noise: float
     misfit: float
     residual: Array
-    opening: float
+    growth: float
     half_range: float
     centre: float
     states: Array
@@ -105,11 +112,13 @@ class Bands:
         """
         quantile = self._quantile(level)
         fitted = quantile**2 * (self.noise**2 + (MISFIT_ELSEWHERE * self.misfit) ** 2)
-        constants = (_normal_quantile(level) * self._standard_errors(u)) ** 2
+        deviations = _normal_quantile(level)
+        constants = self._standard_errors(u) ** 2
         apart = [np.abs(rival(u) - output) for rival in self.rivals]
         shape = np.max(apart, axis=0) ** 2 if apart else 0.0
-        new = (SHARE_OF_OPENING * self.opening * self.distances(u)) ** 2
-        return np.asarray(np.sqrt(fitted + constants + shape + new))
+        new = (self.growth * self.distances(u)) ** 2
+        share = (shape + new) / _normal_quantile(SET_FOR) ** 2
+        return np.asarray(np.sqrt(fitted + deviations**2 * (constants + share)))
 
     def distances(self, u: Array) -> Array:
         """Give how far input and memory are from any state of the records, over half the range."""
@@ -157,19 +166,22 @@ def bands_of(data: Data, fit: Fit, spread: FitSpread, rivals: Sequence[Operator]
     noise = min(_noise(data, residual), rms)
     # Noise is known only so well: what it may explain is no misfit.
     explained = noise**2 * (1.0 + SURE_OF_NOISE / math.sqrt(residual.size))
-    u, y = data.inputs(), data.measured()
     low = min(float(each.u.min()) for each in data.records)
     centre = low + data.half_range
     pairs = zip(data.records, data.windows(), strict=True)
     states = data.joined([_states(r.u[: w.stop], centre, data.half_range)[w] for r, w in pairs])
     states = states[:: 1 + states.shape[0] // MOST_STATES]
+    misfit = math.sqrt(max(rms**2 - explained, 0.0))
+    growth = SHARE_OF_OPENING * _line_leaves(data.inputs(), data.measured())
+    if shows_minor_loops(stroke_lengths(data)):
+        growth = min(growth, MISFITS * misfit)
     return Bands(
         fit=fit,
         spread=spread,
         noise=noise,
-        misfit=math.sqrt(max(rms**2 - explained, 0.0)),
+        misfit=misfit,
         residual=np.sort(np.abs(residual)) / rms if rms > 0.0 else np.zeros(0),
-        opening=_line_leaves(u, y),
+        growth=growth,
         half_range=data.half_range,
         centre=centre,
         states=states,
