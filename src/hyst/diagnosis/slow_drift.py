@@ -18,6 +18,11 @@ Array = NDArray[np.float64]
 BLOCKS = 8
 """Of every repetition: noise that lasts longer than a sample is averaged within a block."""
 
+MOST_BLOCKS = 4000
+"""Of a record: of a long one blocks are longer."""
+
+MOST_DEGREE = 4
+
 CHANCE = 1e-4
 """How often noise alone may pass for drift."""
 
@@ -131,23 +136,26 @@ def _seen(repeats: Repetition) -> float:
 def _degree(record: Record, repeats: Repetition) -> int:
     lag = float(np.median([lag for _, _, lag in repeats.segments]))
     times = len(record) / lag
-    return 1 if times < 4.0 else 2 if times < 8.0 else 3 if times < 16.0 else 4
+    return 1 if times < 4.0 else 2 if times < 8.0 else 3 if times < 16.0 else MOST_DEGREE
 
 
 def _block_means(record: Record, repeats: Repetition) -> tuple[Array, Array]:
     """Give mean changes over blocks, of the polynomials and of y without what the drive did."""
     gain = _slope(record)
+    share = MOST_BLOCKS / sum(stop - start for start, stop, _ in repeats.segments)
     rows, moved = [], []
     for start, stop, lag in repeats.segments:
         change_u, change_y, _ = changes(record, start, stop, lag)
-        times = np.arange(start, stop)
-        now, before = (_polynomials(at, len(record), 4) for at in (times, times - lag))
-        count = max(int(BLOCKS * (stop - start) / lag), 1)
-        for block in np.array_split(np.arange(stop - start), min(count, stop - start)):
-            rows.append((now - before)[block].mean(axis=0))
-            # What the drive itself moved on is no drift.
-            moved.append(float(change_y[block].mean()) - gain * float(change_u[block].mean()))
-    return np.array(rows), np.array(moved)
+        samples = stop - start
+        count = max(int(min(BLOCKS * samples / lag, share * samples)), 1)
+        edges = np.arange(min(count, samples) + 1) * samples // min(count, samples)
+        # What the drive itself moved on is no drift.
+        sums = np.add.reduceat(change_y - gain * change_u, edges[:-1])
+        moved.append(sums / np.diff(edges))
+        middle = start + 0.5 * (edges[:-1] + edges[1:] - 1)
+        now, before = (_polynomials(at, len(record), MOST_DEGREE) for at in (middle, middle - lag))
+        rows.append(now - before)
+    return np.concatenate(rows), np.concatenate(moved)
 
 
 def _slope(record: Record) -> float:

@@ -6,9 +6,11 @@ The half-width of the band is the root of the sum of squares of
   shape is wrong by more than where it was fitted;
 - the standard error of the model's output, from the covariance of its constants;
 - how far rival models go apart that fit the records equally well;
-- how far the drive leads the memory from all that the records contained.
+- how far the drive leads the memory from all that the records contained;
+- until the drive has covered the range, what the model leaves of the beginnings of the records,
+  which took no part in the fit: how sure the memory at rest is.
 
-The last is a distance, not a probability: it was set on simulated actuators of no model's class
+What is new is a distance, not a probability: it was set on simulated actuators of no model's class
 (benchmarks/bands.py), so that their minor loops are held where a record showed none.
 """
 
@@ -30,7 +32,7 @@ from hyst.errors import InputError
 from hyst.identification.families.family import Fit
 from hyst.identification.fit.problem import model_output
 from hyst.identification.record_use.strokes import shows_minor_loops, stroke_lengths
-from hyst.identification.record_use.used_samples import Data
+from hyst.identification.record_use.used_samples import LARGEST_RADIUS, Data
 from hyst.identification.result.fit_spread import FitSpread
 from hyst.operators import Operator
 from hyst.signals import estimate_noise
@@ -76,6 +78,8 @@ class Bands:
         Shape (m,), sizes of what the model leaves, ascending, over their rms.
     growth
         Half-width for each half input range that a drive leads the memory away from the records.
+    at_rest
+        What the model leaves, beside noise, before the memory is known, output units rms.
     half_range, centre
         Of the inputs.
     states
@@ -92,6 +96,7 @@ class Bands:
     misfit: float
     residual: Array
     growth: float
+    at_rest: float
     half_range: float
     centre: float
     states: Array
@@ -118,12 +123,18 @@ class Bands:
         shape = np.max(apart, axis=0) ** 2 if apart else 0.0
         new = (self.growth * self.distances(u)) ** 2
         share = (shape + new) / _normal_quantile(SET_FOR) ** 2
-        return np.asarray(np.sqrt(fitted + deviations**2 * (constants + share)))
+        rest = np.where(self._is_settled(u), 0.0, self.at_rest**2)
+        return np.asarray(np.sqrt(fitted + deviations**2 * (constants + share + rest)))
 
     def distances(self, u: Array) -> Array:
         """Give how far input and memory are from any state of the records, over half the range."""
         found = self._tree.query(_states(u, self.centre, self.half_range))[0]
         return np.asarray(np.maximum(found / math.sqrt(1 + RADII) - self.spacing, 0.0))
+
+    def _is_settled(self, u: Array) -> NDArray[np.bool_]:
+        """Tell from where on the drive has covered the range, so that all memory is known."""
+        covered = np.maximum.accumulate(u) - np.minimum.accumulate(u)
+        return np.asarray(covered >= LARGEST_RADIUS * 2.0 * self.half_range)
 
     def _standard_errors(self, u: Array) -> Array:
         parametrization = self.fit.parametrization
@@ -182,12 +193,28 @@ def bands_of(data: Data, fit: Fit, spread: FitSpread, rivals: Sequence[Operator]
         misfit=misfit,
         residual=np.sort(np.abs(residual)) / rms if rms > 0.0 else np.zeros(0),
         growth=growth,
+        at_rest=_left_at_rest(data, fit.operator, noise),
         half_range=data.half_range,
         centre=centre,
         states=states,
         spacing=_spacing(states),
         rivals=tuple(rivals),
     )
+
+
+def _left_at_rest(data: Data, operator: Operator, noise: float) -> float:
+    """Give what a model leaves, beside noise, of the beginnings of records that were not used."""
+    left = []
+    begun = zip(data.records, data.windows(), data.brought_forward(), strict=True)
+    for record, window, output in begun:
+        if window.start:
+            model = operator.at_sample_time(record.dt)(record.u[: window.start])
+            left.append(model - output[: window.start])
+    if not left:
+        return 0.0
+    residual = np.concatenate(left)
+    explained = noise**2 * (1.0 + SURE_OF_NOISE / math.sqrt(residual.size))
+    return math.sqrt(max(float(np.mean(np.square(residual))) - explained, 0.0))
 
 
 def as_level(level: float) -> float:
