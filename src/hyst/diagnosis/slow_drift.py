@@ -32,6 +32,9 @@ SURE = 4.0
 LEAST_SEEN = 0.5
 """Of a record: what drifts in less of it is not known for the rest."""
 
+MOST_DRIVEN = 0.5
+"""Of a drift: where the drive itself moves by more, in ranges, its change may be what is seen."""
+
 MOST_CLIPPED = 4.0
 """Robust standard deviations beyond which a block is pulled in."""
 
@@ -91,7 +94,7 @@ def slow_drift(record: Record, found: Repetition | None = None) -> Drift | None:
     repeats = repetition_of(record.u) if found is None else found
     if repeats is None:
         return None
-    rows, moved = _block_means(record, repeats)
+    rows, moved, driven = _block_means(record, repeats)
     degree = _degree(record, repeats)
     if moved.size < degree + 2 or _seen(repeats) < LEAST_SEEN * len(record):
         return None
@@ -113,7 +116,8 @@ def slow_drift(record: Record, found: Repetition | None = None) -> Drift | None:
     inverse = np.linalg.pinv(rows[:, :degree].T @ rows[:, :degree])
     between = polynomials[int(curve.argmax())] - polynomials[int(curve.argmin())]
     error = float(np.sqrt(variance * (between @ inverse @ between)))
-    if total < SURE * error:
+    by_drive = polynomials @ np.linalg.lstsq(rows[:, :degree], driven, rcond=None)[0]
+    if total < SURE * error or float(np.ptp(by_drive)) > MOST_DRIVEN * total:
         return None
     first, middle, last = (float(curve[k]) for k in (0, len(record) // 2, -1))
     half = 0.5 * record.duration
@@ -134,10 +138,14 @@ def _degree(record: Record, repeats: Repetition) -> int:
     return 1 if times < 4.0 else 2 if times < 8.0 else 3 if times < 16.0 else 4
 
 
-def _block_means(record: Record, repeats: Repetition) -> tuple[Array, Array]:
-    """Give mean changes over blocks, of the polynomials and of y without what the drive did."""
-    gain = _slope(record)
-    rows, moved = [], []
+def _block_means(record: Record, repeats: Repetition) -> tuple[Array, Array, Array]:
+    """Give mean changes over blocks: of the polynomials, of y without what the drive did, and of u.
+
+    The last in the output's unit by the ratio of the ranges: of a drive that is only nearly the
+    same after a lag, an output with dynamics follows the change by more than by its mean gain.
+    """
+    gain, ratio = _slope(record), float(np.ptp(record.y)) / max(float(np.ptp(record.u)), TINY)
+    rows, moved, driven = [], [], []
     for start, stop, lag in repeats.segments:
         change_u, change_y, _ = changes(record, start, stop, lag)
         times = np.arange(start, stop)
@@ -147,7 +155,8 @@ def _block_means(record: Record, repeats: Repetition) -> tuple[Array, Array]:
             rows.append((now - before)[block].mean(axis=0))
             # What the drive itself moved on is no drift.
             moved.append(float(change_y[block].mean()) - gain * float(change_u[block].mean()))
-    return np.array(rows), np.array(moved)
+            driven.append(ratio * float(change_u[block].mean()))
+    return np.array(rows), np.array(moved), np.array(driven)
 
 
 def _slope(record: Record) -> float:
