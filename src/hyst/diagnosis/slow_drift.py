@@ -37,6 +37,9 @@ SURE = 4.0
 LEAST_SEEN = 0.5
 """Of a record: what drifts in less of it is not known for the rest."""
 
+MOST_DRIVEN = 0.5
+"""Of a drift: where the drive itself moves by more, in ranges, its change may be what is seen."""
+
 MOST_CLIPPED = 4.0
 """Robust standard deviations beyond which a block is pulled in."""
 
@@ -96,7 +99,7 @@ def slow_drift(record: Record, found: Repetition | None = None) -> Drift | None:
     repeats = repetition_of(record.u) if found is None else found
     if repeats is None:
         return None
-    rows, moved = _block_means(record, repeats)
+    rows, moved, driven = _block_means(record, repeats)
     degree = _degree(record, repeats)
     if moved.size < degree + 2 or _seen(repeats) < LEAST_SEEN * len(record):
         return None
@@ -118,7 +121,8 @@ def slow_drift(record: Record, found: Repetition | None = None) -> Drift | None:
     inverse = np.linalg.pinv(rows[:, :degree].T @ rows[:, :degree])
     between = polynomials[int(curve.argmax())] - polynomials[int(curve.argmin())]
     error = float(np.sqrt(variance * (between @ inverse @ between)))
-    if total < SURE * error:
+    by_drive = polynomials @ np.linalg.lstsq(rows[:, :degree], driven, rcond=None)[0]
+    if total < SURE * error or float(np.ptp(by_drive)) > MOST_DRIVEN * total:
         return None
     first, middle, last = (float(curve[k]) for k in (0, len(record) // 2, -1))
     half = 0.5 * record.duration
@@ -139,23 +143,30 @@ def _degree(record: Record, repeats: Repetition) -> int:
     return 1 if times < 4.0 else 2 if times < 8.0 else 3 if times < 16.0 else MOST_DEGREE
 
 
-def _block_means(record: Record, repeats: Repetition) -> tuple[Array, Array]:
-    """Give mean changes over blocks, of the polynomials and of y without what the drive did."""
-    gain = _slope(record)
+def _block_means(record: Record, repeats: Repetition) -> tuple[Array, Array, Array]:
+    """Give mean changes over blocks: of the polynomials, of y without what the drive did, and of u.
+
+    The last in the output's unit by the ratio of the ranges: of a drive that is only nearly the
+    same after a lag, an output with dynamics follows the change by more than by its mean gain.
+    """
+    gain, ratio = _slope(record), float(np.ptp(record.y)) / max(float(np.ptp(record.u)), TINY)
     share = MOST_BLOCKS / sum(stop - start for start, stop, _ in repeats.segments)
-    rows, moved = [], []
+    rows, moved, driven = [], [], []
     for start, stop, lag in repeats.segments:
         change_u, change_y, _ = changes(record, start, stop, lag)
         samples = stop - start
         count = max(int(min(BLOCKS * samples / lag, share * samples)), 1)
         edges = np.arange(min(count, samples) + 1) * samples // min(count, samples)
-        # What the drive itself moved on is no drift.
-        sums = np.add.reduceat(change_y - gain * change_u, edges[:-1])
-        moved.append(sums / np.diff(edges))
+        of_u, of_y = (
+            np.add.reduceat(each, edges[:-1]) / np.diff(edges) for each in (change_u, change_y)
+        )
         middle = start + 0.5 * (edges[:-1] + edges[1:] - 1)
         now, before = (_polynomials(at, len(record), MOST_DEGREE) for at in (middle, middle - lag))
         rows.append(now - before)
-    return np.concatenate(rows), np.concatenate(moved)
+        # What the drive itself moved on is no drift.
+        moved.append(of_y - gain * of_u)
+        driven.append(ratio * of_u)
+    return np.concatenate(rows), np.concatenate(moved), np.concatenate(driven)
 
 
 def _slope(record: Record) -> float:

@@ -109,7 +109,7 @@ def _within_branches(record: Record) -> list[Line]:
         return []
     fewest_cycles = _DEGREE * (1.5 if few else 0.5)
     return [
-        line
+        Line(line.frequency, line.amplitude / _left_of(line.frequency, ends, record.dt))
         for line in lines_of(rest, record.dt)
         if line.frequency * usual * record.dt > fewest_cycles
         and _throughout(rest, line, record.dt)
@@ -144,6 +144,14 @@ def _without_smooth(signal: Array, ends: NDArray[np.intp]) -> Array:
         part = signal[start:stop]
         rest[start:stop] = part - basis @ (basis.T @ part)
     return rest
+
+
+def _left_of(frequency: float, ends: NDArray[np.intp], dt: float) -> float:
+    """Give the share of a sine's amplitude that is not smooth within branches, 0.1 to 1."""
+    phase = 2.0 * np.pi * frequency * dt * np.arange(int(ends[-1]))
+    waves = [np.cos(phase), np.sin(phase)]
+    left = sum(float(wave @ _without_smooth(wave, ends)) for wave in waves)
+    return max(left / phase.size, 0.1)
 
 
 def _basis(samples: int, degree: int) -> Array:
