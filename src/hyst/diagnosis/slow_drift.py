@@ -40,6 +40,12 @@ LEAST_SEEN = 0.5
 MOST_DRIVEN = 0.5
 """Of a drift: where the drive itself moves by more, in ranges, its change may be what is seen."""
 
+LARGEST_GAIN = 10.0
+"""Of slow changes, in ratios of the ranges: a low pass lets them through and the rest less."""
+
+PARALLEL = 0.9
+"""Correlation of two curves of degree 3 or more from which the one is that of the other."""
+
 MOST_CLIPPED = 4.0
 """Robust standard deviations beyond which a block is pulled in."""
 
@@ -122,13 +128,21 @@ def slow_drift(record: Record, found: Repetition | None = None) -> Drift | None:
     between = polynomials[int(curve.argmax())] - polynomials[int(curve.argmin())]
     error = float(np.sqrt(variance * (between @ inverse @ between)))
     by_drive = polynomials @ np.linalg.lstsq(rows[:, :degree], driven, rcond=None)[0]
-    if total < SURE * error or float(np.ptp(by_drive)) > MOST_DRIVEN * total:
+    if total < SURE * error or _is_driven(curve, by_drive, degree):
         return None
     first, middle, last = (float(curve[k]) for k in (0, len(record) // 2, -1))
     half = 0.5 * record.duration
     early, late = (middle - first) / half, (last - middle) / half
     total = math.copysign(total, last - first)
     return Drift(curve - curve.mean(), total, 0.5 * (early + late), error, early, late, degree)
+
+
+def _is_driven(curve: Array, by_drive: Array, degree: int) -> bool:
+    """Tell whether an output drifts because its drive does, by the ratio of ranges or far more."""
+    size = float(np.ptp(by_drive)) / float(np.ptp(curve))
+    if size > MOST_DRIVEN or size < MOST_DRIVEN / LARGEST_GAIN or degree < 3:
+        return size > MOST_DRIVEN
+    return bool(abs(np.corrcoef(curve, by_drive)[0, 1]) > PARALLEL)
 
 
 def _seen(repeats: Repetition) -> float:

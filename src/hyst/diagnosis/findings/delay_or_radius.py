@@ -19,7 +19,15 @@ def find(evidence: Evidence) -> Iterable[Finding]:
 
 
 def told(found: DelayEvidence, dt: float) -> Iterator[Finding]:
-    """Remark on how much delay could hide in a loop of one amplitude."""
+    """Remark on how much delay could hide in a loop of one amplitude.
+
+    Parameters
+    ----------
+    found
+        On the records.
+    dt
+        Sample time of the first one, s.
+    """
     if not found.one_amplitude or not found.wide:
         return
     yield Finding(
