@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.special
@@ -11,7 +11,7 @@ from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.diagnosis.repetition import Repetition, changes, repetition_of
-from hyst.signals import Record
+from hyst.signals import Record, estimate_noise
 
 Array = NDArray[np.float64]
 
@@ -33,6 +33,9 @@ TINY = float(np.finfo(float).tiny)
 
 SURE = 4.0
 """Standard errors that a drift must exceed."""
+
+SAME_DRIVE, NOISE_ALLOWED = 2e-3, 2.0
+"""By how much a drive that comes back may differ, rms: of its range, and times its noise."""
 
 LEAST_SEEN = 0.5
 """Of a record: what drifts in less of it is not known for the rest."""
@@ -103,6 +106,7 @@ def slow_drift(record: Record, found: Repetition | None = None) -> Drift | None:
         None where nothing repeats, or where what changes is no more than noise.
     """
     repeats = repetition_of(record.u) if found is None else found
+    repeats = None if repeats is None else _really_repeated(record, repeats)
     if repeats is None:
         return None
     rows, moved, driven = _block_means(record, repeats)
@@ -143,6 +147,21 @@ def _is_driven(curve: Array, by_drive: Array, degree: int) -> bool:
     if size > MOST_DRIVEN or size < MOST_DRIVEN / LARGEST_GAIN or degree < 3:
         return size > MOST_DRIVEN
     return bool(abs(np.corrcoef(curve, by_drive)[0, 1]) > PARALLEL)
+
+
+def _really_repeated(record: Record, repeats: Repetition) -> Repetition | None:
+    """Keep where the drive comes back as exactly as it can; None if it nowhere does.
+
+    Of a drive whose amplitude changes slowly the mean of the output does, too, through any map.
+    """
+    noise = math.sqrt(2.0) * estimate_noise(record.u)
+    allowed = max(NOISE_ALLOWED * noise, SAME_DRIVE * float(np.ptp(record.u)))
+    segments = tuple(
+        each
+        for each in repeats.segments
+        if math.sqrt(float(np.mean(np.square(changes(record, *each)[0])))) <= allowed
+    )
+    return replace(repeats, segments=segments) if segments else None
 
 
 def _seen(repeats: Repetition) -> float:
