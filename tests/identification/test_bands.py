@@ -31,15 +31,14 @@ def test_it_holds_what_it_says_in_class(name: str) -> None:
     assert 0.92 <= np.mean(held) <= 0.98
 
 
-@pytest.mark.parametrize(
-    "plant", [switching()[0], switching()[3], friction()[0], friction()[9], plays()[5]]
-)
 @pytest.mark.parametrize("loops", [major_loops(), shrinking_loops()], ids=["one", "shrinking"])
-def test_it_covers_actuators_of_no_class(plant: object, loops: np.ndarray) -> None:
-    """Single actuators: what is asked for is 0.90 in the mean over many (benchmarks/bands.py)."""
-    share, width = held_of(plant, loops)  # type: ignore[arg-type]
-    assert share > 0.75
-    assert width < 40.0  # percent of the range: a band of everything would be no use
+def test_it_covers_actuators_of_no_class(loops: np.ndarray) -> None:
+    """Nested minor loops of one actuator of each kind that are hard; see benchmarks/bands.py."""
+    plants = [switching()[0], switching()[3], friction()[5], friction()[9], plays()[5]]
+    held = [held_of(plant, loops) for plant in plants]
+    assert np.mean([share for share, _ in held]) > 0.9
+    # Percent of the range: a band of everything would be no use.
+    assert np.mean([width for _, width in held]) < 15.0
 
 
 def test_higher_levels_are_wider_and_the_model_is_inside(found: hyst.Identified) -> None:

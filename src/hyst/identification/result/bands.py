@@ -45,7 +45,7 @@ MISFIT_ELSEWHERE = 2.0
 SHARE_OF_OPENING = 8.0
 """Half-width, in openings of the loop, at a distance of half the input range."""
 
-MISFITS = 60.0
+MISFITS = 150.0
 """The same in misfits: where records show minor loops, their misfit tells how wrong a shape is."""
 
 SET_FOR = 0.95
@@ -58,7 +58,10 @@ SURE_OF_NOISE = 6.0
 """Over the root of the number of samples: how much noise may be larger than it is measured."""
 
 RADII = 6
-MOST_STATES = 5_000
+MOST_STATES = 20_000
+FINEST = 10
+"""Steps between two samples: of coarse records more states than samples are known."""
+
 FEWEST_FOR_QUANTILES = 400
 
 
@@ -179,9 +182,7 @@ def bands_of(data: Data, fit: Fit, spread: FitSpread, rivals: Sequence[Operator]
     explained = noise**2 * (1.0 + SURE_OF_NOISE / math.sqrt(residual.size))
     low = min(float(each.u.min()) for each in data.records)
     centre = low + data.half_range
-    pairs = zip(data.records, data.windows(), strict=True)
-    states = data.joined([_states(r.u[: w.stop], centre, data.half_range)[w] for r, w in pairs])
-    states = states[:: 1 + states.shape[0] // MOST_STATES]
+    states = _met(data, centre)
     misfit = math.sqrt(max(rms**2 - explained, 0.0))
     growth = SHARE_OF_OPENING * _line_leaves(data.inputs(), data.measured())
     if shows_minor_loops(stroke_lengths(data)):
@@ -243,6 +244,24 @@ def _noise(data: Data, residual: Array) -> float:
     if known:
         return math.sqrt(float(np.mean(np.square(known))))
     return estimate_noise(residual)
+
+
+def _met(data: Data, centre: float) -> Array:
+    """Give the states that the records met, those on the way from sample to sample too."""
+    fine = max(1, min(FINEST, MOST_STATES // max(data.measured().size, 1)))
+    parts = []
+    passes = zip(data.records, data.windows(), data.counted(), strict=True)
+    for record, window, counts in passes:
+        u = record.u[: window.stop]
+        at = np.arange(fine * (u.size - 1) + 1) / fine
+        states = _states(np.interp(at, np.arange(u.size), u), centre, data.half_range)
+        used = at >= window.start
+        if counts is not None:
+            nearest = np.clip(np.round(at).astype(np.intp) - window.start, 0, counts.size - 1)
+            used &= counts[nearest]
+        parts.append(states[used])
+    states = np.concatenate(parts)
+    return states[:: 1 + states.shape[0] // MOST_STATES]
 
 
 def _states(u: Array, centre: float, half_range: float) -> Array:
