@@ -33,7 +33,10 @@ def test_plays_of_rates_find_a_lag_beside_their_rate(lag: float, share: float) -
     found = hyst.identify(records, family="rdpi", plays=3)
     # The rate of a sample is a difference, half a sample old: of a rate it looks like some lag.
     assert found.delay == pytest.approx(lag, abs=0.1 + 0.25 * share)
-    beta = found.parameter_values[
-        found.parameter_names.index("rate_dependent_prandtl_ishlinskii.beta")
+    betas = [
+        value
+        for name, value in zip(found.parameter_names, found.parameter_values, strict=True)
+        if name.endswith("beta")
     ]
-    assert beta == pytest.approx(share * ACTUATOR["beta"], abs=0.05 * ACTUATOR["beta"])
+    # With the lag left in it is off by 7 to 40 % of this, and called certain to 0.5 %.
+    assert betas == pytest.approx([share * ACTUATOR["beta"]], abs=0.08 * ACTUATOR["beta"])

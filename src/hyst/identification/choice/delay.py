@@ -20,6 +20,9 @@ NOISE_ALIKE_OF_RATES = 1.25
 
 REFIT_ITERATIONS = 10
 
+WHOLE_ALIKE = 1.005
+"""By how much more a whole number may leave and still be taken for a number next to it."""
+
 NARROW = 0.1
 """Samples: an interval no wider has nothing to settle."""
 
@@ -116,8 +119,9 @@ def _settled_by_rates(data: Data, fit: Fit, evidence: DelayEvidence) -> float:
         cost, bounds=around, method="bounded", options={"xatol": 0.01, "maxiter": 12}
     )
     best, least = float(found.x), float(found.fun)
-    for simpler in (float(data.lag), float(round(best))):
-        if low <= simpler <= high and not _far_better(least, cost(simpler), data):
+    whole = float(round(best))
+    for simpler, alike in ((float(data.lag), 1.0), (whole, WHOLE_ALIKE)):
+        if low <= simpler <= high and not _far_better(least, cost(simpler) / alike, data):
             best, least = simpler, cost(simpler)
             break
     if least > NOISE_ALIKE_OF_RATES * evidence.noise_rms or not _far_better(least, without, data):
