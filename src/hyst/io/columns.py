@@ -37,8 +37,8 @@ def find_column(table: Table, column: int | str) -> int:
     Examples
     --------
     >>> import numpy as np
-    >>> from hyst.io.table import table_of
-    >>> table = table_of("a.npz", {"Drive": np.zeros(2), "stroke": np.zeros(2)})
+    >>> names, zeros = ("Drive", "stroke"), np.zeros(2)
+    >>> table = Table("a.npz", names, ("", ""), (zeros, zeros), names, (None, None))
     >>> find_column(table, "drive"), find_column(table, "1"), find_column(table, 1)
     (0, 1, 1)
     """
@@ -62,6 +62,12 @@ def find_column(table: Table, column: int | str) -> int:
             )
     if wanted.isascii() and wanted.isdigit():
         return _by_index(table, int(wanted[:18]))
+    for name, reason in table.left_out.items():
+        # What is inside an object is asked for by its name and more.
+        if folded == name.casefold() or folded.startswith(
+            tuple(name.casefold() + c for c in "./({")
+        ):
+            raise InputError(f"{table.source}: {shorten(name)} {reason}")
     raise InputError(f"{table.source} has no column {shorten(wanted)}; there are {_listed(table)}")
 
 
