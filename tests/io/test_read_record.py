@@ -243,14 +243,14 @@ def test_noise_on_a_ramp_is_no_reversal_unless_the_user_says_so(tmp_path: Path) 
     [
         ("absent.csv", r"absent\.csv does not exist; check the path"),
         ("folder.csv", r"folder\.csv is a folder; name a file in it"),
-        ("data.xlsx", r"data\.xlsx has the unknown suffix '\.xlsx'; hyst reads \.csv .*\.npz"),
+        ("data.docx", r"data\.docx has the unknown suffix '\.docx'; hyst reads \.csv .*\.npz"),
         ("data", "data has no suffix; hyst reads"),
         ("empty.npz", r"empty\.npz is empty"),
     ],
 )
 def test_what_is_no_data_file_is_refused(tmp_path: Path, name: str, message: str) -> None:
     (tmp_path / "folder.csv").mkdir()
-    for other in ("data.xlsx", "data"):
+    for other in ("data.docx", "data"):
         (tmp_path / other).write_text("1,2\n")
     (tmp_path / "empty.npz").touch()
     with pytest.raises(InputError, match=message):

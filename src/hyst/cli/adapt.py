@@ -14,13 +14,20 @@ from numpy.typing import NDArray
 import hyst
 from hyst._files import replacing_files, require_folder
 from hyst.cli.arguments import (
+    MOST_SAMPLES,
     InputColumn,
+    InputTime,
+    MaxSamples,
     OutputColumn,
+    OutputFile,
+    OutputTime,
     Rate,
     Repair,
+    Resample,
     TimeColumn,
     TimeUnit,
     load_operator,
+    read_telling,
 )
 from hyst.cli.console import at_work, note, show_files, show_table
 
@@ -81,6 +88,11 @@ def adapt(
     time: TimeColumn = None,
     time_unit: TimeUnit = None,
     repair: Repair = False,
+    resample: Resample = False,
+    input_time: InputTime = None,
+    output_time: OutputTime = None,
+    output_file: OutputFile = None,
+    max_samples: MaxSamples = MOST_SAMPLES,
     start: Start = 0,
     memory: Memory = None,
     spread: Spread = None,
@@ -97,19 +109,15 @@ def adapt(
     else:
         model = load_operator(model_file or data)
     about = model.description
-    how: dict[str, Any] = {"time": time, "rate": rate, "time_unit": time_unit, "repair": repair}
-    measured = hyst.read_record(data, input=input_column, output=output_column, **how)
+    how: dict[str, Any] = {"input": input_column, "output": output_column, "time": time}
+    how |= {"rate": rate, "time_unit": time_unit, "repair": repair, "resample": resample}
+    how |= {"input_time": input_time, "output_time": output_time}
+    how |= {"output_file": output_file, "max_samples": max_samples}
+    measured = read_telling(data, how)
     record = _without_delay(measured, about.delay)
     history, record = _from_start(record, start)
     if estimator is None:
-        estimator = hyst.online.JointEstimator(
-            model,
-            dt=record.dt,
-            memory=math.inf if memory is None else memory,
-            radius_spread=_SPREAD if spread is None else spread,
-            weight_spread=_SPREAD if spread is None else spread,
-            estimate_maps=estimate_maps,
-        )
+        estimator = _started(model, record.dt, memory, spread, estimate_maps)
     if history.size:
         estimator.follow(history)
     before = estimator.parameters
@@ -127,6 +135,25 @@ def adapt(
         (temporary / names[3]).write_bytes(picture)
     _tell(estimator, before.tolist())
     show_files([folder / name for name in names])
+
+
+def _started(
+    model: hyst.operators.Operator,
+    dt: float,
+    memory: float | None,
+    spread: float | None,
+    estimate_maps: bool,
+) -> hyst.online.JointEstimator:
+    """Make the estimator that knows nothing but the model yet."""
+    widths = _SPREAD if spread is None else spread
+    return hyst.online.JointEstimator(
+        model,
+        dt=dt,
+        memory=math.inf if memory is None else memory,
+        radius_spread=widths,
+        weight_spread=widths,
+        estimate_maps=estimate_maps,
+    )
 
 
 def _described(

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import typer
 
 import hyst
 from hyst.checks.numbers import as_positive
+from hyst.cli.console import note
 
 ModelFile = Annotated[
     Path,
@@ -42,6 +43,29 @@ Repair = Annotated[
     bool, typer.Option("--repair", help="Leave out bad rows and resample uneven time.")
 ]
 
+Resample = Annotated[
+    bool,
+    typer.Option(
+        "--resample", help="Bring two signals stamped apart to one raster; the cost is told."
+    ),
+]
+InputTime = Annotated[
+    str | None,
+    typer.Option(metavar="COL", show_default=False, help="Stamps of the input, if not --time."),
+]
+OutputTime = Annotated[
+    str | None,
+    typer.Option(metavar="COL", show_default=False, help="Stamps of the output, likewise."),
+]
+OutputFile = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", show_default=False, help="File of the output, if another one."),
+]
+MaxSamples = Annotated[
+    int, typer.Option(metavar="N", min=1, help="Most numbers to read of a file.")
+]
+MOST_SAMPLES = 100_000_000
+
 SampleRate = Annotated[
     float | None,
     typer.Option(
@@ -53,6 +77,14 @@ SampleRate = Annotated[
 ]
 
 _STAMPS_ROUNDED = 1e-3
+
+
+def read_telling(path: Path, how: dict[str, Any]) -> hyst.Record:
+    """Read a record and say what was repaired, left out or resampled in it."""
+    record = hyst.read_record(path, **how)
+    for sentence in record.notes:
+        note(f"{path.name}: {sentence}")
+    return record
 
 
 def load_operator(path: Path) -> hyst.operators.Operator:

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
+    MOST_SAMPLES,
     InputColumn,
+    InputTime,
+    MaxSamples,
     ModelFile,
     OutputColumn,
+    OutputFile,
+    OutputTime,
     Rate,
     Repair,
+    Resample,
     TimeColumn,
     TimeUnit,
     load_operator,
@@ -75,6 +81,11 @@ def fit(
     time: TimeColumn = None,
     time_unit: TimeUnit = None,
     repair: Repair = False,
+    resample: Resample = False,
+    input_time: InputTime = None,
+    output_time: OutputTime = None,
+    output_file: OutputFile = None,
+    max_samples: MaxSamples = MOST_SAMPLES,
     free: Free = None,
     bound: Bound = None,
     delay: Delay = None,
@@ -91,8 +102,10 @@ def fit(
     require_folder(folder)
     guess = load_operator(model)
     bounds = dict(_as_bound(each) for each in bound or [])
-    columns = {"input": input_column, "output": output_column, "time": time, "rate": rate}
-    columns |= {"time_unit": time_unit, "repair": repair}
+    columns: dict[str, Any] = {"input": input_column, "output": output_column, "time": time}
+    columns |= {"rate": rate, "time_unit": time_unit, "repair": repair, "resample": resample}
+    columns |= {"input_time": input_time, "output_time": output_time}
+    columns |= {"output_file": output_file, "max_samples": max_samples}
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(columns, others, (input_label, output_label))
     with at_work("fitting") as say:

@@ -11,6 +11,7 @@ from typing import Annotated, Any
 import typer
 
 import hyst
+from hyst.cli.arguments import read_telling
 from hyst.cli.console import show_table
 
 Data = Annotated[
@@ -65,16 +66,21 @@ class HowToRead:
 
     def records(self, paths: Sequence[Path]) -> list[hyst.Record]:
         """Read the records to fit to."""
+        if self.columns.get("output_file") is not None and len(paths) > 1:
+            raise hyst.InputError(
+                f"--output-file is the output of one record, and {len(paths)} are given; give one"
+            )
         return [_read(path, self.columns, self.labels) for path in paths]
 
     def validation(self, paths: Sequence[Path] | None) -> list[hyst.Record]:
-        """Read the records to judge by."""
-        how = _otherwise(self.columns, self.validation_columns, paths)
+        """Read the records to judge by; their input and output are in one file."""
+        alike = self.columns | {"output_file": None}
+        how = _otherwise(alike, self.validation_columns, paths)
         return [_read_validation(path, how, self.labels) for path in paths or []]
 
 
 def _read(path: Path, how: dict[str, Any], labels: tuple[str | None, str | None]) -> hyst.Record:
-    return _labelled(hyst.read_record(path, **how), *labels)
+    return _labelled(read_telling(path, how), *labels)
 
 
 def _otherwise(

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
+    MOST_SAMPLES,
     InputColumn,
+    InputTime,
+    MaxSamples,
     OutputColumn,
+    OutputFile,
+    OutputTime,
     Rate,
     Repair,
+    Resample,
     TimeColumn,
     TimeUnit,
     whole_or_auto,
@@ -49,6 +55,11 @@ def identify(
     time: TimeColumn = None,
     time_unit: TimeUnit = None,
     repair: Repair = False,
+    resample: Resample = False,
+    input_time: InputTime = None,
+    output_time: OutputTime = None,
+    output_file: OutputFile = None,
+    max_samples: MaxSamples = MOST_SAMPLES,
     family: Family = "auto",
     delay: Delay = "auto",
     start: Start = "auto",
@@ -65,8 +76,10 @@ def identify(
     options = options_given(context, family)
     chosen = hyst.identification.chosen_families(family, options)
     lag, first = whole_or_auto(delay, "delay"), whole_or_auto(start, "start")
-    columns = {"input": input_column, "output": output_column, "time": time, "rate": rate}
-    columns |= {"time_unit": time_unit, "repair": repair}
+    columns: dict[str, Any] = {"input": input_column, "output": output_column, "time": time}
+    columns |= {"rate": rate, "time_unit": time_unit, "repair": repair, "resample": resample}
+    columns |= {"input_time": input_time, "output_time": output_time}
+    columns |= {"output_file": output_file, "max_samples": max_samples}
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(columns, others, (input_label, output_label))
     with at_work("identifying") as say:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from hyst.errors import InputError
-from hyst.io import hdf5, mat, npz, parquet, text
+from hyst.io import hdf5, mat, npz, parquet, tdms, tektronix_isf, tektronix_wfm, text, xlsx
 from hyst.io.entries import MOST_SAMPLES, Wanted
 from hyst.io.table import Table
 
@@ -15,6 +15,10 @@ _BINARY: dict[str, Callable[[Path, Wanted], Table]] = {
     **dict.fromkeys(mat.SUFFIXES, mat.read_mat),
     **dict.fromkeys(hdf5.SUFFIXES, hdf5.read_hdf5),
     **dict.fromkeys(parquet.SUFFIXES, parquet.read_parquet),
+    **dict.fromkeys(tdms.SUFFIXES, tdms.read_tdms),
+    **dict.fromkeys(xlsx.SUFFIXES, xlsx.read_xlsx),
+    **dict.fromkeys(tektronix_isf.SUFFIXES, tektronix_isf.read_isf),
+    **dict.fromkeys(tektronix_wfm.SUFFIXES, tektronix_wfm.read_wfm),
     ".npz": npz.read_npz,
     ".npy": npz.read_npy,
 }
@@ -33,7 +37,8 @@ def read_table(
     ----------
     path
         Text (``.csv .tsv .txt .dat .asc .tab .prn``), MATLAB (``.mat``), HDF5 and netCDF-4
-        (``.h5 .hdf5 .hdf .nc``), Parquet (``.parquet .pq``), NumPy (``.npy .npz``).
+        (``.h5 .hdf5 .hdf .nc``), Parquet (``.parquet .pq``), NumPy (``.npy .npz``), LabVIEW
+        (``.tdms``), Excel (``.xlsx .xlsm``), or Tektronix (``.isf .wfm``).
     columns
         The columns to read, as ``find_column`` takes them; by default all. Those of a binary file
         that are not wanted cost no memory and have no values in the table.

@@ -15,7 +15,6 @@ from hyst.errors import HystError, InputError
 from hyst.io.entries import Contents, Selector, Stored, Wanted, table_of_entries
 from hyst.io.table import Table
 
-SUFFIXES = (".npz", ".npy")
 _MASK_OF = ("{}_mask", "mask_{}", "{}.mask")
 
 

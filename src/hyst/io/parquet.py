@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -59,7 +58,7 @@ def read_parquet(path: Path, wanted: Wanted) -> Table:
                 # Columns of one name cannot be read one by one.
                 refuse_too_many(str(path), rows * len(schema), wanted.most)
                 whole = file.read()
-                columns: list[Callable[[], Any]] = [functools.partial(whole.column, k) for k in range(len(schema))]
+                columns = [_reading(whole, k) for k in range(len(schema))]
             else:
                 columns = [_reading(file, field.name) for field in schema]
             entries, others = _entries(schema, rows, columns, arrow, compute)
@@ -75,8 +74,11 @@ def read_parquet(path: Path, wanted: Wanted) -> Table:
         ) from error
 
 
-def _reading(file: Any, name: str) -> Callable[[], Any]:
-    return lambda: file.read(columns=[name]).column(0)
+def _reading(where: Any, column: str | int) -> Callable[[], Any]:
+    """Read a column of a file by its name when it is asked for; or one of a table, by its place."""
+    if isinstance(column, int):
+        return lambda: where.column(column)
+    return lambda: where.read(columns=[column]).column(0)
 
 
 def _entries(

@@ -10,8 +10,11 @@ from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_positive
 from hyst.errors import InputError
+from hyst.io.apart import Apart, read_apart
 from hyst.io.columns import find_column, refuse_flaws
+from hyst.io.entries import MOST_SAMPLES
 from hyst.io.formats import read_table
+from hyst.io.own_times import refuse_own_times
 from hyst.io.table import Table
 from hyst.io.time_axis import TOLERANCE, first_step_back, resample, seconds_per_unit, worst_gap
 from hyst.signals import Record, reversals, suggest_dead_band
@@ -53,6 +56,11 @@ def read_record(
     time_unit: str | None = None,
     repair: bool = False,
     dead_band: float | None = None,
+    resample: bool = False,
+    input_time: int | str | None = None,
+    output_time: int | str | None = None,
+    output_file: str | os.PathLike[str] | None = None,
+    max_samples: int = MOST_SAMPLES,
 ) -> Record:
     r"""Read input and output of a measurement from a data file.
 
@@ -79,6 +87,15 @@ def read_record(
     dead_band
         Swings of the input up to this size do not count as reversals, units of the input, >= 0;
         by default ``suggest_dead_band`` of the input.
+    resample
+        Bring two signals that were stamped apart to one raster, that of the slower one; the notes
+        say what that costs. Rows where one of them has no value count for the other one only.
+    input_time, output_time
+        Columns of the stamps of the input and of the output, where they are not ``time``.
+    output_file
+        The file of the output, if it is another one, as an oscilloscope writes a file a channel.
+    max_samples
+        Most numbers to read, as of ``read_table``.
 
     Returns
     -------
@@ -105,9 +122,20 @@ def read_record(
     >>> record.dt, record.input_unit, record.y
     (0.005, 'V', array([0., 3., 1., 3.]))
     """
+    if resample or output_file is not None or (input_time, output_time) != (None, None):
+        clocks = [time if each is None else each for each in (input_time, output_time)]
+        _refuse_clocks(rate, clocks, time_unit, resample)
+        where = Apart(input, output, clocks[0], clocks[1], rate, time_unit, repair, resample)
+        record = read_apart(path, output_file, where, max_samples)
+        _refuse_unusable(str(path), record, dead_band)
+        return record
     period = _period(rate, time, time_unit)
-    table = read_table(path)
-    chosen = _choose(table, {"input": input, "output": output, "time": time})
+    roles = {"input": input, "output": output, "time": time}
+    wanted = [column for column in roles.values() if column is not None]
+    table = read_table(path, columns=wanted, max_samples=max_samples)
+    chosen = _choose(table, roles)
+    if time is not None:
+        _refuse_own_times(path, table, chosen)
     rows = _usable_rows(table, chosen, repair)
     if period is not None:
         stamps, seconds = rows.astype(np.float64), period
@@ -116,13 +144,10 @@ def read_record(
     signals = [table.columns[k][rows] for k in chosen[:2]]
     samples = _Samples(table, rows, stamps, seconds, signals, rate_given=period is not None)
     dt, (u, y), notes = _on_even_steps(samples, repair)
-    for column, signal, role in zip(chosen, (u, y), ("input", "output"), strict=False):
-        _refuse_still(table, column, signal, role)
-    _refuse_few_reversals(table, chosen[0], u, dead_band)
     dropped = table.columns[chosen[0]].size - rows.size
     if dropped:
         notes = (f"left out {dropped} rows that held no number or no finite one", *notes)
-    return Record(
+    record = Record(
         u,
         y,
         dt,
@@ -132,6 +157,8 @@ def read_record(
         output_unit=table.units[chosen[1]],
         notes=notes,
     )
+    _refuse_unusable(table.source, record, dead_band)
+    return record
 
 
 def read_column(
@@ -166,7 +193,7 @@ def read_column(
     >>> read_column(path, "stroke")
     (array([0. , 1.5]), 'stroke', 'um')
     """
-    table = read_table(path)
+    table = read_table(path, columns=[column])
     found = find_column(table, column)
     refuse_flaws(table, found, "correct it or take the row out")
     return table.columns[found], table.names[found], table.units[found]
@@ -265,22 +292,53 @@ def _on_even_steps(
     return step, resample(time, samples.signals, gap.median), (note,)
 
 
-def _refuse_still(table: Table, column: int, signal: NDArray[np.float64], role: str) -> None:
-    if signal.min() == signal.max():
-        raise InputError(
-            f"{table.source}: the {role} {table.names[column]!r} is {signal[0]:.6g} throughout; "
-            "choose a column that moves"
-        )
+def _refuse_own_times(path: str | os.PathLike[str], table: Table, chosen: list[int]) -> None:
+    """Refuse one time for both signals where one of them has stamps of its own."""
+
+    def read(column: int) -> NDArray[np.float64]:
+        found = table.columns[column]
+        # Columns that were not asked for have not been read.
+        return found if found.size else read_table(path, columns=[column]).columns[column]
+
+    refuse_own_times(table, {"input": chosen[0], "output": chosen[1]}, chosen[2], read)
 
 
-def _refuse_few_reversals(
-    table: Table, column: int, u: NDArray[np.float64], dead_band: float | None
+def _refuse_clocks(
+    rate: float | None,
+    clocks: list[int | str | None],
+    time_unit: str | None,
+    resample: bool,
 ) -> None:
-    threshold = suggest_dead_band(u) if dead_band is None else dead_band
-    count = reversals(u, threshold).size
+    """Check that both signals have stamps, or neither and a rate."""
+    if rate is not None:
+        as_positive(rate, "rate", "the samples per second")
+        if resample or any(clock is not None for clock in clocks):
+            raise InputError(
+                "a rate is given with stamps or resample; signals that were stamped apart need "
+                "their stamps, and with a rate there are none"
+            )
+    elif any(clock is None for clock in clocks):
+        raise InputError("a signal has no stamps; give time, or input_time and output_time")
+    if time_unit is not None and seconds_per_unit(time_unit) is None:
+        raise InputError(f"time_unit is {time_unit!r}; give s, ms, us, ns, min or h")
+
+
+def _refuse_unusable(source: str, record: Record, dead_band: float | None) -> None:
+    """Refuse signals that stand still, and an input that does not turn."""
+    for name, signal, role in (
+        (record.input_name, record.u, "input"),
+        (record.output_name, record.y, "output"),
+    ):
+        if signal.min() == signal.max():
+            raise InputError(
+                f"{source}: the {role} {name!r} is {signal[0]:.6g} throughout; "
+                "choose a column that moves"
+            )
+    threshold = suggest_dead_band(record.u) if dead_band is None else dead_band
+    count = reversals(record.u, threshold).size
     if count < _FEWEST_REVERSALS:
         raise InputError(
-            f"{table.source}: the input {table.names[column]!r} has {count} reversals beyond its "
+            f"{source}: the input {record.input_name!r} has {count} reversals beyond its "
             f"dead band of {threshold:.3g}, and hysteresis needs at least {_FEWEST_REVERSALS}; "
             "record whole cycles, or set dead_band"
         )
