@@ -1,4 +1,4 @@
-"""Data files: read text, MATLAB, HDF5, Parquet and NPZ; write text."""
+"""Data files: read text and the files of instruments and tools; write text."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from hyst.io.formats import read_table
 from hyst.io.header import split_unit
 from hyst.io.reading import read_column, read_record
 from hyst.io.table import Table
-from hyst.io.time_step import read_time_step
+from hyst.io.time_step import read_time_column, read_time_step
 from hyst.io.writing import join_unit, write_columns
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "read_column",
     "read_record",
     "read_table",
+    "read_time_column",
     "read_time_step",
     "split_unit",
     "write_columns",
