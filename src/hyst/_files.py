@@ -44,7 +44,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     if target.is_dir():
         raise InputError(f"{target} is a folder; name a file")
     _refuse_special(target)
-    make_folder(target.parent)
+    _make_folder(target.parent)
     with tempfile.TemporaryDirectory(prefix=".hyst-", dir=target.parent) as folder:
         temporary = Path(folder) / target.name
         yield temporary
@@ -83,7 +83,7 @@ def replacing_files(folder: str | os.PathLike[str]) -> Iterator[Path]:
     """
     target = Path(folder)
     require_folder(target)
-    make_folder(target.parent)
+    _make_folder(target.parent)
     with tempfile.TemporaryDirectory(prefix=".hyst-", dir=target.parent) as temporary:
         yield Path(temporary)
         files = sorted(Path(temporary).iterdir())
@@ -123,7 +123,7 @@ def require_folder(folder: str | os.PathLike[str]) -> None:
             raise InputError(f"{target}: {folder_above} is a file; name a folder below a folder")
 
 
-def make_folder(folder: Path) -> None:
+def _make_folder(folder: Path) -> None:
     """Make a folder and those on the way to it."""
     try:
         folder.mkdir(parents=True, exist_ok=True)

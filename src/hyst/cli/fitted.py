@@ -65,7 +65,13 @@ class HowToRead:
     labels: tuple[str | None, str | None]
 
     def records(self, paths: Sequence[Path]) -> list[hyst.Record]:
-        """Read the records to fit to."""
+        """Read the records to fit to.
+
+        Raises
+        ------
+        InputError
+            If several records are to have the output of one file.
+        """
         if self.columns.get("output_file") is not None and len(paths) > 1:
             raise hyst.InputError(
                 f"--output-file is the output of one record, and {len(paths)} are given; give one"

@@ -5,11 +5,14 @@ from __future__ import annotations
 from hyst.io.formats import read_table
 from hyst.io.header import split_unit
 from hyst.io.reading import read_column, read_record
+from hyst.io.summary import ColumnSummary, FileSummary, summarize_file
 from hyst.io.table import Table
 from hyst.io.time_step import read_time_column, read_time_step
 from hyst.io.writing import join_unit, write_columns
 
 __all__ = [
+    "ColumnSummary",
+    "FileSummary",
     "Table",
     "join_unit",
     "read_column",
@@ -18,6 +21,7 @@ __all__ = [
     "read_time_column",
     "read_time_step",
     "split_unit",
+    "summarize_file",
     "write_columns",
 ]
 

@@ -23,6 +23,12 @@ _SHOWN = 3
 Selector = tuple[int | slice, ...]
 
 
+class TooManySamples(InputError):  # noqa: N818  a kind of bad input, named for what it is
+    """There are more numbers to read than allowed; ``samples`` is how many."""
+
+    samples: int = 0
+
+
 @dataclass(frozen=True)
 class Wanted:
     """What is to be read of a file.
@@ -107,7 +113,17 @@ class Contents:
     left_out: dict[str, str] = field(default_factory=dict)
 
     def add(self, path: str, array: NDArray[Any], gap: str = "") -> None:
-        """Add an array that is in memory; complex numbers without imaginary part are real."""
+        """Add an array that is in memory; complex numbers without imaginary part are real.
+
+        Parameters
+        ----------
+        path
+            Its path within the file.
+        array
+            Of any type; what is no number is left out.
+        gap
+            As of ``Entry``.
+        """
         if array.dtype.kind == "c":
             if array.imag.any():
                 self.left_out[path] = "is complex; save its real part, or its magnitude"
@@ -247,12 +263,27 @@ def table_of_entries(
 
 
 def refuse_too_many(source: str, count: float, most: int) -> None:
-    """Refuse to read more numbers than allowed, before there is memory for them."""
+    """Refuse to read more numbers than allowed, before there is memory for them.
+
+    Parameters
+    ----------
+    source
+        Name of the file.
+    count, most
+        How many there are, and may be.
+
+    Raises
+    ------
+    TooManySamples
+        If there are more.
+    """
     if count > most:
-        raise InputError(
+        refusal = TooManySamples(
             f"{source} holds {count:.3g} numbers in the columns to read, and at most {most:.3g} "
             "are read; cut the record, or raise max_samples"
         )
+        refusal.samples = int(count)
+        raise refusal
 
 
 def _because(left_out: dict[str, str]) -> str:

@@ -25,6 +25,13 @@ _LABELS, _UNITS, _DATA = ("label", "name"), ("unit", "units"), ("data", "values"
 def object_refused(path: str, kind: str) -> str:
     """Say why an object is no column, and what to save in its place.
 
+    Parameters
+    ----------
+    path
+        Its name.
+    kind
+        Its class; empty if that is not known.
+
     Examples
     --------
     >>> object_refused("run", "timeseries").split("; ")[1]
