@@ -5,7 +5,10 @@ from __future__ import annotations
 from hyst.io.entries import Contents
 
 _EXPORTS = {
-    "timetable": "t = seconds({name}.Properties.RowTimes) and each of its columns, u = {name}.u",
+    "timetable": (
+        "t = seconds({name}.Properties.RowTimes - {name}.Properties.RowTimes(1)) and each of its "
+        "columns, u = {name}.u"
+    ),
     "table": "each of its columns, u = {name}.u",
     "timeseries": "t = {name}.Time and y = squeeze({name}.Data)",
     "datetime": "t = seconds({name} - {name}(1))",
