@@ -16,12 +16,12 @@ from hyst.io.time_axis import first_step_back, seconds_per_unit, worst_gap
 
 _TIME = re.compile(r"(^|[^a-z])(t|time|stamps?|time ?stamps?|zeit)([^a-z]|$)")
 _INPUT = re.compile(
-    r"(^|[^a-z])(u|in|input|drive|cmd|command|volt|voltage|current|excitation|actuation|field|h"
-    r"|ref|reference|setpoint|ao\d*|dac)([^a-z]|$)"
+    r"(^|[^a-z])(u|in|input|drive|cmd|command|volt|voltage|current|excitation|actuation|field"
+    r"|ref|reference|setpoint|ao\d*|dac)([^a-z]|$)|^h$"
 )
 _OUTPUT = re.compile(
     r"(^|[^a-z])(y|out|output|pos|position|disp|displacement|stroke|sensor|meas|measured|strain"
-    r"|deflection|force|torque|b|ai\d*|adc)([^a-z]|$)"
+    r"|deflection|force|torque|ai\d*|adc)([^a-z]|$)|^b$"
 )
 _INPUT_UNITS = frozenset({"v", "mv", "kv", "a", "ma", "a/m", "ka/m", "oe", "bar", "pa", "kpa"})
 _OUTPUT_UNITS = frozenset(
