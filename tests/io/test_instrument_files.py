@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import pytest
 import tool_files as files
 from tool_files import DT, N, T, U, Y
 
-from hyst.errors import InputError
+from hyst.errors import InputError, MissingExtraError
 from hyst.io import read_column, read_record, read_table
 
 # Tektronix
@@ -92,7 +93,7 @@ def test_a_scope_file_cut_short_is_refused(tmp_path: Path, name: str) -> None:
     content = path.read_bytes()
     for part in (0.1, 0.5, 0.8):
         path.write_bytes(content[: int(part * len(content))])
-        with pytest.raises(InputError, match="is damaged or no"):
+        with pytest.raises(InputError, match="is damaged"):
             read_table(path)
 
 
@@ -171,3 +172,19 @@ def test_a_text_called_workbook_is_refused(tmp_path: Path) -> None:
     path.write_text("u,y\n1,2\n")
     with pytest.raises(InputError, match="is damaged or no Excel workbook"):
         read_table(path)
+
+
+# Extras
+
+
+@pytest.mark.parametrize(
+    ("name", "module", "package"),
+    [("a.tdms", "nptdms", "npTDMS"), ("a.xlsx", "openpyxl", "openpyxl")],
+)
+def test_a_missing_package_is_named_with_its_extra(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, module: str, package: str
+) -> None:
+    (tmp_path / name).write_bytes(b"whatever")
+    monkeypatch.setitem(sys.modules, module, None)  # so that importing it fails
+    with pytest.raises(MissingExtraError, match=rf'need {package}; pip install "hyst\[files\]"'):
+        read_table(tmp_path / name)

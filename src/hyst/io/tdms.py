@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
+import logging
+import struct
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +18,8 @@ from hyst.io.entries import Entry, Wanted, table_of_entries
 from hyst.io.table import Table
 
 SUFFIXES = (".tdms",)
+# Bytes before a segment, and the bit of its contents that says in which order they stand.
+_LEAD_IN, _BIG_ENDIAN = 28, 0x40
 _UNITS = ("unit_string", "NI_UnitDescription")
 
 
@@ -50,7 +56,10 @@ def read_tdms(path: Path, wanted: Wanted) -> Table:
             f'{path}: TDMS files need npTDMS; pip install "hyst[files]"'
         ) from error
     try:
-        with TdmsFile.open(path) as file:
+        # Opened here, because the library leaves a file open that turns out to be damaged.
+        with path.open("rb") as stream:
+            _refuse_unless_whole(stream, path)
+        with path.open("rb") as stream, _quietly(), TdmsFile.open(stream) as file:
             entries: list[Entry] = []
             left_out: dict[str, str] = {}
             for group in file.groups():
@@ -63,6 +72,38 @@ def read_tdms(path: Path, wanted: Wanted) -> Table:
         raise InputError(
             f"{path} is damaged or no TDMS file ({type(error).__name__}); save it again"
         ) from error
+
+
+def _refuse_unless_whole(stream: BinaryIO, path: Path) -> None:
+    """Go from segment to segment: the library would read a file cut short as a shorter one."""
+    size = path.stat().st_size
+    place = 0
+    while place < size:
+        stream.seek(place)
+        start = stream.read(_LEAD_IN)
+        if not b"TDSm".startswith(start[:4]):
+            return  # for the library to refuse
+        if len(start) == _LEAD_IN:
+            order = ">" if start[4] & _BIG_ENDIAN else "<"
+            place += _LEAD_IN + struct.unpack_from(order + "Q", start, 12)[0]
+        if len(start) < _LEAD_IN or place > size:
+            raise InputError(
+                f"{path} is damaged or no whole TDMS file (it breaks off in its last segment, as "
+                "after a power cut); open it in LabVIEW or DIAdem and save it again"
+            )
+
+
+@contextlib.contextmanager
+def _quietly() -> Iterator[None]:
+    """Keep the library from printing of a damaged file what the refusal says."""
+    from nptdms.log import log_manager
+
+    level = log_manager.console_handler.level
+    log_manager.console_handler.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        log_manager.console_handler.setLevel(level)
 
 
 def _group(group: str, channels: list[Any], left_out: dict[str, str]) -> list[Entry]:

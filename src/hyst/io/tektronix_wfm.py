@@ -63,7 +63,9 @@ def read_wfm(path: Path, wanted: Wanted) -> Table:
         )
     try:
         entries = _record(data, order, _VERSIONS.index(version) + 1)
-    except (struct.error, ValueError) as error:
+    except struct.error:
+        raise InputError(f"{path} is damaged: it breaks off in its header; save it again") from None
+    except ValueError as error:
         raise InputError(
             f"{path} is damaged or no plain record ({error}); save it again, or save as CSV"
         ) from error
