@@ -166,6 +166,30 @@ def test_the_error_told_is_about_the_error_made(  # type: ignore[no-untyped-def]
     assert 0.97 * made <= told <= 4.5 * made
 
 
+@pytest.mark.parametrize("shift", [0.002, 0.0001, 0.0])
+def test_an_input_that_is_held_keeps_its_values(tmp_path: Path, shift: float) -> None:
+    path = topics(tmp_path, shift)
+    time = DT * np.arange(SAMPLES)
+    linear = read_record(path, "/cmd", "/pos", time="__time", resample=True) if shift else None
+    if linear is not None:
+        assert "held until its next stamp, give hold_input" in " ".join(linear.notes)
+    else:
+        columns = (time, input_at(time), time, output_at(time))
+        path = written(tmp_path, "__time,/cmd,t_y,/pos", columns)
+    clock = None if shift else "t_y"
+    record = read_record(
+        path, "/cmd", "/pos", time="__time", output_time=clock, resample=True, hold_input=True
+    )
+    # Every output lies after the input of the same number and before the next one.
+    assert np.array_equal(record.u, input_at(time))
+    assert not costs(record.notes)
+
+
+def test_holding_without_resampling_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="hold_input says how to resample"):
+        read_record(topics(tmp_path, 0.002), 1, 2, time=0, hold_input=True)
+
+
 def test_scaled_by_a_power_of_two_nothing_else_changes(tmp_path: Path) -> None:
     (tmp_path / "scaled").mkdir()
     plain = read_record(topics(tmp_path, 0.002), "/cmd", "/pos", time="__time", resample=True)

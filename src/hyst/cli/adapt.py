@@ -15,6 +15,7 @@ import hyst
 from hyst._files import replacing_files, require_folder
 from hyst.cli.arguments import (
     MOST_SAMPLES,
+    HoldInput,
     InputColumn,
     InputTime,
     MaxSamples,
@@ -89,6 +90,7 @@ def adapt(
     time_unit: TimeUnit = None,
     repair: Repair = False,
     resample: Resample = False,
+    hold_input: HoldInput = False,
     input_time: InputTime = None,
     output_time: OutputTime = None,
     output_file: OutputFile = None,
@@ -111,7 +113,7 @@ def adapt(
     about = model.description
     how: dict[str, Any] = {"input": input_column, "output": output_column, "time": time}
     how |= {"rate": rate, "time_unit": time_unit, "repair": repair, "resample": resample}
-    how |= {"input_time": input_time, "output_time": output_time}
+    how |= {"hold_input": hold_input, "input_time": input_time, "output_time": output_time}
     how |= {"output_file": output_file, "max_samples": max_samples}
     measured = read_telling(data, how)
     record = _without_delay(measured, about.delay)

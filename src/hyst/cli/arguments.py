@@ -49,6 +49,10 @@ Resample = Annotated[
         "--resample", help="Bring two signals stamped apart to one raster; the cost is told."
     ),
 ]
+HoldInput = Annotated[
+    bool,
+    typer.Option("--hold-input", help="In that, let the input keep a value until its next stamp."),
+]
 InputTime = Annotated[
     str | None,
     typer.Option(metavar="COL", show_default=False, help="Stamps of the input, if not --time."),

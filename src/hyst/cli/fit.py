@@ -11,6 +11,7 @@ import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
     MOST_SAMPLES,
+    HoldInput,
     InputColumn,
     InputTime,
     MaxSamples,
@@ -82,6 +83,7 @@ def fit(
     time_unit: TimeUnit = None,
     repair: Repair = False,
     resample: Resample = False,
+    hold_input: HoldInput = False,
     input_time: InputTime = None,
     output_time: OutputTime = None,
     output_file: OutputFile = None,
@@ -104,7 +106,7 @@ def fit(
     bounds = dict(_as_bound(each) for each in bound or [])
     columns: dict[str, Any] = {"input": input_column, "output": output_column, "time": time}
     columns |= {"rate": rate, "time_unit": time_unit, "repair": repair, "resample": resample}
-    columns |= {"input_time": input_time, "output_time": output_time}
+    columns |= {"hold_input": hold_input, "input_time": input_time, "output_time": output_time}
     columns |= {"output_file": output_file, "max_samples": max_samples}
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(columns, others, (input_label, output_label))

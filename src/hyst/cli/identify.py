@@ -10,6 +10,7 @@ import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
     MOST_SAMPLES,
+    HoldInput,
     InputColumn,
     InputTime,
     MaxSamples,
@@ -56,6 +57,7 @@ def identify(
     time_unit: TimeUnit = None,
     repair: Repair = False,
     resample: Resample = False,
+    hold_input: HoldInput = False,
     input_time: InputTime = None,
     output_time: OutputTime = None,
     output_file: OutputFile = None,
@@ -78,7 +80,7 @@ def identify(
     lag, first = whole_or_auto(delay, "delay"), whole_or_auto(start, "start")
     columns: dict[str, Any] = {"input": input_column, "output": output_column, "time": time}
     columns |= {"rate": rate, "time_unit": time_unit, "repair": repair, "resample": resample}
-    columns |= {"input_time": input_time, "output_time": output_time}
+    columns |= {"hold_input": hold_input, "input_time": input_time, "output_time": output_time}
     columns |= {"output_file": output_file, "max_samples": max_samples}
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(columns, others, (input_label, output_label))

@@ -41,6 +41,8 @@ class Apart:
         Whether values that are no numbers are left out.
     resample
         Whether different stamps are brought to one raster.
+    hold_input
+        Whether the input keeps its value until its next stamp.
     """
 
     input: Column
@@ -51,6 +53,7 @@ class Apart:
     time_unit: str | None
     repair: bool
     resample: bool
+    hold_input: bool = False
 
 
 def read_apart(
@@ -87,7 +90,7 @@ def read_apart(
     u = _signal(path, where.input, where.input_time, where, max_samples)
     y = _signal(other, where.output, where.output_time, where, max_samples)
     source = str(path) if output_file is None else f"{path} and {other}"
-    both = _together(u, y, source, where.resample)
+    both = _together(u, y, source, where)
     return Record(
         both.u,
         both.y,
@@ -152,10 +155,10 @@ def _stamped(table: Table, column: int, clock: int, where: Apart) -> Stamped:
     return Stamped(table.names[column], table.units[column], time[rows] * seconds, values[rows])
 
 
-def _together(u: Stamped, y: Stamped, source: str, resample: bool) -> OneRaster:
+def _together(u: Stamped, y: Stamped, source: str, where: Apart) -> OneRaster:
     """Bring the signals to one raster, if need be."""
-    if resample:
-        return on_one_raster(u, y, source)
+    if where.resample:
+        return on_one_raster(u, y, source, hold_input=where.hold_input)
     if u.time.size != y.time.size:
         raise InputError(
             f"{source}: {u.name!r} has {u.time.size} samples and {y.name!r} {y.time.size}; the "

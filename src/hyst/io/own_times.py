@@ -62,7 +62,7 @@ class OneRaster:
     notes: tuple[str, ...]
 
 
-def on_one_raster(u: Stamped, y: Stamped, source: str) -> OneRaster:
+def on_one_raster(u: Stamped, y: Stamped, source: str, *, hold_input: bool = False) -> OneRaster:
     """Bring two signals to one raster: the stamps of the slower one if they are even.
 
     The other one is interpolated linearly; its last value is held for less than one of its steps.
@@ -74,6 +74,8 @@ def on_one_raster(u: Stamped, y: Stamped, source: str) -> OneRaster:
         Input and output.
     source
         Name of the file, for messages.
+    hold_input
+        Whether the input keeps each value until its next stamp, as a command to a converter does.
 
     Returns
     -------
@@ -110,7 +112,7 @@ def on_one_raster(u: Stamped, y: Stamped, source: str) -> OneRaster:
     notes = [f"brought to {where}: {grid.size} samples, step {dt:.6g} s"]
     for signal in (u, y):
         if not (kept and signal is slow):
-            notes.append(_cost(signal, grid))
+            notes.append(_told(signal, grid, signal is u, hold_input))
         outside = np.count_nonzero((signal.time < grid[0]) | (signal.time > grid[-1]))
         if outside:
             notes.append(
@@ -118,6 +120,10 @@ def on_one_raster(u: Stamped, y: Stamped, source: str) -> OneRaster:
                 "common time"
             )
     values = [np.interp(grid, signal.time, signal.values) for signal in (u, y)]
+    if hold_input:
+        # A stamp that rounding has put just before its instant counts.
+        last = np.searchsorted(u.time, grid + 1e-6 * dt, "right") - 1
+        values[0] = u.values[np.maximum(last, 0)]
     return OneRaster(dt, values[0], values[1], tuple(notes))
 
 
@@ -141,6 +147,16 @@ def _raster(u: Stamped, y: Stamped, slow: Stamped, source: str) -> tuple[Array, 
         return inside, True
     start, end = inside[0], min(inside[-1], u.time[-1], y.time[-1])
     return start + gap.median * np.arange(int((end - start) / gap.median + 1e-6) + 1), False
+
+
+def _told(signal: Stamped, grid: Array, is_input: bool, hold_input: bool) -> str:
+    """Say what was done to a signal; what an input does between its stamps only the user knows."""
+    if is_input and hold_input:
+        return f"{signal.name!r} keeps each value until its next stamp"
+    said = _cost(signal, grid)
+    if not is_input or "costs" not in said:
+        return said
+    return f"{said}; if it is a command that is held until its next stamp, give hold_input"
 
 
 def _cost(signal: Stamped, grid: Array) -> str:

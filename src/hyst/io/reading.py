@@ -57,6 +57,7 @@ def read_record(
     repair: bool = False,
     dead_band: float | None = None,
     resample: bool = False,
+    hold_input: bool = False,
     input_time: int | str | None = None,
     output_time: int | str | None = None,
     output_file: str | os.PathLike[str] | None = None,
@@ -90,6 +91,9 @@ def read_record(
     resample
         Bring two signals that were stamped apart to one raster, that of the slower one; the notes
         say what that costs. Rows where one of them has no value count for the other one only.
+    hold_input
+        In resampling, let the input keep each value until its next stamp, as a command to a
+        converter does, instead of interpolating it.
     input_time, output_time
         Columns of the stamps of the input and of the output, where they are not ``time``.
     output_file
@@ -125,10 +129,14 @@ def read_record(
     if resample or output_file is not None or (input_time, output_time) != (None, None):
         clocks = [time if each is None else each for each in (input_time, output_time)]
         _refuse_clocks(rate, clocks, time_unit, resample)
-        where = Apart(input, output, clocks[0], clocks[1], rate, time_unit, repair, resample)
+        where = Apart(
+            input, output, clocks[0], clocks[1], rate, time_unit, repair, resample, hold_input
+        )
         record = read_apart(path, output_file, where, max_samples)
         _refuse_unusable(str(path), record, dead_band)
         return record
+    if hold_input:
+        raise InputError("hold_input says how to resample; give it with resample")
     period = _period(rate, time, time_unit)
     roles = {"input": input, "output": output, "time": time}
     wanted = [column for column in roles.values() if column is not None]
