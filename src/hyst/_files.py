@@ -123,6 +123,44 @@ def require_folder(folder: str | os.PathLike[str]) -> None:
             raise InputError(f"{target}: {folder_above} is a file; name a folder below a folder")
 
 
+def read_small(path: Path, most: int = 200_000_000) -> bytes:
+    """Read a regular file of moderate size, such as a model or a spec.
+
+    Parameters
+    ----------
+    path
+        The file.
+    most
+        Largest size, bytes.
+
+    Returns
+    -------
+    bytes
+        Its content.
+
+    Raises
+    ------
+    InputError
+        If it is a device or a pipe, which may never end, or larger than that.
+    OSError
+        If it cannot be read.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "spec.toml"
+    >>> _ = path.write_text("a = 1")
+    >>> read_small(path)
+    b'a = 1'
+    """
+    if path.exists() and not path.is_file() and not path.is_dir():
+        raise InputError(f"{path} is a device or a pipe, not a regular file; name a file")
+    size = path.stat().st_size
+    if size > most:
+        raise InputError(f"{path} has {size} bytes, more than a file of its kind; check the path")
+    return path.read_bytes()
+
+
 def _make_folder(folder: Path) -> None:
     """Make a folder and those on the way to it."""
     try:

@@ -15,6 +15,7 @@ import pyarrow.parquet
 import pytest
 import scipy.io
 
+import hyst
 from hyst.errors import InputError
 from hyst.io import read_column, read_record, read_table
 
@@ -106,6 +107,16 @@ def test_a_struct_that_decompresses_without_end_is_refused(tmp_path: Path) -> No
     assert read_table(path).names == ("s.u",)
     with pytest.raises(InputError, match="compressed data hold more than the 8000000 bytes"):
         read_table(path, max_samples=1_000_000)
+
+
+def test_what_is_no_regular_file_is_no_model_and_no_spec(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="is a device or a pipe, not a regular file"):
+        hyst.load(os.devnull)
+    huge = tmp_path / "model.json"
+    with huge.open("wb") as file:
+        file.truncate(300_000_000)  # takes no room on the disk
+    with pytest.raises(InputError, match="has 300000000 bytes, more than a file of its kind"):
+        hyst.load(huge)
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names on this system")

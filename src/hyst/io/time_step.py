@@ -43,8 +43,7 @@ def read_time_step(path: str | os.PathLike[str]) -> tuple[str, float | None] | N
     >>> read_time_step(path)
     ('Time (ms)', 0.005)
     """
-    table = read_table(path)
-    found = _time_column(table)
+    found, table = _time_column(path)
     if found is None:
         return None
     header, time = table.headers[found], table.columns[found]
@@ -86,13 +85,18 @@ def read_time_column(
     >>> read_time_column(path)
     ('Time (ms)', array([ 0.,  5., 10.]))
     """
-    table = read_table(path)
-    found = _time_column(table)
+    found, table = _time_column(path)
     if found is None or table.flaws[found] is not None:
         return None
     return table.headers[found], table.columns[found]
 
 
-def _time_column(table: Table) -> int | None:
+def _time_column(path: str | os.PathLike[str]) -> tuple[int | None, Table]:
+    """Find the column of stamps and read it, and of a binary file nothing else."""
+    table = read_table(path, columns=())
     found = [k for k, name in enumerate(table.names) if name.strip().lower() in _NAMES]
-    return found[0] if found else None
+    if not found:
+        return None, table
+    if not table.columns[found[0]].size:
+        table = read_table(path, columns=[found[0]])
+    return found[0], table
