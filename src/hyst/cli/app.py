@@ -12,6 +12,7 @@ import typer
 import hyst
 from hyst._typed_command import carrying_out
 from hyst.cli.adapt import adapt
+from hyst.cli.columns import columns
 from hyst.cli.compensate import compensate
 from hyst.cli.demo import demo
 from hyst.cli.excite import excite
@@ -35,6 +36,7 @@ app = typer.Typer(
 )
 VERBS = (
     excite,
+    columns,
     identify,
     fit,
     adapt,

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
 from hyst.io.cell_values import ColumnOfCells
+from hyst.io.columns import find_column
 from hyst.io.decoding import decode
 from hyst.io.fast_numbers import parse_numbers
 from hyst.io.line_kinds import NUMERIC, sort_lines
@@ -20,15 +22,13 @@ from hyst.io.text_block import Page, with_titles
 from hyst.io.text_lines import significant_lines
 from hyst.io.text_tables import Block, find_blocks
 
-Choice = Callable[[Table], Sequence[int]]
-
 _LARGE = 1 << 16
 _HEAD = 1 << 14
 _DIGITS = b"0123456789+-eE \r\n"
 
 
 def read_plain(
-    data: bytes, source: str, columns: Choice | None = None, large: int = _LARGE
+    data: bytes, source: str, columns: Sequence[int | str] | None = None, large: int = _LARGE
 ) -> Table | None:
     """Read a table of plain numbers below a head of the usual kind.
 
@@ -39,7 +39,7 @@ def read_plain(
     source
         Name of the file, for messages.
     columns
-        Chooses by headers which columns will be used; others are NaN.
+        Columns to read, as ``find_column`` takes them; by default all. Others have no values.
     large
         Fewest bytes for which this is worth while.
 
@@ -51,7 +51,7 @@ def read_plain(
     Raises
     ------
     InputError
-        If ``columns`` refuses.
+        If there is no such column.
     """
     if len(data) < large:
         return None
@@ -66,11 +66,19 @@ def read_plain(
         return None
     rows = body.count(b"\n") + 1
     preview = _table(page, block, np.zeros((block.count, 2)), number)
-    used = range(block.count) if columns is None else columns(preview)
+    everything = list(range(block.count))
+    used = everything
+    if columns is not None:
+        used = sorted({find_column(preview, column) for column in columns})
     values = parse_numbers(body, rows, block.count, page.writing.separator, used)
-    if values is None or not np.isfinite(values[list(used)]).all():
+    if values is None or not np.isfinite(values[used]).all():
         return None
-    return _table(page, block, values, number)
+    table = _table(page, block, values, number)
+    if len(used) == block.count:
+        return table
+    none = np.empty(0)
+    kept = [each if k in used else none for k, each in enumerate(table.columns)]
+    return replace(table, columns=tuple(kept))
 
 
 def _head(data: bytes, source: str) -> tuple[Page, Block] | None:
