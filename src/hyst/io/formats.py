@@ -207,10 +207,17 @@ def _read(file: Path, format: str | None, repair: bool, wanted: Wanted) -> tuple
     if found != "text":
         return (_unpacked(data, file, found, wanted) if packed else _BINARY[found](file, wanted),)
     data = data if packed else file.read_bytes()
-    lines = data.count(b"\n" if b"\n" in data else b"\r")
-    refuse_too_many(str(file), lines * max(1, len(wanted.columns or ())), wanted.most)
+    _refuse_many_lines(data, file, wanted)
     plain = read_plain(data, str(file), wanted.columns or None)
     return text.read_text(data, str(file), repair) if plain is None else (plain,)
+
+
+def _refuse_many_lines(data: bytes, file: Path, wanted: Wanted) -> None:
+    """Refuse more lines than allowed; a number has at least a digit and a separator."""
+    columns = max(1, len(wanted.columns or ()))
+    if len(data) >= 2 * wanted.most // columns:
+        lines = data.count(b"\n" if b"\n" in data else b"\r")
+        refuse_too_many(str(file), lines * columns, wanted.most)
 
 
 def _format(head: bytes, suffix: str) -> str:

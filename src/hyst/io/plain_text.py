@@ -13,7 +13,7 @@ from hyst.errors import InputError
 from hyst.io.cell_values import ColumnOfCells
 from hyst.io.columns import find_column
 from hyst.io.decoding import decode
-from hyst.io.fast_numbers import parse_numbers
+from hyst.io.fast_numbers import Body, parse_numbers
 from hyst.io.line_kinds import NUMERIC, sort_lines
 from hyst.io.lvm import is_lvm
 from hyst.io.notation import Writing, find_writing
@@ -61,16 +61,14 @@ def read_plain(
     page, block = found
     number = page.lines.numbers[block.first]
     start = _start_of_line(data, number)
-    body = _plain_body(data[start:].rstrip(b"\r\n "), page.writing)
+    body = _plain_body(data, start, page.writing)
     if body is None:
         return None
-    rows = body.count(b"\n") + 1
     preview = _table(page, block, np.zeros((block.count, 2)), number)
-    everything = list(range(block.count))
-    used = everything
+    used = list(range(block.count))
     if columns is not None:
         used = sorted({find_column(preview, column) for column in columns})
-    values = parse_numbers(body, rows, block.count, page.writing.separator, used)
+    values = parse_numbers(body, block.count, page.writing.separator, used)
     if values is None or not np.isfinite(values[used]).all():
         return None
     table = _table(page, block, values, number)
@@ -104,16 +102,24 @@ def _head(data: bytes, source: str) -> tuple[Page, Block] | None:
     return Page(source, lines, kinds, writing), block
 
 
-def _plain_body(body: bytes, writing: Writing) -> bytes | None:
+def _plain_body(data: bytes, start: int, writing: Writing) -> Body | None:
     """Give rows with a decimal point and plain line ends; None if there is more than numbers."""
     decimal, separator = writing.decimal.encode(), (writing.separator or "\t").encode()
-    if decimal == separator or body.translate(None, _DIGITS + decimal + separator):
+    if decimal == separator:
         return None
+    stop = len(data)
+    while stop > start and data[stop - 1] in b"\r\n ":
+        stop -= 1
+    allowed = _DIGITS + decimal + separator
+    # Copies of so many bytes would take as long as reading the numbers.
+    if len(data.translate(None, allowed)) > len(data[:start].translate(None, allowed)):
+        return None
+    if decimal == b"." and data.find(b"\r", start) < 0:
+        return Body(data, start, stop)
+    body = data[start:stop].replace(b"\r\n", b"\n")
     if b"\r" in body:
-        body = body.replace(b"\r\n", b"\n")
-        if b"\r" in body:
-            return None
-    return body if decimal == b"." else body.replace(b",", b".")
+        return None
+    return Body(body if decimal == b"." else body.replace(b",", b"."))
 
 
 def _start_of_line(data: bytes, number: int) -> int:
