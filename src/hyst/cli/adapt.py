@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import typer
@@ -14,19 +14,26 @@ from numpy.typing import NDArray
 import hyst
 from hyst._files import replacing_files, require_folder
 from hyst.cli.arguments import (
+    MOST_SAMPLES,
     DeadBand,
     FileFormat,
+    HoldInput,
     InputColumn,
+    InputTime,
     LongestGap,
     MaxSamples,
     OutputColumn,
+    OutputFile,
+    OutputTime,
     Rate,
     Repair,
+    Resample,
     TableNumber,
     TimeColumn,
     TimeUnit,
     load_operator,
     read_told,
+    reading_options,
 )
 from hyst.cli.console import at_work, note, show_files, show_table
 
@@ -87,6 +94,7 @@ def _only(records: tuple[hyst.Record, ...]) -> hyst.Record:
 
 
 def adapt(
+    context: typer.Context,
     files: Files,
     input_column: InputColumn,
     output_column: OutputColumn,
@@ -99,7 +107,12 @@ def adapt(
     dead_band: DeadBand = None,
     table: TableNumber = None,
     file_format: FileFormat = None,
-    max_samples: MaxSamples = hyst.io.MAX_SAMPLES,
+    resample: Resample = False,
+    hold_input: HoldInput = False,
+    input_time: InputTime = None,
+    output_time: OutputTime = None,
+    output_file: OutputFile = None,
+    max_samples: MaxSamples = MOST_SAMPLES,
     start: Start = 0,
     memory: Memory = None,
     spread: Spread = None,
@@ -116,20 +129,10 @@ def adapt(
     else:
         model = load_operator(model_file or data)
     about = model.description
-    how: dict[str, Any] = {"time": time, "rate": rate, "time_unit": time_unit, "repair": repair}
-    how |= {"longest_gap": longest_gap, "dead_band": dead_band, "format": file_format}
-    how |= {"table": table, "max_samples": max_samples}
-    measured = _only(read_told(data, input=input_column, output=output_column, **how))
+    measured = _only(read_told(data, **reading_options(context)))
     history, record = _from_start(_without_delay(measured, about.delay), start)
     if estimator is None:
-        estimator = hyst.online.JointEstimator(
-            model,
-            dt=record.dt,
-            memory=math.inf if memory is None else memory,
-            radius_spread=_SPREAD if spread is None else spread,
-            weight_spread=_SPREAD if spread is None else spread,
-            estimate_maps=estimate_maps,
-        )
+        estimator = _started(model, record.dt, memory, spread, estimate_maps)
     if history.size:
         estimator.follow(history)
     before = estimator.parameters
@@ -152,6 +155,25 @@ def adapt(
             f"{about.verdict.sentences[0]}"
         )
     show_files([folder / name for name in names])
+
+
+def _started(
+    model: hyst.operators.Operator,
+    dt: float,
+    memory: float | None,
+    spread: float | None,
+    estimate_maps: bool,
+) -> hyst.online.JointEstimator:
+    """Make the estimator that knows nothing but the model yet."""
+    widths = _SPREAD if spread is None else spread
+    return hyst.online.JointEstimator(
+        model,
+        dt=dt,
+        memory=math.inf if memory is None else memory,
+        radius_spread=widths,
+        weight_spread=widths,
+        estimate_maps=estimate_maps,
+    )
 
 
 def _described(

@@ -76,7 +76,33 @@ FileFormat = Annotated[
         help=f"Of the data, where neither content nor suffix tells: {', '.join(hyst.io.FORMATS)}.",
     ),
 ]
-MaxSamples = Annotated[int, typer.Option(metavar="N", help="Refuse text files of more lines.")]
+
+Resample = Annotated[
+    bool,
+    typer.Option(
+        "--resample", help="Bring two signals stamped apart to one raster; the cost is told."
+    ),
+]
+HoldInput = Annotated[
+    bool,
+    typer.Option("--hold-input", help="In that, let the input keep a value until its next stamp."),
+]
+InputTime = Annotated[
+    str | None,
+    typer.Option(metavar="COL", show_default=False, help="Stamps of the input, if not --time."),
+]
+OutputTime = Annotated[
+    str | None,
+    typer.Option(metavar="COL", show_default=False, help="Stamps of the output, likewise."),
+]
+OutputFile = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", show_default=False, help="File of the output, if another one."),
+]
+MaxSamples = Annotated[
+    int, typer.Option(metavar="N", min=1, help="Most numbers to read of a file.")
+]
+MOST_SAMPLES = 100_000_000
 
 SampleRate = Annotated[
     float | None,
@@ -94,6 +120,20 @@ DespiteVerdict = Annotated[
 ]
 
 _STAMPS_ROUNDED = 1e-3
+
+
+# What verbs call otherwise than read_record does.
+_CALLED = {"input_column": "input", "output_column": "output", "file_format": "format"}
+_READING = (
+    *("input_column", "output_column", "time", "rate", "time_unit", "repair", "longest_gap"),
+    *("dead_band", "table", "file_format", "resample", "hold_input", "input_time"),
+    *("output_time", "output_file", "max_samples"),
+)
+
+
+def reading_options(context: typer.Context) -> dict[str, Any]:
+    """Give what a verb was told about reading, as ``read_told`` takes it."""
+    return {_CALLED.get(name, name): context.params[name] for name in _READING}
 
 
 def read_told(path: Path, *, table: str | None = None, **how: Any) -> tuple[hyst.Record, ...]:

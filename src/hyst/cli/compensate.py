@@ -19,6 +19,7 @@ from hyst.cli.arguments import (
 )
 from hyst.cli.console import note, progress_bar, show_files, show_table
 from hyst.cli.relevant_options import refuse_irrelevant
+from hyst.cli.time_column import time_column
 from hyst.operators.composition import leaves_of
 
 if TYPE_CHECKING:
@@ -125,7 +126,8 @@ def compensate(
         )
     if not known:
         note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
-    headers = [
+    headers, columns = time_column(reference, rate, model.dt, done.u.size)
+    headers += [
         hyst.io.join_unit(name, unit)
         for name, unit in (
             ("reference", about.output_unit),
@@ -133,7 +135,7 @@ def compensate(
             ("predicted", about.output_unit),
         )
     ]
-    hyst.io.write_columns(out, headers, (done.y_ref, done.u, done.y_predicted))
+    hyst.io.write_columns(out, headers, [*columns, done.y_ref, done.u, done.y_predicted])
     _tell(done, about, input_range)
     if history is None and model.initial_state().size:
         print(

@@ -10,20 +10,27 @@ import typer
 import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
+    MOST_SAMPLES,
     DeadBand,
     FileFormat,
+    HoldInput,
     InputColumn,
+    InputTime,
     LongestGap,
     MaxSamples,
     ModelFile,
     OutputColumn,
+    OutputFile,
+    OutputTime,
     Rate,
     Repair,
+    Resample,
     TableNumber,
     TimeColumn,
     TimeUnit,
     load_operator,
     numbers,
+    reading_options,
     require_same_unit,
     whole_or_auto,
 )
@@ -73,6 +80,7 @@ Start = Annotated[str, typer.Option(metavar="N|auto", help="First sample to use.
 
 
 def fit(
+    context: typer.Context,
     model: ModelFile,
     data: Data,
     input_column: InputColumn,
@@ -86,7 +94,12 @@ def fit(
     dead_band: DeadBand = None,
     table: TableNumber = None,
     file_format: FileFormat = None,
-    max_samples: MaxSamples = hyst.io.MAX_SAMPLES,
+    resample: Resample = False,
+    hold_input: HoldInput = False,
+    input_time: InputTime = None,
+    output_time: OutputTime = None,
+    output_file: OutputFile = None,
+    max_samples: MaxSamples = MOST_SAMPLES,
     free: Free = None,
     bound: Bound = None,
     delay: Delay = None,
@@ -103,12 +116,8 @@ def fit(
     require_folder(folder)
     guess = load_operator(model)
     bounds = dict(_as_bound(each) for each in bound or [])
-    columns = {"input": input_column, "output": output_column, "time": time, "rate": rate}
-    columns |= {"time_unit": time_unit, "repair": repair, "longest_gap": longest_gap}
-    columns |= {"dead_band": dead_band, "table": table, "format": file_format}
-    columns |= {"max_samples": max_samples}
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
-    files = HowToRead(columns, others, (input_label, output_label))
+    files = HowToRead(reading_options(context), others, (input_label, output_label))
     with at_work("fitting") as say:
         say("reading")
         records = files.records(data)

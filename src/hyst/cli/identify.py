@@ -9,18 +9,25 @@ import typer
 import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
+    MOST_SAMPLES,
     DeadBand,
     FileFormat,
+    HoldInput,
     InputColumn,
+    InputTime,
     LongestGap,
     MaxSamples,
     OutputColumn,
+    OutputFile,
+    OutputTime,
     Rate,
     Repair,
+    Resample,
     TableNumber,
     TimeColumn,
     TimeUnit,
     number_or_auto,
+    reading_options,
     whole_or_auto,
 )
 from hyst.cli.console import at_work, show_files
@@ -73,7 +80,12 @@ def identify(
     dead_band: DeadBand = None,
     table: TableNumber = None,
     file_format: FileFormat = None,
-    max_samples: MaxSamples = hyst.io.MAX_SAMPLES,
+    resample: Resample = False,
+    hold_input: HoldInput = False,
+    input_time: InputTime = None,
+    output_time: OutputTime = None,
+    output_file: OutputFile = None,
+    max_samples: MaxSamples = MOST_SAMPLES,
     family: Family = "auto",
     delay: Delay = "auto",
     start: Start = "auto",
@@ -91,12 +103,8 @@ def identify(
     options = options_given(context, family)
     chosen = hyst.identification.chosen_families(family, options)
     lag, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
-    columns = {"input": input_column, "output": output_column, "time": time, "rate": rate}
-    columns |= {"time_unit": time_unit, "repair": repair, "longest_gap": longest_gap}
-    columns |= {"dead_band": dead_band, "table": table, "format": file_format}
-    columns |= {"max_samples": max_samples}
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
-    files = HowToRead(columns, others, (input_label, output_label))
+    files = HowToRead(reading_options(context), others, (input_label, output_label))
     with at_work("identifying") as say:
         say("reading")
         measured = files.records(data)

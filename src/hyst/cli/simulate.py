@@ -17,6 +17,7 @@ from hyst.cli.arguments import (
     sample_time_known,
 )
 from hyst.cli.console import note, show_files
+from hyst.cli.time_column import time_column
 
 if TYPE_CHECKING:
     import numpy as np
@@ -48,11 +49,12 @@ def simulate(
     u, _, unit = hyst.io.read_column(data, input_column)
     require_same_unit(unit, about.input_unit, "the input")
     y = hyst.identification.late_output(model, u, about.delay if with_delay else 0)
-    headers = (
+    headers, columns = time_column(data, rate, model.dt, u.size)
+    headers += [
         hyst.io.join_unit(about.input_name, about.input_unit),
         hyst.io.join_unit(about.output_name, about.output_unit),
-    )
-    hyst.io.write_columns(out, headers, (u, y))
+    ]
+    hyst.io.write_columns(out, headers, [*columns, u, y])
     _note_extrapolation(u, about)
     if with_delay and about.delay < 0:
         note(hyst.report.delay_sentence(about.delay, about.dt, about.delay_interval))

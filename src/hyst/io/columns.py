@@ -5,6 +5,7 @@ from __future__ import annotations
 import operator
 
 from hyst.errors import InputError
+from hyst.io.header import split_unit
 from hyst.io.table import Table
 
 _LISTED = 12
@@ -38,8 +39,8 @@ def find_column(table: Table, column: int | str) -> int:
     Examples
     --------
     >>> import numpy as np
-    >>> from hyst.io.table import table_of
-    >>> table = table_of("a.npz", {"Drive": np.zeros(2), "stroke": np.zeros(2)})
+    >>> names, zeros = ("Drive", "stroke"), np.zeros(2)
+    >>> table = Table("a.npz", names, ("", ""), (zeros, zeros), names, (None, None))
     >>> find_column(table, "drive"), find_column(table, "1"), find_column(table, 1)
     (0, 1, 1)
     """
@@ -52,6 +53,7 @@ def find_column(table: Table, column: int | str) -> int:
         [k for k, name in enumerate(table.names) if name == wanted],
         [k for k, header in enumerate(table.headers) if header.casefold() == folded],
         [k for k, name in enumerate(table.names) if name.casefold() == folded],
+        [k for k, name in enumerate(table.names) if (name, table.units[k]) == split_unit(wanted)],
         *([k for k, each in enumerate(row) if each.casefold() == folded] for row in table.aliases),
         [k for k, unit in enumerate(table.units) if unit and unit == wanted],
     ):
@@ -65,6 +67,12 @@ def find_column(table: Table, column: int | str) -> int:
             )
     if wanted.isascii() and wanted.isdigit():
         return _by_index(table, int(wanted[:18]))
+    for name, reason in table.left_out.items():
+        # What is inside an object is asked for by its name and more.
+        if folded == name.casefold() or folded.startswith(
+            tuple(name.casefold() + c for c in "./({")
+        ):
+            raise InputError(f"{table.source}: {shorten(name)} {reason}")
     raise InputError(f"{table.source} has no column {shorten(wanted)}; there are {_listed(table)}")
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,9 +13,10 @@ from hyst.errors import InputError
 from hyst.io.columns import find_column
 from hyst.io.even_time import Samples, on_even_steps
 from hyst.io.header import is_time, unit_of_time_in_name
+from hyst.io.own_times import refuse_own_times
 from hyst.io.table import Table
 from hyst.io.units_of_time import seconds_per_unit
-from hyst.io.usable_rows import LONGEST_GAP, refuse_other_stamps, usable_rows
+from hyst.io.usable_rows import LONGEST_GAP, usable_rows
 from hyst.signals import Record, reversals, suggest_dead_band
 
 _FEWEST_REVERSALS = 2
@@ -63,8 +64,14 @@ class Wanted:
         """Give the columns by their roles."""
         return {"input": self.input, "output": self.output, "time": self.time}
 
+    def used(self) -> list[int | str]:
+        """Give the columns that will be used."""
+        return [each for each in self.columns().values() if each is not None]
 
-def record_of_table(table: Table, wanted: Wanted) -> Record:
+
+def record_of_table(
+    table: Table, wanted: Wanted, read: Callable[[Table, int], NDArray[np.float64]]
+) -> Record:
     """Make a record of two columns of a table and the time of its rows.
 
     Parameters
@@ -73,6 +80,8 @@ def record_of_table(table: Table, wanted: Wanted) -> Record:
         What was read.
     wanted
         Which columns, and how.
+    read
+        Gives a column of the table, read already or not.
 
     Returns
     -------
@@ -88,18 +97,18 @@ def record_of_table(table: Table, wanted: Wanted) -> Record:
     for k in chosen[:2]:
         if k in table.doubts:
             raise InputError(f"{table.source}: {table.names[k]!r}: {table.doubts[k]}; correct one")
+    if wanted.time is not None:
+        roles = {"input": chosen[0], "output": chosen[1]}
+        refuse_own_times(table, roles, chosen[2], lambda column: read(table, column))
     rows, left_out = usable_rows(table, chosen, wanted.repair, wanted.longest_gap)
     signals = [table.columns[k][rows] for k in chosen[:2]]
     samples, told = _samples(table, chosen, rows, signals, wanted)
     even = on_even_steps(samples, wanted.repair, wanted.longest_gap)
     u, y = even.signals
-    for column, signal, role in zip(chosen, (u, y), ("input", "output"), strict=False):
-        _refuse_still(table, column, signal, role)
-    _refuse_few_reversals(table, chosen[0], u, wanted.dead_band)
     of_columns = [
         f"{table.names[k]!r}: {note}" for k in chosen for note in table.notes_of_columns.get(k, ())
     ]
-    return Record(
+    record = Record(
         u,
         y,
         even.dt,
@@ -109,6 +118,8 @@ def record_of_table(table: Table, wanted: Wanted) -> Record:
         output_unit=table.units[chosen[1]],
         notes=(*table.notes, *of_columns, *told, *left_out, *even.notes),
     )
+    refuse_unusable(table.source, record, wanted.dead_band)
+    return record
 
 
 def choose_columns(table: Table, wanted: Mapping[str, int | str | None]) -> list[int]:
@@ -204,7 +215,6 @@ def _stamps(
             f"{table.source}: the time column {header!r} has the unit {unit!r}, which is no unit "
             "of time hyst knows; give time_unit s, ms, us, ns, min or h"
         )
-    refuse_other_stamps(table, chosen)
     return stamps, seconds, told
 
 
@@ -226,18 +236,33 @@ def _refuse_unlikely_seconds(
         )
 
 
-def _refuse_still(table: Table, column: int, signal: NDArray[np.float64], role: str) -> None:
-    if signal.min() == signal.max():
-        raise InputError(
-            f"{table.source}: the {role} {table.names[column]!r} is {signal[0]:.6g} throughout; "
-            "choose a column that moves"
-        )
+def refuse_unusable(source: str, record: Record, dead_band: float | None) -> None:
+    """Refuse signals that stand still, and an input without two turns or one whole loop.
 
+    Parameters
+    ----------
+    source
+        Name of the file, for messages.
+    record
+        What was read.
+    dead_band
+        As in ``read_record``.
 
-def _refuse_few_reversals(
-    table: Table, column: int, u: NDArray[np.float64], dead_band: float | None
-) -> None:
-    """Refuse an input that neither turns twice nor goes through one whole loop."""
+    Raises
+    ------
+    InputError
+        If so.
+    """
+    for name, signal, role in (
+        (record.input_name, record.u, "input"),
+        (record.output_name, record.y, "output"),
+    ):
+        if signal.min() == signal.max():
+            raise InputError(
+                f"{source}: the {role} {name!r} is {signal[0]:.6g} throughout; "
+                "choose a column that moves"
+            )
+    u = record.u
     threshold = suggest_dead_band(u) if dead_band is None else dead_band
     turns = reversals(u, threshold)
     if turns.size >= _FEWEST_REVERSALS:
@@ -248,7 +273,7 @@ def _refuse_few_reversals(
         if min(there, back) >= _WHOLE_LOOP * max(there, back):
             return
     raise InputError(
-        f"{table.source}: the input {table.names[column]!r} has {turns.size} reversals beyond its "
-        f"dead band of {threshold:.3g}, and hysteresis needs at least {_FEWEST_REVERSALS}, or one "
-        "rise and fall of about the same size; record whole cycles, or give a smaller dead_band"
+        f"{source}: the input {record.input_name!r} has {turns.size} reversals beyond its dead "
+        f"band of {threshold:.3g}, and hysteresis needs at least {_FEWEST_REVERSALS}, or one rise "
+        "and fall of about the same size; record whole cycles, or give a smaller dead_band"
     )
