@@ -37,9 +37,7 @@ def main() -> None:
         for name, (form, separator) in FORMS.items():
             path = Path(folder) / "loop.csv"
             write(path, form, separator)
-            times = interleaved(
-                works(path, separator), seconds=6.0, rounds=7, clock=time.perf_counter
-            )
+            times = interleaved(works(path, separator), seconds=6.0, rounds=7)
             row = [
                 f"{np.median(times[each]):13.3f}" if each in times else f"{'-':>13s}"
                 for each in head[:4]
