@@ -5,10 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.diagnosis.values.codes import Code
 from hyst.errors import InputError
+from hyst.io.codes_in_rows import codes_in_rows, what_it_is
 from hyst.io.columns import refuse_flaws
-from hyst.io.instrument_codes import Code, find_codes
 from hyst.io.table import Table
+
+Codes = tuple[tuple[Code, ...], tuple[Code, ...]]
 
 LONGEST_GAP = 5
 FEWEST_SAMPLES = 3
@@ -49,11 +52,10 @@ def usable_rows(
         If a value is missing or none and ``repair`` is not set, or too many are.
     """
     finite = [np.isfinite(table.columns[k]) for k in chosen]
-    codes = [find_codes(table.columns[k]) for k in chosen[:2]]
     good = np.logical_and.reduce(finite)
-    for found in codes:
-        for code in found:
-            good[code.rows] = False
+    codes = codes_in_rows(table, chosen[0], chosen[1], np.flatnonzero(good))
+    for code in (*codes[0], *codes[1]):
+        good[code.samples] = False
     rows = np.flatnonzero(good)
     missing = good.size - rows.size
     if not missing:
@@ -106,16 +108,16 @@ def _refuse_apart(table: Table, chosen: list[int], finite: list[NDArray[np.bool_
         )
 
 
-def _refuse_codes(table: Table, chosen: list[int], codes: list[list[Code]], allowed: bool) -> None:
+def _refuse_codes(table: Table, chosen: list[int], codes: Codes, allowed: bool) -> None:
     for k, found in zip(chosen, codes, strict=False):
         for code in found[:1]:
-            more = code.rows.size - 1
+            more = code.samples.size - 1
             also = f" and in {_rows(more)} more" if more else ""
             remedy = ", or leave such rows out with the option repair" if allowed else ""
             raise InputError(
                 f"{table.source}: {table.names[k]!r} is {code.value:.6g} at "
-                f"{table.place(int(code.rows[0]))}{also}, far from all other values: a code of the "
-                f"instrument and no measurement; correct it{remedy}"
+                f"{table.place(int(code.samples[0]))}{also}, far from all other values: "
+                f"{what_it_is(code)}; correct it{remedy}"
             )
 
 
@@ -135,7 +137,7 @@ def _rows(count: int) -> str:
 
 
 def _told(
-    table: Table, chosen: list[int], codes: list[list[Code]], finite: NDArray[np.bool_]
+    table: Table, chosen: list[int], codes: Codes, finite: NDArray[np.bool_]
 ) -> tuple[str, ...]:
     notes = []
     dropped = int(finite.size - finite.sum())
@@ -143,8 +145,8 @@ def _told(
         notes.append(f"left out {_rows(dropped)} that held no number or no finite one")
     for k, found in zip(chosen, codes, strict=False):
         notes += [
-            f"left out {_rows(code.rows.size)} where {table.names[k]!r} is {code.value:.6g}, a "
-            "code of the instrument and no measurement"
+            f"left out {_rows(code.samples.size)} where {table.names[k]!r} is {code.value:.6g}, "
+            f"{what_it_is(code)}"
             for code in found
         ]
     return tuple(notes)
