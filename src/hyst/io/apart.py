@@ -9,15 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
-from hyst.io.columns import find_column, refuse_flaws
-from hyst.io.formats import read_table
+from hyst.io.codes_in_rows import codes_of_column, refuse_codes, told_of_codes
+from hyst.io.columns import find_column, notes_about, refuse_doubts, refuse_flaws, shorten
+from hyst.io.formats import choose_table, read_tables
 from hyst.io.own_times import OneRaster, Stamped, on_one_raster
 from hyst.io.table import Table
 from hyst.io.time_axis import TOLERANCE, first_step_back, worst_gap
-from hyst.io.units_of_time import seconds_per_unit
+from hyst.io.unit_of_stamps import unit_of_stamps
+from hyst.io.usable_rows import FEWEST_SAMPLES, REMEDY
 from hyst.signals import Record
 
-_FEWEST = 3
 # How a cell without a value is written.
 _NOTHING = frozenset({"", "nan", "na", "n/a", "null", "none", "-"})
 
@@ -44,6 +45,8 @@ class Apart:
         Whether different stamps are brought to one raster.
     hold_input
         Whether the input keeps its value until its next stamp.
+    table, format
+        As for ``read_record``.
     """
 
     input: Column
@@ -55,6 +58,8 @@ class Apart:
     repair: bool
     resample: bool
     hold_input: bool = False
+    table: int | None = None
+    format: str | None = None
 
 
 def read_apart(
@@ -100,7 +105,7 @@ def read_apart(
         output_name=y.name,
         input_unit=u.unit,
         output_unit=y.unit,
-        notes=both.notes,
+        notes=(*u.notes, *(each for each in y.notes if each not in u.notes), *both.notes),
     )
 
 
@@ -108,14 +113,19 @@ def _signal(
     path: str | os.PathLike[str], column: Column, time: Column | None, where: Apart, most: int
 ) -> Stamped:
     wanted = [column] if time is None else [column, time]
-    table = read_table(path, columns=wanted, max_samples=most)
+    tables = read_tables(
+        path, columns=wanted, max_samples=most, format=where.format, repair=where.repair
+    )
+    if where.table is not None or len(tables) > 1:
+        tables = (choose_table(tables, where.table),)
+    (table,) = tables
     found = find_column(table, column)
-    values = table.columns[found]
+    refuse_doubts(table, found)
     if where.rate is not None or time is None:
-        if not where.repair:
-            refuse_flaws(table, found, "correct it")
-        stamps = np.arange(values.size) / (where.rate or 1.0)
-        return Stamped(table.names[found], table.units[found], stamps, values)
+        refuse_flaws(table, found, "correct it")
+        rows = np.arange(table.columns[found].size)
+        refuse_codes(table, found, codes_of_column(table, found, rows), "")
+        return _named(table, found, rows / (where.rate or 1.0), rows, notes_about(table, [found]))
     clock = find_column(table, time)
     if clock == found:
         raise InputError(f"{table.source}: {table.headers[found]!r} cannot be its own time")
@@ -129,31 +139,57 @@ def _stamped(table: Table, column: int, clock: int, where: Apart) -> Stamped:
             f"{table.source}: {table.names[column]!r} has {values.size} values and "
             f"{table.names[clock]!r} {time.size}; choose the stamps that belong to it"
         )
-    for k in (column, clock):
-        flaw = table.flaws[k]
-        empty = flaw is None or flaw.text.strip().casefold() in _NOTHING
-        if not empty and not where.repair:
-            refuse_flaws(table, k, "correct it, or leave such rows out with the option repair")
-    rows = np.flatnonzero(np.isfinite(values) & np.isfinite(time))
-    if rows.size < _FEWEST:
-        raise InputError(
-            f"{table.source}: {table.names[column]!r} has {rows.size} values with a stamp; give at "
-            f"least {_FEWEST}"
-        )
-    unit = table.units[clock] if where.time_unit is None else where.time_unit
-    seconds = seconds_per_unit(unit)
-    if seconds is None:
-        raise InputError(
-            f"{table.source}: the time column {table.headers[clock]!r} has the unit {unit!r}, "
-            "which is no unit of time hyst knows; give time_unit s, ms, us, ns, min or h"
-        )
+    rows, left_out = _rows_with_both(table, column, clock, where.repair)
+    seconds, told = unit_of_stamps(table, clock, time[rows], where.time_unit)
     back = first_step_back(time[rows])
     if back is not None:
         raise InputError(
             f"{table.source}: the time {table.names[clock]!r} of {table.names[column]!r} does not "
-            f"increase at {table.place(int(rows[back]))}; sort the file"
+            f"increase at {table.place(int(rows[back]))}; correct the stamps"
         )
-    return Stamped(table.names[column], table.units[column], time[rows] * seconds, values[rows])
+    notes = (*notes_about(table, [column, clock]), *told, *left_out)
+    return _named(table, column, time[rows] * seconds, rows, notes)
+
+
+def _named(
+    table: Table,
+    column: int,
+    time: NDArray[np.float64],
+    rows: NDArray[np.intp],
+    notes: tuple[str, ...],
+) -> Stamped:
+    values = table.columns[column][rows]
+    return Stamped(table.names[column], table.units[column], time, values, notes)
+
+
+def _rows_with_both(
+    table: Table, column: int, clock: int, repair: bool
+) -> tuple[NDArray[np.intp], list[str]]:
+    """Give the rows with a value and a stamp; empty cells are the other signal's rows."""
+    left_out = []
+    for k in (column, clock):
+        flaw = table.flaws[k]
+        if flaw is None or flaw.text.strip().casefold() in _NOTHING:
+            continue
+        if not repair or flaw.why:
+            refuse_flaws(table, k, f"correct it{REMEDY}")
+        left_out.append(
+            f"left out rows where {table.names[k]!r} is no number, as {shorten(flaw.text)} at "
+            f"{table.place(flaw.row)}"
+        )
+    rows = np.flatnonzero(np.isfinite(table.columns[column]) & np.isfinite(table.columns[clock]))
+    codes = codes_of_column(table, column, rows)
+    if not repair:
+        refuse_codes(table, column, codes, REMEDY)
+    left_out += told_of_codes(table, column, codes)
+    for code in codes:
+        rows = np.setdiff1d(rows, code.samples)
+    if rows.size < FEWEST_SAMPLES:
+        raise InputError(
+            f"{table.source}: {table.names[column]!r} has {rows.size} values with a stamp; give at "
+            f"least {FEWEST_SAMPLES}"
+        )
+    return rows, left_out
 
 
 def _together(u: Stamped, y: Stamped, source: str, where: Apart) -> OneRaster:

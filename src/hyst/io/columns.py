@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+from collections.abc import Sequence
 
 from hyst.errors import InputError
 from hyst.io.header import split_unit
@@ -103,6 +104,21 @@ def refuse_flaws(table: Table, column: int, remedy: str) -> None:
         f"{table.source}: {name!r} is {shorten(flaw.text)} at {place}, not a finite number; "
         f"{remedy}"
     )
+
+
+def refuse_doubts(table: Table, column: int) -> None:
+    """Refuse a signal whose unit the file contradicts."""
+    if column in table.doubts:
+        name = table.names[column]
+        raise InputError(f"{table.source}: {name!r}: {table.doubts[column]}; correct one")
+
+
+def notes_about(table: Table, columns: Sequence[int]) -> tuple[str, ...]:
+    """Give what is to be told about a file and some of its columns."""
+    of_columns = (
+        f"{table.names[k]!r}: {note}" for k in columns for note in table.notes_of_columns.get(k, ())
+    )
+    return (*table.notes, *of_columns)
 
 
 def shorten(text: str) -> str:

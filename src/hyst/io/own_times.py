@@ -35,12 +35,15 @@ class Stamped:
         Stamps, s, shape (N,), increasing.
     values
         Shape (N,), finite.
+    notes
+        What was found out about them; sentences.
     """
 
     name: str
     unit: str
     time: Array
     values: Array
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,9 +206,8 @@ def refuse_own_times(
     Raises
     ------
     InputError
-        If a signal has stamps of its own, or the signals have no value in most rows.
+        If a signal has stamps of its own.
     """
-    _refuse_rows_apart(table, list(signals.values()))
     for role, column in signals.items():
         for k in range(len(table.names)):
             if k in {time, column} or not _is_time_of(table, k, column, time):
@@ -218,7 +220,8 @@ def refuse_own_times(
                 )
 
 
-def _refuse_rows_apart(table: Table, columns: list[int]) -> None:
+def refuse_rows_apart(table: Table, columns: list[int]) -> None:
+    """Refuse two signals that seldom have a value in one row, for they were logged apart."""
     finite = [np.isfinite(table.columns[k]) for k in columns]
     if len(finite) < 2 or finite[0].size != finite[1].size:
         return

@@ -17,7 +17,7 @@ from hyst.io.entries import MOST_SAMPLES
 from hyst.io.formats import choose_table, read_table, read_tables
 from hyst.io.record_of_table import Wanted, choose_columns, record_of_table, refuse_unusable
 from hyst.io.table import Table
-from hyst.io.units_of_time import seconds_per_unit
+from hyst.io.unit_of_stamps import require_time_unit
 from hyst.io.usable_rows import LONGEST_GAP
 from hyst.signals import Record
 
@@ -123,7 +123,17 @@ def read_record(
         clocks = [time if each is None else each for each in (input_time, output_time)]
         _refuse_clocks(rate, clocks, time_unit, resample)
         where = Apart(
-            input, output, clocks[0], clocks[1], rate, time_unit, repair, resample, hold_input
+            input=input,
+            output=output,
+            input_time=clocks[0],
+            output_time=clocks[1],
+            rate=rate,
+            time_unit=time_unit,
+            repair=repair,
+            resample=resample,
+            hold_input=hold_input,
+            table=table,
+            format=format,
         )
         record = read_apart(path, output_file, where, max_samples)
         refuse_unusable(str(path), record, dead_band)
@@ -258,8 +268,7 @@ def _refuse_clocks(
             )
     elif any(clock is None for clock in clocks):
         raise InputError("a signal has no stamps; give time, or input_time and output_time")
-    if time_unit is not None and seconds_per_unit(time_unit) is None:
-        raise InputError(f"time_unit is {time_unit!r}; give s, ms, us, ns, min or h")
+    require_time_unit(time_unit)
 
 
 def _chosen(tables: tuple[Table, ...], table: int | None, wanted: Wanted) -> Table:

@@ -5,16 +5,20 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.diagnosis.values.codes import Code
 from hyst.errors import InputError
-from hyst.io.codes_in_rows import codes_in_rows, what_it_is
+from hyst.io.codes_in_rows import (
+    Codes,
+    codes_of_both,
+    refuse_codes,
+    rows_counted,
+    told_of_codes,
+)
 from hyst.io.columns import refuse_flaws
 from hyst.io.table import Table
 
-Codes = tuple[tuple[Code, ...], tuple[Code, ...]]
-
 LONGEST_GAP = 5
 FEWEST_SAMPLES = 3
+REMEDY = ", or leave such rows out with the option repair"
 # Repair leaves out single faults; what lacks more than this is another record than the one wanted.
 _LARGEST_SHARE = 0.05
 _ALWAYS_ALLOWED = 3
@@ -53,7 +57,7 @@ def usable_rows(
     """
     finite = [np.isfinite(table.columns[k]) for k in chosen]
     good = np.logical_and.reduce(finite)
-    codes = codes_in_rows(table, chosen[0], chosen[1], np.flatnonzero(good))
+    codes = codes_of_both(table, chosen[0], chosen[1], np.flatnonzero(good))
     for code in (*codes[0], *codes[1]):
         good[code.samples] = False
     rows = np.flatnonzero(good)
@@ -61,14 +65,14 @@ def usable_rows(
     if not missing:
         return _enough(table, rows), ()
     allowed = missing <= most_left_out(good.size)
-    _refuse_apart(table, chosen, finite)
     for k, usable in zip(chosen, finite, strict=True):
         flaw = table.flaws[k]
         if not (repair and usable.any() and not (flaw and flaw.why)):
             possible = allowed and bool(usable.any())
             refuse_flaws(table, k, _remedy(possible, missing, good.size))
     if not repair:
-        _refuse_codes(table, chosen, codes, allowed)
+        for k, found in zip(chosen, codes, strict=False):
+            refuse_codes(table, k, found, REMEDY if allowed else "")
     if not allowed:
         raise InputError(
             f"{table.source}: {missing} of {good.size} rows hold no value in one of the columns, "
@@ -90,35 +94,11 @@ def _enough(table: Table, rows: NDArray[np.intp]) -> NDArray[np.intp]:
 
 def _remedy(allowed: bool, missing: int, rows: int) -> str:
     if allowed:
-        return "correct it, or leave such rows out with the option repair"
+        return f"correct it{REMEDY}"
     return (
         f"{missing} of {rows} rows lack a value, too many to leave out; give a file that "
         "is complete"
     )
-
-
-def _refuse_apart(table: Table, chosen: list[int], finite: list[NDArray[np.bool_]]) -> None:
-    """Refuse input and output that were logged at instants of their own."""
-    u, y = finite[:2]
-    if min(u.sum(), y.sum()) >= FEWEST_SAMPLES and not (u & y).any():
-        names = " and ".join(repr(table.names[k]) for k in chosen[:2])
-        raise InputError(
-            f"{table.source}: {names} never have a value in one row, for each was logged at its "
-            "own times; the option resample brings both to one raster"
-        )
-
-
-def _refuse_codes(table: Table, chosen: list[int], codes: Codes, allowed: bool) -> None:
-    for k, found in zip(chosen, codes, strict=False):
-        for code in found[:1]:
-            more = code.samples.size - 1
-            also = f" and in {_rows(more)} more" if more else ""
-            remedy = ", or leave such rows out with the option repair" if allowed else ""
-            raise InputError(
-                f"{table.source}: {table.names[k]!r} is {code.value:.6g} at "
-                f"{table.place(int(code.samples[0]))}{also}, far from all other values: "
-                f"{what_it_is(code)}; correct it{remedy}"
-            )
 
 
 def _refuse_long_gap(table: Table, rows: NDArray[np.intp], longest_gap: int) -> None:
@@ -132,21 +112,13 @@ def _refuse_long_gap(table: Table, rows: NDArray[np.intp], longest_gap: int) -> 
         )
 
 
-def _rows(count: int) -> str:
-    return "1 row" if count == 1 else f"{count} rows"
-
-
 def _told(
-    table: Table, chosen: list[int], codes: Codes, finite: NDArray[np.bool_]
+    table: Table, chosen: list[int], codes: tuple[Codes, Codes], finite: NDArray[np.bool_]
 ) -> tuple[str, ...]:
     notes = []
     dropped = int(finite.size - finite.sum())
     if dropped:
-        notes.append(f"left out {_rows(dropped)} that held no number or no finite one")
+        notes.append(f"left out {rows_counted(dropped)} that held no number or no finite one")
     for k, found in zip(chosen, codes, strict=False):
-        notes += [
-            f"left out {_rows(code.samples.size)} where {table.names[k]!r} is {code.value:.6g}, "
-            f"{what_it_is(code)}"
-            for code in found
-        ]
+        notes += told_of_codes(table, k, found)
     return tuple(notes)
