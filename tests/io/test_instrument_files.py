@@ -111,6 +111,18 @@ def test_waveforms_get_their_time_from_the_increment(tmp_path: Path) -> None:
     assert read_table(path).headers[:2] == ("Log/drive/time", "Log/pos/time")
 
 
+def test_units_of_channels_stand_in_properties_or_names(tmp_path: Path) -> None:
+    path = tmp_path / "log.tdms"
+    channels = [
+        files.ChannelObject("Log", "drive (V)", U),
+        files.ChannelObject("Log", "pos (V)", Y, {"NI_UnitDescription": "um"}),
+    ]
+    with files.TdmsWriter(path) as writer:
+        writer.write_segment(channels)
+    table = read_table(path)
+    assert (table.names, table.units) == (("drive", "pos"), ("V", "um"))
+
+
 def test_a_tdms_without_numbers_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "log.tdms"
     with files.TdmsWriter(path) as writer:

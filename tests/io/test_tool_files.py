@@ -71,6 +71,13 @@ def test_axes_of_a_scope_go_by_label_path_or_number(tmp_path: Path) -> None:
     assert read_column(path, "Strom")[1:] == ("Strom", "A")
 
 
+def test_a_path_in_a_label_is_no_unit(tmp_path: Path) -> None:
+    path = tmp_path / "scope.mat"
+    files.structure_with_time(path, labels=("Model Root/u/In1", "Model Root/y"))
+    assert read_column(path, "Model Root/u/In1")[1:] == ("Model Root/u/In1", "")
+    assert read_column(path, "Model Root/y")[1:] == ("Model Root/y", "")
+
+
 @pytest.mark.parametrize("labels", [("", ""), ("pos", "pos")])
 def test_signals_without_a_label_of_their_own_go_by_their_path(
     tmp_path: Path, labels: tuple[str, str]

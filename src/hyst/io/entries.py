@@ -157,10 +157,26 @@ def _reading(stored: Stored, selector: Selector) -> Callable[[], NDArray[Any]]:
 def _name_and_unit(path: str, separator: str, label: str) -> tuple[str, str]:
     """Take the unit out of the last part of a path, or of the label in its place."""
     if label:
-        return split_unit(label)
+        return unit_of_label(label)
     head, mark, leaf = path.rpartition(separator)
     name, unit = split_unit(leaf)
     return head + mark + name, unit
+
+
+def unit_of_label(label: str) -> tuple[str, str]:
+    """Split ``voltage [V]``, but not ``Model Root/voltage``: tools write paths into labels.
+
+    Parameters
+    ----------
+    label
+        What a tool calls a signal.
+
+    Examples
+    --------
+    >>> unit_of_label("voltage (V)"), unit_of_label("Model Root/In1")
+    (('voltage', 'V'), ('Model Root/In1', ''))
+    """
+    return split_unit(label) if "/" not in label else (label, "")
 
 
 def columns_of(shape: Sequence[int]) -> tuple[list[tuple[str, Selector]], str]:

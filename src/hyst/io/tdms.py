@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import HystError, InputError, MissingExtraError
-from hyst.io.entries import Entry, Wanted, table_of_entries
+from hyst.io.entries import Entry, Wanted, table_of_entries, unit_of_label
 from hyst.io.table import Table
 
 SUFFIXES = (".tdms",)
@@ -117,10 +117,11 @@ def _group(group: str, channels: list[Any], left_out: dict[str, str]) -> list[En
         if len(channel) < 2:
             left_out[header] = "is empty" if not len(channel) else "is a single number"
             continue
-        said = (channel.properties.get(name) for name in _UNITS)
-        unit = next((str(each) for each in said if each), "s" if kind.kind == "M" else "")
+        name, unit = unit_of_label(channel.name)
+        said = (channel.properties.get(each) for each in _UNITS)
+        unit = next((str(each) for each in said if each), "s" if kind.kind == "M" else unit)
         read = functools.partial(_values, channel)
-        entries.append(Entry(header, channel.name, unit, len(channel), read))
+        entries.append(Entry(header, name, unit, len(channel), read))
         clock = _clock(channel)
         if clock is not None:
             clocks[channel.name] = clock
