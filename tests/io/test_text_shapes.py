@@ -326,7 +326,9 @@ def test_a_limit_of_samples(tmp_path: Path) -> None:
         read_record(path, "u", "y", time="time", max_samples=50)
 
 
-@pytest.mark.parametrize("odd", ["0.0000,0.0", "x", "-----", "err,err,err", "err.err,err,err.1x"])
+@pytest.mark.parametrize(
+    "odd", ["0.0000,0.0", "0.0000,0.0e", "1", "x", "-----", "err,err,err", "err.err,err,err.1x"]
+)
 @pytest.mark.parametrize("top", [["time_ms,u_V,y_um"], ["time,u,y", "ms,V,um"]])
 def test_an_odd_line_below_the_header_does_not_hide_its_units(
     tmp_path: Path, top: list[str], odd: str
@@ -370,3 +372,11 @@ def test_heads_of_some_programs(
     record = read_record(write(tmp_path, [*top, *body]), *names, time=time)
     assert record.dt == DT
     same_signals(record, U, Y)
+
+
+@pytest.mark.parametrize("repair", [False, True])
+def test_a_header_among_the_rows_is_not_left_out(tmp_path: Path, repair: bool) -> None:
+    body = rows((1e3 * T, U, Y))
+    path = write(tmp_path, [*body[:30], "time_ms,u,y", *body[30:]])
+    with pytest.raises(InputError, match="line 31 holds 3 texts among rows that have no header"):
+        read_record(path, 1, 2, time=0, repair=repair)
