@@ -96,3 +96,11 @@ def test_format_and_limit(run: Run) -> None:
     assert run("identify", path, *timed, "--format", "text", *QUICK).code == 0
     many = run("identify", path, *timed, "--format", "text", "--max-samples", "100", *QUICK)
     assert (many.code, "at most 100 are read" in many.err) == (2, True)
+
+
+def test_the_columns_of_one_of_several_tables(run: Run) -> None:
+    path = written(HEADER, lines(), ["", "f,A,B", *["1,2,3", "2,3,4", "3,4,6", "4,1,2"]])
+    refused = run("columns", path)
+    assert (refused.code, "holds 2 tables below each other" in refused.err) == (2, True)
+    shown = run("columns", path, "--table", "2")
+    assert (shown.code, "0: f" in shown.out) == (0, True)

@@ -77,6 +77,15 @@ def test_minutes_and_seconds(tmp_path: Path) -> None:
     stamps = [f"{int(t + 59.9) // 60:02d}:{(t + 59.9) % 60:06.3f}" for t in T]
     path = write(tmp_path, ["t,u,y", *rows((stamps, U, Y))])
     assert read_record(path, "u", "y", time="t").dt == DT
+    # Nothing but a number above 23 tells minutes from hours.
+    for first, dt in ((22, None), (24, 1.0)):
+        stamps = [f"{first + k // 60:02d}:{k % 60:02d}" for k in range(T.size)]
+        path = write(tmp_path, ["t,u,y", *rows((stamps, U, Y))])
+        if dt is None:
+            with pytest.raises(InputError, match="may be hours and minutes or minutes and secon"):
+                read_record(path, "u", "y", time="t")
+        else:
+            assert read_record(path, "u", "y", time="t").dt == dt
 
 
 def test_days_and_months_that_cannot_be_told_apart_are_refused(tmp_path: Path) -> None:

@@ -10,8 +10,13 @@ from typing import Annotated
 import typer
 
 import hyst
-from hyst.cli.arguments import MOST_SAMPLES, MaxSamples
+from hyst.cli.arguments import MOST_SAMPLES, FileFormat, MaxSamples
 from hyst.cli.console import note, show_table
+
+Table = Annotated[
+    int | None,
+    typer.Option(metavar="N", show_default=False, help="Which of several tables in a text file."),
+]
 
 _LISTED = 12
 
@@ -20,10 +25,12 @@ def columns(
     file: Annotated[
         Path, typer.Argument(metavar="FILE", show_default=False, help="A file of measured signals.")
     ],
+    table: Table = None,
+    file_format: FileFormat = None,
     max_samples: MaxSamples = MOST_SAMPLES,
 ) -> None:
     """List the columns of a data file, and guess which are input, output and time."""
-    found = hyst.io.summarize_file(file, max_samples=max_samples)
+    found = hyst.io.summarize_file(file, max_samples=max_samples, table=table, format=file_format)
     number = hyst.report.number
     rows = tuple(
         (

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,7 +79,13 @@ class FileSummary:
     left_out: tuple[tuple[str, str], ...]
 
 
-def summarize_file(path: str | os.PathLike[str], *, max_samples: int = MOST_SAMPLES) -> FileSummary:
+def summarize_file(
+    path: str | os.PathLike[str],
+    *,
+    max_samples: int = MOST_SAMPLES,
+    table: int | None = None,
+    format: str | None = None,
+) -> FileSummary:
     r"""List what a data file holds, with a guess at input, output and time.
 
     Parameters
@@ -86,6 +94,8 @@ def summarize_file(path: str | os.PathLike[str], *, max_samples: int = MOST_SAMP
         The file, of any format of ``read_table``.
     max_samples
         Most numbers to read at a time; columns of more have no range.
+    table, format
+        As for ``read_table``.
 
     Returns
     -------
@@ -108,28 +118,29 @@ def summarize_file(path: str | os.PathLike[str], *, max_samples: int = MOST_SAMP
     >>> [(each.name, each.high, each.guess) for each in summarize_file(path).columns]
     [('t', 2.0, 'time'), ('drive', 2.0, 'input'), ('pos', 5.0, 'output')]
     """
+    read = partial(read_table, path, max_samples=max_samples, table=table, format=format)
     try:
-        table = read_table(path, max_samples=max_samples)
-        columns = [table.columns[k] for k in range(len(table.names))]
-        found = [_summary(table, k) for k in range(len(table.names))]
+        whole = read()
+        columns = [whole.columns[k] for k in range(len(whole.names))]
+        found = [_summary(whole, k) for k in range(len(whole.names))]
     except TooManySamples:
-        table = read_table(path, columns=(), max_samples=max_samples)
-        found, columns = _one_by_one(path, table, max_samples)
+        whole = read(columns=())
+        found, columns = _one_by_one(read, whole)
     guesses = _guess(found, columns)
     named = [
         ColumnSummary(**{**vars(each), "guess": guesses.get(each.index, "")}) for each in found
     ]
-    return FileSummary(tuple(named), tuple(table.left_out.items()))
+    return FileSummary(tuple(named), tuple(whole.left_out.items()))
 
 
 def _one_by_one(
-    path: str | os.PathLike[str], table: Table, most: int
+    read: Callable[..., Table], table: Table
 ) -> tuple[list[ColumnSummary], list[NDArray[np.float64]]]:
     """Summarize a file that is too large to be read as a whole."""
     found: list[ColumnSummary] = []
     for k in range(len(table.names)):
         try:
-            found.append(_summary(read_table(path, columns=[k], max_samples=most), k))
+            found.append(_summary(read(columns=[k]), k))
         except TooManySamples as refusal:
             said = (k, table.headers[k], table.names[k], table.units[k], refusal.samples)
             found.append(ColumnSummary(*said, np.nan, np.nan, "not read"))
