@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import typer
@@ -14,28 +14,10 @@ from numpy.typing import NDArray
 import hyst
 from hyst._files import replacing_files, require_folder
 from hyst.cli.arguments import (
-    MOST_SAMPLES,
-    DeadBand,
-    FileFormat,
-    HoldInput,
-    InputColumn,
-    InputTime,
-    LongestGap,
-    MaxSamples,
-    OutputColumn,
-    OutputFile,
-    OutputTime,
-    Rate,
-    Repair,
-    Resample,
-    TableNumber,
-    TimeColumn,
-    TimeUnit,
     load_operator,
-    read_told,
-    reading_options,
 )
 from hyst.cli.console import at_work, note, show_files, show_table
+from hyst.cli.reading_options import read_told, reads_records
 
 Files = Annotated[
     list[Path],
@@ -93,26 +75,11 @@ def _only(records: tuple[hyst.Record, ...]) -> hyst.Record:
     return records[0]
 
 
+@reads_records
 def adapt(
-    context: typer.Context,
     files: Files,
-    input_column: InputColumn,
-    output_column: OutputColumn,
     folder: Folder,
-    rate: Rate = None,
-    time: TimeColumn = None,
-    time_unit: TimeUnit = None,
-    repair: Repair = False,
-    longest_gap: LongestGap = hyst.io.LONGEST_GAP,
-    dead_band: DeadBand = None,
-    table: TableNumber = None,
-    file_format: FileFormat = None,
-    resample: Resample = False,
-    hold_input: HoldInput = False,
-    input_time: InputTime = None,
-    output_time: OutputTime = None,
-    output_file: OutputFile = None,
-    max_samples: MaxSamples = MOST_SAMPLES,
+    how: dict[str, Any],
     start: Start = 0,
     memory: Memory = None,
     spread: Spread = None,
@@ -129,7 +96,7 @@ def adapt(
     else:
         model = load_operator(model_file or data)
     about = model.description
-    measured = _only(read_told(data, **reading_options(context)))
+    measured = _only(read_told(data, **how))
     history, record = _from_start(_without_delay(measured, about.delay), start)
     if estimator is None:
         estimator = _started(model, record.dt, memory, spread, estimate_maps)

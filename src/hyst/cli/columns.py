@@ -5,32 +5,26 @@ from __future__ import annotations
 import math
 import shlex
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 import hyst
-from hyst.cli.arguments import MOST_SAMPLES, FileFormat, MaxSamples
 from hyst.cli.console import note, show_table
-
-Table = Annotated[
-    int | None,
-    typer.Option(metavar="N", show_default=False, help="Which of several tables in a text file."),
-]
+from hyst.cli.reading_options import reads_columns
 
 _LISTED = 12
 
 
+@reads_columns
 def columns(
     file: Annotated[
         Path, typer.Argument(metavar="FILE", show_default=False, help="A file of measured signals.")
     ],
-    table: Table = None,
-    file_format: FileFormat = None,
-    max_samples: MaxSamples = MOST_SAMPLES,
+    how: dict[str, Any],
 ) -> None:
     """List the columns of a data file, and guess which are input, output and time."""
-    found = hyst.io.summarize_file(file, max_samples=max_samples, table=table, format=file_format)
+    found = hyst.io.summarize_file(file, **how)
     number = hyst.report.number
     rows = tuple(
         (
@@ -50,7 +44,7 @@ def columns(
         if each.flaw:
             note(f"{each.header!r}: {each.flaw}")
     _tell_left_out(found.left_out)
-    _suggest(file, found, max_samples)
+    _suggest(file, found, how)
 
 
 def _tell_left_out(left_out: tuple[tuple[str, str], ...]) -> None:
@@ -64,7 +58,7 @@ def _tell_left_out(left_out: tuple[tuple[str, str], ...]) -> None:
         note(f"single numbers, which are no columns: {single}")
 
 
-def _suggest(file: Path, found: hyst.io.FileSummary, max_samples: int) -> None:
+def _suggest(file: Path, found: hyst.io.FileSummary, how: dict[str, Any]) -> None:
     """Print the command that the guess amounts to, for a person to check, and try its reading."""
     guessed = {each.guess: each for each in found.columns if each.guess}
     if not {"input", "output"} <= set(guessed):
@@ -78,6 +72,8 @@ def _suggest(file: Path, found: hyst.io.FileSummary, max_samples: int) -> None:
             command += [option, unique[0] if unique else str(each.index)]
     if "time" not in guessed:
         command += ["--rate", "HZ"]
+    for name in ("table", "format"):
+        command += [] if how[name] is None else [f"--{name}", str(how[name])]
     print(f"\nif the guess is right: {shlex.join([*command, '-o', 'out'])}")
     columns = {role: each.index for role, each in guessed.items()}
     try:
@@ -87,7 +83,7 @@ def _suggest(file: Path, found: hyst.io.FileSummary, max_samples: int) -> None:
             columns["output"],
             time=columns.get("time"),
             rate=None if "time" in columns else 1.0,
-            max_samples=max_samples,
+            **how,
         )
     except hyst.InputError as refusal:
         note(f"as it stands that is refused: {refusal}")

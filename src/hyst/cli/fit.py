@@ -10,27 +10,9 @@ import typer
 import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
-    MOST_SAMPLES,
-    DeadBand,
-    FileFormat,
-    HoldInput,
-    InputColumn,
-    InputTime,
-    LongestGap,
-    MaxSamples,
     ModelFile,
-    OutputColumn,
-    OutputFile,
-    OutputTime,
-    Rate,
-    Repair,
-    Resample,
-    TableNumber,
-    TimeColumn,
-    TimeUnit,
     load_operator,
     numbers,
-    reading_options,
     require_same_unit,
     whole_or_auto,
 )
@@ -51,6 +33,7 @@ from hyst.cli.fitted import (
     tell_fitted,
     write_fitted,
 )
+from hyst.cli.reading_options import reads_records
 
 Free = Annotated[
     str | None,
@@ -79,27 +62,12 @@ Delay = Annotated[
 Start = Annotated[str, typer.Option(metavar="N|auto", help="First sample to use.")]
 
 
+@reads_records
 def fit(
-    context: typer.Context,
     model: ModelFile,
     data: Data,
-    input_column: InputColumn,
-    output_column: OutputColumn,
     folder: Folder,
-    rate: Rate = None,
-    time: TimeColumn = None,
-    time_unit: TimeUnit = None,
-    repair: Repair = False,
-    longest_gap: LongestGap = hyst.io.LONGEST_GAP,
-    dead_band: DeadBand = None,
-    table: TableNumber = None,
-    file_format: FileFormat = None,
-    resample: Resample = False,
-    hold_input: HoldInput = False,
-    input_time: InputTime = None,
-    output_time: OutputTime = None,
-    output_file: OutputFile = None,
-    max_samples: MaxSamples = MOST_SAMPLES,
+    how: dict[str, Any],
     free: Free = None,
     bound: Bound = None,
     delay: Delay = None,
@@ -117,7 +85,7 @@ def fit(
     guess = load_operator(model)
     bounds = dict(_as_bound(each) for each in bound or [])
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
-    files = HowToRead(reading_options(context), others, (input_label, output_label))
+    files = HowToRead(how, others, (input_label, output_label))
     with at_work("fitting") as say:
         say("reading")
         records = files.records(data)

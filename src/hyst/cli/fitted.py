@@ -11,9 +11,9 @@ from typing import Annotated, Any
 import typer
 
 import hyst
-from hyst.cli.arguments import read_told
 from hyst.cli.console import show_table
 from hyst.cli.exit_codes import DONE, UNFIT
+from hyst.cli.reading_options import read_told
 
 Data = Annotated[
     list[Path], typer.Argument(metavar="DATA", show_default=False, help="Measured records.")

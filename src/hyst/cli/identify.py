@@ -2,32 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
-    MOST_SAMPLES,
-    DeadBand,
-    FileFormat,
-    HoldInput,
-    InputColumn,
-    InputTime,
-    LongestGap,
-    MaxSamples,
-    OutputColumn,
-    OutputFile,
-    OutputTime,
-    Rate,
-    Repair,
-    Resample,
-    TableNumber,
-    TimeColumn,
-    TimeUnit,
     number_or_auto,
-    reading_options,
     whole_or_auto,
 )
 from hyst.cli.console import at_work, show_files
@@ -48,6 +30,7 @@ from hyst.cli.fitted import (
     tell_fitted,
     write_fitted,
 )
+from hyst.cli.reading_options import reads_records
 
 Family = Annotated[str, typer.Option(help="Of the model.")]  # the registry explains it
 Delay = Annotated[
@@ -66,26 +49,12 @@ LeaveDisturbances = Annotated[
 Start = Annotated[str, typer.Option(metavar="N|auto", help="First sample to use.")]
 
 
+@reads_records
 def identify(
     context: typer.Context,
     data: Data,
-    input_column: InputColumn,
-    output_column: OutputColumn,
     folder: Folder,
-    rate: Rate = None,
-    time: TimeColumn = None,
-    time_unit: TimeUnit = None,
-    repair: Repair = False,
-    longest_gap: LongestGap = hyst.io.LONGEST_GAP,
-    dead_band: DeadBand = None,
-    table: TableNumber = None,
-    file_format: FileFormat = None,
-    resample: Resample = False,
-    hold_input: HoldInput = False,
-    input_time: InputTime = None,
-    output_time: OutputTime = None,
-    output_file: OutputFile = None,
-    max_samples: MaxSamples = MOST_SAMPLES,
+    how: dict[str, Any],
     family: Family = "auto",
     delay: Delay = "auto",
     start: Start = "auto",
@@ -104,7 +73,7 @@ def identify(
     chosen = hyst.identification.chosen_families(family, options)
     lag, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
-    files = HowToRead(reading_options(context), others, (input_label, output_label))
+    files = HowToRead(how, others, (input_label, output_label))
     with at_work("identifying") as say:
         say("reading")
         measured = files.records(data)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ import hyst
 
 
 def time_column(
-    file: Path, rate: float | None, dt: float | None, samples: int
+    file: Path, rate: float | None, dt: float | None, samples: int, **how: Any
 ) -> tuple[list[str], list[NDArray[np.float64]]]:
     """Give header and stamps of a file, or those that a rate or a sample time makes; else none.
 
@@ -25,9 +26,11 @@ def time_column(
         Sample time of the model, s, if it depends on it.
     samples
         Number of rows to be written.
+    how
+        Options of reading, as of ``hyst.io.read_column``.
     """
     if rate is None:
-        found = hyst.io.read_time_column(file)
+        found = hyst.io.read_time_column(file, **how)
         if found is not None and found[1].size == samples:
             return [found[0]], [found[1]]
     step = dt if rate is None else 1.0 / rate

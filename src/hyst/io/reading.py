@@ -198,6 +198,7 @@ def read_column(
     *,
     table: int | None = None,
     format: str | None = None,
+    max_samples: int = MOST_SAMPLES,
 ) -> tuple[NDArray[np.float64], str, str]:
     r"""Read a single column of a data file, for instance a wanted trajectory.
 
@@ -207,7 +208,7 @@ def read_column(
         The file, of any format of ``read_table``.
     column
         Header, name or 0-based index.
-    table, format
+    table, format, max_samples
         As for ``read_table``.
 
     Returns
@@ -230,7 +231,7 @@ def read_column(
     >>> read_column(path, "stroke")
     (array([0. , 1.5]), 'stroke', 'um')
     """
-    whole = read_table(path, columns=[column], table=table, format=format)
+    whole = read_table(path, columns=[column], table=table, format=format, max_samples=max_samples)
     found = find_column(whole, column)
     refuse_flaws(whole, found, "correct it or take the row out")
     return whole.columns[found], whole.names[found], whole.units[found]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,13 +16,15 @@ from hyst.io.table import Table
 from hyst.io.unit_of_stamps import unit_of_stamps
 
 
-def read_time_step(path: str | os.PathLike[str]) -> tuple[str, float | None] | None:
+def read_time_step(path: str | os.PathLike[str], **how: Any) -> tuple[str, float | None] | None:
     r"""Read the time step from a column called as times are, if there is one.
 
     Parameters
     ----------
     path
         The file, of any format of ``read_table``.
+    how
+        Options of ``read_table``: table, format, max_samples.
 
     Returns
     -------
@@ -44,7 +47,7 @@ def read_time_step(path: str | os.PathLike[str]) -> tuple[str, float | None] | N
     >>> read_time_step(path)
     ('Time (ms)', 0.005)
     """
-    found, table = _time_column(path)
+    found, table = _time_column(path, **how)
     if found is None:
         return None
     header, time = table.headers[found], table.columns[found]
@@ -60,7 +63,7 @@ def read_time_step(path: str | os.PathLike[str]) -> tuple[str, float | None] | N
 
 
 def read_time_column(
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str], **how: Any
 ) -> tuple[str, NDArray[np.float64]] | None:
     r"""Read the column called as times are, if there is one with a finite stamp in every row.
 
@@ -68,6 +71,8 @@ def read_time_column(
     ----------
     path
         The file, of any format of ``read_table``.
+    how
+        Options of ``read_table``: table, format, max_samples.
 
     Returns
     -------
@@ -86,21 +91,21 @@ def read_time_column(
     >>> import pathlib, tempfile
     >>> path = pathlib.Path(tempfile.mkdtemp()) / "wanted.csv"
     >>> _ = path.write_text("Time (ms),y\n0,1\n5,2\n10,1\n")
-    >>> read_time_column(path)
+    >>> read_time_column(path, **how)
     ('Time (ms)', array([ 0.,  5., 10.]))
     """
-    found, table = _time_column(path)
+    found, table = _time_column(path, **how)
     if found is None or table.flaws[found] is not None:
         return None
     return table.headers[found], table.columns[found]
 
 
-def _time_column(path: str | os.PathLike[str]) -> tuple[int | None, Table]:
+def _time_column(path: str | os.PathLike[str], **how: Any) -> tuple[int | None, Table]:
     """Find the column of stamps and read it, and of a binary file nothing else."""
-    table = read_table(path, columns=())
+    table = read_table(path, columns=(), **how)
     found = [k for k, name in enumerate(table.names) if is_time(name)]
     if not found:
         return None, table
     if not table.columns[found[0]].size:
-        table = read_table(path, columns=[found[0]])
+        table = read_table(path, columns=[found[0]], **how)
     return found[0], table
