@@ -27,6 +27,7 @@ def test_lists_columns_and_a_command_that_works(run: Run, folder: Path) -> None:
     row = next(line for line in ended.out.splitlines() if "u.Data" in line)
     top = hyst.report.number(U.max(), 6)
     assert row.split() == ["1:", "u.Data", "piezo", "V", "400", "0", top, "input"]
+    assert "refused" not in ended.err
     command = ended.out.split("if the guess is right: hyst ")[1]
     assert run(*shlex.split(command), "--family", "pi", "--plays", "2").code == 0
     assert (folder / "out" / "model.json").is_file()
@@ -56,6 +57,8 @@ def test_two_clocks_are_refused_and_then_resampled_with_a_note(
     apart(folder)
     columns = ("log.csv", "--input", "cmd", "--output", "pos", "--time", "time", "-o", "out")
     quick = ("--family", "pi", "--plays", "2")
+    told = run("columns", "log.csv")
+    assert "as it stands that is refused: log.csv: 'pos' has its own stamps" in told.err
     message = refused("identify", *columns, *quick)
     assert "'pos' has its own stamps in 'time_pos'" in message
     ended = run("identify", *columns, "--output-time", "time_pos", "--resample", *quick)

@@ -258,6 +258,23 @@ def test_references_between_data_sets_and_circles_of_groups_are_harmless(tmp_pat
         read_column(path, "refs")
 
 
+def test_texts_that_would_keep_the_library_for_ever_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    with h5py.File(path, "w") as file:
+        file["u"] = U
+        file["u"].attrs["units"] = "V"  # a text of variable length
+    assert read_column(path, "u")[2] == "V"
+    content = bytearray(path.read_bytes())
+    heap = content.index(b"GCOL")
+    # After the head of 16 bytes one text with its own head and 8 bytes, then the free space.
+    free = heap + 16 + 16 + 8
+    assert content[free : free + 2] == b"\0\0"
+    content[free + 8 : free + 16] = bytes(8)
+    path.write_bytes(content)
+    with pytest.raises(InputError, match="is damaged"):
+        read_table(path)
+
+
 # NumPy
 
 

@@ -50,7 +50,7 @@ def columns(
         if each.flaw:
             note(f"{each.header!r}: {each.flaw}")
     _tell_left_out(found.left_out)
-    _suggest(file, found)
+    _suggest(file, found, max_samples)
 
 
 def _tell_left_out(left_out: tuple[tuple[str, str], ...]) -> None:
@@ -64,8 +64,8 @@ def _tell_left_out(left_out: tuple[tuple[str, str], ...]) -> None:
         note(f"single numbers, which are no columns: {single}")
 
 
-def _suggest(file: Path, found: hyst.io.FileSummary) -> None:
-    """Print the command that the guess amounts to, for a person to check."""
+def _suggest(file: Path, found: hyst.io.FileSummary, max_samples: int) -> None:
+    """Print the command that the guess amounts to, for a person to check, and try its reading."""
     guessed = {each.guess: each for each in found.columns if each.guess}
     if not {"input", "output"} <= set(guessed):
         return
@@ -79,3 +79,15 @@ def _suggest(file: Path, found: hyst.io.FileSummary) -> None:
     if "time" not in guessed:
         command += ["--rate", "HZ"]
     print(f"\nif the guess is right: {shlex.join([*command, '-o', 'out'])}")
+    columns = {role: each.index for role, each in guessed.items()}
+    try:
+        hyst.read_record(
+            file,
+            columns["input"],
+            columns["output"],
+            time=columns.get("time"),
+            rate=None if "time" in columns else 1.0,
+            max_samples=max_samples,
+        )
+    except hyst.InputError as refusal:
+        note(f"as it stands that is refused: {refusal}")

@@ -311,7 +311,9 @@ def _because(left_out: dict[str, str]) -> str:
 
 def _vector(entry: Entry) -> tuple[NDArray[np.float64], Flaw | None]:
     """Read a column as doubles that nobody can change, and find its first flaw."""
-    values = entry.read()
+    # What is scaled beyond the range of a double is infinite, and refused as such.
+    with np.errstate(over="ignore", invalid="ignore"):
+        values = entry.read()
     masked = np.ma.getmaskarray(values) if np.ma.is_masked(values) else None
     vector = np.array(np.ma.getdata(values), dtype=np.float64, order="C").reshape(-1)
     if masked is not None:

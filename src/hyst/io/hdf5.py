@@ -10,6 +10,7 @@ import numpy as np
 
 from hyst.errors import HystError, InputError, MissingExtraError
 from hyst.io.entries import MOST_SAMPLES, Contents, Stored, Wanted, table_of_entries
+from hyst.io.hdf5_heap import has_endless_heap
 from hyst.io.hdf5_values import NotAllThere, reading, stored_text
 from hyst.io.mat_objects import label_signals, object_refused
 from hyst.io.table import Table
@@ -71,6 +72,8 @@ def read_hdf5(path: Path, wanted: Wanted, separator: str = "/") -> Table:
         raise MissingExtraError(
             f'{path}: HDF5 and MATLAB 7.3 files need h5py; pip install "hyst[files]"'
         ) from error
+    if has_endless_heap(path):
+        raise InputError(f"{path} is damaged (the texts in it); save it again")
     try:
         with h5py.File(path, "r") as file:
             contents = Contents()
