@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import shlex
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -50,7 +50,7 @@ def columns(
         if each.flaw:
             note(f"{each.header!r}: {each.flaw}")
     _tell_left_out(found.left_out)
-    _suggest(file, found, max_samples)
+    _suggest(file, found, {"max_samples": max_samples, "table": table, "format": file_format})
 
 
 def _tell_left_out(left_out: tuple[tuple[str, str], ...]) -> None:
@@ -64,7 +64,7 @@ def _tell_left_out(left_out: tuple[tuple[str, str], ...]) -> None:
         note(f"single numbers, which are no columns: {single}")
 
 
-def _suggest(file: Path, found: hyst.io.FileSummary, max_samples: int) -> None:
+def _suggest(file: Path, found: hyst.io.FileSummary, how: dict[str, Any]) -> None:
     """Print the command that the guess amounts to, for a person to check, and try its reading."""
     guessed = {each.guess: each for each in found.columns if each.guess}
     if not {"input", "output"} <= set(guessed):
@@ -78,6 +78,8 @@ def _suggest(file: Path, found: hyst.io.FileSummary, max_samples: int) -> None:
             command += [option, unique[0] if unique else str(each.index)]
     if "time" not in guessed:
         command += ["--rate", "HZ"]
+    for option in ("table", "format"):
+        command += [] if how[option] is None else [f"--{option}", str(how[option])]
     print(f"\nif the guess is right: {shlex.join([*command, '-o', 'out'])}")
     columns = {role: each.index for role, each in guessed.items()}
     try:
@@ -87,7 +89,7 @@ def _suggest(file: Path, found: hyst.io.FileSummary, max_samples: int) -> None:
             columns["output"],
             time=columns.get("time"),
             rate=None if "time" in columns else 1.0,
-            max_samples=max_samples,
+            **how,
         )
     except hyst.InputError as refusal:
         note(f"as it stands that is refused: {refusal}")
