@@ -104,3 +104,6 @@ def test_the_columns_of_one_of_several_tables(run: Run) -> None:
     assert (refused.code, "holds 2 tables below each other" in refused.err) == (2, True)
     shown = run("columns", path, "--table", "2")
     assert (shown.code, "0: f" in shown.out) == (0, True)
+    first = run("columns", path, "--table", "1")
+    assert "--time time --table 1 -o out" in first.out
+    assert "refused" not in first.err

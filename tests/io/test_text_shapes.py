@@ -327,7 +327,17 @@ def test_a_limit_of_samples(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "odd", ["0.0000,0.0", "0.0000,0.0e", "1", "x", "-----", "err,err,err", "err.err,err,err.1x"]
+    "odd",
+    [
+        "0.0000,0.0",
+        "0.0000,0.0e",
+        "0.0+15.0,0.1x",
+        "1",
+        "x",
+        "-----",
+        "err,err,err",
+        "err.err,err,err.1x",
+    ],
 )
 @pytest.mark.parametrize("top", [["time_ms,u_V,y_um"], ["time,u,y", "ms,V,um"]])
 def test_an_odd_line_below_the_header_does_not_hide_its_units(

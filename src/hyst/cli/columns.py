@@ -72,8 +72,8 @@ def _suggest(file: Path, found: hyst.io.FileSummary, how: dict[str, Any]) -> Non
             command += [option, unique[0] if unique else str(each.index)]
     if "time" not in guessed:
         command += ["--rate", "HZ"]
-    for name in ("table", "format"):
-        command += [] if how[name] is None else [f"--{name}", str(how[name])]
+    for option in ("table", "format"):
+        command += [] if how[option] is None else [f"--{option}", str(how[option])]
     print(f"\nif the guess is right: {shlex.join([*command, '-o', 'out'])}")
     columns = {role: each.index for role, each in guessed.items()}
     try:

@@ -19,6 +19,13 @@ if TYPE_CHECKING:
     from hyst.export.c.block import Model
 
 
+Flat = Annotated[
+    bool,
+    typer.Option(
+        "--flat", help="C in one folder without paths of includes, as an Arduino library."
+    ),
+]
+
 _OF_THE_CORE = ("core/", "hyst_")
 
 
@@ -178,12 +185,7 @@ def export(
         ),
     ] = True,
     despite_verdict: DespiteVerdict = False,
-    flat: Annotated[
-        bool,
-        typer.Option(
-            "--flat", help="C in one folder without paths of includes, as an Arduino library."
-        ),
-    ] = False,
+    flat: Flat = False,
 ) -> None:
     """Write a model as code for other tools: the numbers of Python, bit for bit in double."""
     if target not in _TARGETS:

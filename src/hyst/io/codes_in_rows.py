@@ -16,20 +16,26 @@ Codes = tuple[Code, ...]
 
 
 def codes_of_column(table: Table, column: int, rows: NDArray[np.intp]) -> Codes:
-    """Give the codes of one column in rows where it has a finite number, by the table's rows."""
+    """Give the codes of one column of a table in rows where it has a finite number."""
     return _at(rows, codes_in(table.columns[column][rows]))
 
 
 def codes_of_both(
     table: Table, input: int, output: int, rows: NDArray[np.intp]
 ) -> tuple[Codes, Codes]:
-    """Give the codes of input and output in rows where both have one, by the table's rows."""
+    """Give the codes of input and output in rows of a table where both have a finite number."""
     of_input, of_output = codes_of_record(table.columns[input][rows], table.columns[output][rows])
     return _at(rows, of_input), _at(rows, of_output)
 
 
 def refuse_codes(table: Table, column: int, codes: Codes, remedy: str) -> None:
-    """Refuse a column that has a code; its first line is named."""
+    """Refuse a column of a table that has codes; the first line and a remedy are named.
+
+    Raises
+    ------
+    InputError
+        If so.
+    """
     for code in codes[:1]:
         more = code.samples.size - 1
         also = f" and in {rows_counted(more)} more" if more else ""
@@ -41,7 +47,7 @@ def refuse_codes(table: Table, column: int, codes: Codes, remedy: str) -> None:
 
 
 def told_of_codes(table: Table, column: int, codes: Codes) -> list[str]:
-    """Say which rows were left out because of codes."""
+    """Say which rows of a table were left out because of codes in a column."""
     return [
         f"left out {rows_counted(code.samples.size)} where {table.names[column]!r} is "
         f"{code.value:.6g}, {_what_it_is(code)}"
@@ -50,7 +56,7 @@ def told_of_codes(table: Table, column: int, codes: Codes) -> list[str]:
 
 
 def rows_counted(count: int) -> str:
-    """Give a number of rows in words."""
+    """Give a count of rows in words."""
     return "1 row" if count == 1 else f"{count} rows"
 
 

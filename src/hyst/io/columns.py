@@ -107,14 +107,20 @@ def refuse_flaws(table: Table, column: int, remedy: str) -> None:
 
 
 def refuse_doubts(table: Table, column: int) -> None:
-    """Refuse a signal whose unit the file contradicts."""
+    """Refuse a signal, a column of a table, whose unit the file contradicts.
+
+    Raises
+    ------
+    InputError
+        If so.
+    """
     if column in table.doubts:
         name = table.names[column]
         raise InputError(f"{table.source}: {name!r}: {table.doubts[column]}; correct one")
 
 
 def notes_about(table: Table, columns: Sequence[int]) -> tuple[str, ...]:
-    """Give what is to be told about a file and some of its columns."""
+    """Give what is to be told about a table and some of its columns."""
     of_columns = (
         f"{table.names[k]!r}: {note}" for k in columns for note in table.notes_of_columns.get(k, ())
     )

@@ -221,7 +221,13 @@ def refuse_own_times(
 
 
 def refuse_rows_apart(table: Table, columns: list[int]) -> None:
-    """Refuse two signals that seldom have a value in one row, for they were logged apart."""
+    """Refuse two columns of a table that seldom have a value in one row: they were logged apart.
+
+    Raises
+    ------
+    InputError
+        If so.
+    """
     finite = [np.isfinite(table.columns[k]) for k in columns]
     if len(finite) < 2 or finite[0].size != finite[1].size:
         return

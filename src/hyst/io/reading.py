@@ -16,6 +16,7 @@ from hyst.io.columns import find_column, refuse_flaws
 from hyst.io.entries import MOST_SAMPLES
 from hyst.io.formats import choose_table, read_table, read_tables
 from hyst.io.record_of_table import Wanted, choose_columns, record_of_table, refuse_unusable
+from hyst.io.runs import split_runs
 from hyst.io.table import Table
 from hyst.io.unit_of_stamps import require_time_unit
 from hyst.io.usable_rows import LONGEST_GAP
@@ -72,8 +73,8 @@ def read_record(
         Swings of the input up to this size do not count as reversals, units of the input, >= 0;
         by default ``suggest_dead_band`` of the input.
     table
-        Which of several tables that stand below each other in a text file, from 1; by default
-        the only one that has the columns.
+        Which of several tables that stand below each other in a text file, from 1, or of several
+        runs where the time starts again; by default the only one that has the columns.
     format
         Format of the file where neither content nor suffix tells, as for ``read_table``.
     longest_gap
@@ -144,7 +145,8 @@ def read_record(
     tables = read_tables(
         path, columns=wanted.used(), max_samples=max_samples, format=format, repair=repair
     )
-    return record_of_table(_chosen(tables, table, wanted), wanted, _reading(path, format))
+    chosen = _chosen(_runs(tables, wanted), table, wanted)
+    return record_of_table(chosen, wanted, _reading(path, format))
 
 
 def read_records(
@@ -188,7 +190,7 @@ def read_records(
     tables = read_tables(
         path, columns=wanted.used(), max_samples=most, format=format, repair=wanted.repair
     )
-    fitting = [each for each in tables if _fits(each, wanted)] or [tables[0]]
+    fitting = [each for each in _runs(tables, wanted) if _fits(each, wanted)] or [tables[0]]
     return tuple(record_of_table(each, wanted, _reading(path, format)) for each in fitting)
 
 
@@ -270,6 +272,19 @@ def _refuse_clocks(
     elif any(clock is None for clock in clocks):
         raise InputError("a signal has no stamps; give time, or input_time and output_time")
     require_time_unit(time_unit)
+
+
+def _runs(tables: tuple[Table, ...], wanted: Wanted) -> tuple[Table, ...]:
+    """Cut tables where their time starts again."""
+    if wanted.time is None:
+        return tables
+    return tuple(
+        run
+        for each in tables
+        for run in (
+            split_runs(each, find_column(each, wanted.time)) if _fits(each, wanted) else (each,)
+        )
+    )
 
 
 def _chosen(tables: tuple[Table, ...], table: int | None, wanted: Wanted) -> Table:

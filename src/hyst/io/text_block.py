@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -20,7 +21,7 @@ from hyst.io.text_lines import Lines
 from hyst.io.text_tables import ENOUGH_ROWS, Block
 from hyst.io.titles import Titles, find_titles
 
-_STARTS = frozenset("0123456789+-.,")
+_LIKE_NUMBER = re.compile(r"[-+.,\deEdD]*\d[-+.,\deEdD]*", re.ASCII)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,9 +139,7 @@ def with_titles(
 def _is_part(page: Page, row: int) -> bool:
     """Tell whether a line is a part of a row; a key with its value and a date are none."""
     first = page.writing.cells(page.lines.texts[row])[0]
-    if page.kinds.kinds[row] != NUMERIC or first[:1] not in _STARTS:
-        return False
-    return kind_of(first, page.writing.decimal) != "stamp"
+    return bool(_LIKE_NUMBER.fullmatch(first)) and kind_of(first, page.writing.decimal) != "stamp"
 
 
 def _left_out(page: Page, block: Block) -> tuple[str, ...]:
@@ -148,7 +147,8 @@ def _left_out(page: Page, block: Block) -> tuple[str, ...]:
     notes = []
     numbers, kinds = page.lines.numbers, page.kinds
     for k in range(block.above, block.first):
-        if kinds.counts[k] != block.count and _is_part(page, k):
+        whole = kinds.kinds[k] == NUMERIC
+        if whole and kinds.counts[k] != block.count and _is_part(page, k):
             if block.stop - block.first < ENOUGH_ROWS:
                 raise page.unequal(block.first, k)
             notes.append(

@@ -15,7 +15,13 @@ _UNITS = "s, ms, us, ns, min or h"
 
 
 def require_time_unit(unit: str | None) -> None:
-    """Refuse a unit of time that a user gave and hyst does not know."""
+    """Refuse a unit of time that a user gave and hyst does not know.
+
+    Raises
+    ------
+    InputError
+        If so.
+    """
     if unit is not None and seconds_per_unit(unit) is None:
         raise InputError(f"time_unit is {unit!r}; give {_UNITS}")
 

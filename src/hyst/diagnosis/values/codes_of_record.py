@@ -31,14 +31,14 @@ def codes_of_record(u: Array, y: Array) -> tuple[tuple[Code, ...], tuple[Code, .
 
 
 def without_codes(signal: Array, codes: tuple[Code, ...]) -> Array:
-    """Signal with straight lines in the place of codes."""
+    """Give a signal with straight lines in the place of its codes."""
     if not codes:
         return signal
     return bridged(signal, np.unique(np.concatenate([each.samples for each in codes])))
 
 
 def bridged(signal: Array, samples: NDArray[np.intp]) -> Array:
-    """Signal with straight lines in the place of some samples."""
+    """Give a signal with straight lines in the place of some samples."""
     if samples.size == 0:
         return signal
     good = np.ones(signal.size, dtype=bool)
