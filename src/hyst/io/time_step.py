@@ -91,7 +91,7 @@ def read_time_column(
     >>> import pathlib, tempfile
     >>> path = pathlib.Path(tempfile.mkdtemp()) / "wanted.csv"
     >>> _ = path.write_text("Time (ms),y\n0,1\n5,2\n10,1\n")
-    >>> read_time_column(path, **how)
+    >>> read_time_column(path)
     ('Time (ms)', array([ 0.,  5., 10.]))
     """
     found, table = _time_column(path, **how)
