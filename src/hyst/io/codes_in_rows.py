@@ -55,6 +55,15 @@ def told_of_codes(table: Table, column: int, codes: Codes) -> list[str]:
     ]
 
 
+def codes_in_words(table: Table, column: int, codes: Codes) -> list[str]:
+    """Say where a column of a table has codes."""
+    return [
+        f"{code.value:.6g} at {table.place(int(code.samples[0]))}, {code.samples.size} in all, "
+        f"{_what_it_is(code)}"
+        for code in codes
+    ]
+
+
 def rows_counted(count: int) -> str:
     """Give a count of rows in words."""
     return "1 row" if count == 1 else f"{count} rows"

@@ -11,11 +11,15 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.io.coarse_stamps import coarse_stamps
+from hyst.io.codes_in_rows import codes_in_words, codes_of_column
 from hyst.io.entries import MOST_SAMPLES, TooManySamples
 from hyst.io.formats import read_table
+from hyst.io.header import unit_of_time_in_name
 from hyst.io.table import Table
 from hyst.io.time_axis import first_step_back, worst_gap
 from hyst.io.units_of_time import seconds_per_unit
+from hyst.io.wrapped_stamps import counted_on
 
 _TIME = re.compile(r"(^|[^a-z])(t|time|stamps?|time ?stamps?|zeit)([^a-z]|$)")
 _INPUT = re.compile(
@@ -156,6 +160,9 @@ def _summary(table: Table, k: int) -> ColumnSummary:
         others = values.size - finite.size
         what = repr(flaw.text[:20]) if flaw.text else "no value"
         said = f"{what} at {table.place(flaw.row)}, {others} in all"
+    rows = np.flatnonzero(np.isfinite(values))
+    codes = codes_in_words(table, k, codes_of_column(table, k, rows))
+    said = "; ".join([said, *codes] if said else codes)
     names = (k, table.headers[k], table.names[k], table.units[k], int(values.size))
     return ColumnSummary(*names, low, high, said)
 
@@ -163,7 +170,8 @@ def _summary(table: Table, k: int) -> ColumnSummary:
 def _guess(found: list[ColumnSummary], columns: list[NDArray[np.float64]]) -> dict[int, str]:
     """Guess time, then output and input of one length among the columns that move."""
     rising = [each for each in found if _rises(columns[each.index])]
-    times = [each for each in rising if _TIME.search(_words(each))]
+    called = [each for each in found if _is_called_time(each)]
+    times = [each for each in called if each in rising or _goes_on(columns[each.index])]
     times += [each for each in rising if each not in times and _is_clock(each, columns)]
     moving = [each for each in found if each.low < each.high and each not in times]
     moving = [each for each in moving if each not in rising] or moving
@@ -181,10 +189,19 @@ def _guess(found: list[ColumnSummary], columns: list[NDArray[np.float64]]) -> di
     return guesses
 
 
+def _is_called_time(column: ColumnSummary) -> bool:
+    said = _TIME.search(_words(column)) is not None
+    return said or bool(unit_of_time_in_name(column.name)) or _is_time_unit(column.unit)
+
+
+def _is_time_unit(unit: str) -> bool:
+    return bool(unit) and seconds_per_unit(unit) is not None
+
+
 def _is_clock(column: ColumnSummary, columns: list[NDArray[np.float64]]) -> bool:
     """Tell whether a rising column has a unit of time, or even steps."""
     if column.unit:
-        return seconds_per_unit(column.unit) is not None
+        return _is_time_unit(column.unit)
     return not column.flaw and worst_gap(columns[column.index]).even
 
 
@@ -212,3 +229,11 @@ def _words(column: ColumnSummary) -> str:
 def _rises(values: NDArray[np.float64]) -> bool:
     finite = values[np.isfinite(values)]
     return finite.size > 1 and first_step_back(finite) is None
+
+
+def _goes_on(values: NDArray[np.float64]) -> bool:
+    """Tell whether stamps repeat because their clock is slow, or start again because it is full."""
+    finite = values[np.isfinite(values)]
+    if finite.size < 2:
+        return False
+    return coarse_stamps(finite) is not None or counted_on(finite) is not None
