@@ -18,7 +18,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     Parameters
     ----------
     path
-        The file to create or replace. Its folder must exist.
+        The file to create or replace. Folders on the way to it are made.
 
     Yields
     ------
@@ -28,7 +28,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     Raises
     ------
     InputError
-        If the folder does not exist, or ``path`` is a folder or a device.
+        If there is a file on the way to it, or ``path`` is a folder or a device.
 
     Examples
     --------
@@ -40,11 +40,11 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     'whole'
     """
     target = Path(path)
-    if not target.parent.is_dir():
-        raise InputError(f"{target}: the folder {target.parent} does not exist; create it first")
+    require_folder(target.parent)
     if target.is_dir():
         raise InputError(f"{target} is a folder; name a file")
     _refuse_special(target)
+    _make_folder(target.parent)
     with tempfile.TemporaryDirectory(prefix=".hyst-", dir=target.parent) as folder:
         temporary = Path(folder) / target.name
         yield temporary
@@ -58,7 +58,8 @@ def replacing_files(folder: str | os.PathLike[str]) -> Iterator[Path]:
     Parameters
     ----------
     folder
-        Made if it does not exist; its own parent must. Files in it of other names stay.
+        Made if it does not exist, with the folders on the way to it. Files in it of other names
+        stay.
 
     Yields
     ------
@@ -68,7 +69,7 @@ def replacing_files(folder: str | os.PathLike[str]) -> Iterator[Path]:
     Raises
     ------
     InputError
-        If the parent does not exist, ``folder`` is a file, or a file would replace a folder or a
+        If there is a file on the way, ``folder`` is a file, or a file would replace a folder or a
         device.
 
     Examples
@@ -82,6 +83,7 @@ def replacing_files(folder: str | os.PathLike[str]) -> Iterator[Path]:
     """
     target = Path(folder)
     require_folder(target)
+    _make_folder(target.parent)
     with tempfile.TemporaryDirectory(prefix=".hyst-", dir=target.parent) as temporary:
         yield Path(temporary)
         files = sorted(Path(temporary).iterdir())
@@ -100,12 +102,12 @@ def require_folder(folder: str | os.PathLike[str]) -> None:
     Parameters
     ----------
     folder
-        A folder, or a name for one in a folder that exists.
+        A folder, or a name for one.
 
     Raises
     ------
     InputError
-        If it is a file, or its parent does not exist.
+        If it is a file, or there is one on the way to it.
 
     Examples
     --------
@@ -114,8 +116,58 @@ def require_folder(folder: str | os.PathLike[str]) -> None:
     target = Path(folder)
     if target.exists() and not target.is_dir():
         raise InputError(f"{target} is a file; name a folder")
-    if not target.absolute().parent.is_dir():
-        raise InputError(f"{target}: the folder {target.parent} does not exist; create it first")
+    for folder_above in target.absolute().parents:
+        if folder_above.is_dir():
+            return
+        if folder_above.exists():
+            raise InputError(f"{target}: {folder_above} is a file; name a folder below a folder")
+
+
+def read_small(path: Path, most: int = 200_000_000) -> bytes:
+    """Read a regular file of moderate size, such as a model or a spec.
+
+    Parameters
+    ----------
+    path
+        The file.
+    most
+        Largest size, bytes.
+
+    Returns
+    -------
+    bytes
+        Its content.
+
+    Raises
+    ------
+    InputError
+        If it is a device or a pipe, which may never end, or larger than that.
+    OSError
+        If it cannot be read.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "spec.toml"
+    >>> _ = path.write_text("a = 1")
+    >>> read_small(path)
+    b'a = 1'
+    """
+    if path.exists() and not path.is_file() and not path.is_dir():
+        raise InputError(f"{path} is a device or a pipe, not a regular file; name a file")
+    size = path.stat().st_size
+    if size > most:
+        raise InputError(f"{path} has {size} bytes, more than a file of its kind; check the path")
+    return path.read_bytes()
+
+
+def _make_folder(folder: Path) -> None:
+    """Make a folder and those on the way to it."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise InputError(f"the folder {folder} cannot be made: {reason}; name another") from error
 
 
 def _refuse_special(target: Path) -> None:

@@ -42,7 +42,9 @@ def test_what_holds_no_real_numbers(name: str) -> None:
     assert refusal(check, [1j, 1.0]) == "x has dtype complex128; give real numbers"
     assert refusal(check, [None, 1.0]) == "x has dtype object; give real numbers"
     assert refusal(check, [[1.0], [1.0, 2.0]]).startswith("x is not a rectangular array")
-    assert refusal(check, np.ma.masked_array([1.0, 2.0], [0, 1])).startswith("x has masked entries")
+    assert refusal(check, np.ma.masked_array([1.0, 2.0], [0, 1])).startswith(
+        "x has masked entries, the first at index 1;"
+    )
 
 
 def test_the_first_number_that_is_not_finite_is_named() -> None:

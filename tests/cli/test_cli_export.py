@@ -107,7 +107,7 @@ def test_a_tracking_controller_is_exported_from_its_file(run: Run, folder: Path)
         (["--name", "../x"], "C identifier"),
         (["--precision", "half"], "double or single"),
         (["--target", "rust"], "--target is 'rust'"),
-        (["-o", "nowhere/out"], "does not exist"),
+        (["-o", "model.json/out"], "is a file"),
     ],
 )
 def test_bad_arguments_end_in_one_sentence(

@@ -282,7 +282,7 @@ def test_a_record_is_needed(refused: Callable[..., str]) -> None:
     assert "DATA" in refused("identify", *COLUMNS, "--rate", 1, "-o", "out")
 
 
-@pytest.mark.parametrize("target", ["file.txt", "missing/out"])
+@pytest.mark.parametrize("target", ["file.txt", "file.txt/deep/out"])
 def test_a_folder_that_cannot_be_is_refused_before_anything_is_read(
     target: str, refused: Callable[..., str], folder: Path
 ) -> None:

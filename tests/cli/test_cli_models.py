@@ -174,13 +174,23 @@ def test_simulate_refuses_bad_input(
     assert "no column" in refused(*simulate("drive.csv", "--input", "volts"))
 
 
-def test_an_output_in_a_folder_that_is_not_there_is_refused(
+def test_folders_on_the_way_to_an_output_are_made(run: Run, model_file: Path, folder: Path) -> None:
+    write_csv(folder / "ref.csv", "wanted", STAGE(U))
+    simulate = ("simulate", "model.json", "ref.csv", "--input", 0, "-o", "missing/deep/y.csv")
+    assert run(*simulate).code == 0
+    compensate = ("compensate", "model.json", "ref.csv", "--column", 0, "-o", "other/u.csv")
+    assert run(*compensate).code == 0
+    assert (folder / "missing" / "deep" / "y.csv").is_file()
+    assert (folder / "other" / "u.csv").is_file()
+
+
+def test_a_file_on_the_way_to_an_output_is_named(
     refused: Callable[..., str], model_file: Path, folder: Path
 ) -> None:
     write_csv(folder / "ref.csv", "wanted", STAGE(U))
-    where = ("-o", "missing/out.csv")
-    assert "missing" in refused("simulate", "model.json", "ref.csv", "--input", 0, *where)
-    assert "missing" in refused("compensate", "model.json", "ref.csv", "--column", 0, *where)
+    where = ("-o", "ref.csv/out.csv")
+    assert "ref.csv" in refused("simulate", "model.json", "ref.csv", "--input", 0, *where)
+    assert "ref.csv" in refused("compensate", "model.json", "ref.csv", "--column", 0, *where)
 
 
 def test_a_model_without_inverse_is_refused_with_the_reason(

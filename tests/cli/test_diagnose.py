@@ -73,6 +73,8 @@ def test_what_cannot_be_read_or_written(run: Run, folder: Path, drifting: Path) 
     ended = run("diagnose", drifting, "--input", "volts", "--output", "stroke", "--rate", "1000")
     assert ended.code == 2
     assert "has no column" in ended.err
-    ended = run("diagnose", drifting, *COLUMNS, "-o", "nowhere/found.json")
+    ended = run("diagnose", drifting, *COLUMNS, "-o", drifting / "found.json")
     assert ended.code == 2
-    assert "does not exist" in ended.err
+    assert "loop.csv" in ended.err
+    assert run("diagnose", drifting, *COLUMNS, "-o", "new/found.json").code == 0
+    assert (folder / "new" / "found.json").is_file()

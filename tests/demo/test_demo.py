@@ -138,6 +138,7 @@ def test_the_verb_tells_it_all_and_what_it_suggests_works(
 def test_the_verb_refuses_a_folder_that_cannot_be(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    (tmp_path / "no").write_text("a file")
     assert main(["demo", "-o", str(tmp_path / "no" / "demo")]) == 2
     assert capsys.readouterr().err.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []
+    assert [each.name for each in tmp_path.iterdir()] == ["no"]

@@ -151,9 +151,12 @@ def test_force_does_not_replace_what_is_no_export(tmp_path: Path) -> None:
     assert contents(tmp_path) == before
 
 
-def test_a_folder_that_does_not_exist_is_named(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="does not exist"):
-        c_project(MODEL, tmp_path / "nowhere" / "out")
+def test_folders_on_the_way_are_made_and_a_file_there_is_named(tmp_path: Path) -> None:
+    assert (c_project(MODEL, tmp_path / "results" / "deep" / "out").path / "manifest.json").exists()
+    assert c_project(MODEL, tmp_path / "zips" / "out.zip").path.is_file()
+    (tmp_path / "notes").write_text("")
+    with pytest.raises(InputError, match="notes is a file"):
+        c_project(MODEL, tmp_path / "notes" / "out")
 
 
 def test_a_folder_that_refuses_is_named_and_no_temporary_file(

@@ -135,7 +135,7 @@ def test_one_whole_loop() -> None:
         (
             "two-topics/bag.csv",
             {"input": "/cmd/data", "output": "/pos/data", "time": "__time"},
-            "never have a value in one row",
+            "have a value together in 0 of 1200 rows only",
         ),
     ],
 )

@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-HEAVY = ("scipy", "pandas", "h5py", "pyarrow", "pymatreader", "matplotlib")
+HEAVY = ("scipy", "pandas", "h5py", "pyarrow", "pymatreader", "matplotlib", "nptdms", "openpyxl")
 
 
 def loaded_by(statement: str) -> str:
@@ -26,5 +26,5 @@ def test_reading_text_loads_no_optional_package(tmp_path: Path) -> None:
 
 
 def test_importing_hyst_io_loads_no_file_format() -> None:
-    for package in ("pandas", "h5py", "pyarrow", "pymatreader", "matplotlib"):
+    for package in ("pandas", "h5py", "pyarrow", "pymatreader", "nptdms", "openpyxl"):
         assert package not in loaded_by("import hyst.io")

@@ -68,7 +68,7 @@ def test_labview_files_of_several_segments_and_time_columns(tmp_path: Path) -> N
     path = write(tmp_path, lvm("\t", ".", x="Multi"), "run.lvm")
     same_signals(read_record(path, "u", "y", time=0), U, Y)
     late = lvm("\t", ".", x="Multi").replace("\t0.0050\t", "\t0.0090\t")
-    with pytest.raises(InputError, match="'y' has its own stamps in 'X_Value', which are up to"):
+    with pytest.raises(InputError, match=r"'y' has its own stamps in 'X_Value \[s\]', other ones"):
         read_record(write(tmp_path, late, "run.lvm"), "u", "y", time=0)
 
 
@@ -322,11 +322,23 @@ def test_packed_files_of_other_formats(tmp_path: Path) -> None:
 
 def test_a_limit_of_samples(tmp_path: Path) -> None:
     path = write(tmp_path, [HEADER, *BODY])
-    with pytest.raises(InputError, match="has 61 lines and max_samples is 50"):
+    with pytest.raises(InputError, match="holds 183 numbers in the columns to read, and at"):
         read_record(path, "u", "y", time="time", max_samples=50)
 
 
-@pytest.mark.parametrize("odd", ["0.0000,0.0", "x", "-----", "err,err,err", "err.err,err,err.1x"])
+@pytest.mark.parametrize(
+    "odd",
+    [
+        "0.0000,0.0",
+        "0.0000,0.0e",
+        "0.0+15.0,0.1x",
+        "1",
+        "x",
+        "-----",
+        "err,err,err",
+        "err.err,err,err.1x",
+    ],
+)
 @pytest.mark.parametrize("top", [["time_ms,u_V,y_um"], ["time,u,y", "ms,V,um"]])
 def test_an_odd_line_below_the_header_does_not_hide_its_units(
     tmp_path: Path, top: list[str], odd: str
@@ -342,3 +354,39 @@ def test_half_a_first_row_does_not_hide_a_header_that_does_not_fit(tmp_path: Pat
     path = write(tmp_path, ["time_ms,u,y", "0.0000,0.0000,1", *body])
     with pytest.raises(InputError, match="line 1 names 3 columns, but the lines below it have 4"):
         read_record(path, 1, 2, time=0)
+
+
+@pytest.mark.parametrize(
+    ("top", "separator", "names"),
+    [
+        (["| time | u | y |", "|---|---|---|"], "|", ("u", "y")),
+        (["Name,time,u,y", "Unit,s,V,um"], ",", ("u", "y")),
+        (["CURVE\tTABLE", "\tt\tu\ty", "\ts\tV vs. Ref.\tA"], "\t", ("u", "y")),
+        (["CATMAN_40", "Time  1 - default rate\tu \ty", "s\tV \tµm"], "\t", ("u", "y")),
+        (["time,u,y,remark"], ",", ("u", "y")),
+        (["time_ms,u,y", "from,drive,sensor"], ",", ("u", "y")),
+        (["time,u,y", "(ms),drive,sensor"], ",", ("u", "y")),
+    ],
+)
+def test_heads_of_some_programs(
+    tmp_path: Path, top: list[str], separator: str, names: tuple[str, str]
+) -> None:
+    factor = 1e3 if "ms" in "".join(top) else 1.0
+    body = rows((factor * T, U, Y), separator)
+    if top[0][0] in "|NC" and "CATMAN" not in top[0]:
+        body = [separator + line for line in body]
+    if "remark" in top[0]:
+        body = [line + "," for line in body]
+        body[20] += "a bang"
+    time = {"CURVE": "t", "CATMAN_40": 0, "time_ms": 0}.get(top[0].split(separator)[0], "time")
+    record = read_record(write(tmp_path, [*top, *body]), *names, time=time)
+    assert record.dt == DT
+    same_signals(record, U, Y)
+
+
+@pytest.mark.parametrize("repair", [False, True])
+def test_a_header_among_the_rows_is_not_left_out(tmp_path: Path, repair: bool) -> None:
+    body = rows((1e3 * T, U, Y))
+    path = write(tmp_path, [*body[:30], "time_ms,u,y", *body[30:]])
+    with pytest.raises(InputError, match="line 31 holds 3 texts among rows that have no header"):
+        read_record(path, 1, 2, time=0, repair=repair)

@@ -12,7 +12,7 @@ from io_checks import same_signals
 from lab_files import DT, rows, signals, write
 
 from hyst.errors import InputError
-from hyst.io import read_column, read_record
+from hyst.io import read_column, read_record, read_records
 
 T, U, Y = signals()
 START = datetime.datetime(2026, 11, 28, 23, 59, 59, 900_000)
@@ -77,6 +77,15 @@ def test_minutes_and_seconds(tmp_path: Path) -> None:
     stamps = [f"{int(t + 59.9) // 60:02d}:{(t + 59.9) % 60:06.3f}" for t in T]
     path = write(tmp_path, ["t,u,y", *rows((stamps, U, Y))])
     assert read_record(path, "u", "y", time="t").dt == DT
+    # Nothing but a number above 23 tells minutes from hours.
+    for first, dt in ((22, None), (24, 1.0)):
+        stamps = [f"{first + k // 60:02d}:{k % 60:02d}" for k in range(T.size)]
+        path = write(tmp_path, ["t,u,y", *rows((stamps, U, Y))])
+        if dt is None:
+            with pytest.raises(InputError, match="may be hours and minutes or minutes and secon"):
+                read_record(path, "u", "y", time="t")
+        else:
+            assert read_record(path, "u", "y", time="t").dt == dt
 
 
 def test_days_and_months_that_cannot_be_told_apart_are_refused(tmp_path: Path) -> None:
@@ -187,8 +196,24 @@ def test_a_second_run_is_no_full_counter(tmp_path: Path) -> None:
     t = np.r_[np.arange(60), np.arange(60)] * 1.0  # 60 s again and again
     u, y = np.r_[U, U], np.r_[Y, Y]
     path = write(tmp_path, ["t,u,y", *rows((t, u, y))])
-    with pytest.raises(InputError, match=r"starts again there, as where one record follows"):
+    with pytest.raises(InputError, match=r"holds 2 tables .*; 2: 60 rows from line 62 on"):
         read_record(path, "u", "y", time="t", repair=True)
+    assert [each.samples for each in read_records(path, "u", "y", time="t")] == [60, 60]
+    same_signals(read_record(path, "u", "y", time="t", table=2), U, Y)
+
+
+@pytest.mark.parametrize("between", [[], ["", "# again", ""]])
+def test_runs_without_a_header_between_them(tmp_path: Path, between: list[str]) -> None:
+    body = rows((T, U, Y))
+    late = rows((T + DT, U, Y))
+    path = write(tmp_path, ["t,u,y", *body, *between, *late[:40], *between, *body])
+    runs = read_records(path, "u", "y", time="t")
+    assert [each.samples for each in runs] == [60, 40, 60]
+    same_signals(runs[2], U, Y)
+    # A fall to another instant is no new run.
+    path = write(tmp_path, ["t,u,y", *body, *body[20:]])
+    with pytest.raises(InputError, match=r"time goes from 0\.295 s to 0\.1 s at line 62"):
+        read_record(path, "u", "y", time="t")
 
 
 def test_stamps_that_fall_are_never_sorted(tmp_path: Path) -> None:

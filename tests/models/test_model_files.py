@@ -81,11 +81,19 @@ def test_the_file_is_replaced_whole(file: Path) -> None:
 
 
 def test_where_no_file_can_be(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"folder .* does not exist; create it first"):
-        MODEL.save(tmp_path / "missing" / "model.json")
     with pytest.raises(InputError, match="is a folder; name a file"):
         MODEL.save(tmp_path)
     assert list(tmp_path.iterdir()) == []
+    (tmp_path / "notes").write_text("")
+    with pytest.raises(InputError, match=r"notes is a file; name a folder"):
+        MODEL.save(tmp_path / "notes" / "deep" / "model.json")
+
+
+def test_folders_on_the_way_are_made(tmp_path: Path) -> None:
+    path = tmp_path / "results" / "run 1" / "model.json"
+    MODEL.save(path)
+    assert load(path) == MODEL
+    assert [each.name for each in path.parent.iterdir()] == ["model.json"]
 
 
 @pytest.mark.parametrize(

@@ -34,7 +34,9 @@ def as_reals(values: Any, name: str) -> Array:
         If it is masked, not rectangular or not real.
     """
     if np.ma.is_masked(values):
-        raise InputError(f"{name} has masked entries; give numbers only")
+        first = np.argwhere(np.ma.getmaskarray(values))[0].tolist()
+        where = f"index {first[0]}" if len(first) == 1 else f"index {tuple(first)}"
+        raise InputError(f"{name} has masked entries, the first at {where}; give numbers only")
     try:
         array = np.asarray(values)
     except ValueError:

@@ -14,21 +14,10 @@ from numpy.typing import NDArray
 import hyst
 from hyst._files import replacing_files, require_folder
 from hyst.cli.arguments import (
-    DeadBand,
-    FileFormat,
-    InputColumn,
-    LongestGap,
-    MaxSamples,
-    OutputColumn,
-    Rate,
-    Repair,
-    TableNumber,
-    TimeColumn,
-    TimeUnit,
     load_operator,
-    read_told,
 )
 from hyst.cli.console import at_work, note, show_files, show_table
+from hyst.cli.reading_options import read_told, reads_records
 
 Files = Annotated[
     list[Path],
@@ -86,20 +75,11 @@ def _only(records: tuple[hyst.Record, ...]) -> hyst.Record:
     return records[0]
 
 
+@reads_records
 def adapt(
     files: Files,
-    input_column: InputColumn,
-    output_column: OutputColumn,
     folder: Folder,
-    rate: Rate = None,
-    time: TimeColumn = None,
-    time_unit: TimeUnit = None,
-    repair: Repair = False,
-    longest_gap: LongestGap = hyst.io.LONGEST_GAP,
-    dead_band: DeadBand = None,
-    table: TableNumber = None,
-    file_format: FileFormat = None,
-    max_samples: MaxSamples = hyst.io.MAX_SAMPLES,
+    how: dict[str, Any],
     start: Start = 0,
     memory: Memory = None,
     spread: Spread = None,
@@ -116,20 +96,10 @@ def adapt(
     else:
         model = load_operator(model_file or data)
     about = model.description
-    how: dict[str, Any] = {"time": time, "rate": rate, "time_unit": time_unit, "repair": repair}
-    how |= {"longest_gap": longest_gap, "dead_band": dead_band, "format": file_format}
-    how |= {"table": table, "max_samples": max_samples}
-    measured = _only(read_told(data, input=input_column, output=output_column, **how))
+    measured = _only(read_told(data, **how))
     history, record = _from_start(_without_delay(measured, about.delay), start)
     if estimator is None:
-        estimator = hyst.online.JointEstimator(
-            model,
-            dt=record.dt,
-            memory=math.inf if memory is None else memory,
-            radius_spread=_SPREAD if spread is None else spread,
-            weight_spread=_SPREAD if spread is None else spread,
-            estimate_maps=estimate_maps,
-        )
+        estimator = _started(model, record.dt, memory, spread, estimate_maps)
     if history.size:
         estimator.follow(history)
     before = estimator.parameters
@@ -147,6 +117,25 @@ def adapt(
         (temporary / names[3]).write_bytes(picture)
     _tell(estimator, before.tolist(), about)
     show_files([folder / name for name in names])
+
+
+def _started(
+    model: hyst.operators.Operator,
+    dt: float,
+    memory: float | None,
+    spread: float | None,
+    estimate_maps: bool,
+) -> hyst.online.JointEstimator:
+    """Make the estimator that knows nothing but the model yet."""
+    widths = _SPREAD if spread is None else spread
+    return hyst.online.JointEstimator(
+        model,
+        dt=dt,
+        memory=math.inf if memory is None else memory,
+        radius_spread=widths,
+        weight_spread=widths,
+        estimate_maps=estimate_maps,
+    )
 
 
 def _described(

@@ -12,6 +12,7 @@ import typer
 import hyst
 from hyst._typed_command import carrying_out
 from hyst.cli.adapt import adapt
+from hyst.cli.columns import columns
 from hyst.cli.compensate import compensate
 from hyst.cli.demo import demo
 from hyst.cli.diagnose import diagnose
@@ -37,6 +38,7 @@ app = typer.Typer(
 VERBS = (
     diagnose,
     excite,
+    columns,
     identify,
     fit,
     adapt,

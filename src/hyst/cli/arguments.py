@@ -9,75 +9,11 @@ import typer
 
 import hyst
 from hyst.checks.numbers import as_positive
-from hyst.cli.console import note
 
 ModelFile = Annotated[
     Path,
     typer.Argument(metavar="MODEL", show_default=False, help="Model file, as identify writes."),
 ]
-InputColumn = Annotated[
-    str,
-    typer.Option(
-        "--input",
-        metavar="COL",
-        show_default=False,
-        help="Column of the input: name or index from 0.",
-    ),
-]
-OutputColumn = Annotated[
-    str,
-    typer.Option("--output", metavar="COL", show_default=False, help="Column of the output."),
-]
-Rate = Annotated[
-    float | None, typer.Option(metavar="HZ", show_default=False, help="Samples per second.")
-]
-TimeColumn = Annotated[
-    str | None,
-    typer.Option(metavar="COL", show_default=False, help="Or the column of time stamps."),
-]
-TimeUnit = Annotated[
-    str | None,
-    typer.Option(metavar="UNIT", show_default=False, help="Its unit: s, ms, us, ns, min or h."),
-]
-Repair = Annotated[
-    bool,
-    typer.Option(
-        "--repair",
-        help="Leave out a few bad rows, and resample uneven time; what was done is told.",
-    ),
-]
-LongestGap = Annotated[
-    int,
-    typer.Option(metavar="N", help="Samples in a row that --repair may leave out or fill in."),
-]
-DeadBand = Annotated[
-    float | None,
-    typer.Option(
-        metavar="X",
-        show_default=False,
-        help="Swings of the input up to this size are no reversals; from its noise by default.",
-    ),
-]
-TableNumber = Annotated[
-    str | None,
-    typer.Option(
-        "--table",
-        metavar="N|all",
-        show_default=False,
-        help="Which of several tables below each other in a text file; all: each is a record.",
-    ),
-]
-FileFormat = Annotated[
-    str | None,
-    typer.Option(
-        "--format",
-        metavar="FORMAT",
-        show_default=False,
-        help=f"Of the data, where neither content nor suffix tells: {', '.join(hyst.io.FORMATS)}.",
-    ),
-]
-MaxSamples = Annotated[int, typer.Option(metavar="N", help="Refuse text files of more lines.")]
-
 SampleRate = Annotated[
     float | None,
     typer.Option(
@@ -94,29 +30,6 @@ DespiteVerdict = Annotated[
 ]
 
 _STAMPS_ROUNDED = 1e-3
-
-
-def read_told(path: Path, *, table: str | None = None, **how: Any) -> tuple[hyst.Record, ...]:
-    """Read the record of a file, or with the table ``all`` those of all its tables.
-
-    What was found out, left out or repaired is told.
-    """
-    if table == "all":
-        records = hyst.io.read_records(path, **how)
-    else:
-        records = (hyst.read_record(path, table=_table_number(table), **how),)
-    for number, record in enumerate(records, 1):
-        which = f", table {number}" if len(records) > 1 else ""
-        for sentence in record.notes:
-            note(f"{path.name}{which}: {sentence}")
-    return records
-
-
-def _table_number(text: str | None) -> int | None:
-    try:
-        return None if text is None else int(text)
-    except ValueError:
-        raise hyst.InputError(f"--table is {text!r}; give a whole number or all") from None
 
 
 def load_operator(path: Path) -> hyst.operators.Operator:
@@ -162,7 +75,7 @@ def numbers(text: str, name: str) -> list[float]:
 
 
 def sample_time_known(
-    model: hyst.operators.Operator, file: Path, rate: float | None, what: str
+    model: hyst.operators.Operator, file: Path, rate: float | None, what: str, **how: Any
 ) -> bool:
     """Refuse a file of another sample time than the model's; say if the file or --rate tells."""
     if rate is not None:
@@ -170,7 +83,7 @@ def sample_time_known(
         return True
     if model.dt is None:
         return True
-    found = hyst.io.read_time_step(file)
+    found = hyst.io.read_time_step(file, **how)
     if found is None:
         return False
     header, step = found

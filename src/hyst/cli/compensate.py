@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -18,7 +18,9 @@ from hyst.cli.arguments import (
     sample_time_known,
 )
 from hyst.cli.console import note, progress_bar, show_files, show_table
+from hyst.cli.reading_options import reads_columns
 from hyst.cli.relevant_options import refuse_irrelevant
+from hyst.cli.time_column import time_column
 from hyst.operators.composition import leaves_of
 
 if TYPE_CHECKING:
@@ -82,12 +84,14 @@ _BY_METHOD = {
 }
 
 
+@reads_columns
 def compensate(
     context: typer.Context,
     model_file: ModelFile,
     reference: Reference,
     column: Column,
     out: Out,
+    how: dict[str, Any],
     method: Method = "exact",
     outside: Outside = "refuse",
     limits: Limits = None,
@@ -104,10 +108,10 @@ def compensate(
         refuse_irrelevant(context, _BY_METHOD, [method], "--method")
     model = load_operator(model_file)
     about = model.description
-    y_ref, _, unit = hyst.io.read_column(reference, column)
+    y_ref, _, unit = hyst.io.read_column(reference, column, **how)
     require_same_unit(unit, about.output_unit, "the reference")
     input_range = _input_range(limits, no_limits, about)
-    known = sample_time_known(model, reference, rate, "the reference")
+    known = sample_time_known(model, reference, rate, "the reference", **how)
     _require_method_for(model, method)
     with progress_bar("inverting") as progress:
         done = hyst.compensation.invert_trajectory(
@@ -125,7 +129,8 @@ def compensate(
         )
     if not known:
         note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
-    headers = [
+    headers, columns = time_column(reference, rate, model.dt, done.u.size, **how)
+    headers += [
         hyst.io.join_unit(name, unit)
         for name, unit in (
             ("reference", about.output_unit),
@@ -133,7 +138,7 @@ def compensate(
             ("predicted", about.output_unit),
         )
     ]
-    hyst.io.write_columns(out, headers, (done.y_ref, done.u, done.y_predicted))
+    hyst.io.write_columns(out, headers, [*columns, done.y_ref, done.u, done.y_predicted])
     _tell(done, about, input_range)
     if history is None and model.initial_state().size:
         print(

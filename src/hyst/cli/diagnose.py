@@ -5,16 +5,16 @@ from __future__ import annotations
 import json
 import textwrap
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 import hyst
 from hyst._files import replacing
-from hyst.cli.arguments import InputColumn, OutputColumn, Rate, Repair, TimeColumn, TimeUnit
 from hyst.cli.console import at_work, show_files
 from hyst.cli.excite import write_drive
 from hyst.cli.fitted import Data, HowToRead, InputLabel, OutputLabel
+from hyst.cli.reading_options import reads_records
 
 Out = Annotated[
     Path | None,
@@ -35,26 +35,20 @@ Next = Annotated[
 _WIDTH = 96
 
 
+@reads_records
 def diagnose(
     data: Data,
-    input_column: InputColumn,
-    output_column: OutputColumn,
-    rate: Rate = None,
-    time: TimeColumn = None,
-    time_unit: TimeUnit = None,
-    repair: Repair = False,
+    how: dict[str, Any],
     input_label: InputLabel = None,
     output_label: OutputLabel = None,
     out: Out = None,
     next_file: Next = None,
 ) -> None:
     """Say what records show before any model, the worst first, and what to record next."""
-    columns = {"input": input_column, "output": output_column, "time": time, "rate": rate}
-    columns |= {"time_unit": time_unit, "repair": repair}
-    files = HowToRead(columns, {}, (input_label, output_label))
+    files = HowToRead(how, {}, (input_label, output_label))
     with at_work("diagnosing"):
         found = hyst.diagnose(files.records(data))
-    _tell(found, data)
+    _tell(found, files.sources)
     if out is not None:
         with replacing(out) as temporary:
             temporary.write_text(json.dumps(found.to_dict(), indent=1) + "\n", encoding="utf-8")
@@ -68,11 +62,11 @@ def diagnose(
         show_files(write_drive(found.next_drive.drive, next_file, found.next_drive.label))
 
 
-def _tell(found: hyst.Diagnosis, data: list[Path]) -> None:
+def _tell(found: hyst.Diagnosis, sources: list[str]) -> None:
     """Print the findings; records are numbered as their files were given."""
-    if len(data) > 1:
-        for number, path in enumerate(data, 1):
-            print(f"record {number}: {path}")
+    if len(sources) > 1:
+        for number, source in enumerate(sources, 1):
+            print(f"record {number}: {source}")
     for each in found.findings:
         print()
         _print(f"{each.severity}: {each.name}: {each.sentence}", "")

@@ -62,6 +62,14 @@ MaxAcceleration = Annotated[
     float | None,
     typer.Option(help="Largest acceleration, input units per second squared.", show_default=False),
 ]
+Rest = Annotated[
+    float | None,
+    typer.Option(
+        metavar="U",
+        show_default=False,
+        help="Ramp from this value to the start of the drive and back from its end, in the limits.",
+    ),
+]
 Decay = Annotated[float, typer.Option(help="Of reversals (a decaying triangle): factor a cycle.")]
 Clock = Annotated[int, typer.Option(help="Of prbs: samples of one bit.")]
 Register = Annotated[int, typer.Option(help="Of prbs: the period has 2^N - 1 bits.")]
@@ -86,6 +94,7 @@ def excite(
     band: Band = None,
     max_rate: MaxRate = None,
     max_acceleration: MaxAcceleration = None,
+    rest: Rest = None,
     decay: Decay = 0.85,
     clock: Clock = 1,
     register: Register = 10,
@@ -122,6 +131,8 @@ def excite(
         register=register,
         seed=seed,
     )
+    if rest is not None:
+        drive = hyst.signals.from_rest(drive, rest, **limits)
     show_files(write_drive(drive, out, name))
     _tell(drive, fir_order, name)
 

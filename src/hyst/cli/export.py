@@ -19,6 +19,16 @@ if TYPE_CHECKING:
     from hyst.export.c.block import Model
 
 
+Flat = Annotated[
+    bool,
+    typer.Option(
+        "--flat", help="C in one folder without paths of includes, as an Arduino library."
+    ),
+]
+
+_OF_THE_CORE = ("core/", "hyst_")
+
+
 @dataclass(frozen=True)
 class _Order:
     """What is asked for: which model, where to, and how."""
@@ -31,6 +41,7 @@ class _Order:
     fmi: str
     binary: bool
     despite_verdict: bool
+    flat: bool
 
 
 @dataclass(frozen=True)
@@ -49,13 +60,15 @@ def _c(order: _Order) -> _Done:
         name=order.name,
         force=order.force,
         despite_verdict=order.despite_verdict,
+        flat=order.flat,
     )
+    own = [each for each in project.files if "/" not in each and not each.startswith("hyst_")]
     zipped = order.out.suffix.lower() == ".zip"
     folder = order.name if zipped else str(order.out)
     unpack = f"unzip {_quoted(order.out)} && " if zipped else ""
     rows = (
-        ("files", ", ".join(each for each in project.files if "/" not in each)),
-        ("files of the core", str(sum(each.startswith("core/") for each in project.files))),
+        ("files", ", ".join(own)),
+        ("files of the core", str(sum(each.startswith(_OF_THE_CORE) for each in project.files))),
         ("precision", project.precision),
         ("state", f"{project.state_bytes} bytes, {project.state_length} numbers of memory"),
         ("saved state", f"{project.saved_bytes} bytes"),
@@ -128,7 +141,7 @@ def _shortened(names: tuple[str, ...], most: int = 6) -> str:
 
 # One function a target, by the name the command line gives it.
 _TARGETS: dict[str, Callable[[_Order], _Done]] = {"c": _c, "fmu": _fmu, "mex": _mex}
-_BY_TARGET = {"precision": ["c"], "fmi": ["fmu"], "binary": ["fmu"]}
+_BY_TARGET = {"precision": ["c"], "fmi": ["fmu"], "binary": ["fmu"], "flat": ["c"]}
 
 
 def export(
@@ -172,6 +185,7 @@ def export(
         ),
     ] = True,
     despite_verdict: DespiteVerdict = False,
+    flat: Flat = False,
 ) -> None:
     """Write a model as code for other tools: the numbers of Python, bit for bit in double."""
     if target not in _TARGETS:
@@ -180,7 +194,7 @@ def export(
     model = hyst.load(model_file)
     if inverse or explicit:
         model = hyst.export.inverse_of(model, explicit)
-    order = _Order(model, out, precision, name, force, fmi, binary, despite_verdict)
+    order = _Order(model, out, precision, name, force, fmi, binary, despite_verdict, flat)
     done = _TARGETS[target](order)
     what = "inverse of " if inverse or explicit else ""
     title = f"{what}{model_file.name} as {target}: {out}"

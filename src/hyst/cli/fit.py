@@ -10,18 +10,7 @@ import typer
 import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
-    DeadBand,
-    FileFormat,
-    InputColumn,
-    LongestGap,
-    MaxSamples,
     ModelFile,
-    OutputColumn,
-    Rate,
-    Repair,
-    TableNumber,
-    TimeColumn,
-    TimeUnit,
     load_operator,
     numbers,
     require_same_unit,
@@ -44,6 +33,7 @@ from hyst.cli.fitted import (
     tell_fitted,
     write_fitted,
 )
+from hyst.cli.reading_options import reads_records
 
 Free = Annotated[
     str | None,
@@ -72,21 +62,12 @@ Delay = Annotated[
 Start = Annotated[str, typer.Option(metavar="N|auto", help="First sample to use.")]
 
 
+@reads_records
 def fit(
     model: ModelFile,
     data: Data,
-    input_column: InputColumn,
-    output_column: OutputColumn,
     folder: Folder,
-    rate: Rate = None,
-    time: TimeColumn = None,
-    time_unit: TimeUnit = None,
-    repair: Repair = False,
-    longest_gap: LongestGap = hyst.io.LONGEST_GAP,
-    dead_band: DeadBand = None,
-    table: TableNumber = None,
-    file_format: FileFormat = None,
-    max_samples: MaxSamples = hyst.io.MAX_SAMPLES,
+    how: dict[str, Any],
     free: Free = None,
     bound: Bound = None,
     delay: Delay = None,
@@ -103,12 +84,8 @@ def fit(
     require_folder(folder)
     guess = load_operator(model)
     bounds = dict(_as_bound(each) for each in bound or [])
-    columns = {"input": input_column, "output": output_column, "time": time, "rate": rate}
-    columns |= {"time_unit": time_unit, "repair": repair, "longest_gap": longest_gap}
-    columns |= {"dead_band": dead_band, "table": table, "format": file_format}
-    columns |= {"max_samples": max_samples}
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
-    files = HowToRead(columns, others, (input_label, output_label))
+    files = HowToRead(how, others, (input_label, output_label))
     with at_work("fitting") as say:
         say("reading")
         records = files.records(data)

@@ -11,9 +11,9 @@ from typing import Annotated, Any
 import typer
 
 import hyst
-from hyst.cli.arguments import read_told
 from hyst.cli.console import show_table
 from hyst.cli.exit_codes import DONE, UNFIT
+from hyst.cli.reading_options import read_told
 
 Data = Annotated[
     list[Path], typer.Argument(metavar="DATA", show_default=False, help="Measured records.")
@@ -69,7 +69,17 @@ class HowToRead:
     sources: list[str] = field(default_factory=list)
 
     def records(self, paths: Sequence[Path]) -> list[hyst.Record]:
-        """Read the records to fit to."""
+        """Read the records to fit to.
+
+        Raises
+        ------
+        InputError
+            If several records are to have the output of one file.
+        """
+        if self.columns.get("output_file") is not None and len(paths) > 1:
+            raise hyst.InputError(
+                f"--output-file is the output of one record, and {len(paths)} are given; give one"
+            )
         return [
             each
             for path in paths
@@ -77,8 +87,9 @@ class HowToRead:
         ]
 
     def validation(self, paths: Sequence[Path] | None) -> list[hyst.Record]:
-        """Read the records to judge by."""
-        how = _otherwise(self.columns, self.validation_columns, paths)
+        """Read the records to judge by; their input and output are in one file."""
+        alike = self.columns | {"output_file": None}
+        how = _otherwise(alike, self.validation_columns, paths)
         return [
             each
             for path in paths or []

@@ -3,24 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import typer
 
 import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
-    DeadBand,
-    FileFormat,
-    InputColumn,
-    LongestGap,
-    MaxSamples,
-    OutputColumn,
-    Rate,
-    Repair,
-    TableNumber,
-    TimeColumn,
-    TimeUnit,
     number_or_auto,
     whole_or_auto,
 )
@@ -42,6 +31,7 @@ from hyst.cli.fitted import (
     tell_fitted,
     write_fitted,
 )
+from hyst.cli.reading_options import reads_records
 
 Family = Annotated[str, typer.Option(help="Of the model.")]  # the registry explains it
 Delay = Annotated[
@@ -60,21 +50,12 @@ LeaveDisturbances = Annotated[
 Start = Annotated[str, typer.Option(metavar="N|auto", help="First sample to use.")]
 
 
+@reads_records
 def identify(
     context: typer.Context,
     data: Data,
-    input_column: InputColumn,
-    output_column: OutputColumn,
     folder: Folder,
-    rate: Rate = None,
-    time: TimeColumn = None,
-    time_unit: TimeUnit = None,
-    repair: Repair = False,
-    longest_gap: LongestGap = hyst.io.LONGEST_GAP,
-    dead_band: DeadBand = None,
-    table: TableNumber = None,
-    file_format: FileFormat = None,
-    max_samples: MaxSamples = hyst.io.MAX_SAMPLES,
+    how: dict[str, Any],
     family: Family = "auto",
     delay: Delay = "auto",
     start: Start = "auto",
@@ -92,12 +73,8 @@ def identify(
     options = options_given(context, family)
     chosen = hyst.identification.chosen_families(family, options)
     lag, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
-    columns = {"input": input_column, "output": output_column, "time": time, "rate": rate}
-    columns |= {"time_unit": time_unit, "repair": repair, "longest_gap": longest_gap}
-    columns |= {"dead_band": dead_band, "table": table, "format": file_format}
-    columns |= {"max_samples": max_samples}
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
-    files = HowToRead(columns, others, (input_label, output_label))
+    files = HowToRead(how, others, (input_label, output_label))
     with at_work("identifying") as say:
         say("reading")
         measured = files.records(data)

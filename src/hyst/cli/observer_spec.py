@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import hyst
+from hyst._files import read_small
 from hyst.checks.numbers import as_not_negative, as_positive
 from hyst.cli.arguments import load_operator
 from hyst.cli.spec_section import Section
@@ -57,7 +58,7 @@ class ObserverSpec:
 def read_spec(path: Path) -> ObserverSpec:
     """Read a spec; every mistake is an InputError that names the entry."""
     try:
-        text = path.read_bytes().decode("utf-8")
+        text = read_small(path).decode("utf-8")
         spec = Section(tomllib.loads(text), "the spec")
     except FileNotFoundError:
         raise hyst.InputError(

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 import hyst
 from hyst.cli.arguments import (
-    InputColumn,
     ModelFile,
     SampleRate,
     load_operator,
@@ -17,6 +16,8 @@ from hyst.cli.arguments import (
     sample_time_known,
 )
 from hyst.cli.console import note, show_files
+from hyst.cli.reading_options import InputColumn, reads_columns
+from hyst.cli.time_column import time_column
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,12 +26,14 @@ if TYPE_CHECKING:
     from hyst.operators import ModelDescription
 
 
+@reads_columns
 def simulate(
     model_file: ModelFile,
     data: Annotated[
         Path, typer.Argument(metavar="DATA", show_default=False, help="File with the input.")
     ],
     input_column: InputColumn,
+    how: dict[str, Any],
     out: Annotated[
         Path,
         typer.Option("-o", "--out", metavar="FILE", show_default=False, help="CSV file to write."),
@@ -44,15 +47,16 @@ def simulate(
     """Compute the output of a model for an input, sample by sample."""
     model = load_operator(model_file)
     about = model.description
-    sample_time_known(model, data, rate, "the record")
-    u, _, unit = hyst.io.read_column(data, input_column)
+    sample_time_known(model, data, rate, "the record", **how)
+    u, _, unit = hyst.io.read_column(data, input_column, **how)
     require_same_unit(unit, about.input_unit, "the input")
     y = hyst.identification.late_output(model, u, about.delay if with_delay else 0)
-    headers = (
+    headers, columns = time_column(data, rate, model.dt, u.size, **how)
+    headers += [
         hyst.io.join_unit(about.input_name, about.input_unit),
         hyst.io.join_unit(about.output_name, about.output_unit),
-    )
-    hyst.io.write_columns(out, headers, (u, y))
+    ]
+    hyst.io.write_columns(out, headers, [*columns, u, y])
     _note_extrapolation(u, about)
     if with_delay and about.delay < 0:
         note(hyst.report.delay_sentence(about.delay, about.dt, about.delay_interval))

@@ -10,7 +10,7 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from hyst._files import replacing
+from hyst._files import replacing, require_folder
 from hyst.errors import InputError
 
 MANIFEST = "manifest.json"
@@ -42,15 +42,15 @@ def write_export(path: str | os.PathLike[str], files: Files, top: str, *, force:
     ------
     InputError
         If it exists and ``force`` is not given, or it is not an earlier export, or the folder it is
-        in does not exist or cannot be written to.
+        in cannot be made or written to.
     """
     target = Path(path)
     if top and target.suffix.lower() == ".fmu":
         raise InputError(f"{target} is the name of an FMU; name a folder or a zip, or write an FMU")
-    if not target.absolute().parent.is_dir():
-        raise InputError(f"{target}: the folder {target.parent} does not exist; create it first")
     _refuse_existing(target, force)
+    require_folder(target.parent)
     try:
+        target.parent.mkdir(parents=True, exist_ok=True)
         if target.suffix.lower() in (".zip", ".fmu"):
             with replacing(target) as temporary:
                 temporary.write_bytes(zipped(files, top))

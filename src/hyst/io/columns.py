@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import operator
+from collections.abc import Sequence
 
 from hyst.errors import InputError
+from hyst.io.header import split_unit
 from hyst.io.table import Table
 
 _LISTED = 12
@@ -38,8 +40,8 @@ def find_column(table: Table, column: int | str) -> int:
     Examples
     --------
     >>> import numpy as np
-    >>> from hyst.io.table import table_of
-    >>> table = table_of("a.npz", {"Drive": np.zeros(2), "stroke": np.zeros(2)})
+    >>> names, zeros = ("Drive", "stroke"), np.zeros(2)
+    >>> table = Table("a.npz", names, ("", ""), (zeros, zeros), names, (None, None))
     >>> find_column(table, "drive"), find_column(table, "1"), find_column(table, 1)
     (0, 1, 1)
     """
@@ -52,6 +54,7 @@ def find_column(table: Table, column: int | str) -> int:
         [k for k, name in enumerate(table.names) if name == wanted],
         [k for k, header in enumerate(table.headers) if header.casefold() == folded],
         [k for k, name in enumerate(table.names) if name.casefold() == folded],
+        [k for k, name in enumerate(table.names) if (name, table.units[k]) == split_unit(wanted)],
         *([k for k, each in enumerate(row) if each.casefold() == folded] for row in table.aliases),
         [k for k, unit in enumerate(table.units) if unit and unit == wanted],
     ):
@@ -65,6 +68,12 @@ def find_column(table: Table, column: int | str) -> int:
             )
     if wanted.isascii() and wanted.isdigit():
         return _by_index(table, int(wanted[:18]))
+    for name, reason in table.left_out.items():
+        # What is inside an object is asked for by its name and more.
+        if folded == name.casefold() or folded.startswith(
+            tuple(name.casefold() + c for c in "./({")
+        ):
+            raise InputError(f"{table.source}: {shorten(name)} {reason}")
     raise InputError(f"{table.source} has no column {shorten(wanted)}; there are {_listed(table)}")
 
 
@@ -95,6 +104,27 @@ def refuse_flaws(table: Table, column: int, remedy: str) -> None:
         f"{table.source}: {name!r} is {shorten(flaw.text)} at {place}, not a finite number; "
         f"{remedy}"
     )
+
+
+def refuse_doubts(table: Table, column: int) -> None:
+    """Refuse a signal, a column of a table, whose unit the file contradicts.
+
+    Raises
+    ------
+    InputError
+        If so.
+    """
+    if column in table.doubts:
+        name = table.names[column]
+        raise InputError(f"{table.source}: {name!r}: {table.doubts[column]}; correct one")
+
+
+def notes_about(table: Table, columns: Sequence[int]) -> tuple[str, ...]:
+    """Give what is to be told about a table and some of its columns."""
+    of_columns = (
+        f"{table.names[k]!r}: {note}" for k in columns for note in table.notes_of_columns.get(k, ())
+    )
+    return (*table.notes, *of_columns)
 
 
 def shorten(text: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,20 +11,50 @@ from numpy.typing import NDArray
 
 # Loading pyarrow takes as long as NumPy needs for some megabytes.
 _WORTH_LOADING = 1 << 22
-_BLOCK = 1 << 24
+_BLOCK = 1 << 20
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """Rows of plain numbers: digits, signs, points, exponents and separators, and line feeds.
+
+    Parameters
+    ----------
+    data
+        Bytes with the rows in them.
+    start, stop
+        Where the rows begin, and one past their last digit; by default all.
+    """
+
+    data: bytes
+    start: int = 0
+    stop: int | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of bytes."""
+        return (len(self.data) if self.stop is None else self.stop) - self.start
+
+    def rows(self) -> int:
+        """Count the lines."""
+        return self.data.count(b"\n", self.start, self.start + self.size) + 1
+
+    def lines(self) -> list[str]:
+        """Give the lines as text."""
+        return self.data[self.start : self.start + self.size].decode("ascii").split("\n")
 
 
 def parse_numbers(
-    body: bytes, rows: int, count: int, separator: str | None, used: Sequence[int]
+    body: Body, count: int, separator: str | None, used: Sequence[int]
 ) -> NDArray[np.float64] | None:
     r"""Parse rows of numbers with a decimal point.
 
     Parameters
     ----------
     body
-        Lines of digits, signs, points, exponents and separators alone, without an end at the last.
-    rows, count
-        Lines, and cells in each.
+        The rows.
+    count
+        Cells in each.
     separator
         One character, or None for white space.
     used
@@ -37,12 +68,12 @@ def parse_numbers(
 
     Examples
     --------
-    >>> parse_numbers(b"0.5,-1.25\n10.5,0.75", 2, 2, ",", [1])
+    >>> parse_numbers(Body(b"0.5,-1.25\n10.5,0.75"), 2, ",", [1])
     array([[  nan,   nan],
            [-1.25,  0.75]])
     """
-    columns = None
-    if separator is not None and len(body) >= _WORTH_LOADING:
+    columns, rows = None, body.rows()
+    if separator is not None and body.size >= _WORTH_LOADING:
         columns = _by_arrow(body, count, separator, used)
     if columns is None:
         columns = _by_numpy(body, count, separator, used)
@@ -55,7 +86,7 @@ def parse_numbers(
 
 
 def _by_arrow(
-    body: bytes, count: int, separator: str, used: Sequence[int]
+    body: Body, count: int, separator: str, used: Sequence[int]
 ) -> list[NDArray[np.float64]] | None:
     try:
         import pyarrow as arrow
@@ -66,7 +97,7 @@ def _by_arrow(
     wanted = [names[k] for k in used]
     try:
         table: Any = csv.read_csv(
-            arrow.BufferReader(body),
+            arrow.BufferReader(arrow.py_buffer(body.data).slice(body.start, body.size)),
             csv.ReadOptions(column_names=names, use_threads=False, block_size=_BLOCK),
             csv.ParseOptions(delimiter=separator, quote_char=False, ignore_empty_lines=False),
             csv.ConvertOptions(
@@ -81,13 +112,11 @@ def _by_arrow(
 
 
 def _by_numpy(
-    body: bytes, count: int, separator: str | None, used: Sequence[int]
+    body: Body, count: int, separator: str | None, used: Sequence[int]
 ) -> list[NDArray[np.float64]] | None:
     # Columns that are not used are parsed too: only so are lines of other lengths noticed.
     try:
-        found = np.loadtxt(
-            body.decode("ascii").split("\n"), delimiter=separator, comments=None, ndmin=2
-        )
+        found = np.loadtxt(body.lines(), delimiter=separator, comments=None, ndmin=2)
     except ValueError:
         return None
     return [found[:, k] for k in used] if found.shape[1] == count else None

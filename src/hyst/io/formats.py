@@ -4,60 +4,84 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from hyst.checks.numbers import whole_number
 from hyst.errors import InputError
-from hyst.io import hdf5, mat, npz, parquet, text
+from hyst.io import hdf5, mat, npz, parquet, tdms, tektronix_isf, tektronix_wfm, text, xlsx
 from hyst.io.compressed import SUFFIX as GZIP_SUFFIX
 from hyst.io.compressed import decompress, is_compressed
-from hyst.io.plain_text import Choice, read_plain
+from hyst.io.entries import MOST_SAMPLES, Wanted, refuse_too_many
+from hyst.io.plain_text import read_plain
 from hyst.io.table import Table
 
-MAX_SAMPLES = 10**8
-
-_READERS: dict[str, Callable[[Path], Table]] = {
+_BINARY: dict[str, Callable[[Path, Wanted], Table]] = {
     "mat": mat.read_mat,
     "hdf5": hdf5.read_hdf5,
     "parquet": parquet.read_parquet,
+    "tdms": tdms.read_tdms,
+    "xlsx": xlsx.read_xlsx,
+    "isf": tektronix_isf.read_isf,
+    "wfm": tektronix_wfm.read_wfm,
     "npz": npz.read_npz,
+    "npy": npz.read_npy,
 }
 _SUFFIXES: dict[str, str] = {
     **dict.fromkeys(text.SUFFIXES, "text"),
     **dict.fromkeys(mat.SUFFIXES, "mat"),
     **dict.fromkeys(hdf5.SUFFIXES, "hdf5"),
     **dict.fromkeys(parquet.SUFFIXES, "parquet"),
-    **dict.fromkeys(npz.SUFFIXES, "npz"),
+    **dict.fromkeys(tdms.SUFFIXES, "tdms"),
+    **dict.fromkeys(xlsx.SUFFIXES, "xlsx"),
+    **dict.fromkeys(tektronix_isf.SUFFIXES, "isf"),
+    **dict.fromkeys(tektronix_wfm.SUFFIXES, "wfm"),
+    ".npz": "npz",
+    ".npy": "npy",
 }
-# How files begin whatever they are called. A MAT file of version 7.3 is an HDF5 file too.
+# How files begin whose suffix tells nothing, or says text.
 _BEGINNINGS: tuple[tuple[bytes, str], ...] = (
     (b"MATLAB 5.0 MAT-file", "mat"),
     (b"MATLAB 7.3 MAT-file", "mat"),
     (b"\x89HDF\r\n\x1a\n", "hdf5"),
     (b"PAR1", "parquet"),
-    (b"PK\x03\x04", "npz"),
+    (b"TDSm", "tdms"),
+    (b"\x93NUMPY", "npy"),
 )
-FORMATS = ("text", *_READERS)
+_ZIP = b"PK\x03\x04"
+_HEAD = 4096
+FORMATS = ("text", *_BINARY)
 
 
 def read_table(
-    path: str | os.PathLike[str], *, table: int | None = None, format: str | None = None
+    path: str | os.PathLike[str],
+    *,
+    columns: Sequence[int | str] | None = None,
+    max_samples: int = MOST_SAMPLES,
+    table: int | None = None,
+    format: str | None = None,
 ) -> Table:
-    r"""Read all columns of a data file.
+    r"""Read the columns of a data file.
 
     Parameters
     ----------
     path
         Text (``.csv .tsv .txt .dat .asc .tab .prn .lvm .log`` or any other name), MATLAB
-        (``.mat``), HDF5 (``.h5 .hdf5 .hdf``), Parquet (``.parquet .pq``) or NumPy (``.npz``), or
-        one of these packed (``.gz``). What a file begins with decides before its suffix.
+        (``.mat``), HDF5 and netCDF-4 (``.h5 .hdf5 .hdf .nc``), Parquet (``.parquet .pq``), NumPy
+        (``.npy .npz``), LabVIEW (``.tdms``), Excel (``.xlsx .xlsm``), Tektronix
+        (``.isf .wfm``), or one of these packed (``.gz``). Where the suffix is unknown or one of
+        text, the first bytes decide.
+    columns
+        The columns to read, as ``find_column`` takes them; by default all. Those of a binary or a
+        large text file that are not wanted cost no memory and have no values in the table.
+    max_samples
+        Most numbers to read, all wanted columns together. What a file declares is checked before
+        there is memory for it.
     table
         Which of several tables that stand below each other in a text file, from 1.
     format
-        ``"text"``, ``"mat"``, ``"hdf5"``, ``"parquet"`` or ``"npz"``, where neither content nor
-        suffix tells.
+        One of ``hyst.io.FORMATS``, where neither content nor suffix tells.
 
     Returns
     -------
@@ -68,8 +92,8 @@ def read_table(
     Raises
     ------
     InputError
-        If the file is missing, a folder, empty, unreadable or damaged, or holds several tables
-        and ``table`` does not say which.
+        If the file is missing, no regular file, empty, unreadable, damaged, holds more than is
+        allowed, or several tables and ``table`` does not say which.
     MissingExtraError
         If the format needs a package that is not installed.
 
@@ -82,7 +106,7 @@ def read_table(
     >>> table.names, table.units, table.columns[1]
     (('drive', 'stroke'), ('V', 'um'), array([1.25, 2.5 ]))
     """
-    tables = read_tables(path, format=format)
+    tables = read_tables(path, columns=columns, max_samples=max_samples, format=format)
     if table is None and len(tables) == 1:
         return tables[0]
     return choose_table(tables, table)
@@ -91,23 +115,19 @@ def read_table(
 def read_tables(
     path: str | os.PathLike[str],
     *,
+    columns: Sequence[int | str] | None = None,
+    max_samples: int = MOST_SAMPLES,
     format: str | None = None,
     repair: bool = False,
-    max_samples: int = MAX_SAMPLES,
-    columns: Choice | None = None,
 ) -> tuple[Table, ...]:
     """Read all tables of a data file, which is one except in some text files.
 
     Parameters
     ----------
-    path, format
+    path, columns, max_samples, format
         As for ``read_table``.
     repair
         Make lines of a text file that have another number of cells rows without values.
-    max_samples
-        Refuse a text file of more lines.
-    columns
-        Chooses by headers which columns will be used; of a large text file others are NaN then.
 
     Returns
     -------
@@ -127,10 +147,13 @@ def read_tables(
         raise InputError(f"{file} does not exist; check the path")
     if file.is_dir():
         raise InputError(f"{file} is a folder; name a file in it")
+    if not file.is_file():
+        raise InputError(f"{file} is a device or a pipe, not a regular file; save it as a file")
+    wanted = Wanted(None if columns is None else tuple(columns), int(max_samples))
     try:
         if file.stat().st_size == 0:
             raise InputError(f"{file} is empty; give a file with columns of numbers")
-        return _read(file, format, repair, max_samples, columns)
+        return _read(file, format, repair, wanted)
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise InputError(f"{file} cannot be read: {reason}; check the file") from error
@@ -171,39 +194,45 @@ def _described(table: Table) -> str:
     return f"{rows} rows from {table.place(0)} on, {names}"
 
 
-def _read(
-    file: Path, format: str | None, repair: bool, max_samples: int, columns: Choice | None
-) -> tuple[Table, ...]:
+def _read(file: Path, format: str | None, repair: bool, wanted: Wanted) -> tuple[Table, ...]:
     with file.open("rb") as opened:
-        head = opened.read(64)
+        head = opened.read(_HEAD)
     suffix = file.suffix.lower()
     packed = is_compressed(head)
     data = decompress(file.read_bytes(), str(file)) if packed else b""
     if packed:
-        head = data[:64]
+        head = data[:_HEAD]
         suffix = Path(file.stem).suffix.lower() if suffix == GZIP_SUFFIX else suffix
-    found = format or recognised(head) or _SUFFIXES.get(suffix, "text")
-    if found == "text":
-        data = data if packed else file.read_bytes()
+    found = format or _format(head, suffix)
+    if found != "text":
+        return (_unpacked(data, file, found, wanted) if packed else _BINARY[found](file, wanted),)
+    data = data if packed else file.read_bytes()
+    _refuse_many_lines(data, file, wanted)
+    plain = read_plain(data, str(file), wanted.columns or None)
+    return text.read_text(data, str(file), repair) if plain is None else (plain,)
+
+
+def _refuse_many_lines(data: bytes, file: Path, wanted: Wanted) -> None:
+    """Refuse more lines than allowed; a number has at least a digit and a separator."""
+    columns = max(1, len(wanted.columns or ()))
+    if len(data) >= 2 * wanted.most // columns:
         lines = data.count(b"\n" if b"\n" in data else b"\r")
-        if lines > max_samples:
-            raise InputError(
-                f"{file} has {lines} lines and max_samples is {max_samples}; give a higher "
-                "max_samples, or a shorter part of the record"
-            )
-        plain = read_plain(data, str(file), columns)
-        return text.read_text(data, str(file), repair) if plain is None else (plain,)
-    return (_unpacked(data, file, found) if packed else _READERS[found](file),)
+        refuse_too_many(str(file), lines * columns, wanted.most)
 
 
-def recognised(head: bytes) -> str | None:
-    """Give the format of a file by its first bytes; None where they are those of no format."""
-    return next((name for beginning, name in _BEGINNINGS if head.startswith(beginning)), None)
+def _format(head: bytes, suffix: str) -> str:
+    """Tell the format by the suffix, and where that is unknown or of text by the first bytes."""
+    by_suffix = _SUFFIXES.get(suffix, "text")
+    if by_suffix != "text":
+        return by_suffix
+    if head.startswith(_ZIP):
+        return "xlsx" if b"[Content_Types].xml" in head else "npz"
+    return next((name for start, name in _BEGINNINGS if head.startswith(start)), "text")
 
 
-def _unpacked(data: bytes, file: Path, format: str) -> Table:
+def _unpacked(data: bytes, file: Path, format: str, wanted: Wanted) -> Table:
     """Read a packed file of a format whose reader wants a file."""
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / file.stem
         copy.write_bytes(data)
-        return replace(_READERS[format](copy), source=str(file))
+        return replace(_BINARY[format](copy, wanted), source=str(file))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from hyst.io.known_units import is_unit
+from hyst.io.known_units import is_unit, is_word
 from hyst.io.units_of_time import seconds_per_unit
 
 _BRACKETED = (
@@ -120,4 +120,6 @@ def _is_plain_unit(name: str, unit: str, sign: str) -> bool:
         return (_CURRENT if unit == "A" else _FORCE).fullmatch(name) is not None
     if len(unit) < 2 and unit != "%":
         return bool(sign.strip()) and sign != "_" and is_unit(unit)
+    if sign == "_" and is_word(unit):
+        return False  # part of a name, as in u_volt
     return is_unit(unit) and unit not in {"in", "none", "index", "sample", "samples", "points"}

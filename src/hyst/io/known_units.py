@@ -60,6 +60,11 @@ def is_unit(text: str) -> bool:
     return bool(parts) and all(_is_symbol(part) for part in parts)
 
 
+def is_word(text: str) -> bool:
+    """Tell whether a text is a unit that is written out, as ``volts``."""
+    return text.casefold() in _WORDS
+
+
 def _is_symbol(part: str) -> bool:
     bare = _EXPONENT.sub("", part)
     return bare in _SYMBOLS or bare in _ALONE or part == "1" or bare in {"min", "h", "hr"}

@@ -17,6 +17,7 @@ _NAMED = re.compile(r'\[[^\]]*\]|\([^)]*\)|(?:"[^"]*"|[^\s\[(]\S*)(?:\s*(?:\[[^\
 # What is less plain than a number counts a little less, so that of two ways to cut a line that
 # with more plain numbers is taken.
 _LESS_PLAIN = 0.9
+_OF_A_HEADER = 0.5
 # A date and a clock with a blank between them are one stamp.
 _DATE_AND_CLOCK = re.compile(
     r"(\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{4}) +(\d{1,2}:\d{2}:\d{2})"
@@ -116,7 +117,11 @@ def find_writing(lines: Sequence[str]) -> Writing:
         if writing.separator is None
         or 2 * sum(writing.separator in line for line in sample) > len(sample)
     ]
-    best = max(fitting, key=lambda writing: _share_of_values(writing, sample))
+    shares = {writing: _share_of_values(writing, sample) for writing in fitting}
+    best = max(fitting, key=lambda writing: shares[writing])
+    if best.separator is None:
+        # Of a header in words, blanks may cut out a number; that is no evidence.
+        best = next(w for w in fitting if shares[w] >= shares[best] - _OF_A_HEADER)
     if best == Writing(",", ".") and _is_one_column(lines, sample):
         return Writing(None, ",")
     return best

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.errors import InputError, MissingExtraError
+from hyst.errors import HystError, InputError, MissingExtraError
+from hyst.io.entries import Entry, Wanted, refuse_too_many, table_of_entries
 from hyst.io.header import split_unit
-from hyst.io.table import Table, first_flaw
+from hyst.io.table import Table
 
 SUFFIXES = (".parquet", ".pq")
 _TICKS_PER_SECOND = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
 
 
-def read_parquet(path: Path) -> Table:
-    """Read all numeric columns of a Parquet file.
+def read_parquet(path: Path, wanted: Wanted) -> Table:
+    """Read the numeric columns of a Parquet file.
 
     Missing values are NaN. Dates and durations become seconds since the earliest. Columns of
     text and nested columns are left out.
@@ -26,6 +28,8 @@ def read_parquet(path: Path) -> Table:
     ----------
     path
         The file.
+    wanted
+        Which columns to read, and how many numbers at most.
 
     Returns
     -------
@@ -35,7 +39,8 @@ def read_parquet(path: Path) -> Table:
     Raises
     ------
     InputError
-        If the file is damaged or no Parquet file, or holds no numeric column.
+        If the file is damaged or no Parquet file, holds no numeric column, or more than is
+        allowed.
     MissingExtraError
         If pyarrow is not installed.
     """
@@ -48,57 +53,77 @@ def read_parquet(path: Path) -> Table:
         ) from error
     try:
         with parquet.ParquetFile(path) as file:
-            table = file.read()
-        read = [
-            (field, _vector(table.column(k), field.type, arrow, compute))
-            for k, field in enumerate(table.schema)
-        ]
+            schema, rows = file.schema_arrow, file.metadata.num_rows
+            if len(set(schema.names)) < len(schema.names):
+                # Columns of one name cannot be read one by one.
+                refuse_too_many(str(path), rows * len(schema), wanted.most)
+                whole = file.read()
+                columns = [_reading(whole, k) for k in range(len(schema))]
+            else:
+                columns = [_reading(file, field.name) for field in schema]
+            entries, others = _entries(schema, rows, columns, arrow, compute)
+            if not entries:
+                raise InputError(f"{path} holds no column of numbers; save the signals as numbers")
+            return table_of_entries(str(path), entries, wanted, others)
+    except HystError:
+        raise
     # A damaged file fails anywhere in the library, with any exception.
     except Exception as error:
         raise InputError(
             f"{path} is damaged or no Parquet file ({type(error).__name__}); save it again"
         ) from error
-    columns = [(field, vector) for field, vector in read if vector is not None]
-    if not columns:
-        raise InputError(f"{path} holds no column of numbers; save the signals as numbers")
-    return _table(str(path), columns)
 
 
-def _vector(column: Any, kind: Any, arrow: Any, compute: Any) -> NDArray[np.float64] | None:
-    types = arrow.types
-    if types.is_timestamp(kind) or types.is_duration(kind):
+def _reading(where: Any, column: str | int) -> Callable[[], Any]:
+    """Read a column of a file by its name when it is asked for; or one of a table, by its place."""
+    if isinstance(column, int):
+        return lambda: where.column(column)
+    return lambda: where.read(columns=[column]).column(0)
+
+
+def _entries(
+    schema: Any, rows: int, columns: Sequence[Callable[[], Any]], arrow: Any, compute: Any
+) -> tuple[list[Entry], dict[str, str]]:
+    entries: list[Entry] = []
+    left_out: dict[str, str] = {}
+    for field, column in zip(schema, columns, strict=True):
+        if not _is_numeric(field.type, arrow.types):
+            left_out[field.name] = f"is of the type {field.type}; save numbers"
+            continue
+        name, unit = split_unit(field.name)
+        stated = field.metadata or {}
+        said = stated.get(b"unit", stated.get(b"units", b"")).decode("utf-8", "replace")
+
+        def read(column: Callable[[], Any] = column, kind: Any = field.type) -> Any:
+            return _vector(column(), kind, arrow, compute)
+
+        if arrow.types.is_timestamp(field.type) or arrow.types.is_duration(field.type):
+            unit = "s"
+        entries.append(Entry(field.name, name, unit or said, rows, read))
+    return entries, left_out
+
+
+def _is_numeric(kind: Any, types: Any) -> bool:
+    tests = (
+        types.is_timestamp,
+        types.is_duration,
+        types.is_integer,
+        types.is_floating,
+        types.is_boolean,
+        types.is_decimal,
+    )
+    return any(test(kind) for test in tests)
+
+
+def _vector(column: Any, kind: Any, arrow: Any, compute: Any) -> NDArray[np.float64]:
+    if arrow.types.is_timestamp(kind) or arrow.types.is_duration(kind):
         ticks = column.cast(arrow.int64())
         # Subtracting whole ticks first: seconds since 1970 leave a double too few digits.
         since_first = compute.subtract(ticks, compute.min(ticks))
         return _doubles(since_first, arrow) / _TICKS_PER_SECOND[kind.unit]
-    if not any(
-        test(kind)
-        for test in (types.is_integer, types.is_floating, types.is_boolean, types.is_decimal)
-    ):
-        return None
     return _doubles(column, arrow)
 
 
 def _doubles(column: Any, arrow: Any) -> NDArray[np.float64]:
     doubles = column.cast(arrow.float64(), safe=False)
     return np.array(doubles.to_numpy(), dtype=np.float64)
-
-
-def _table(source: str, columns: list[tuple[Any, NDArray[np.float64]]]) -> Table:
-    names, units = [], []
-    for field, vector in columns:
-        vector.flags.writeable = False
-        name, unit = split_unit(field.name)
-        stated = field.metadata or {}
-        names.append(name)
-        units.append(
-            unit or stated.get(b"unit", stated.get(b"units", b"")).decode("utf-8", "replace")
-        )
-    return Table(
-        source=source,
-        names=tuple(names),
-        units=tuple(units),
-        columns=tuple(vector for _, vector in columns),
-        headers=tuple(field.name for field, _ in columns),
-        flaws=tuple(first_flaw(vector) for _, vector in columns),
-    )

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
 from hyst.io.cell_values import ColumnOfCells
+from hyst.io.columns import find_column
 from hyst.io.decoding import decode
-from hyst.io.fast_numbers import parse_numbers
+from hyst.io.fast_numbers import Body, parse_numbers
 from hyst.io.line_kinds import NUMERIC, sort_lines
 from hyst.io.lvm import is_lvm
 from hyst.io.notation import Writing, find_writing
@@ -20,15 +22,13 @@ from hyst.io.text_block import Page, with_titles
 from hyst.io.text_lines import significant_lines
 from hyst.io.text_tables import Block, find_blocks
 
-Choice = Callable[[Table], Sequence[int]]
-
 _LARGE = 1 << 16
 _HEAD = 1 << 14
 _DIGITS = b"0123456789+-eE \r\n"
 
 
 def read_plain(
-    data: bytes, source: str, columns: Choice | None = None, large: int = _LARGE
+    data: bytes, source: str, columns: Sequence[int | str] | None = None, large: int = _LARGE
 ) -> Table | None:
     """Read a table of plain numbers below a head of the usual kind.
 
@@ -39,7 +39,7 @@ def read_plain(
     source
         Name of the file, for messages.
     columns
-        Chooses by headers which columns will be used; others are NaN.
+        Columns to read, as ``find_column`` takes them; by default all. Others have no values.
     large
         Fewest bytes for which this is worth while.
 
@@ -51,7 +51,7 @@ def read_plain(
     Raises
     ------
     InputError
-        If ``columns`` refuses.
+        If there is no such column.
     """
     if len(data) < large:
         return None
@@ -61,16 +61,22 @@ def read_plain(
     page, block = found
     number = page.lines.numbers[block.first]
     start = _start_of_line(data, number)
-    body = _plain_body(data[start:].rstrip(b"\r\n "), page.writing)
+    body = _plain_body(data, start, page.writing)
     if body is None:
         return None
-    rows = body.count(b"\n") + 1
     preview = _table(page, block, np.zeros((block.count, 2)), number)
-    used = range(block.count) if columns is None else columns(preview)
-    values = parse_numbers(body, rows, block.count, page.writing.separator, used)
-    if values is None or not np.isfinite(values[list(used)]).all():
+    used = list(range(block.count))
+    if columns is not None:
+        used = sorted({find_column(preview, column) for column in columns})
+    values = parse_numbers(body, block.count, page.writing.separator, used)
+    if values is None or not np.isfinite(values[used]).all():
         return None
-    return _table(page, block, values, number)
+    table = _table(page, block, values, number)
+    if len(used) == block.count:
+        return table
+    none = np.empty(0)
+    kept = [each if k in used else none for k, each in enumerate(table.columns)]
+    return replace(table, columns=tuple(kept))
 
 
 def _head(data: bytes, source: str) -> tuple[Page, Block] | None:
@@ -96,16 +102,24 @@ def _head(data: bytes, source: str) -> tuple[Page, Block] | None:
     return Page(source, lines, kinds, writing), block
 
 
-def _plain_body(body: bytes, writing: Writing) -> bytes | None:
+def _plain_body(data: bytes, start: int, writing: Writing) -> Body | None:
     """Give rows with a decimal point and plain line ends; None if there is more than numbers."""
     decimal, separator = writing.decimal.encode(), (writing.separator or "\t").encode()
-    if decimal == separator or body.translate(None, _DIGITS + decimal + separator):
+    if decimal == separator:
         return None
+    stop = len(data)
+    while stop > start and data[stop - 1] in b"\r\n ":
+        stop -= 1
+    allowed = _DIGITS + decimal + separator
+    # Copies of so many bytes would take as long as reading the numbers.
+    if len(data.translate(None, allowed)) > len(data[:start].translate(None, allowed)):
+        return None
+    if decimal == b"." and data.find(b"\r", start) < 0:
+        return Body(data, start, stop)
+    body = data[start:stop].replace(b"\r\n", b"\n")
     if b"\r" in body:
-        body = body.replace(b"\r\n", b"\n")
-        if b"\r" in body:
-            return None
-    return body if decimal == b"." else body.replace(b",", b".")
+        return None
+    return Body(body if decimal == b"." else body.replace(b",", b"."))
 
 
 def _start_of_line(data: bytes, number: int) -> int:

@@ -9,11 +9,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.checks.numbers import as_positive
 from hyst.errors import InputError
+from hyst.io.apart import Apart, read_apart
 from hyst.io.columns import find_column, refuse_flaws
-from hyst.io.formats import MAX_SAMPLES, choose_table, read_table, read_tables
-from hyst.io.record_of_table import Wanted, choose_columns, record_of_table
+from hyst.io.entries import MOST_SAMPLES
+from hyst.io.formats import choose_table, read_table, read_tables
+from hyst.io.record_of_table import Wanted, choose_columns, record_of_table, refuse_unusable
+from hyst.io.runs import split_runs
 from hyst.io.table import Table
+from hyst.io.unit_of_stamps import require_time_unit
 from hyst.io.usable_rows import LONGEST_GAP
 from hyst.signals import Record
 
@@ -31,7 +36,12 @@ def read_record(
     table: int | None = None,
     format: str | None = None,
     longest_gap: int = LONGEST_GAP,
-    max_samples: int = MAX_SAMPLES,
+    resample: bool = False,
+    hold_input: bool = False,
+    input_time: int | str | None = None,
+    output_time: int | str | None = None,
+    output_file: str | os.PathLike[str] | None = None,
+    max_samples: int = MOST_SAMPLES,
 ) -> Record:
     r"""Read input and output of a measurement from a data file.
 
@@ -63,15 +73,25 @@ def read_record(
         Swings of the input up to this size do not count as reversals, units of the input, >= 0;
         by default ``suggest_dead_band`` of the input.
     table
-        Which of several tables that stand below each other in a text file, from 1; by default
-        the only one that has the columns.
+        Which of several tables that stand below each other in a text file, from 1, or of several
+        runs where the time starts again; by default the only one that has the columns.
     format
         Format of the file where neither content nor suffix tells, as for ``read_table``.
     longest_gap
         How many samples in a row ``repair`` may leave out or fill in, >= 0; above 5 without a
         limit of their number altogether.
+    resample
+        Bring two signals that were stamped apart to one raster, that of the slower one; the notes
+        say what that costs. Rows where one of them has no value count for the other one only.
+    hold_input
+        In resampling, let the input keep each value until its next stamp, as a command to a
+        converter does, instead of interpolating it.
+    input_time, output_time
+        Columns of the stamps of the input and of the output, where they are not ``time``.
+    output_file
+        The file of the output, if it is another one, as an oscilloscope writes a file a channel.
     max_samples
-        A text file of more lines is refused.
+        Most numbers to read, as of ``read_table``.
 
     Returns
     -------
@@ -100,11 +120,33 @@ def read_record(
     >>> record.dt, record.input_unit, record.y
     (0.005, 'V', array([0., 3., 1., 3.]))
     """
+    if resample or output_file is not None or (input_time, output_time) != (None, None):
+        clocks = [time if each is None else each for each in (input_time, output_time)]
+        _refuse_clocks(rate, clocks, time_unit, resample)
+        where = Apart(
+            input=input,
+            output=output,
+            input_time=clocks[0],
+            output_time=clocks[1],
+            rate=rate,
+            time_unit=time_unit,
+            repair=repair,
+            resample=resample,
+            hold_input=hold_input,
+            table=table,
+            format=format,
+        )
+        record = read_apart(path, output_file, where, max_samples)
+        refuse_unusable(str(path), record, dead_band)
+        return record
+    if hold_input:
+        raise InputError("hold_input says how to resample; give it with resample")
     wanted = Wanted(input, output, time, rate, time_unit, repair, dead_band, longest_gap)
     tables = read_tables(
-        path, format=format, repair=repair, max_samples=max_samples, columns=_used_by(wanted)
+        path, columns=wanted.used(), max_samples=max_samples, format=format, repair=repair
     )
-    return record_of_table(_chosen(tables, table, wanted), wanted)
+    chosen = _chosen(_runs(tables, wanted), table, wanted)
+    return record_of_table(chosen, wanted, _reading(path, format))
 
 
 def read_records(
@@ -140,13 +182,16 @@ def read_records(
     >>> len(read_records(path, "u", "y", rate=10.0))
     2
     """
-    format, most = how.pop("format", None), how.pop("max_samples", MAX_SAMPLES)
+    format, most = how.pop("format", None), how.pop("max_samples", MOST_SAMPLES)
+    apart = ("resample", "hold_input", "input_time", "output_time", "output_file")
+    if any(how.pop(each, None) for each in apart):
+        raise InputError("signals that were stamped apart are read from one table; give its number")
     wanted = Wanted(input, output, **how)
     tables = read_tables(
-        path, format=format, repair=wanted.repair, max_samples=most, columns=_used_by(wanted)
+        path, columns=wanted.used(), max_samples=most, format=format, repair=wanted.repair
     )
-    fitting = [each for each in tables if _fits(each, wanted)] or [tables[0]]
-    return tuple(record_of_table(each, wanted) for each in fitting)
+    fitting = [each for each in _runs(tables, wanted) if _fits(each, wanted)] or [tables[0]]
+    return tuple(record_of_table(each, wanted, _reading(path, format)) for each in fitting)
 
 
 def read_column(
@@ -155,6 +200,7 @@ def read_column(
     *,
     table: int | None = None,
     format: str | None = None,
+    max_samples: int = MOST_SAMPLES,
 ) -> tuple[NDArray[np.float64], str, str]:
     r"""Read a single column of a data file, for instance a wanted trajectory.
 
@@ -164,7 +210,7 @@ def read_column(
         The file, of any format of ``read_table``.
     column
         Header, name or 0-based index.
-    table, format
+    table, format, max_samples
         As for ``read_table``.
 
     Returns
@@ -187,20 +233,58 @@ def read_column(
     >>> read_column(path, "stroke")
     (array([0. , 1.5]), 'stroke', 'um')
     """
-    whole = read_table(path, table=table, format=format)
+    whole = read_table(path, columns=[column], table=table, format=format, max_samples=max_samples)
     found = find_column(whole, column)
     refuse_flaws(whole, found, "correct it or take the row out")
     return whole.columns[found], whole.names[found], whole.units[found]
 
 
-def _used_by(wanted: Wanted) -> Callable[[Table], list[int]]:
-    """Choose the columns wanted, and those before them, which may be their own time stamps."""
+def _reading(
+    path: str | os.PathLike[str], format: str | None
+) -> Callable[[Table, int], NDArray[np.float64]]:
+    """Give a column of a table, and read it if it was not asked for before."""
 
-    def choose(table: Table) -> list[int]:
-        found = choose_columns(table, wanted.columns())
-        return sorted({*found, *(max(k - 1, 0) for k in found)})
+    def read(table: Table, column: int) -> NDArray[np.float64]:
+        found = table.columns[column]
+        return (
+            found
+            if found.size
+            else read_table(path, columns=[column], format=format).columns[column]
+        )
 
-    return choose
+    return read
+
+
+def _refuse_clocks(
+    rate: float | None,
+    clocks: list[int | str | None],
+    time_unit: str | None,
+    resample: bool,
+) -> None:
+    """Check that both signals have stamps, or neither and a rate."""
+    if rate is not None:
+        as_positive(rate, "rate", "the samples per second")
+        if resample or any(clock is not None for clock in clocks):
+            raise InputError(
+                "a rate is given with stamps or resample; signals that were stamped apart need "
+                "their stamps, and with a rate there are none"
+            )
+    elif any(clock is None for clock in clocks):
+        raise InputError("a signal has no stamps; give time, or input_time and output_time")
+    require_time_unit(time_unit)
+
+
+def _runs(tables: tuple[Table, ...], wanted: Wanted) -> tuple[Table, ...]:
+    """Cut tables where their time starts again."""
+    if wanted.time is None:
+        return tables
+    return tuple(
+        run
+        for each in tables
+        for run in (
+            split_runs(each, find_column(each, wanted.time)) if _fits(each, wanted) else (each,)
+        )
+    )
 
 
 def _chosen(tables: tuple[Table, ...], table: int | None, wanted: Wanted) -> Table:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,17 +10,16 @@ from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_positive, whole_number
 from hyst.errors import InputError
-from hyst.io.columns import find_column
+from hyst.io.columns import find_column, notes_about, refuse_doubts
 from hyst.io.even_time import Samples, on_even_steps
-from hyst.io.header import is_time, unit_of_time_in_name
+from hyst.io.own_times import refuse_own_times, refuse_rows_apart
 from hyst.io.table import Table
-from hyst.io.units_of_time import seconds_per_unit
-from hyst.io.usable_rows import LONGEST_GAP, refuse_other_stamps, usable_rows
+from hyst.io.unit_of_stamps import require_time_unit, unit_of_stamps
+from hyst.io.usable_rows import LONGEST_GAP, usable_rows
 from hyst.signals import Record, reversals, suggest_dead_band
 
 _FEWEST_REVERSALS = 2
 _WHOLE_LOOP = 0.5
-_MANY_SECONDS = 1e11
 
 
 @dataclass(frozen=True)
@@ -50,11 +49,9 @@ class Wanted:
     def __post_init__(self) -> None:
         if self.rate is not None and self.time is not None:
             raise InputError("both of rate and time given; give one, a rate in Hz or a time column")
-        unit = self.time_unit
-        if unit is not None and (self.time is None or seconds_per_unit(unit) is None):
-            raise InputError(
-                f"time_unit is {unit!r}; give s, ms, us, ns, min or h, and only with a time column"
-            )
+        require_time_unit(self.time_unit)
+        if self.time_unit is not None and self.time is None:
+            raise InputError(f"time_unit is {self.time_unit!r}; give it only with a time column")
         if self.rate is not None:
             as_positive(self.rate, "rate", "the samples per second")
         whole_number(self.longest_gap, "longest_gap", 0, 10**9)
@@ -63,8 +60,14 @@ class Wanted:
         """Give the columns by their roles."""
         return {"input": self.input, "output": self.output, "time": self.time}
 
+    def used(self) -> list[int | str]:
+        """Give the columns that will be used."""
+        return [each for each in self.columns().values() if each is not None]
 
-def record_of_table(table: Table, wanted: Wanted) -> Record:
+
+def record_of_table(
+    table: Table, wanted: Wanted, read: Callable[[Table, int], NDArray[np.float64]]
+) -> Record:
     """Make a record of two columns of a table and the time of its rows.
 
     Parameters
@@ -73,6 +76,8 @@ def record_of_table(table: Table, wanted: Wanted) -> Record:
         What was read.
     wanted
         Which columns, and how.
+    read
+        Gives a column of the table, read already or not.
 
     Returns
     -------
@@ -86,20 +91,17 @@ def record_of_table(table: Table, wanted: Wanted) -> Record:
     """
     chosen = choose_columns(table, wanted.columns())
     for k in chosen[:2]:
-        if k in table.doubts:
-            raise InputError(f"{table.source}: {table.names[k]!r}: {table.doubts[k]}; correct one")
+        refuse_doubts(table, k)
+    refuse_rows_apart(table, chosen[:2])
+    if wanted.time is not None:
+        roles = {"input": chosen[0], "output": chosen[1]}
+        refuse_own_times(table, roles, chosen[2], lambda column: read(table, column))
     rows, left_out = usable_rows(table, chosen, wanted.repair, wanted.longest_gap)
     signals = [table.columns[k][rows] for k in chosen[:2]]
     samples, told = _samples(table, chosen, rows, signals, wanted)
     even = on_even_steps(samples, wanted.repair, wanted.longest_gap)
     u, y = even.signals
-    for column, signal, role in zip(chosen, (u, y), ("input", "output"), strict=False):
-        _refuse_still(table, column, signal, role)
-    _refuse_few_reversals(table, chosen[0], u, wanted.dead_band)
-    of_columns = [
-        f"{table.names[k]!r}: {note}" for k in chosen for note in table.notes_of_columns.get(k, ())
-    ]
-    return Record(
+    record = Record(
         u,
         y,
         even.dt,
@@ -107,8 +109,10 @@ def record_of_table(table: Table, wanted: Wanted) -> Record:
         output_name=table.names[chosen[1]],
         input_unit=table.units[chosen[0]],
         output_unit=table.units[chosen[1]],
-        notes=(*table.notes, *of_columns, *told, *left_out, *even.notes),
+        notes=(*notes_about(table, chosen), *told, *left_out, *even.notes),
     )
+    refuse_unusable(table.source, record, wanted.dead_band)
+    return record
 
 
 def choose_columns(table: Table, wanted: Mapping[str, int | str | None]) -> list[int]:
@@ -161,7 +165,8 @@ def _samples(
 ) -> tuple[Samples, tuple[str, ...]]:
     """Give the samples with their time, and what is to be told about it."""
     if wanted.time is not None:
-        stamps, seconds, told = _stamps(table, chosen, rows, wanted.time_unit)
+        stamps = table.columns[chosen[2]][rows]
+        seconds, told = unit_of_stamps(table, chosen[2], stamps, wanted.time_unit)
         return Samples(table, rows, stamps, seconds, signals, rate_given=False), told
     told = ()
     if wanted.rate is not None:
@@ -182,62 +187,33 @@ def _samples(
     return Samples(table, rows, rows.astype(np.float64), period, signals, rate_given=True), told
 
 
-def _stamps(
-    table: Table, chosen: list[int], rows: NDArray[np.intp], time_unit: str | None
-) -> tuple[NDArray[np.float64], float, tuple[str, ...]]:
-    """Give the time column as it stands and the seconds in its unit."""
-    column = chosen[2]
-    header, unit = table.headers[column], table.units[column]
-    in_name = "" if unit else unit_of_time_in_name(table.names[column])
-    stamps = table.columns[column][rows]
-    told: tuple[str, ...] = ()
-    if time_unit is None:
-        if column in table.doubts:
-            raise InputError(f"{table.source}: {header!r}: {table.doubts[column]}; give time_unit")
-        unit = unit or in_name
-        _refuse_unlikely_seconds(table, header, unit, stamps)
-    elif unit and seconds_per_unit(unit) not in (None, seconds_per_unit(time_unit)):
-        told = (f"{header!r} was taken as {time_unit}, as time_unit says",)
-    seconds = seconds_per_unit(unit if time_unit is None else time_unit)
-    if seconds is None:
-        raise InputError(
-            f"{table.source}: the time column {header!r} has the unit {unit!r}, which is no unit "
-            "of time hyst knows; give time_unit s, ms, us, ns, min or h"
-        )
-    refuse_other_stamps(table, chosen)
-    return stamps, seconds, told
+def refuse_unusable(source: str, record: Record, dead_band: float | None) -> None:
+    """Refuse signals that stand still, and an input without two turns or one whole loop.
 
+    Parameters
+    ----------
+    source
+        Name of the file, for messages.
+    record
+        What was read.
+    dead_band
+        As in ``read_record``.
 
-def _refuse_unlikely_seconds(
-    table: Table, header: str, unit: str, stamps: NDArray[np.float64]
-) -> None:
-    """Refuse stamps without a unit that cannot be seconds, and names that may be two units."""
-    if unit:
-        return
-    if header.strip().casefold().endswith("_m") and is_time(header.strip()[:-2]):
-        raise InputError(
-            f"{table.source}: {header!r} may be minutes or something else that is called m; give "
-            "time_unit"
-        )
-    if np.abs(stamps).max() > _MANY_SECONDS and np.abs(stamps).max() < 1e20:
-        raise InputError(
-            f"{table.source}: {header!r} has no unit and reads {stamps[0]:.12g}, which are no "
-            "seconds, but may be ms or us since 1970 or ns of a clock; give time_unit"
-        )
-
-
-def _refuse_still(table: Table, column: int, signal: NDArray[np.float64], role: str) -> None:
-    if signal.min() == signal.max():
-        raise InputError(
-            f"{table.source}: the {role} {table.names[column]!r} is {signal[0]:.6g} throughout; "
-            "choose a column that moves"
-        )
-
-
-def _refuse_few_reversals(
-    table: Table, column: int, u: NDArray[np.float64], dead_band: float | None
-) -> None:
-    """Refuse an input that neither turns twice nor goes through one whole loop."""
+    Raises
+    ------
+    InputError
+        If so.
+    """
+    for name, signal, role in (
+        (record.input_name, record.u, "input"),
+        (record.output_name, record.y, "output"),
+    ):
+        if signal.min() == signal.max():
+            raise InputError(
+                f"{source}: the {role} {name!r} is {signal[0]:.6g} throughout; "
+                "choose a column that moves"
+            )
+    u = record.u
     threshold = suggest_dead_band(u) if dead_band is None else dead_band
     turns = reversals(u, threshold)
     if turns.size >= _FEWEST_REVERSALS:
@@ -248,7 +224,7 @@ def _refuse_few_reversals(
         if min(there, back) >= _WHOLE_LOOP * max(there, back):
             return
     raise InputError(
-        f"{table.source}: the input {table.names[column]!r} has {turns.size} reversals beyond its "
-        f"dead band of {threshold:.3g}, and hysteresis needs at least {_FEWEST_REVERSALS}, or one "
-        "rise and fall of about the same size; record whole cycles, or give a smaller dead_band"
+        f"{source}: the input {record.input_name!r} has {turns.size} reversals beyond its dead "
+        f"band of {threshold:.3g}, and hysteresis needs at least {_FEWEST_REVERSALS}, or one rise "
+        "and fall of about the same size; record whole cycles, or give a smaller dead_band"
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,7 +73,9 @@ def seconds_of_stamps(cells: Sequence[str]) -> Stamps:
     order = _order_of_date(found)
     if isinstance(order, Flaw):
         return Stamps(np.full(len(cells), math.nan), order)
-    short = any(each and each["hour"] and each["second"] is None for each in found)
+    short = _are_minutes_and_seconds(found)
+    if isinstance(short, Flaw):
+        return Stamps(np.full(len(cells), math.nan), replace(short, text=cells[short.row]))
     days: dict[str, int | None] = {}
     ticks = [_nanoseconds(each, order, short, days) for each in found]
     row = next((k for k, tick in enumerate(ticks) if tick is None), None)
@@ -108,7 +110,7 @@ def _second_of_day(match: re.Match[str], short: bool) -> int:
     if match["hour"] is None:
         return 0
     first, second, third = int(match["hour"]), int(match["minute"]), int(match["second"] or 0)
-    if short and match["second"] is None and match["fraction"] is not None:
+    if short and match["second"] is None:
         return first * 60 + second
     if match["half"]:
         first = first % 12 + (12 if match["half"] in "pP" else 0)
@@ -118,6 +120,19 @@ def _second_of_day(match: re.Match[str], short: bool) -> int:
         digits = zone[1:].replace(":", "")
         offset = (int(digits[:2]) * 60 + int(digits[2:])) * (60 if zone[0] == "+" else -60)
     return first * 3600 + second * 60 + third - offset
+
+
+def _are_minutes_and_seconds(found: Sequence[re.Match[str] | None]) -> bool | Flaw:
+    """Tell mm:ss from hh:mm: by a fraction, or more than 23 hours; a flaw where nothing tells."""
+    two = [(k, each) for k, each in enumerate(found) if each and each["hour"]]
+    if not two or any(each["second"] for _, each in two):
+        return False
+    if any(each["fraction"] or int(each["hour"]) > 23 for _, each in two):
+        return True
+    if any(each["date"] or each["half"] for _, each in two):
+        return False
+    why = "which may be hours and minutes or minutes and seconds; write times of day as 12:00:01"
+    return Flaw(two[0][0], "", why)
 
 
 def _day_number(text: str, order: str) -> int | None:

@@ -60,10 +60,13 @@ class Table:
         What was left out of the file, one sentence each.
     notes_of_columns
         By column, how its cells were read where that had to be found out.
+    left_out
+        What else the file holds, and why it is no column: a phrase that follows the name.
 
     Examples
     --------
-    >>> table = table_of("a.npz", {"u": np.array([1.0, np.nan])})
+    >>> u = np.array([1.0, np.nan])
+    >>> table = Table("a.npz", ("u",), ("V",), (u,), ("u [V]",), (first_flaw(u),))
     >>> table.names, table.flaws[0].row, table.place(1)
     (('u',), 1, 'index 1')
     """
@@ -80,6 +83,7 @@ class Table:
     step: float | None = None
     notes: tuple[str, ...] = ()
     notes_of_columns: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
+    left_out: Mapping[str, str] = field(default_factory=dict)
 
     def place(self, row: int) -> str:
         """Say where a row is: its line in a text file, its index elsewhere.
@@ -90,37 +94,6 @@ class Table:
             Index of the row, from 0.
         """
         return f"index {row}" if self.lines is None else f"line {self.lines[row]}"
-
-
-def table_of(
-    source: str, columns: dict[str, NDArray[np.float64]], units: dict[str, str] | None = None
-) -> Table:
-    """Make a table of a binary file's columns, whose names are whole headers without a unit.
-
-    Parameters
-    ----------
-    source
-        Name of the file.
-    columns
-        Vectors by name, float64.
-    units
-        Units of those columns that have one.
-
-    Returns
-    -------
-    Table
-        The columns in the order given.
-    """
-    for vector in columns.values():
-        vector.flags.writeable = False
-    return Table(
-        source=source,
-        names=tuple(columns),
-        units=tuple((units or {}).get(name, "") for name in columns),
-        columns=tuple(columns.values()),
-        headers=tuple(columns),
-        flaws=tuple(first_flaw(vector) for vector in columns.values()),
-    )
 
 
 def first_flaw(vector: NDArray[np.float64]) -> Flaw | None:

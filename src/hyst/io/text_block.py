@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -10,15 +11,17 @@ from numpy.typing import NDArray
 
 from hyst.errors import InputError
 from hyst.io.cell_values import ColumnOfCells, read_cells
-from hyst.io.cells import is_missing
+from hyst.io.cells import is_missing, kind_of
 from hyst.io.dates_and_clocks import with_clocks
-from hyst.io.line_kinds import NUMERIC, LineKinds
+from hyst.io.line_kinds import NUMERIC, TEXT, LineKinds
 from hyst.io.notation import Writing
 from hyst.io.stated_step import start_and_step, stated_step
 from hyst.io.table import Table
 from hyst.io.text_lines import Lines
 from hyst.io.text_tables import ENOUGH_ROWS, Block
 from hyst.io.titles import Titles, find_titles
+
+_LIKE_NUMBER = re.compile(r"[-+.,\deEdD]*\d[-+.,\deEdD]*", re.ASCII)
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +127,7 @@ def with_titles(
     titles = find_titles(_cut(above, axis, writing), comments, block.count, writing)
     if titles is None:
         _refuse_odd_header(page, block)
+        _refuse_header_among_rows(page, block)
         _refuse_doubtful_row(page, block)
         titles = _numbered(columns)
     table = _joined(page.source, titles, columns, numbers)
@@ -133,9 +137,9 @@ def with_titles(
 
 
 def _is_part(page: Page, row: int) -> bool:
-    """Tell whether a line holds numbers alone, which a key with its value does not."""
-    cells = page.writing.cells(page.lines.texts[row])
-    return any(cells) and all(page.writing.is_number(cell) for cell in cells if cell)
+    """Tell whether a line is a part of a row; a key with its value and a date are none."""
+    first = page.writing.cells(page.lines.texts[row])[0]
+    return bool(_LIKE_NUMBER.fullmatch(first)) and kind_of(first, page.writing.decimal) != "stamp"
 
 
 def _left_out(page: Page, block: Block) -> tuple[str, ...]:
@@ -143,7 +147,8 @@ def _left_out(page: Page, block: Block) -> tuple[str, ...]:
     notes = []
     numbers, kinds = page.lines.numbers, page.kinds
     for k in range(block.above, block.first):
-        if kinds.counts[k] != block.count and _is_part(page, k):
+        whole = kinds.kinds[k] == NUMERIC
+        if whole and kinds.counts[k] != block.count and _is_part(page, k):
             if block.stop - block.first < ENOUGH_ROWS:
                 raise page.unequal(block.first, k)
             notes.append(
@@ -267,6 +272,16 @@ def _refuse_odd_header(page: Page, block: Block) -> None:
             f"{page.source}: line {page.lines.numbers[row]} names {named} columns, but the lines "
             f"below it have {block.count} values; correct it or make it a comment with #{hint}"
         )
+
+
+def _refuse_header_among_rows(page: Page, block: Block) -> None:
+    """Refuse a line of text among rows that have no header: it may be theirs, with their units."""
+    for row in block.faulty:
+        if page.kinds.counts[row] == block.count and page.kinds.kinds[row] == TEXT:
+            raise InputError(
+                f"{page.source}: line {page.lines.numbers[row]} holds {block.count} texts among "
+                "rows that have no header; put it above them, or make it a comment with #"
+            )
 
 
 def _refuse_doubtful_row(page: Page, block: Block) -> None:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from hyst.io.header import bracketed, split_unit, unit_of_time_in_name
+from hyst.io.header import bracketed, is_time, split_unit, unit_of_time_in_name
 from hyst.io.known_units import is_unit
 from hyst.io.notation import Writing
 from hyst.io.units_of_time import seconds_per_unit
 from hyst.signals import units_differ
 
 _ROWS = 4
+_LABELS = frozenset({"unit", "units", "einheit", "einheiten"})
+_RULE = re.compile(r"[\s|+:;,=*_~-]*[|+:=*_~-]{2}[\s|+:;,=*_~-]*")
 
 
 @dataclass(frozen=True)
@@ -91,7 +94,7 @@ def _rows(
     rows: list[list[str]] = []
     for line in reversed(lines[-_ROWS:]):
         cells = _as_many(line, count, writing)
-        if cells is None and len(writing.cells(line)) == 1:
+        if (cells is None and len(writing.cells(line)) == 1) or _RULE.fullmatch(line):
             continue  # a rule below the names, or a remark
         if cells is None or (whole and not all(cells)):
             break
@@ -103,12 +106,15 @@ def _rows(
 
 def _is_row_of_units(cells: list[str]) -> bool:
     """Tell whether all cells of a row are units, or all are in brackets; some may be empty."""
-    written = [cell for cell in cells if cell]
+    written = [cell for cell in cells if cell and cell.casefold().strip(":") not in _LABELS]
     if not written:
         return False
     if bracketed(cells):
         return True
-    return 2 * len(written) >= len(cells) and all(map(is_unit, written))
+    if not all(map(is_unit, written)):
+        units = sum(is_unit(cell) and cell[-1].isalpha() for cell in written)
+        return units > 1 and 3 * units >= 2 * len(cells)
+    return 2 * len(written) >= len(cells)
 
 
 def _descriptions(rows: Sequence[list[str]], writing: Writing) -> tuple[tuple[str, ...], ...]:
@@ -120,7 +126,11 @@ def _titles(
 ) -> Titles:
     split = [split_unit(name) for name in names]
     if units is None:
-        return Titles(tuple(names), tuple(n for n, _ in split), tuple(u for _, u in split), aliases)
+        own = [
+            unit or _unit_of_time([names[column], *(row[column] for row in aliases)])
+            for column, (_, unit) in enumerate(split)
+        ]
+        return Titles(tuple(names), tuple(name for name, _ in split), tuple(own), aliases)
     headers, own_names, own_units, doubts = [], [], [], {}
     for column, (header, (name, unit), below) in enumerate(zip(names, split, units, strict=True)):
         stated = _bare(below)
@@ -131,6 +141,16 @@ def _titles(
         own_names.append(name)
         own_units.append(stated or unit)
     return Titles(tuple(headers), tuple(own_names), tuple(own_units), aliases, doubts)
+
+
+def _unit_of_time(cells: Sequence[str]) -> str:
+    """Find the unit of a time among all texts above a column; to miss it would be a wrong step."""
+    split = [split_unit(cell) for cell in cells]
+    if len(cells) > 1 and any(is_time(name) for name, _ in split):
+        for unit in (*(unit for _, unit in split), *map(_bare, cells)):
+            if unit and seconds_per_unit(unit) is not None:
+                return unit
+    return ""
 
 
 def _bare(unit: str) -> str:

@@ -38,8 +38,11 @@ def drop_trailing_separators(lines: list[str], writing: Writing) -> list[str]:
 
 
 def _may_be_row(index: int, lines: list[str], writing: Writing) -> bool:
-    """Tell whether a line without the separator at its end may be a row; the last may break off."""
+    """Tell whether a line that ends otherwise needs its last cell; the last may break off."""
     kind = writing.kind(lines[index])
+    separator, row = writing.separator or "", lines[len(lines) // 2]
+    if kind == "text" and lines[index].count(separator) == row.count(separator):
+        return True  # a header that names the last column, empty as it is
     if kind == "text" or (index == len(lines) - 1 and len(lines) > SAMPLED):
         return False
     return kind == "numeric" or index > SAMPLED

@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-import re
-
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
+from hyst.io.codes_in_rows import (
+    Codes,
+    codes_of_both,
+    refuse_codes,
+    rows_counted,
+    told_of_codes,
+)
 from hyst.io.columns import refuse_flaws
-from hyst.io.instrument_codes import Code, find_codes
 from hyst.io.table import Table
 
 LONGEST_GAP = 5
 FEWEST_SAMPLES = 3
+REMEDY = ", or leave such rows out with the option repair"
 # Repair leaves out single faults; what lacks more than this is another record than the one wanted.
 _LARGEST_SHARE = 0.05
 _ALWAYS_ALLOWED = 3
-# Channels that are scanned one after the other within a step are of one row all the same.
-_SAME_INSTANT = 0.5
-_OWN_TIME = re.compile(
-    r"(?:.*[\s_./-])?(?:time|t|timestamp|zeit|x_value)(?:[\s_./-].*)?", re.IGNORECASE
-)
 
 
 def most_left_out(rows: int) -> int:
@@ -56,29 +56,28 @@ def usable_rows(
         If a value is missing or none and ``repair`` is not set, or too many are.
     """
     finite = [np.isfinite(table.columns[k]) for k in chosen]
-    codes = [find_codes(table.columns[k]) for k in chosen[:2]]
     good = np.logical_and.reduce(finite)
-    for found in codes:
-        for code in found:
-            good[code.rows] = False
+    codes = codes_of_both(table, chosen[0], chosen[1], np.flatnonzero(good))
+    for code in (*codes[0], *codes[1]):
+        good[code.samples] = False
     rows = np.flatnonzero(good)
     missing = good.size - rows.size
     if not missing:
         return _enough(table, rows), ()
     allowed = missing <= most_left_out(good.size)
-    _refuse_apart(table, chosen, finite)
     for k, usable in zip(chosen, finite, strict=True):
         flaw = table.flaws[k]
         if not (repair and usable.any() and not (flaw and flaw.why)):
             possible = allowed and bool(usable.any())
-            refuse_flaws(table, k, _remedy(possible, missing, good.size, _own_time(table, chosen)))
+            refuse_flaws(table, k, _remedy(possible, missing, good.size))
     if not repair:
-        _refuse_codes(table, chosen, codes, allowed)
+        for k, found in zip(chosen, codes, strict=False):
+            refuse_codes(table, k, found, REMEDY if allowed else "")
     if not allowed:
         raise InputError(
             f"{table.source}: {missing} of {good.size} rows hold no value in one of the columns, "
-            f"and repair leaves out {most_left_out(good.size)} at most"
-            f"{_own_time(table, chosen)}; give a file that is complete"
+            f"and repair leaves out {most_left_out(good.size)} at most; "
+            "give a file that is complete"
         )
     _refuse_long_gap(table, rows, longest_gap)
     return _enough(table, rows), _told(table, chosen, codes, np.logical_and.reduce(finite))
@@ -93,78 +92,13 @@ def _enough(table: Table, rows: NDArray[np.intp]) -> NDArray[np.intp]:
     return rows
 
 
-def _remedy(allowed: bool, missing: int, rows: int, own_time: str) -> str:
+def _remedy(allowed: bool, missing: int, rows: int) -> str:
     if allowed:
-        return "correct it, or leave such rows out with the option repair"
+        return f"correct it{REMEDY}"
     return (
-        f"{missing} of {rows} rows lack a value, too many to leave out{own_time}; give a file that "
+        f"{missing} of {rows} rows lack a value, too many to leave out; give a file that "
         "is complete"
     )
-
-
-def _refuse_apart(table: Table, chosen: list[int], finite: list[NDArray[np.bool_]]) -> None:
-    """Refuse input and output that were logged at instants of their own."""
-    u, y = finite[:2]
-    if min(u.sum(), y.sum()) >= FEWEST_SAMPLES and not (u & y).any():
-        names = " and ".join(repr(table.names[k]) for k in chosen[:2])
-        raise InputError(
-            f"{table.source}: {names} never have a value in one row, for each was logged at its "
-            "own times; bring them to one raster before (resample)"
-        )
-
-
-def _own_time(table: Table, chosen: list[int]) -> str:
-    """Say that a signal has stamps of its own, where the column before it looks like them."""
-    for k in chosen[:2]:
-        if k and k - 1 not in chosen and _OWN_TIME.fullmatch(table.names[k - 1]):
-            return f"; {table.names[k]!r} has its own stamps in {table.names[k - 1]!r}"
-    return ""
-
-
-def refuse_other_stamps(table: Table, chosen: list[int]) -> None:
-    """Refuse a signal whose own stamps, in the column before it, are others than those chosen.
-
-    Parameters
-    ----------
-    table
-        Where to look.
-    chosen
-        Columns of input, output and time.
-
-    Raises
-    ------
-    InputError
-        If so: input and output of one row would belong to different instants.
-    """
-    for k in chosen[:2]:
-        if not k or k - 1 in chosen or not _OWN_TIME.fullmatch(table.names[k - 1]):
-            continue
-        own, time = table.columns[k - 1], table.columns[chosen[2]]
-        if own.size != time.size or table.units[k - 1] != table.units[chosen[2]]:
-            continue
-        both = np.isfinite(own) & np.isfinite(time)
-        with np.errstate(over="ignore", invalid="ignore"):
-            apart = np.abs(own - time)[both]
-            step = float(np.median(np.abs(np.diff(time[both])))) if apart.size > 1 else np.inf
-        if apart.size and float(apart.max()) > _SAME_INSTANT * step:
-            raise InputError(
-                f"{table.source}: {table.names[k]!r} has its own stamps in "
-                f"{table.names[k - 1]!r}, which are up to {float(apart.max()):.6g} away from those "
-                f"in {table.names[chosen[2]]!r}; bring both to one raster before (resample)"
-            )
-
-
-def _refuse_codes(table: Table, chosen: list[int], codes: list[list[Code]], allowed: bool) -> None:
-    for k, found in zip(chosen, codes, strict=False):
-        for code in found[:1]:
-            more = code.rows.size - 1
-            also = f" and in {_rows(more)} more" if more else ""
-            remedy = ", or leave such rows out with the option repair" if allowed else ""
-            raise InputError(
-                f"{table.source}: {table.names[k]!r} is {code.value:.6g} at "
-                f"{table.place(int(code.rows[0]))}{also}, far from all other values: a code of the "
-                f"instrument and no measurement; correct it{remedy}"
-            )
 
 
 def _refuse_long_gap(table: Table, rows: NDArray[np.intp], longest_gap: int) -> None:
@@ -178,21 +112,13 @@ def _refuse_long_gap(table: Table, rows: NDArray[np.intp], longest_gap: int) -> 
         )
 
 
-def _rows(count: int) -> str:
-    return "1 row" if count == 1 else f"{count} rows"
-
-
 def _told(
-    table: Table, chosen: list[int], codes: list[list[Code]], finite: NDArray[np.bool_]
+    table: Table, chosen: list[int], codes: tuple[Codes, Codes], finite: NDArray[np.bool_]
 ) -> tuple[str, ...]:
     notes = []
     dropped = int(finite.size - finite.sum())
     if dropped:
-        notes.append(f"left out {_rows(dropped)} that held no number or no finite one")
+        notes.append(f"left out {rows_counted(dropped)} that held no number or no finite one")
     for k, found in zip(chosen, codes, strict=False):
-        notes += [
-            f"left out {_rows(code.rows.size)} where {table.names[k]!r} is {code.value:.6g}, a "
-            "code of the instrument and no measurement"
-            for code in found
-        ]
+        notes += told_of_codes(table, k, found)
     return tuple(notes)

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn, final
 
-from hyst._files import replacing
+from hyst._files import read_small, replacing
 from hyst.errors import InputError
 from hyst.operators.description import ModelDescription, as_description
 
@@ -155,8 +155,16 @@ def read_file(path: str | os.PathLike[str]) -> SavedFile:
 
 def _parse(path: Path) -> Any:
     try:
+        content = read_small(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    except ValueError as error:  # no path
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{str(path)!r} cannot be read: {error}") from None
+    try:
         return json.loads(
-            path.read_text(encoding="utf-8"),
+            content.decode("utf-8"),
             parse_constant=_refuse_number,
             parse_float=_finite,
             parse_int=_whole,
@@ -164,14 +172,12 @@ def _parse(path: Path) -> Any:
         )
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
     except json.JSONDecodeError as error:
         where = f"line {error.lineno}, column {error.colno}"
         raise InputError(f"{path}: not JSON: {where}: {error.msg}") from None
     except RecursionError:
         raise InputError(f"{path}: lists or objects are nested too deeply") from None
-    except ValueError as error:  # not UTF-8, or no path
+    except ValueError as error:  # not UTF-8
         raise InputError(f"{str(path)!r} cannot be read: {error}") from None
 
 

@@ -24,6 +24,8 @@ def drive_table(drive: Drive, name: str) -> Table:
         ("samples", str(len(drive))),
         ("duration [s]", number(len(drive) * drive.dt)),
         ("period [samples]", str(drive.period) if drive.period else "none"),
+        ("starts at", number(float(drive.u[0]))),
+        ("ends at", number(float(drive.u[-1]))),
         ("lowest", number(float(drive.u.min()))),
         ("highest", number(float(drive.u.max()))),
         ("rms about the mean", number(drive.rms)),

@@ -197,7 +197,7 @@ def candidates_table(identified: Identified) -> Table:
 
 
 def parameters_table(identified: Identified) -> Table:
-    """Free parameters with their standard errors.
+    """Free parameters with their standard errors, and a gain that turns the output round.
 
     Parameters
     ----------
@@ -219,7 +219,20 @@ def parameters_table(identified: Identified) -> Table:
                 identified.standard_errors.tolist(),
                 strict=True,
             )
-        ),
+        )
+        + _fixed_gains(identified),
+    )
+
+
+def _fixed_gains(identified: Identified) -> tuple[tuple[str, str, str], ...]:
+    """List gains that were not free and are not 1: without them the others read wrong."""
+    constants = identified.model.parameters()
+    return tuple(
+        (name, number(value, 6), "fixed")
+        for name, value in zip(constants.names, constants.values.tolist(), strict=True)
+        if name.rpartition(".")[2] == "gain"
+        and value != 1.0
+        and name not in identified.parameter_names
     )
 
 

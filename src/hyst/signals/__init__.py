@@ -10,6 +10,7 @@ from hyst.signals.metrics import Metrics, error_metrics
 from hyst.signals.multisines import multisine
 from hyst.signals.noise import estimate_noise, suggest_dead_band
 from hyst.signals.record import Record
+from hyst.signals.rest import from_rest
 from hyst.signals.sequences import decaying_triangle, forc, prbs, staircase, triangle
 from hyst.signals.swept_sines import swept_sine
 from hyst.signals.turning_points import reversals
@@ -26,6 +27,7 @@ __all__ = [
     "error_metrics",
     "estimate_noise",
     "forc",
+    "from_rest",
     "hysteresis_percent",
     "loop_area",
     "multisine",

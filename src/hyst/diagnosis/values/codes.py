@@ -13,6 +13,9 @@ _FAR = 10.0
 _VERY_FAR = 1000.0
 _RARE = 0.02
 _LARGEST_SHARE = 0.2
+# Double precision itself holds no signal that reaches so little beside what it holds.
+_BEYOND_PRECISION = 1e25
+_LARGEST_SHARE_THERE = 0.9
 _MOST_CODES = 3
 _FEWEST_SAMPLES = 8
 
@@ -70,8 +73,9 @@ def codes_in(signal: NDArray[np.float64]) -> tuple[Code, ...]:
 
         gap > 10 (reach of all others),   at most 2 % of the samples and at most 3 values
 
-    Up to 20 % of the samples may be codes if they stand a thousand times the reach outside. What
-    decides is the distance alone, in whatever unit, and never which number it is.
+    Up to 20 % of the samples may be codes if they stand a thousand times the reach outside, and up
+    to 90 % if they stand 1e25 times outside, where no double tells the others apart. What decides
+    is the distance alone, in whatever unit, and never which number it is.
 
     Parameters
     ----------
@@ -107,11 +111,12 @@ def _end_of_the_others(ordered: NDArray[np.float64]) -> float:
     """Highest value below the first gap that is too wide for a measurement, else the highest."""
     count = ordered.size
     low = ordered[count // 10]
-    first = int(np.ceil((1.0 - _LARGEST_SHARE) * count)) - 1
+    first = max(int(np.ceil((1.0 - _LARGEST_SHARE_THERE) * count)) - 1, 0)
     upper = ordered[first:]
     reach = upper[:-1] - low
     above = np.arange(upper.size - 1, 0, -1)
-    wanted = np.where(above <= max(_RARE * count, 1.0), _FAR, _VERY_FAR)
+    wanted = np.where(above <= _LARGEST_SHARE * count, _VERY_FAR, _BEYOND_PRECISION)
+    wanted[above <= max(_RARE * count, 1.0)] = _FAR
     # Divided by what is wanted and not multiplied: it cannot overflow.
     wide = np.flatnonzero((reach > 0.0) & (np.diff(upper) / wanted > reach))
     return float(upper[wide[0]] if wide.size else upper[-1])

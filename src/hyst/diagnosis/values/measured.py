@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.diagnosis.evidence import Evidence
-from hyst.diagnosis.values.codes import Code, codes_in
+from hyst.diagnosis.values.codes import Code
+from hyst.diagnosis.values.codes_of_record import bridged, codes_of_record, without_codes
 from hyst.diagnosis.values.dropouts import Dropouts, dropouts_in
 from hyst.diagnosis.values.plateaus import Plateau, plateaus_in
 from hyst.diagnosis.values.spikes import Spikes, spikes_in
@@ -25,9 +26,6 @@ _MOST_SPIKES = 0.02
 _MOST_CODES = 0.05
 _MOST_DROPOUTS = 0.2
 _REST = 0.02
-_LEAST_JUMP = 0.02
-_LAG = 10
-_NEVER_AN_ANSWER = 1e9
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,16 +125,15 @@ def _look_at(record: Record, number: int) -> Values:
     InputError
         If a range is no number.
     """
-    input_codes = codes_in(record.u)
-    u = _without(record.u, input_codes)
-    output_codes = tuple(each for each in codes_in(record.y) if not _is_answer(each, u))
-    y = _without(record.y, output_codes)
+    input_codes, output_codes = codes_of_record(record.u, record.y)
+    u = without_codes(record.u, input_codes)
+    y = without_codes(record.y, output_codes)
     for signal, name in ((u, record.input_name), (y, record.output_name)):
         _require_range(signal, f"record {number}: {name!r}")
     output_levels = levels_of(y)
     step = output_levels.step if output_levels else 0.0
     dropouts = dropouts_in(y, u, step)
-    whole = _bridged(y, dropouts.samples)
+    whole = bridged(y, dropouts.samples)
     input_levels = levels_of(u)
     return Values(
         number=number,
@@ -160,30 +157,3 @@ def _require_range(signal: Array, name: str) -> None:
     """Refuse a signal whose range is too large for a double."""
     if float(signal.max()) / 2.0 - float(signal.min()) / 2.0 > sys.float_info.max / 2.0:
         raise InputError(f"{name} reaches over more than 1.8e308; choose units of moderate size")
-
-
-def _is_answer(code: Code, u: Array) -> bool:
-    """Whether an output far outside comes right behind jumps of the input, as of pulses."""
-    moves = np.abs(np.diff(u, prepend=u[0]))
-    jumps = moves > max(_LEAST_JUMP * float(np.ptp(u)), 6.0 * float(np.median(moves)))
-    around = np.clip(code.samples[:, None] + np.arange(-_LAG, 1), 0, u.size - 1)
-    return code.times_the_range < _NEVER_AN_ANSWER and bool(np.all(np.any(jumps[around], axis=1)))
-
-
-def _without(signal: Array, codes: tuple[Code, ...]) -> Array:
-    """Signal with straight lines in the place of codes."""
-    if not codes:
-        return signal
-    return _bridged(signal, np.unique(np.concatenate([each.samples for each in codes])))
-
-
-def _bridged(signal: Array, samples: NDArray[np.intp]) -> Array:
-    """Signal with straight lines in the place of some samples."""
-    if samples.size == 0:
-        return signal
-    good = np.ones(signal.size, dtype=bool)
-    good[samples] = False
-    places = np.flatnonzero(good)
-    bridged = signal.copy()
-    bridged[samples] = np.interp(samples, places, signal[places])
-    return bridged

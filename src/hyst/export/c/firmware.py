@@ -15,6 +15,7 @@ from hyst.export.c.c_sources import WORD_BYTES, header, places, selftest_source,
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.drive import SAMPLES
 from hyst.export.c.estimator import estimator_block
+from hyst.export.c.flat import flattened
 from hyst.export.c.names import as_c_name
 from hyst.export.c.numbers import Precision, as_precision
 from hyst.export.c.readme import readme
@@ -69,6 +70,7 @@ def c_project(
     force: bool = False,
     description: ModelDescription | None = None,
     despite_verdict: bool = False,
+    flat: bool = False,
 ) -> CProject:
     """Write a model as C99 for firmware, with the core's sources it needs and a self-test.
 
@@ -90,6 +92,9 @@ def c_project(
         the model itself if left out.
     despite_verdict
         Export also a model whose verdict is ``unfit``.
+    flat
+        Whether all code lies in one folder and needs no path of includes, as an Arduino library
+        does; the self-test is then in a folder of its own.
 
     Returns
     -------
@@ -120,7 +125,7 @@ def c_project(
         block = block_of(model, exact)
     about = described(model, description)
     test = SelfTest.of(block, exact, about)
-    files = project_files(block, test, name, exact, about)
+    files = project_files(block, test, name, exact, about, flat)
     length = max(len(block.start), 1)
     path = write_export(folder, files, name, force=force)
     return CProject(
@@ -136,7 +141,12 @@ def c_project(
 
 
 def project_files(
-    block: Block, test: SelfTest, name: str, precision: Precision, about: ModelDescription
+    block: Block,
+    test: SelfTest,
+    name: str,
+    precision: Precision,
+    about: ModelDescription,
+    flat: bool = False,
 ) -> dict[str, bytes]:
     """Give the files of a project.
 
@@ -152,6 +162,8 @@ def project_files(
         Of the target.
     about
         What the numbers mean.
+    flat
+        Whether all code lies in one folder.
 
     Returns
     -------
@@ -178,6 +190,7 @@ def project_files(
         "README.md": readme(block, common, about, test, len(sources) > 1),
     }
     files = {path: text.encode("ascii") for path, text in texts.items()} | core
+    files = flattened(files, name) if flat else files
     return files | {MANIFEST: _manifest(block, name, precision, files, test)}
 
 
