@@ -1,4 +1,4 @@
-"""The delay is told apart from hysteresis, asymmetry, drift and noise, in whole samples."""
+"""The delay is told apart from hysteresis, asymmetry, drift and noise, parts of a sample included."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from simulated_records import TRUE_PI, drive, record
 
 import hyst
-from hyst.identification.choice.delay import find_delay, whole_delay
+from hyst.identification.choice.delay import find_delay, usable_delay
 from hyst.identification.record_use.used_samples import prepare
 
 ASYMMETRIC = hyst.ModifiedPrandtlIshlinskii(
@@ -17,16 +17,19 @@ ASYMMETRIC = hyst.ModifiedPrandtlIshlinskii(
 )
 
 
-def estimate(*records: hyst.Record) -> int:
+def estimate(*records: hyst.Record) -> float:
     data = prepare(records, "auto", 0)
-    return whole_delay(find_delay(data), data)
+    return usable_delay(find_delay(data), data)
 
 
 @pytest.mark.parametrize("model", [TRUE_PI, ASYMMETRIC, hyst.Affine(2.0, 1.0)])
 @pytest.mark.parametrize("delay", [0, 2, 4, 9])
 @pytest.mark.parametrize("noise", [0.0, 0.02])
 def test_finds_the_delay(model: hyst.Operator, delay: int, noise: float) -> None:
-    assert estimate(record(model, noise=noise, delay=delay)) == delay
+    # Noise of 0.02 hides parts of a sample, and never half of one.
+    assert estimate(record(model, noise=noise, delay=delay)) == pytest.approx(delay, abs=0.5)
+    if noise == 0.0 or delay == 0:
+        assert estimate(record(model, noise=noise, delay=delay)) == delay
 
 
 def test_drift_does_not_pass_for_delay() -> None:
@@ -48,13 +51,13 @@ def test_a_sample_that_noise_may_hide_is_no_delay_but_possible() -> None:
 
 def test_a_delay_leaves_half_of_the_record() -> None:
     data = prepare(record(TRUE_PI, noise=0.005, delay=9).slice(0, 600), 100, 0)
-    assert whole_delay(replace(find_delay(data), delay=1000.0), data) == 250
+    assert usable_delay(replace(find_delay(data), delay=1000.0), data) == 250
 
 
-def test_an_output_ahead_gives_no_negative_delay_to_a_model() -> None:
+def test_an_output_ahead_gives_a_negative_delay() -> None:
     late = record(TRUE_PI, noise=0.005)
     ahead = hyst.Record(late.u[:-5], late.y[5:], late.dt)
     data = prepare(ahead, "auto", 0)
     evidence = find_delay(data)
     assert evidence.delay == -5.0
-    assert whole_delay(evidence, data) == 0
+    assert usable_delay(evidence, data) == -5
