@@ -1,4 +1,4 @@
-"""The delay is told apart from hysteresis, asymmetry, drift and noise, parts of a sample included."""
+"""The delay is told apart from hysteresis, asymmetry, drift and noise, to a part of a sample."""
 
 from __future__ import annotations
 
