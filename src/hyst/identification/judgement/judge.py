@@ -27,8 +27,8 @@ def judge(data: Data, fit: Fit, diagnosis: Diagnosis, metrics: Mapping[str, Metr
 
     ``good``: what is left is the record's own noise, or less than 0.05 % of the output's range.
     ``unfit``: more than 8 % of the range is left beside noise, or hardly less than a straight line
-    or the mean leave. Else ``fair``. A finding of the severity ``warning``, and a validation error
-    far above that of training, allow no better than ``fair``.
+    or the mean leave. Else ``fair``. A finding of the severity ``warning``, unless the family
+    explains it, and a validation error far above that of training, allow no better than ``fair``.
 
     Parameters
     ----------
@@ -55,7 +55,8 @@ def judge(data: Data, fit: Fit, diagnosis: Diagnosis, metrics: Mapping[str, Metr
         level, first, told = _levelled(remainder, found, error)
         noise = found.noise
     seen = validated(metrics, noise * remainder.output_scale, remainder.output_unit)
-    return _capped(level, first, told, diagnosis, seen)
+    explained = fit.family.explains if level == "good" else ()
+    return _capped(level, first, told, diagnosis, seen, explained)
 
 
 def _exact(remainder: Remainder, error: float) -> tuple[Level, tuple[str, ...], Told]:
@@ -98,11 +99,13 @@ def _capped(
     told: Told,
     diagnosis: Diagnosis,
     seen: Validation,
+    explained: tuple[str, ...],
 ) -> Verdict:
     """Lower the level to what findings and validation allow, and put the sentences in order."""
     warnings = tuple(
         f"The record itself is doubtful ({each.name}): {each.sentence}"
         for each in diagnosis.of("warning")
+        if each.name not in explained
     )
     allowed: Level = "fair" if warnings else "good"
     worst = max(level, seen.level, allowed, key=LEVELS.index)
