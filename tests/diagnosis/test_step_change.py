@@ -54,3 +54,15 @@ def test_even_drift_and_slow_change_are_no_step() -> None:
     t = np.arange(u.size) * DT
     assert "step change" not in warned(record(u, bent(u) + 1.5 * t, 0.05))
     assert "step change" not in warned(record(u, plays(u) * (1.0 + 0.01 * t), 0.05))
+
+
+@pytest.mark.parametrize("lost", [0.0, None])
+def test_a_sensor_that_is_lost_for_a_while_changes_no_gain(lost: float | None) -> None:
+    u = triangle(500.0, 4000)
+    y = plays(u)
+    y[1000:1300] = y[999] if lost is None else lost
+    (found,) = hyst.diagnose(record(u, y, 0.02)).named("step change")
+    assert "stops following the input" in found.sentence
+    assert "stays there" not in found.sentence
+    # A comparison takes a quarter of a period, and the step is put between two of them.
+    assert abs(int(found.samples[0]) - 1000) <= 125

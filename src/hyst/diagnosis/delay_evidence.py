@@ -36,6 +36,7 @@ _FEWEST_ROWS = 16
 _AS_WELL = 0.1
 """By how much more squares, as a part, plays alone may leave to be asked for the delay."""
 
+_LEAST_OF_TURNS = 0.1
 _LEAST_LEAD, _LEAST_LAG, _LEAST_OF_ONE_AMPLITUDE = 0.5, 0.2, 0.5
 """Samples: what is steep between two samples looks like less than that, and more so where all
 strokes are sampled at the same levels."""
@@ -136,7 +137,7 @@ class DelayEvidence:
                 "explain the records alike; no delay is taken unless a model tells them apart"
             )
         if self.limit == 0.0:
-            return "nothing can be said of a delay: the records are too short for it"
+            return "nothing can be said of a delay: the records are too short, or show no turns"
         if not self.describes and self.wide:
             return (
                 "nothing certain can be said of a delay: general loops leave more than the noise, "
@@ -180,7 +181,7 @@ def evidence_of_delay(
     ]
     longest = _longest(records, starts, turns)
     flags = tuple(kept) or (None,) * len(records)
-    if longest < 1:
+    if longest < 1 or not _turns_are_seen(turns, flags):
         return DelayEvidence(0.0, 0.0, 0.0, 0.0, 0.0, None, False, False, False)
     outputs = [clean_output(each, own) for each, own in zip(records, flags, strict=True)]
     unit = span_of(outputs)
@@ -256,6 +257,15 @@ def _noise_of_all(
     noises = [_noise(r, y) for r, y in zip(records, outputs, strict=True)]
     squares = sum(n * s**2 for n, s in zip(rows, noises, strict=True))
     return math.sqrt(squares / max(sum(rows), 1))
+
+
+def _turns_are_seen(turns: Sequence[Indices], flags: Sequence[Flags | None]) -> bool:
+    """Whether turns of the input were measured: a sensor at both its ends shows none of them."""
+    seen = [
+        places.size if own is None else int(own[places].sum())
+        for places, own in zip(turns, flags, strict=True)
+    ]
+    return sum(seen) > _LEAST_OF_TURNS * sum(places.size for places in turns)
 
 
 def _rates_differ(records: Sequence[Record]) -> bool:

@@ -21,6 +21,7 @@ _MOST_LOOPS = 400
 _FEWEST_SAMPLES = 12  # of a branch
 _SAME_RANGE = 0.03
 _SHORTEST = 0.02  # of the range of the drive
+_WIDEST_STEP = 0.5  # between two samples, of the range of a loop
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,6 +199,8 @@ def _cells(
     duration = np.concatenate([[0.0], np.cumsum(np.full(u.size - 1, record.dt))])
     whole = np.concatenate([[0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * record.dt)])
     ahead = np.append(True, np.diff(u) > 0.0)
+    if np.diff(u[ahead]).max() > _WIDEST_STEP * (edges[-1] - edges[0]):
+        return None  # a drive that jumps shows nothing of what lies between
     at = np.interp(edges, u[ahead], duration[ahead])
     area = np.interp(at, duration, whole)
     spent = np.diff(at)

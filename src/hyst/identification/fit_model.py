@@ -48,6 +48,7 @@ class OwnModel(Family):
     name = ""
     words = Words(full_name="model of your own", equations=(), explanations=())
     depends_on_rate = True  # nothing is known of it
+    explains = ("rate dependence", "dynamics", "run direction")
 
     parametrization: Parametrization
     theta: Array

@@ -25,7 +25,7 @@ def find(evidence: Evidence) -> Iterator[Finding]:
             "remark",
             f"{of_record(evidence, number)}the output repeats itself to "
             f"{amount(noise, record.output_unit)} rms ({percent(share)} of its range) where drive "
-            "and memory are the same; no model can leave less.",
+            "and memory are the same: what is smaller is no misfit of a model.",
             record=number,
             amounts={"noise": noise, "share": share},
         )

@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 NAME = "step change"
 _FEWEST_PAIRS, _FEWEST_SAMPLES = 6, 3
 _LEAST_GAIN = 0.005
+_STANDS = -0.9  # a change of the gain by which nothing of it is left
 _LEAST_OFFSET = 0.003  # of the range
 # Of the scatter that there is without the step.
 _LEAST_SCATTERS = 6.0
@@ -60,6 +61,9 @@ def find(evidence: Evidence) -> Iterator[Finding]:
         pairs = _pairs(repetition, record)
         gain = _step(pairs, pairs[:, 3] - 1.0, pairs[:, 5], drifts=False)
         where = of_record(evidence, number)
+        if gain is not None and gain.size < _STANDS:
+            yield _stands(number, where, gain)
+            continue
         if gain is not None and abs(gain.size) >= _LEAST_GAIN:
             words = f"the gain changes by {percent(gain.size)}"
             yield _finding(number, where, words, gain, "gain")
@@ -80,6 +84,20 @@ def _finding(number: int, where: str, words: str, step: Step, which: str) -> Fin
         record=number,
         samples=np.array([step.sample], dtype=np.intp),
         amounts={which: step.size},
+    )
+
+
+def _stands(number: int, where: str, step: Step) -> Finding:
+    """Give no end: what comes later has nothing to be compared with."""
+    return Finding(
+        NAME,
+        "warning",
+        f"{where}the output stops following the input about sample {step.sample}, for a while or "
+        "for good.",
+        "Look for a sensor or a transfer that was lost there, and cut that part out.",
+        record=number,
+        samples=np.array([step.sample], dtype=np.intp),
+        amounts={"gain": step.size},
     )
 
 

@@ -55,6 +55,7 @@ class Dahl(Family):
     """
 
     name = "dahl"
+    explains = ("run direction",)  # of a force over displacement it is right
     words = Words(
         full_name="Dahl friction model",
         equations=(

@@ -74,6 +74,8 @@ class Family(ABC):
     """Whether the delay of the output is part of the model, so that none is looked for before."""
     depends_on_rate: ClassVar[bool] = False
     """Whether samples left out of a record would change the model."""
+    explains: ClassVar[tuple[str, ...]] = ()
+    """Findings that make no record doubtful of which it leaves nothing but noise."""
     wraps: ClassVar[str] = ""
     """The option that holds a family this one is made around; empty where there is none."""
 

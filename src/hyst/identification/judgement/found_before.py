@@ -7,16 +7,13 @@ from dataclasses import dataclass
 from hyst.diagnosis import Diagnosis, Finding
 from hyst.diagnosis.findings.direction import NAME as RUN_DIRECTION
 from hyst.diagnosis.findings.drifting_output import NAME as DRIFT
-from hyst.diagnosis.findings.dynamics import NAME as DYNAMICS
 from hyst.diagnosis.findings.foreign_lines import NAME as FOREIGN_LINE
 from hyst.diagnosis.findings.one_amplitude import NAME as AMPLITUDES
 from hyst.diagnosis.findings.output_ahead import NAME as OUTPUT_AHEAD
-from hyst.diagnosis.findings.rate_dependence import NAME as RATE_DEPENDENCE
 from hyst.identification.families.family import Family
 from hyst.identification.record_use.used_samples import Data
 from hyst.operators.verdict import Level
 
-OF_RATE = frozenset({RATE_DEPENDENCE, DYNAMICS})
 TAKEN_OUT = frozenset({DRIFT, FOREIGN_LINE})
 
 
@@ -43,7 +40,7 @@ def found_before(
     """Say what findings mean for a model.
 
     A warning allows no better than ``fair``, unless it is of something that the model holds and
-    describes until only noise is left: rate where the model knows it, and a clockwise loop, which
+    describes until only noise is left: what its family explains, and a clockwise loop, which
     is told all the same, for exchanged columns have such loops, too.
 
     Parameters
@@ -62,7 +59,7 @@ def found_before(
     for each in diagnosis.of("warning"):
         if each.name == RUN_DIRECTION and diagnosis.named(OUTPUT_AHEAD):
             continue  # the same thing, seen in another way
-        if leaves_noise and family.depends_on_rate and each.name in OF_RATE:
+        if leaves_noise and each.name in family.explains and each.name != RUN_DIRECTION:
             continue
         if leaves_noise and each.name == RUN_DIRECTION:
             sentences.append(f"{_capital(each.sentence)} {each.advice}")

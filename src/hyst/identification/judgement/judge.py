@@ -28,8 +28,8 @@ def judge(data: Data, fit: Fit, diagnosis: Diagnosis, metrics: Mapping[str, Metr
 
     ``good``: what is left is the record's own noise, or less than 0.05 % of the output's range.
     ``unfit``: more than 8 % of the range is left beside noise, or hardly less than a straight line
-    or the mean leave. Else ``fair``. A finding of the severity ``warning``, and a validation error
-    far above that of training, allow no better than ``fair``.
+    or the mean leave. Else ``fair``. A finding of the severity ``warning``, unless the family
+    explains it, and a validation error far above that of training, allow no better than ``fair``.
 
     Parameters
     ----------

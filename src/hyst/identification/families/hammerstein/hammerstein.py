@@ -106,6 +106,7 @@ class Hammerstein(Family):
     methods = ("exact", "noncausal")
     answers_late = True
     depends_on_rate = True
+    explains = ("rate dependence", "dynamics")
     wraps = "hysteresis"
 
     hysteresis: Any = option(
