@@ -73,6 +73,30 @@ def test_what_is_measured_is_no_code(tmp_path: Path, y: np.ndarray) -> None:
     assert record.notes == ()
 
 
+@pytest.mark.parametrize("share", [0.1, 0.4, 0.8])
+def test_many_codes_are_refused_and_not_read(tmp_path: Path, share: float) -> None:
+    places = np.sort(np.random.default_rng(1).choice(200, int(200 * share), replace=False))
+    path = with_cells(tmp_path, dict.fromkeys(places.tolist(), "9.91E+37"))
+    named = rf"'y' is 9.91e\+37 at line {places[0] + 2} and in {places.size - 1} rows more"
+    with pytest.raises(InputError, match=named) as refused:
+        read_record(path, "u", "y", time="time")
+    assert "option repair" not in str(refused.value)
+    with pytest.raises(InputError, match=f"{places.size} of 200 rows hold no value"):
+        read_record(path, "u", "y", time="time", repair=True)
+
+
+@pytest.mark.parametrize("height", [20.0, 50.0])
+def test_answers_to_pulses_of_the_input_are_no_codes(tmp_path: Path, height: float) -> None:
+    u = 0.01 * U
+    u[[30, 31, 120, 121]] = height
+    path = write(tmp_path, ["time,u,y", *rows((T, u, 2.0 * u + 1.0))])
+    with pytest.raises(InputError, match=f"'u' is {height:.0f} at line 32"):
+        read_record(path, "u", "y", time="time")
+    dense = np.where(np.arange(200) % 40 < 4, height, 0.01 * U)  # a tenth of all: a drive
+    path = write(tmp_path, ["time,u,y", *rows((T, dense, 2.0 * dense + 1.0))])
+    assert read_record(path, "u", "y", time="time").notes == ()
+
+
 @pytest.mark.parametrize("text", ["", "nan", "err", "#N/A", "---"])
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
 def test_a_few_bad_cells(tmp_path: Path, text: str, separator: str) -> None:
