@@ -44,7 +44,9 @@ def held_in_class(name: str, noise: float, seed: int) -> float:
     """Give the share held of a drive of the same kind as the record, for one random actuator."""
     rng = np.random.default_rng(seed)
     truth = _random_model(name, rng)
-    u, other = multisine(2000, seed), 0.97 * multisine(2000, seed + 1000)
+    u, other = multisine(2000, seed), multisine(2000, seed + 1000)
+    # Inside the range, from rest: nothing beyond it can be asked of a band.
+    other = other * 0.97 * min(u.max() / other.max(), u.min() / other.min())
     y = truth(u)
     sigma = noise * float(np.ptp(y))
     found = hyst.identify(hyst.Record(u, y + sigma * rng.standard_normal(u.size), DT))

@@ -70,7 +70,10 @@ def test_a_delay_counted_in_other_samples_is_refused(
     assert ended.code == 2
     assert "4 samples of 0.005 s, the record's are of 0.001 s; give --delay" in ended.err
     ended = run("fit", folder / "late.json", record, *COLUMNS, "--delay", 20, "-o", "out")
-    assert ended.code == 3  # it is fitted, and the record does not lag by 20 samples
+    # The delay is taken, and the record has dynamics and no such delay: the verdict says so.
+    assert ended.code == 3
+    assert ended.out.startswith("verdict: unfit")
+    assert hyst.load(folder / "out" / "model.json").description.delay == 20
 
 
 def test_bounds_and_validation(files: tuple[Path, Path], run: Callable, folder: Path):

@@ -58,7 +58,7 @@ def test_what_was_taken_out_of_the_record_is_told_beside() -> None:
     done = invert_trajectory(described(errors=records), STAGE(U))
     assert done.expected == ModelError("training", 0.1, 0.4, disturbed=(0.5, 1.5))
     told = done.expectation("um")
-    assert "0.1 um rms, 0.4 at most (training; 0.5 and 1.5 with its drift, which was" in told
+    assert "0.1 um rms, 0.4 at most (training; 0.5 and 1.5 with drift and foreign" in told
 
 
 def test_what_is_clipped_is_not_called_exact() -> None:

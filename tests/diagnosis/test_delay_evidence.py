@@ -187,3 +187,21 @@ def test_a_record_that_is_too_short_tells_nothing() -> None:
     result = evidence_of_delay([hyst.Record(u, u, 1.0)], [0])
     assert (result.delay, result.limit) == (0.0, 0.0)
     assert "too short" in result.said(1.0)
+
+
+@pytest.mark.parametrize("width", [3.0, 6.0])
+@pytest.mark.parametrize("unit", [1.0, 2.0**-9])
+def test_a_delay_that_misfit_bought_does_not_exclude_none(width: float, unit: float) -> None:
+    """A play that saturates, of one amplitude: its flat ends pass for a delay; there is none."""
+    t = np.arange(4000)
+    u = 50.0 * np.sin(2.0 * np.pi * t / 500.0)
+    noise = 0.05 * np.random.default_rng(1).standard_normal(t.size)
+    y = 30.0 * np.tanh(hyst.Play(8.0)(u) / width) + noise
+    record = hyst.Record(u, unit * y, dt=0.001)
+    result = evidence_of_delay([record], [500])
+    assert not result.describes
+    low, high = result.stated
+    assert low <= 0.0 <= high
+    told = [each.sentence for each in hyst.diagnose(record).named("delay or radius")]
+    assert len(told) == 1
+    assert "nothing certain can be said of a delay" in told[0]

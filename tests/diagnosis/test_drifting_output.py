@@ -87,3 +87,18 @@ def test_drift_too_small_to_matter_is_not_told() -> None:
     # 0.016 um over the record: a fortieth of a percent of the range, half the noise.
     y = plays(u) + 0.004 * np.arange(u.size) * DT
     assert "drift" not in warned(record(u, y, 0.03))
+
+
+@pytest.mark.parametrize("seed", [3, 4, 5])
+@pytest.mark.parametrize("pole", [0.4, 0.9])
+def test_a_drive_that_nearly_repeats_makes_no_drift_of_dynamics(seed: int, pole: float) -> None:
+    """Lines 136 and 137 bins apart by turns: after 44.02 samples the drive is nearly the same."""
+    lines = np.linspace(1, 2999, 23).astype(int)
+    phases = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, lines.size)
+    k = np.arange(12_000)[:, None]
+    u = np.cos(2.0 * np.pi * k * lines / 6000.0 + phases).sum(axis=1)
+    y, state = np.empty(u.size), 0.0
+    for n, each in enumerate(u):
+        state = pole * state + (1.0 - pole) * each
+        y[n] = state
+    assert not hyst.diagnose(record(u, y)).named("drift")

@@ -63,3 +63,22 @@ def test_ringing_of_a_resonance_at_the_corners_is_no_line() -> None:
     ringing = 2.0 * np.exp(-0.1 * 377.0 * t) * np.sin(377.0 * t)
     y = plays(u) + np.tile(ringing, 10)
     assert "foreign line" not in warned(record(u, y, 0.02))
+
+
+@pytest.mark.parametrize("period", [7.3, 9.1, 12.7, 21.37])
+@pytest.mark.parametrize("unit", [1.0, 2.0**7])
+def test_harmonics_folded_by_few_samples_are_the_drives(period: float, unit: float) -> None:
+    t = np.arange(1500)
+    u = 50.0 + 50.0 * np.sin(2.0 * np.pi * t / period)
+    noise = 0.02 * np.random.default_rng(3).standard_normal(t.size)
+    assert not hyst.diagnose(record(u, unit * (plays(u) + noise))).named("foreign line")
+    hum = 0.5 * np.sin(2.0 * np.pi * 50.0 * t * DT)
+    (found,) = hyst.diagnose(record(u, unit * (plays(u) + noise + hum))).named("foreign line")
+    assert found.amounts["frequency"] == pytest.approx(50.0, abs=0.05)
+
+
+@pytest.mark.parametrize(("slow", "fast"), [(3.1, 50.0), (4.3, 60.0)])
+def test_a_tone_of_the_drive_modulated_by_its_loop_is_the_drives(slow: float, fast: float) -> None:
+    t = np.arange(4000) * DT
+    u = 45.0 * np.sin(2.0 * np.pi * slow * t) + np.sin(2.0 * np.pi * fast * t + 0.3)
+    assert "foreign line" not in warned(record(u, plays(u), 0.02))

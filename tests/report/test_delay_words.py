@@ -39,7 +39,7 @@ def test_no_delay_is_told_with_what_it_might_be() -> None:
     )
     for nothing_known in (None, (0, 0)):
         assert delay_sentence(0, 0.01, nothing_known) == (
-            "The output does not lag by a whole sample or more."
+            "No delay is taken; the records were not asked, or are too short to show one."
         )
 
 

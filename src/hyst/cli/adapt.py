@@ -115,12 +115,7 @@ def adapt(
         estimator.save(temporary / names[1])
         _write_parameters(temporary / names[2], trajectory)
         (temporary / names[3]).write_bytes(picture)
-    _tell(estimator, before.tolist())
-    if about.verdict is not None and about.is_unfit:
-        note(
-            "the model it started from is unfit, and the estimate has its shape: "
-            f"{about.verdict.sentences[0]}"
-        )
+    _tell(estimator, before.tolist(), about)
     show_files([folder / name for name in names])
 
 
@@ -249,7 +244,11 @@ def _write_parameters(path: Path, trajectory: hyst.online.Trajectory) -> None:
     hyst.io.write_columns(path, headers, columns)
 
 
-def _tell(estimator: hyst.online.JointEstimator, before: list[float]) -> None:
+def _tell(
+    estimator: hyst.online.JointEstimator,
+    before: list[float],
+    about: hyst.operators.ModelDescription,
+) -> None:
     number = hyst.report.number
     rows = tuple(
         (name, number(start), number(value), number(error) if error > 0.0 else "held")
@@ -282,3 +281,8 @@ def _tell(estimator: hyst.online.JointEstimator, before: list[float]) -> None:
         )
     if innovation.replacements:
         print(f"search: another start did better, {innovation.replacements} of {innovation.rivals}")
+    if about.verdict is not None and about.is_unfit:
+        note(
+            "the model it started from is unfit, and the estimate has its shape: "
+            f"{about.verdict.sentences[0]}"
+        )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -91,10 +92,20 @@ def identify(
         )
         say("report")
         found = named_by_files(found, files.sources)
-        used = next(each for each in chosen if each.name == found.family)
-        records = used.records_to_use(tuple(measured), first)[0].records
+        records = _records_used(found, chosen, measured, first)
         told = hyst.report.distortion_sections(measured, options.get("period"))
         written = write_fitted(found, records, validation, folder, files.sources, told)
     tell_fitted(found, records)
     show_files(written)
     return ended(found)
+
+
+def _records_used(
+    found: hyst.Identified,
+    chosen: Sequence[hyst.identification.families.family.Family],
+    measured: Sequence[hyst.Record],
+    start: int | Literal["auto"],
+) -> tuple[hyst.Record, ...]:
+    """Give the records as the family that was chosen took them, as averages of periods."""
+    used = next(each for each in chosen if each.name == found.family)
+    return used.records_to_use(tuple(measured), start)[0].records

@@ -98,7 +98,8 @@ def expectation_of(
     more = ""
     if expected.disturbed is not None:
         with_all, largest = expected.disturbed
-        more = f"; {with_all:.3g} and {largest:.3g} with its drift, which was taken out"
+        taken = "with drift and foreign sines, which were taken out"
+        more = f"; {with_all:.3g} and {largest:.3g} {taken}"
     return (
         f"{model}; the model itself missed its record by {expected.rms:.3g}{behind} rms, "
         f"{expected.max_abs:.3g} at most ({expected.record}{more}): expect "

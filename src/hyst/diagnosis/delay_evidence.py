@@ -89,6 +89,17 @@ class DelayEvidence:
         return self.high - self.low > 1.0
 
     @property
+    def stated(self) -> tuple[float, float]:
+        """Lowest and highest delay to tell: one that misfit may have bought does not exclude none.
+
+        In strokes of one amplitude a delay stands in for what loops of every kind lack, as the
+        saturation of a switching material, and its interval says nothing of that.
+        """
+        if self.delay > 0.0 and self.one_amplitude and not self.describes:
+            return min(self.low, 0.0), self.high
+        return self.low, self.high
+
+    @property
     def turns_early(self) -> bool:
         """Whether the output turns before its input, though as no mere lead explains."""
         return not self.describes and self.low < 0.0 and self.high <= 0.0 and not self.delay

@@ -132,8 +132,6 @@ def diagnose(records: Record | Sequence[Record]) -> Diagnosis:
     ()
     """
     given = (records,) if isinstance(records, Record) else tuple(records)
-    if not given:
-        raise InputError("there is no record; give at least one")
     for number, record in enumerate(given, 1):
         if not isinstance(record, Record):
             raise InputError(f"record {number} is {type(record).__name__}; give a hyst.Record")
@@ -147,11 +145,18 @@ def diagnose_all_but_delay(records: Sequence[Record]) -> Diagnosis:
     ----------
     records
         One or more.
+
+    Raises
+    ------
+    InputError
+        If there is none.
     """
     return _found(tuple(records), FINDERS)
 
 
 def _found(records: tuple[Record, ...], finders: Sequence[Finder]) -> Diagnosis:
+    if not records:
+        raise InputError("there is no record; give at least one")
     evidence = Evidence(records)
     found: list[Finding] = []
     for find in finders:

@@ -89,7 +89,9 @@ class Evidence:
         found, record = self.repetition(number), self.usable(number)
         if found is None:
             return None
-        return self.once(("noise", id(record)), lambda: noise_of(found, record))
+        return self.once(
+            ("noise", id(record)), lambda: noise_of(found, record, self.left_out(number))
+        )
 
     def noise_or_guess(self, number: int) -> float:
         """Give the noise by repetition, or by how rough the output is, which may be too much."""

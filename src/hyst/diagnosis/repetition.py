@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.diagnosis.drive_period import drive_period, repeat_tolerance
+from hyst.diagnosis.finding import NO_SAMPLES
 from hyst.diagnosis.interpolation import earlier, first_comparable
 from hyst.diagnosis.memory_branches import Segment, repeated_segments
 from hyst.signals import Record, estimate_noise
@@ -109,7 +110,7 @@ def _periodic(u: Array) -> Repetition | None:
     return Repetition(segments, period, tuple(runs)) if segments else None
 
 
-def noise_of(found: Repetition, record: Record) -> float:
+def noise_of(found: Repetition, record: Record, left_out: NDArray[np.intp] = NO_SAMPLES) -> float:
     """Give the rms of what an output does not repeat, slow drift taken out.
 
     Parameters
@@ -117,21 +118,37 @@ def noise_of(found: Repetition, record: Record) -> float:
     found
         Where the record repeats.
     record
-        The record.
+        The record, straight lines over samples that are no measurements.
+    left_out
+        These samples: no comparison with them counts.
     """
+    measured = np.ones(record.samples, dtype=np.bool_)
+    measured[left_out[left_out < record.samples]] = False
     of_u, of_y = [], []
     for start, stop, lag in found.segments:
         change_u, change_y, power = changes(record, start, stop, lag)
         # White noise of both samples; what is slow in either signal is drift.
         scale = 1.0 / math.sqrt(1.0 + power)
         width = round(found.period) if found.period else 2 * change_u.size
-        of_u.append(scale * _without_slow(change_u, width))
-        of_y.append(scale * _without_slow(change_y, width))
+        counts = _both_measured(measured, start, stop, lag)
+        of_u.append(scale * _without_slow(change_u, width)[counts])
+        of_y.append(scale * _without_slow(change_y, width)[counts])
     drive, output = np.concatenate(of_u), np.concatenate(of_y)
     energy = float(drive @ drive)
     if energy > 0.0:
         output = output - (float(drive @ output) / energy) * drive
     return trimmed_rms(output)
+
+
+def _both_measured(
+    measured: NDArray[np.bool_], start: int, stop: int, lag: float
+) -> NDArray[np.bool_]:
+    """Tell where a sample and those a lag before it are measurements; everywhere if nowhere."""
+    now = np.arange(start, stop)
+    before = np.floor(now - lag).astype(np.intp)
+    after = np.ceil(now - lag).astype(np.intp)
+    both: NDArray[np.bool_] = measured[now] & measured[before] & measured[after]
+    return both if both.any() else np.ones_like(both)
 
 
 def changes(record: Record, start: int, stop: int, lag: float) -> tuple[Array, Array, float]:

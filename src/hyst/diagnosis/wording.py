@@ -35,7 +35,15 @@ def of_record(evidence: Evidence, number: int) -> str:
 
 
 def counted(count: int, what: str) -> str:
-    """Give a number of things, as ``1 level`` and ``2 levels``."""
+    """Give a number of things, as ``1 level`` and ``2 levels``.
+
+    Parameters
+    ----------
+    count
+        How many.
+    what
+        One of them.
+    """
     return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 

@@ -84,8 +84,8 @@ def identify(
         If an argument or a record cannot be used, a family is not known, or an option is of none of
         the families that are named.
     NotIdentifiableError
-        If the input is constant or turns less than twice, or there are fewer samples than
-        parameters.
+        If input or output is constant, the input does not turn or the output is noise, or there are
+        fewer samples than parameters.
     SolverError
         If the fit did not converge and ``allow_unconverged`` is false.
 

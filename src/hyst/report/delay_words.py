@@ -93,7 +93,7 @@ def delay_to_act_on(about: ModelDescription) -> str:
 
 def _no_delay(dt: float | None, interval: Interval) -> str:
     if interval is None or interval == (0.0, 0.0):
-        return "The output does not lag by a whole sample or more."
+        return "No delay is taken; the records were not asked, or are too short to show one."
     low, high = interval
     if max(abs(low), abs(high)) < _A_SAMPLE:
         return f"The output does not lag (the records bear {_span(interval)} samples)."

@@ -8,18 +8,15 @@ import numpy as np
 import pytest
 
 import hyst
-from hyst.diagnosis import Diagnosis, Finding
-from hyst.identification.families.family import Fit
-from hyst.identification.identify_records import find
-from hyst.identification.judgement.judge import judge
-from hyst.identification.options import Options, silent
-from hyst.identification.result.identified_from_fit import metrics_by_record
+from hyst.diagnosis import Finding
 from hyst.operators import Verdict
 from reference.family_examples import family_example
 from reference.foreign_records import DRIVES, DT, FOREIGN, drive, plays, record, switching
+from reference.judged_as_given import judged_as_given
 
 NAMES = tuple(hyst.families)
 SEEDS = range(3)
+PLAYS = hyst.families.PrandtlIshlinskii(plays=3)
 
 
 def verdict_on(
@@ -60,22 +57,47 @@ def test_nearly_all_own_records_are_good_whatever_the_drive() -> None:
     assert levels.count("good") >= 0.95 * len(levels)
 
 
+def foreign(what: str) -> dict[tuple[str, float], hyst.Record | list[hyst.Record]]:
+    """Give records of one kind over three drives, noises and amplitudes."""
+    return {
+        (kind, noise): FOREIGN[what](drive(kind, 10.0 ** (2 * seed - 1), seed), seed, noise)
+        for kind in ("triangle", "decaying sine", "multisine")
+        for seed, noise in enumerate((0.0, 0.002, 0.005))
+    }
+
+
 @pytest.mark.parametrize("what", FOREIGN)
-def test_no_foreign_record_is_good(what: str) -> None:
-    levels = {}
-    for kind in ("triangle", "decaying sine", "multisine"):
-        for seed, noise in enumerate((0.0, 0.002, 0.005)):
-            amplitude = 10.0 ** (2 * seed - 1)
-            records = FOREIGN[what](drive(kind, amplitude, seed), seed, noise)
-            levels[kind, noise] = verdict_on(records).level
+def test_no_foreign_record_is_good_as_it_was_measured(what: str) -> None:
+    levels = {key: judged_as_given(each, PLAYS).level for key, each in foreign(what).items()}
     assert "good" not in levels.values(), levels
+
+
+@pytest.mark.parametrize("what", [each for each in FOREIGN if each not in ("outliers", "noise")])
+def test_no_foreign_record_is_good_after_a_diagnosis(what: str) -> None:
+    levels = {key: verdict_on(each).level for key, each in foreign(what).items()}
+    assert "good" not in levels.values(), levels
+
+
+def test_outliers_are_left_out_by_name_and_harm_nothing() -> None:
+    for each in foreign("outliers").values():
+        verdict = verdict_on(each)
+        assert verdict.level == "good"
+        assert any(line.startswith("8 samples were left out: ") for line in verdict.sentences)
+
+
+def test_noise_alone_is_refused() -> None:
+    for each in foreign("noise").values():
+        with pytest.raises(hyst.NotIdentifiableError, match="is noise"):
+            verdict_on(each)
 
 
 @pytest.mark.parametrize("what", ["square", "butterfly", "noise"])
 @pytest.mark.parametrize("family", ["pi", "gpi", "linear"])
 def test_what_no_command_may_come_from_is_unfit(what: str, family: str) -> None:
     u = drive("decaying sine", 30.0, 4)
-    verdict = verdict_on(FOREIGN[what](u, 4, 0.002), family)
+    options = {"plays": 3} if family == "pi" else {}
+    made = dataclasses.replace(hyst.families[family], **options)
+    verdict = judged_as_given(FOREIGN[what](u, 4, 0.002), made)
     assert verdict.level == "unfit"
     assert verdict.sentences[0].startswith("No command should come from this model.")
     if what != "noise":
@@ -187,23 +209,57 @@ def test_a_validation_record_that_it_knows_nothing_of_is_unfit() -> None:
     assert found.verdict.level == "unfit"
 
 
-def fitted(records: tuple[hyst.Record, ...]) -> tuple[object, Fit, dict[str, object]]:
-    options = Options((), silent, 0, "auto", 200, False)
-    family = hyst.families.PrandtlIshlinskii(plays=3)
-    found = find(records, [family], options)
-    return found.data, found.fit, metrics_by_record(found.data, found.fit.operator, ())
-
-
 @pytest.mark.parametrize(
     ("severity", "level"), [("warning", "fair"), ("remark", "good"), ("left out", "good")]
 )
 def test_a_warning_of_the_diagnosis_allows_no_better_than_fair(severity: str, level: str) -> None:
     u = drive("triangle", 1.0, 1)
-    data, fit, metrics = fitted((record(u, plays(seed=1)(u), 0.002),))
-    finding = Finding("output ahead of input", severity, "The output is 10 samples ahead.")
-    verdict = judge(data, fit, Diagnosis((finding,)), metrics)
+    said = "The output is 10 samples ahead."
+    finding = Finding("output ahead of input", severity, said, samples=np.arange(10))
+    verdict = judged_as_given(record(u, plays(seed=1)(u), 0.002), PLAYS, (finding,))
     assert verdict.level == level
     assert ("output ahead of input" in verdict.sentences[0]) == (severity == "warning")
+    assert (f"10 samples were left out: {said}" in verdict.sentences) == (severity == "left out")
+
+
+@pytest.mark.parametrize("name", ["dynamics", "rate dependence"])
+@pytest.mark.parametrize("family", ["rdpi", "pi"])
+def test_only_a_model_that_knows_the_rate_answers_a_warning_of_rate(name: str, family: str) -> None:
+    example = family_example(family)
+    made = dataclasses.replace(hyst.families[family], **example.options)
+    finding = Finding(name, "warning", "the loops differ with the rate.")
+    verdict = judged_as_given(example.records(0.01, 5), made, (finding,))
+    assert verdict.level == ("good" if family == "rdpi" else "fair")
+
+
+def test_a_model_that_knows_the_rate_and_leaves_more_than_noise_answers_nothing() -> None:
+    records = [
+        dataclasses.replace(each, y=each.y + 0.3 * np.abs(each.u)) for each in _rated(0.005, 6)
+    ]
+    finding = Finding("rate dependence", "warning", "the loops differ with the rate.")
+    verdict = judged_as_given(records, hyst.families.RateDependent(plays=2), (finding,))
+    assert verdict.level != "good"
+    assert any("rate dependence" in each for each in verdict.sentences)
+
+
+def _rated(noise: float, seed: int) -> list[hyst.Record]:
+    return family_example("rdpi").records(noise, seed)
+
+
+def test_a_clockwise_loop_that_is_described_is_told_and_lowers_nothing() -> None:
+    clockwise = Finding("run direction", "warning", "the loop is run clockwise.", "Friction does.")
+    ahead = Finding("output ahead of input", "warning", "the output turns early.")
+    example = family_example("dahl")
+    dahl = hyst.families.Dahl(**example.options)
+    verdict = judged_as_given(example.records(0.01, 5), dahl, (clockwise,))
+    assert verdict.level == "good"
+    assert "The loop is run clockwise. Friction does." in verdict.sentences
+    # Beside an output that is ahead of its input it would be the same thing told twice.
+    verdict = judged_as_given(example.records(0.01, 5), dahl, (clockwise, ahead))
+    assert verdict.level == "fair"
+    assert not any("clockwise" in each for each in verdict.sentences)
+    line = judged_as_given(example.records(0.01, 5), hyst.families.Linear(), (clockwise,))
+    assert any("doubtful (run direction)" in each for each in line.sentences)
 
 
 @pytest.mark.parametrize("what", ["drift", "hum", "square", "rate", "change", "another shape"])

@@ -19,8 +19,27 @@ def find(evidence: Evidence) -> Iterable[Finding]:
 
 
 def told(found: DelayEvidence, dt: float) -> Iterator[Finding]:
-    """Remark on how much delay could hide in a loop of one amplitude."""
+    """Remark on how much delay could hide in a loop of one amplitude.
+
+    Parameters
+    ----------
+    found
+        On the records.
+    dt
+        Sample time of the first one, s.
+    """
     if not found.one_amplitude or not found.wide:
+        return
+    if not found.describes:
+        yield Finding(
+            NAME,
+            "remark",
+            "The strokes are of one amplitude and of loops of another kind than plays', by which "
+            "nothing certain can be said of a delay.",
+            "A record with a decaying amplitude, or of the same strokes at another rate, shows "
+            "whether there is one.",
+            amounts={"low": found.stated[0], "high": found.stated[1]},
+        )
         return
     yield Finding(
         NAME,

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.diagnosis.drive_harmonics import is_between_tones, is_folded_harmonic
 from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import Finding
 from hyst.diagnosis.memory_branches import turns_of
@@ -85,12 +87,19 @@ def _between_repeats(record: Record, repetition: Repetition | None) -> list[Line
         return []
     of_u, of_y, _ = changes(record, start, stop, lag)
     found = []
-    gain = _ratio(record)
+    gain, span = _ratio(record), float(np.ptp(record.y))
+    base = 1.0 / (repetition.period * record.dt)
+    tones = [replace(each, amplitude=gain * each.amplitude) for each in lines_of(of_u, record.dt)]
     for line in lines_of(of_y, record.dt):
         # A sine and itself a lag ago: what is left of it depends on its phase over the lag.
         left = 2.0 * abs(np.sin(np.pi * line.frequency * lag * record.dt))
-        if left > 0.3 and not _of_drive(of_u, line, record.dt, gain):
-            found.append(Line(line.frequency, line.amplitude / float(left)))
+        if left <= 0.3 or _of_drive(of_u, line, record.dt, gain):
+            continue
+        if is_between_tones(line, tones, base, (stop - start) * record.dt):
+            continue
+        line = replace(line, amplitude=line.amplitude / float(left))
+        if not is_folded_harmonic(line, repetition.period, record.dt, span, stop - start):
+            found.append(line)
     return found
 
 
@@ -109,7 +118,7 @@ def _within_branches(record: Record) -> list[Line]:
         return []
     fewest_cycles = _DEGREE * (1.5 if few else 0.5)
     return [
-        line
+        Line(line.frequency, line.amplitude / _left_of(line.frequency, ends, record.dt))
         for line in lines_of(rest, record.dt)
         if line.frequency * usual * record.dt > fewest_cycles
         and _throughout(rest, line, record.dt)
@@ -144,6 +153,14 @@ def _without_smooth(signal: Array, ends: NDArray[np.intp]) -> Array:
         part = signal[start:stop]
         rest[start:stop] = part - basis @ (basis.T @ part)
     return rest
+
+
+def _left_of(frequency: float, ends: NDArray[np.intp], dt: float) -> float:
+    """Give the share of a sine's amplitude that is not smooth within branches, 0.1 to 1."""
+    phase = 2.0 * np.pi * frequency * dt * np.arange(int(ends[-1]))
+    waves = [np.cos(phase), np.sin(phase)]
+    left = sum(float(wave @ _without_smooth(wave, ends)) for wave in waves)
+    return max(left / phase.size, 0.1)
 
 
 def _basis(samples: int, degree: int) -> Array:

@@ -19,7 +19,15 @@ def find(evidence: Evidence) -> Iterable[Finding]:
 
 
 def told(found: DelayEvidence, dt: float) -> Iterator[Finding]:
-    """Warn where no delay, or no rate-independent model, can be right."""
+    """Warn where no delay, or no rate-independent model, can be right.
+
+    Parameters
+    ----------
+    found
+        On the records.
+    dt
+        Sample time of the first one, s.
+    """
     said = found.said(dt)
     if found.excludes_zero and found.delay < 0.0:
         yield Finding(

@@ -29,9 +29,8 @@ def find(evidence: Evidence) -> Iterable[Finding]:
                 yield Finding(
                     NAME,
                     "refusal",
-                    f"{subject(evidence, values.number, channel)} is "
-                    f"{amount(float(signal[0]), unit)} in {samples_counted(signal.size)}, in all "
-                    "of them.",
+                    f"{subject(evidence, values.number, channel)} is constant: it is "
+                    f"{amount(float(signal[0]), unit)} in all {samples_counted(signal.size)}.",
                     "Look whether it is the right column and whether the channel was connected.",
                     values.number,
                 )

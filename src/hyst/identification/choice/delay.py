@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+import scipy.optimize
+
 from hyst.diagnosis.delay_evidence import DelayEvidence, evidence_of_delay
 from hyst.identification.families.family import Fit
 from hyst.identification.record_use.thinning import thinned
@@ -12,7 +15,21 @@ from hyst.identification.record_use.used_samples import Data
 NOISE_ALIKE = 1.05
 """By how much a residual may exceed the noise and still be called noise."""
 
+NOISE_ALIKE_OF_RATES = 1.25
+"""The same of a model of rates, which are differences of samples and known only so well."""
+
 REFIT_ITERATIONS = 10
+
+WHOLE_ALIKE = 1.005
+"""By how much more a whole number may leave and still be taken for a number next to it."""
+
+NARROW = 0.1
+"""Samples: an interval no wider has nothing to settle."""
+
+LAGS_TRIED = 7
+
+FAR = 20.0
+"""Variance ratio of one constant: noise reaches it once in a hundred thousand times."""
 
 
 def find_delay(data: Data) -> DelayEvidence:
@@ -62,6 +79,8 @@ def settled_by_family(data: Data, fit: Fit, evidence: DelayEvidence) -> float:
     -------
     float
     """
+    if fit.family.depends_on_rate and not fit.family.answers_late:
+        return _settled_by_rates(data, fit, evidence)
     possible = range(math.ceil(evidence.low), math.floor(evidence.high) + 1)
     open_question = evidence.excludes_zero or evidence.rate_or_lag
     part = not float(data.lag).is_integer()
@@ -76,6 +95,44 @@ def settled_by_family(data: Data, fit: Fit, evidence: DelayEvidence) -> float:
                 break
             best, least, delay = delay, error, delay + step
     return best if least <= NOISE_ALIKE * evidence.noise_rms else data.lag
+
+
+def _settled_by_rates(data: Data, fit: Fit, evidence: DelayEvidence) -> float:
+    """Let plays whose width follows the rate find the lag of records at several rates.
+
+    Without it a lag of part of a sample passes for rate: both grow with the frequency. It is taken
+    if it leaves nothing but noise, and where that is far better than without it.
+    """
+    low, high = evidence.low, evidence.high
+    if high - low < NARROW or not evidence.noise_rms:
+        return data.lag
+    without = _rms(data, fit, data.lag)
+
+    def cost(lag: float) -> float:
+        return _rms(data, fit, lag)
+
+    tried = np.linspace(low, high, max(LAGS_TRIED, math.ceil(high - low) + 1))
+    costs = [cost(float(lag)) for lag in tried]
+    at = int(np.argmin(costs))
+    around = (float(tried[max(at - 1, 0)]), float(tried[min(at + 1, tried.size - 1)]))
+    found = scipy.optimize.minimize_scalar(
+        cost, bounds=around, method="bounded", options={"xatol": 0.01, "maxiter": 12}
+    )
+    best, least = float(found.x), float(found.fun)
+    whole = float(round(best))
+    for simpler, alike in ((float(data.lag), 1.0), (whole, WHOLE_ALIKE)):
+        if low <= simpler <= high and not _far_better(least, cost(simpler) / alike, data):
+            best, least = simpler, cost(simpler)
+            break
+    if least > NOISE_ALIKE_OF_RATES * evidence.noise_rms or not _far_better(least, without, data):
+        return data.lag
+    return int(best) if best.is_integer() else round(best, 3)
+
+
+def _far_better(least: float, other: float, data: Data) -> bool:
+    """Tell whether one more constant lowers the squared error by more than noise may."""
+    samples = data.measured().size
+    return (other**2 - least**2) * samples > FAR * max(least, np.finfo(float).tiny) ** 2
 
 
 def _rms(data: Data, fit: Fit, delay: float) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 
 from hyst.diagnosis import Diagnosis
 from hyst.identification.families.family import Fit
+from hyst.identification.judgement.found_before import FoundBefore, found_before
 from hyst.identification.judgement.left_over import Told, causes_of, is_too_short, told_of
 from hyst.identification.judgement.remainder import Remainder, remainder_of
 from hyst.identification.judgement.taken_apart import SMALLEST_PART, TakenApart, taken_apart
@@ -55,7 +56,8 @@ def judge(data: Data, fit: Fit, diagnosis: Diagnosis, metrics: Mapping[str, Metr
         level, first, told = _levelled(remainder, found, error)
         noise = found.noise
     seen = validated(metrics, noise * remainder.output_scale, remainder.output_unit)
-    return _capped(level, first, told, diagnosis, seen)
+    before = found_before(diagnosis, data, level == "good", fit.family.depends_on_rate)
+    return _capped(level, first, told, before, seen)
 
 
 def _exact(remainder: Remainder, error: float) -> tuple[Level, tuple[str, ...], Told]:
@@ -96,21 +98,16 @@ def _capped(
     level: Level,
     first: tuple[str, ...],
     told: Told,
-    diagnosis: Diagnosis,
+    before: FoundBefore,
     seen: Validation,
 ) -> Verdict:
     """Lower the level to what findings and validation allow, and put the sentences in order."""
-    warnings = tuple(
-        f"The record itself is doubtful ({each.name}): {each.sentence}"
-        for each in diagnosis.of("warning")
-    )
-    allowed: Level = "fair" if warnings else "good"
-    worst = max(level, seen.level, allowed, key=LEVELS.index)
+    worst = max(level, seen.level, before.level, key=LEVELS.index)
     own = first + told.left
     if level == "unfit":
-        sentences = own + seen.sentences + warnings
+        sentences = own + seen.sentences + before.sentences
     elif level == worst and not seen.sentences:
-        sentences = own + warnings
+        sentences = own + before.sentences
     else:
-        sentences = seen.sentences + warnings + own
+        sentences = seen.sentences + before.sentences + own
     return Verdict(worst, sentences + told.advice)

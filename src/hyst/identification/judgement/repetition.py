@@ -63,9 +63,10 @@ def repeating(error: Array, places: NDArray[np.intp], period: int, unlikely: flo
     rest = error - mean[phase]
     whole, scatter = float(error @ error), float(rest @ rest)
     directions = int(np.count_nonzero(count)) - 1
-    time = correlation_time(rest)
-    freedom = (error.size - directions - 1) / time
-    if chance(whole, scatter, directions, freedom) > unlikely:
+    time, left = correlation_time(rest), error.size - directions - 1
+    # Phases near each other share their noise, as samples do: both count less by the same factor.
+    independent = max(round(directions / time), 1)
+    if chance(whole, scatter, independent, left / time) > unlikely:
         return 0.0
-    by_noise = directions * scatter / max(freedom, 1.0)
+    by_noise = directions * scatter / max(left, 1)
     return max(whole - scatter - by_noise, 0.0)

@@ -114,9 +114,9 @@ def taken_apart(remainder: Remainder) -> TakenApart:
     )
     shape = max((each.rms for cause, each in told if cause.name == SHAPE), default=0.0)
     smallest = SMALLEST_PART * remainder.output_range
-    if repeats < max(shape, math.sqrt(SMALLEST_SHARE) * noise, smallest):
-        repeats = 0.0
-    noise = math.sqrt(max(noise**2 - repeats**2, 0.0))
+    whole, noise = noise, math.sqrt(max(noise**2 - repeats**2, 0.0))
+    if repeats < max(shape, math.sqrt(SMALLEST_SHARE) * whole, smallest):
+        repeats = 0.0  # not worth telling beside the shape; it is no noise for that
     white = is_white(rest)
     return TakenApart(
         told,

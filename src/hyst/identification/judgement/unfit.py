@@ -95,6 +95,8 @@ def _reason(remainder: Remainder, found: TakenApart) -> str:
             f"It is hardly better than a straight line: {leaves}, a line "
             f"{remainder.said(found.line)}."
         )
+    if left > OFF * span and follows_the_speed(remainder):
+        return f"It is no hysteresis that it should describe: {leaves}."
     if left > OFF * span and remainder.held >= HELD:
         return (
             f"It is of another kind than the actuator: {leaves}, and "

@@ -12,13 +12,21 @@ from numpy.typing import NDArray
 from hyst.diagnosis import Diagnosis
 from hyst.diagnosis.findings.drifting_output import NAME as DRIFT
 from hyst.diagnosis.findings.foreign_lines import NAME as FOREIGN_LINE
+from hyst.diagnosis.findings.output_is_noise import NAME as OUTPUT_IS_NOISE
+from hyst.diagnosis.findings.still_signals import NAME as STILL_SIGNAL
 from hyst.diagnosis.slow_drift import slow_drift
-from hyst.errors import InputError
+from hyst.errors import HystError, InputError, NotIdentifiableError
 from hyst.identification.record_use.foreign_sines import foreign_sines
 from hyst.identification.record_use.used_samples import Data
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
+
+REFUSED_AS: dict[str, type[HystError]] = {
+    STILL_SIGNAL: NotIdentifiableError,
+    OUTPUT_IS_NOISE: NotIdentifiableError,
+}
+"""By name of the finding: records that are read right and show nothing; else they are faulty."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,11 +105,14 @@ def cleaned(
     Raises
     ------
     InputError
-        If a finding says that nothing can be identified from the records as they are.
+        If a finding says that the records as they are hold something else than measurements.
+    NotIdentifiableError
+        If one says that a signal is constant, or an output noise.
     """
     for finding in diagnosis.of("refusal"):
         where = f"record {finding.record}: " if len(records) > 1 and finding.record else ""
-        raise InputError(f"{where}{finding.sentence} {finding.advice}".strip())
+        error = REFUSED_AS.get(finding.name, InputError)
+        raise error(f"{where}{finding.sentence} {finding.advice}".strip())
     taken = [_cleaned(r, i, diagnosis, drift) for i, r in enumerate(records, 1)]
     kept, given, disturbances = zip(*taken, strict=True)
     return Cleaned(given, kept, disturbances)

@@ -54,7 +54,15 @@ def later(u: Array, part: float) -> Array:
 
 
 def by_whole_samples(y: NDArray[Value], late: int) -> NDArray[Value]:
-    """Give a signal ``late`` samples later, its first or last value where there is no other."""
+    """Give a signal some samples later, its first or last value where there is no other.
+
+    Parameters
+    ----------
+    y
+        Shape (N,).
+    late
+        Samples; negative for earlier.
+    """
     if late == 0:
         return y
     return np.asarray(y[np.clip(np.arange(y.size) - late, 0, y.size - 1)])

@@ -6,9 +6,11 @@ The half-width of the band is the root of the sum of squares of
   shape is wrong by more than where it was fitted;
 - the standard error of the model's output, from the covariance of its constants;
 - how far rival models go apart that fit the records equally well;
-- how far the drive leads the memory from all that the records contained.
+- how far the drive leads the memory from all that the records contained;
+- until the drive has covered the range, what the model leaves of the beginnings of the records,
+  which took no part in the fit: how sure the memory at rest is.
 
-The last is a distance, not a probability: it was set on simulated actuators of no model's class
+What is new is a distance, not a probability: it was set on simulated actuators of no model's class
 (benchmarks/bands.py), so that their minor loops are held where a record showed none.
 """
 
@@ -30,7 +32,7 @@ from hyst.errors import InputError
 from hyst.identification.families.family import Fit
 from hyst.identification.fit.problem import model_output
 from hyst.identification.record_use.strokes import shows_minor_loops, stroke_lengths
-from hyst.identification.record_use.used_samples import Data
+from hyst.identification.record_use.used_samples import LARGEST_RADIUS, Data
 from hyst.identification.result.fit_spread import FitSpread
 from hyst.operators import Operator
 from hyst.signals import estimate_noise
@@ -43,7 +45,7 @@ MISFIT_ELSEWHERE = 2.0
 SHARE_OF_OPENING = 8.0
 """Half-width, in openings of the loop, at a distance of half the input range."""
 
-MISFITS = 60.0
+MISFITS = 150.0
 """The same in misfits: where records show minor loops, their misfit tells how wrong a shape is."""
 
 SET_FOR = 0.95
@@ -56,7 +58,10 @@ SURE_OF_NOISE = 6.0
 """Over the root of the number of samples: how much noise may be larger than it is measured."""
 
 RADII = 6
-MOST_STATES = 5_000
+MOST_STATES = 20_000
+FINEST = 10
+"""Steps between two samples: of coarse records more states than samples are known."""
+
 FEWEST_FOR_QUANTILES = 400
 
 
@@ -76,6 +81,8 @@ class Bands:
         Shape (m,), sizes of what the model leaves, ascending, over their rms.
     growth
         Half-width for each half input range that a drive leads the memory away from the records.
+    at_rest
+        What the model leaves, beside noise, before the memory is known, output units rms.
     half_range, centre
         Of the inputs.
     states
@@ -92,6 +99,7 @@ class Bands:
     misfit: float
     residual: Array
     growth: float
+    at_rest: float
     half_range: float
     centre: float
     states: Array
@@ -118,12 +126,18 @@ class Bands:
         shape = np.max(apart, axis=0) ** 2 if apart else 0.0
         new = (self.growth * self.distances(u)) ** 2
         share = (shape + new) / _normal_quantile(SET_FOR) ** 2
-        return np.asarray(np.sqrt(fitted + deviations**2 * (constants + share)))
+        rest = np.where(self._is_settled(u), 0.0, self.at_rest**2)
+        return np.asarray(np.sqrt(fitted + deviations**2 * (constants + share + rest)))
 
     def distances(self, u: Array) -> Array:
         """Give how far input and memory are from any state of the records, over half the range."""
         found = self._tree.query(_states(u, self.centre, self.half_range))[0]
         return np.asarray(np.maximum(found / math.sqrt(1 + RADII) - self.spacing, 0.0))
+
+    def _is_settled(self, u: Array) -> NDArray[np.bool_]:
+        """Tell from where on the drive has covered the range, so that all memory is known."""
+        covered = np.maximum.accumulate(u) - np.minimum.accumulate(u)
+        return np.asarray(covered >= LARGEST_RADIUS * 2.0 * self.half_range)
 
     def _standard_errors(self, u: Array) -> Array:
         parametrization = self.fit.parametrization
@@ -168,9 +182,7 @@ def bands_of(data: Data, fit: Fit, spread: FitSpread, rivals: Sequence[Operator]
     explained = noise**2 * (1.0 + SURE_OF_NOISE / math.sqrt(residual.size))
     low = min(float(each.u.min()) for each in data.records)
     centre = low + data.half_range
-    pairs = zip(data.records, data.windows(), strict=True)
-    states = data.joined([_states(r.u[: w.stop], centre, data.half_range)[w] for r, w in pairs])
-    states = states[:: 1 + states.shape[0] // MOST_STATES]
+    states = _met(data, centre)
     misfit = math.sqrt(max(rms**2 - explained, 0.0))
     growth = SHARE_OF_OPENING * _line_leaves(data.inputs(), data.measured())
     if shows_minor_loops(stroke_lengths(data)):
@@ -182,12 +194,28 @@ def bands_of(data: Data, fit: Fit, spread: FitSpread, rivals: Sequence[Operator]
         misfit=misfit,
         residual=np.sort(np.abs(residual)) / rms if rms > 0.0 else np.zeros(0),
         growth=growth,
+        at_rest=_left_at_rest(data, fit.operator, noise),
         half_range=data.half_range,
         centre=centre,
         states=states,
         spacing=_spacing(states),
         rivals=tuple(rivals),
     )
+
+
+def _left_at_rest(data: Data, operator: Operator, noise: float) -> float:
+    """Give what a model leaves, beside noise, of the beginnings of records that were not used."""
+    left = []
+    begun = zip(data.records, data.windows(), data.brought_forward(), strict=True)
+    for record, window, output in begun:
+        if window.start:
+            model = operator.at_sample_time(record.dt)(record.u[: window.start])
+            left.append(model - output[: window.start])
+    if not left:
+        return 0.0
+    residual = np.concatenate(left)
+    explained = noise**2 * (1.0 + SURE_OF_NOISE / math.sqrt(residual.size))
+    return math.sqrt(max(float(np.mean(np.square(residual))) - explained, 0.0))
 
 
 def as_level(level: float) -> float:
@@ -216,6 +244,24 @@ def _noise(data: Data, residual: Array) -> float:
     if known:
         return math.sqrt(float(np.mean(np.square(known))))
     return estimate_noise(residual)
+
+
+def _met(data: Data, centre: float) -> Array:
+    """Give the states that the records met, those on the way from sample to sample too."""
+    fine = max(1, min(FINEST, MOST_STATES // max(data.measured().size, 1)))
+    parts = []
+    passes = zip(data.records, data.windows(), data.counted(), strict=True)
+    for record, window, counts in passes:
+        u = record.u[: window.stop]
+        at = np.arange(fine * (u.size - 1) + 1) / fine
+        states = _states(np.interp(at, np.arange(u.size), u), centre, data.half_range)
+        used = at >= window.start
+        if counts is not None:
+            nearest = np.clip(np.round(at).astype(np.intp) - window.start, 0, counts.size - 1)
+            used &= counts[nearest]
+        parts.append(states[used])
+    states = np.concatenate(parts)
+    return states[:: 1 + states.shape[0] // MOST_STATES]
 
 
 def _states(u: Array, centre: float, half_range: float) -> Array:

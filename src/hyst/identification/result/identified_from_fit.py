@@ -86,7 +86,7 @@ def identified_from_fit(
         used=data.used(),
         description=describe(data, fit.family.name),
         verdict=judge(data, fit, diagnosis, metrics),
-        delay_interval=(data.lag, data.lag) if delay is None else (delay.low, delay.high),
+        delay_interval=(data.lag, data.lag) if delay is None else delay.stated,
         diagnosis=diagnosis,
         bands=bands_of(data, fit, spread, rivals),
         per_record=errors_by_record(data, operator),
