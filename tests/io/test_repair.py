@@ -10,7 +10,7 @@ from io_checks import same_signals
 from lab_files import DT, rows, signals, write
 
 from hyst.errors import InputError
-from hyst.io import read_record
+from hyst.io import read_column, read_record
 
 T, U, Y = signals(200)
 
@@ -95,6 +95,15 @@ def test_answers_to_pulses_of_the_input_are_no_codes(tmp_path: Path, height: flo
     dense = np.where(np.arange(200) % 40 < 4, height, 0.01 * U)  # a tenth of all: a drive
     path = write(tmp_path, ["time,u,y", *rows((T, dense, 2.0 * dense + 1.0))])
     assert read_record(path, "u", "y", time="time").notes == ()
+
+
+def test_a_wanted_trajectory_has_peaks_but_no_codes(tmp_path: Path) -> None:
+    for code in ("9.9E37", "-9999", "32767"):
+        path = with_cells(tmp_path, {60: code})
+        with pytest.raises(InputError, match=r"'y' is .* at line 62, .* a code of the instrument"):
+            read_column(path, "y")
+    path = with_cells(tmp_path, {60: "2500.5"})
+    assert read_column(path, "y")[0][60] == 2500.5
 
 
 @pytest.mark.parametrize("text", ["", "nan", "err", "#N/A", "---"])
