@@ -250,9 +250,32 @@ def test_two_decimal_signs_are_refused(tmp_path: Path, cells: list[str], message
     path = write(tmp_path, ["u;y", *rows((u, y), ";")])
     with pytest.raises(InputError, match=message):
         read_record(path, "u", "y", rate=200.0)
-    whole = write(tmp_path, ["u;y", *rows((u, Y), ";")], "whole.csv")
-    with pytest.raises(InputError, match=r"while the decimal sign|which may be"):
-        read_record(whole, "u", "y", rate=200.0, repair=True)
+
+
+@pytest.mark.parametrize("digits", [2, 4, 6])
+@pytest.mark.parametrize("signs", [",.", ".,"])
+def test_a_column_with_a_decimal_sign_of_its_own(tmp_path: Path, digits: int, signs: str) -> None:
+    t, u = ([f"{v:.4f}".replace(".", signs[0]) for v in x] for x in (T, U))
+    printed = [f"{v:.{digits}f}" for v in 30.0 * Y]
+    y = [text.replace(".", signs[1]) for text in printed]
+    path = write(tmp_path, ["t;u;y", *rows((t, u, y), ";")])
+    for repair in (False, True):
+        record = read_record(path, "u", "y", time="t", repair=repair)
+        assert record.y.tolist() == [float(text) for text in printed]
+        assert record.notes == (
+            f"'y': read with the decimal sign '{signs[1]}', where others in the file have "
+            f"'{signs[0]}'",
+        )
+
+
+@pytest.mark.parametrize("signs", [",.", ".,"])
+def test_a_column_that_may_hold_thousands_or_decimals(tmp_path: Path, signs: str) -> None:
+    t, u = ([f"{v:.4f}".replace(".", signs[0]) for v in x] for x in (T, U))
+    y = [f"{1.0 + v:.3f}".replace(".", signs[1]) for v in Y]
+    path = write(tmp_path, ["t;u;y", *rows((t, u, y), ";")])
+    for repair in (False, True):
+        with pytest.raises(InputError, match=r"which may be|while the decimal sign"):
+            read_record(path, "u", "y", time="t", repair=repair)
 
 
 @pytest.mark.parametrize("letter", ["D", "d"])
