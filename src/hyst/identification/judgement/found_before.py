@@ -9,8 +9,10 @@ from hyst.diagnosis.findings.direction import NAME as RUN_DIRECTION
 from hyst.diagnosis.findings.drifting_output import NAME as DRIFT
 from hyst.diagnosis.findings.dynamics import NAME as DYNAMICS
 from hyst.diagnosis.findings.foreign_lines import NAME as FOREIGN_LINE
+from hyst.diagnosis.findings.one_amplitude import NAME as AMPLITUDES
 from hyst.diagnosis.findings.output_ahead import NAME as OUTPUT_AHEAD
 from hyst.diagnosis.findings.rate_dependence import NAME as RATE_DEPENDENCE
+from hyst.identification.families.family import Family
 from hyst.identification.record_use.used_samples import Data
 from hyst.operators.verdict import Level
 
@@ -27,7 +29,8 @@ class FoundBefore:
     level
         The best that a verdict may be.
     sentences
-        What makes the records doubtful, or was taken out of them; then samples that were left out.
+        What makes the records doubtful, or was taken out of them; then samples that were left out;
+        then what they leave open.
     """
 
     level: Level
@@ -35,7 +38,7 @@ class FoundBefore:
 
 
 def found_before(
-    diagnosis: Diagnosis, data: Data, leaves_noise: bool, knows_rate: bool
+    diagnosis: Diagnosis, data: Data, family: Family, *, leaves_noise: bool
 ) -> FoundBefore:
     """Say what findings mean for a model.
 
@@ -49,17 +52,17 @@ def found_before(
         Of the records.
     data
         The records as they were used.
+    family
+        Of the model.
     leaves_noise
         Whether what the model leaves is the records' own noise.
-    knows_rate
-        Whether the model depends on the rate.
     """
     level: Level = "good"
     sentences = []
     for each in diagnosis.of("warning"):
         if each.name == RUN_DIRECTION and diagnosis.named(OUTPUT_AHEAD):
             continue  # the same thing, seen in another way
-        if leaves_noise and knows_rate and each.name in OF_RATE:
+        if leaves_noise and family.depends_on_rate and each.name in OF_RATE:
             continue
         if leaves_noise and each.name == RUN_DIRECTION:
             sentences.append(f"{_capital(each.sentence)} {each.advice}")
@@ -67,6 +70,9 @@ def found_before(
         level = "fair"
         sentences.append(_warning(each, data))
     sentences += [_left_out(each) for each in diagnosis.of("left out") if each.samples.size]
+    if family.has_memory:
+        open_ones = diagnosis.named(AMPLITUDES)
+        sentences += [f"{_capital(each.sentence)} {each.advice}" for each in open_ones]
     return FoundBefore(level, tuple(sentences))
 
 

@@ -56,7 +56,7 @@ def judge(data: Data, fit: Fit, diagnosis: Diagnosis, metrics: Mapping[str, Metr
         level, first, told = _levelled(remainder, found, error)
         noise = found.noise
     seen = validated(metrics, noise * remainder.output_scale, remainder.output_unit)
-    before = found_before(diagnosis, data, level == "good", fit.family.depends_on_rate)
+    before = found_before(diagnosis, data, fit.family, leaves_noise=level == "good")
     return _capped(level, first, told, before, seen)
 
 
