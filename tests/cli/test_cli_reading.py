@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from command_runs import STAGE, Run, drive
+from command_runs import STAGE, Run, describe, drive
 
 COLUMNS = ("--input", "drive", "--output", "stroke")
 QUICK = ("--family", "pi", "--plays", "2", "--delay", "0", "-o", "out")
@@ -82,11 +82,68 @@ def test_one_whole_loop_is_identified(run: Run) -> None:
     assert done.code == 0
 
 
-@pytest.mark.parametrize("verb", ["identify", "fit", "adapt"])
-def test_all_verbs_that_read_records_take_the_options(run: Run, verb: str) -> None:
-    shown = run(verb, "--help").out
-    for option in ("--table", "--format", "--longest-gap", "--dead-band", "--max-samples"):
-        assert option in shown
+OF_A_FILE = ("--table", "--format", "--max-samples")
+OF_A_RECORD = (
+    *OF_A_FILE,
+    *("--input", "--output", "--time", "--time-unit", "--rate", "--repair", "--longest-gap"),
+    *("--dead-band", "--resample", "--hold-input", "--input-time", "--output-time"),
+    "--output-file",
+)
+
+
+@pytest.mark.parametrize(
+    ("verb", "options"),
+    [
+        *((verb, OF_A_RECORD) for verb in ("identify", "fit", "adapt", "diagnose")),
+        *((verb, OF_A_FILE) for verb in ("simulate", "compensate", "columns")),
+    ],
+)
+def test_all_verbs_that_read_take_the_options(
+    run: Run, verb: str, options: tuple[str, ...]
+) -> None:
+    shown = run(verb, "--help").out.split()
+    assert set(options) <= set(shown)
+
+
+def test_diagnosis_numbers_the_records_of_all_tables(run: Run) -> None:
+    path = written(HEADER, lines(), [""], HEADER, lines(250))
+    timed = (*COLUMNS, "--time", "time")
+    refused = run("diagnose", path, *timed)
+    assert (refused.code, "choose one with table" in refused.err) == (2, True)
+    told = run("diagnose", path, *timed, "--table", "all")
+    assert told.code == 0
+    assert "record 2: loop.csv, table 2" in told.out
+
+
+def test_diagnosis_tells_what_was_repaired(run: Run) -> None:
+    rows = lines()
+    rows[40], rows[90] = "0.40,,", "0.90,1.0,9.9E37"
+    path = written(HEADER, rows)
+    timed = (*COLUMNS, "--time", "time")
+    assert run("diagnose", path, *timed).code == 2
+    told = run("diagnose", path, *timed, "--repair")
+    assert told.code == 0
+    assert "left out 1 row that held no number" in told.err
+    assert "left out 1 row where 'stroke' is 9.9e+37" in told.err
+    assert "no measurement (instruments write it for an overload)" in told.err
+
+
+@pytest.mark.parametrize("verb", ["simulate", "compensate"])
+def test_a_signal_and_its_time_are_those_of_the_table_asked_for(run: Run, verb: str) -> None:
+    STAGE.with_description(describe(STAGE, dt=None, delay=0)).save("model.json")
+    slow = [f"{0.02 * k:.2f},{2 + k % 2}" for k in range(40)]
+    fast = [f"{0.01 * k:.2f},{2.5 + k % 2}" for k in range(30)]
+    path = written(["time_s,drive_V"], slow, [""], ["time_s,drive_V"], fast, name="loop.h5")
+    column = "--input" if verb == "simulate" else "--column"
+    wanted = (verb, "model.json", path, column, "1", "--format", "text", "-o", "out.csv")
+    if verb == "compensate":
+        Path(path).write_text(Path(path).read_text().replace("drive_V", "stroke_um"))
+    refused = run(*wanted)
+    assert (refused.code, "holds 2 tables" in refused.err) == (2, True)
+    assert run(*wanted, "--table", "2").code == 0
+    out = np.loadtxt("out.csv", delimiter=",", skiprows=1)
+    assert out[:, 0].tolist() == [round(0.01 * k, 2) for k in range(30)]
+    assert out[:2, 1].tolist() == [2.5, 3.5]
 
 
 def test_format_and_limit(run: Run) -> None:

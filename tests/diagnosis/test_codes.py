@@ -68,6 +68,27 @@ def test_many_codes_refuse_the_record() -> None:
     assert diagnosed(record(u, y)).of("refusal")[0].name == NAME
 
 
+@pytest.mark.parametrize("share", [0.001, 0.1, 0.3, 0.6, 0.85])
+@pytest.mark.parametrize("code", [9.91e37, -9.9e37, 3.4028235e38])
+@pytest.mark.parametrize("unit", [2.0**-30, 1.0, 2.0**20])
+def test_no_share_hides_what_no_signal_can_stand_beside(
+    share: float, code: float, unit: float
+) -> None:
+    _, y = good()
+    y *= unit
+    places = np.random.default_rng(5).choice(y.size, int(share * y.size), replace=False)
+    y[places] = code
+    (found,) = codes_in(y)
+    assert (found.value, found.samples.tolist()) == (code, sorted(places.tolist()))
+
+
+def test_levels_of_a_quiet_generator_are_none() -> None:
+    rng = np.random.default_rng(2)
+    levels = np.arange(1000) // 10 % 2
+    assert codes_in(levels + 1e-12 * rng.standard_normal(1000)) == ()
+    assert codes_in(np.where(levels == 1, 1.0, 1e-20 * rng.standard_normal(1000))) == ()
+
+
 def test_the_record_is_named() -> None:
     u, y = good()
     first = record(u, y)

@@ -24,6 +24,33 @@ def test_every_kind_is_guessed_right(tmp_path: Path, kind: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("name", "stamps"),
+    [
+        ("time", np.repeat(np.arange(0, U.size, 4) * DT, 4)[: U.size]),  # a clock of a quarter
+        ("micros", (np.arange(U.size) * 5000 + 2**32 - 200_000) % 2**32),
+        ("timestamp", (np.arange(U.size) * 5 + 65_000) % 65_536),
+    ],
+)
+def test_stamps_that_repeat_or_start_again_are_a_time(
+    tmp_path: Path, name: str, stamps: np.ndarray
+) -> None:
+    path = tmp_path / "log.csv"
+    rows = [f"{t!r},{u!r},{y!r}" for t, u, y in zip(stamps.tolist(), U.tolist(), Y.tolist())]  # noqa: B905
+    path.write_text("\n".join([f"{name},drive,pos", *rows]))
+    assert [each.guess for each in summarize_file(path).columns] == ["time", "input", "output"]
+
+
+@pytest.mark.parametrize(("code", "rows"), [(-9999.0, [7, 8, 30]), (9.91e37, [12])])
+def test_codes_are_named(tmp_path: Path, code: float, rows: list[int]) -> None:
+    y = Y.copy()
+    y[rows] = code
+    np.save(tmp_path / "log.npy", np.column_stack([U, y]))
+    found = summarize_file(tmp_path / "log.npy").columns
+    assert found[0].flaw == ""
+    assert found[1].flaw.startswith(f"{code:.6g} at index {rows[0]}, {len(rows)} in all, a code")
+
+
+@pytest.mark.parametrize(
     ("header", "guesses"),
     [
         ("pos [um],drive [V],t [ms]", ("output", "input", "time")),

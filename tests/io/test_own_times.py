@@ -209,6 +209,45 @@ def test_a_hole_is_not_filled(tmp_path: Path) -> None:
         read_record(path, "u", "y", input_time="t_u", output_time="t_y", resample=True)
 
 
+@pytest.mark.parametrize(("code", "column"), [("9.9E37", 1), ("-9999", 3), ("1e30", 3)])
+def test_codes_of_signals_stamped_apart_are_no_measurements(
+    tmp_path: Path, code: str, column: int
+) -> None:
+    fast, slow = DT * np.arange(SAMPLES), 2.0 * DT * np.arange(SAMPLES // 2)
+    path = written(tmp_path, "t_u,u,t_y,y", [fast, input_at(fast), slow, output_at(slow)])
+    clean = read_record(path, "u", "y", input_time="t_u", output_time="t_y", resample=True)
+    lines = path.read_text().splitlines()
+    for row in (50, 51, 120):
+        cells = lines[row].split(",")
+        cells[column] = code
+        lines[row] = ",".join(cells)
+    path.write_text("\n".join(lines) + "\n")
+    how = {"input_time": "t_u", "output_time": "t_y", "resample": True}
+    name = "u" if column == 1 else "y"
+    named = re.escape(f"'{name}' is {float(code):g} at line 51 and in 2 rows more")
+    with pytest.raises(InputError, match=named):
+        read_record(path, "u", "y", **how)  # type: ignore[arg-type]
+    record = read_record(path, "u", "y", **how, repair=True)  # type: ignore[arg-type]
+    assert any(note.startswith("left out 3 rows where") for note in record.notes)
+    # A straight line over at most 3 steps of the slower signal, whose bend is at most 750 /s^2.
+    step = clean.dt if name == "y" else DT
+    assert np.abs(record.u - clean.u).max() <= 4444.0 * (3 * step) ** 2 / 8
+    assert np.abs(record.y[: clean.y.size] - clean.y[: record.y.size]).max() <= (
+        2900.0 * (3 * clean.dt) ** 2 / 8
+    )
+
+
+@pytest.mark.parametrize("name", ["time_ms", "Timestamp (ms)", "timeMs", "t / ms"])
+def test_units_of_stamps_are_found_alike(tmp_path: Path, name: str) -> None:
+    time = DT * np.arange(SAMPLES)
+    columns = [1e3 * time, input_at(time), 1e3 * (time + 0.002), output_at(time + 0.002)]
+    path = written(tmp_path, f"{name},u,{name} y,y", columns)
+    record = read_record(path, "u", "y", input_time=0, output_time=2, time_unit="ms", resample=True)
+    path = written(tmp_path, f"{name},u,other,y", [*columns[:2], columns[0], columns[3]])
+    plain = read_record(path, "u", "y", time=0, resample=True)
+    assert record.dt == plain.dt == DT
+
+
 def test_signals_that_never_overlap_are_refused(tmp_path: Path) -> None:
     time = DT * np.arange(SAMPLES)
     path = written(tmp_path, "t_u,u,t_y,y", (time, input_at(time), time + 60.0, output_at(time)))

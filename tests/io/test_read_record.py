@@ -177,7 +177,8 @@ def test_uneven_time_is_resampled_on_request(tmp_path: Path) -> None:
     assert record.u.tolist() == pytest.approx([0, 1, 2, 3, 4, 5, 0, 7], rel=1e-14)
     assert record.y.tolist() == pytest.approx([0, 10, 20, 30, 40, 50, 0, 14], rel=1e-14)
     assert record.notes == (
-        "resampled linearly onto steps of 0.01 s; the worst gap was 0.03 s after line 3",
+        "resampled linearly onto steps of 0.01 s, 2 of 8 samples filled in; the worst gap was "
+        "0.03 s after line 3",
     )
 
 
@@ -190,7 +191,8 @@ def test_faulty_rows_are_left_out_on_request(tmp_path: Path) -> None:
     assert record.y.tolist() == pytest.approx([0, 2, 4, 6, 1, 1.5, 2, 5], rel=1e-14)
     assert record.notes == (
         "left out 2 rows that held no number or no finite one",
-        "resampled linearly onto steps of 0.1 s; the worst gap was 0.2 s after line 3",
+        "resampled linearly onto steps of 0.1 s, 2 of 8 samples filled in; the worst gap was 0.2 s "
+        "after line 3",
     )
 
 

@@ -10,7 +10,7 @@ from io_checks import same_signals
 from lab_files import DT, rows, signals, write
 
 from hyst.errors import InputError
-from hyst.io import read_record
+from hyst.io import read_column, read_record
 
 T, U, Y = signals(200)
 
@@ -73,6 +73,39 @@ def test_what_is_measured_is_no_code(tmp_path: Path, y: np.ndarray) -> None:
     assert record.notes == ()
 
 
+@pytest.mark.parametrize("share", [0.1, 0.4, 0.8])
+def test_many_codes_are_refused_and_not_read(tmp_path: Path, share: float) -> None:
+    places = np.sort(np.random.default_rng(1).choice(200, int(200 * share), replace=False))
+    path = with_cells(tmp_path, dict.fromkeys(places.tolist(), "9.91E+37"))
+    named = rf"'y' is 9.91e\+37 at line {places[0] + 2} and in {places.size - 1} rows more"
+    with pytest.raises(InputError, match=named) as refused:
+        read_record(path, "u", "y", time="time")
+    assert "option repair" not in str(refused.value)
+    with pytest.raises(InputError, match=f"{places.size} of 200 rows hold no value"):
+        read_record(path, "u", "y", time="time", repair=True)
+
+
+@pytest.mark.parametrize("height", [20.0, 50.0])
+def test_answers_to_pulses_of_the_input_are_no_codes(tmp_path: Path, height: float) -> None:
+    u = 0.01 * U
+    u[[30, 31, 120, 121]] = height
+    path = write(tmp_path, ["time,u,y", *rows((T, u, 2.0 * u + 1.0))])
+    with pytest.raises(InputError, match=f"'u' is {height:.0f} at line 32"):
+        read_record(path, "u", "y", time="time")
+    dense = np.where(np.arange(200) % 40 < 4, height, 0.01 * U)  # a tenth of all: a drive
+    path = write(tmp_path, ["time,u,y", *rows((T, dense, 2.0 * dense + 1.0))])
+    assert read_record(path, "u", "y", time="time").notes == ()
+
+
+def test_a_wanted_trajectory_has_peaks_but_no_codes(tmp_path: Path) -> None:
+    for code in ("9.9E37", "-9999", "32767"):
+        path = with_cells(tmp_path, {60: code})
+        with pytest.raises(InputError, match=r"'y' is .* at line 62, .* a code of the instrument"):
+            read_column(path, "y")
+    path = with_cells(tmp_path, {60: "2500.5"})
+    assert read_column(path, "y")[0][60] == 2500.5
+
+
 @pytest.mark.parametrize("text", ["", "nan", "err", "#N/A", "---"])
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
 def test_a_few_bad_cells(tmp_path: Path, text: str, separator: str) -> None:
@@ -130,7 +163,8 @@ def test_lost_samples_are_filled_in_where_they_are_few(tmp_path: Path, lost: int
         return
     record = read_record(path, "u", "y", time="time", repair=True)
     assert np.allclose(record.y, without(Y, gone), rtol=0.0, atol=1e-10)
-    assert "resampled linearly onto steps of 0.005 s" in record.notes[0]
+    told = f"resampled linearly onto steps of 0.005 s, {lost} of 200 samples filled in"
+    assert told in record.notes[0]
 
 
 @pytest.mark.parametrize("name", ["time_pos", "t", "X_Value", "pos.time"])

@@ -234,27 +234,6 @@ def test_thousands_set_apart(
         assert "between thousands" in record.notes[0]
 
 
-@pytest.mark.parametrize(
-    ("cells", "message"),
-    [
-        (["1.234"] * 3, r"'1\.234' at line 7, which may be 1\.234 or 1234 where the file has the"),
-        (["1.5", "2.5"], r"'1\.5' at line 7, while the decimal sign of the file is ','"),
-        (["1.234,5", "0.5"], r"'0\.5' at line 8, while the decimal sign"),
-        (["1.23,4"], r"'1\.23,4' at line 7, not a finite number"),
-    ],
-)
-def test_two_decimal_signs_are_refused(tmp_path: Path, cells: list[str], message: str) -> None:
-    y = [cell(v).replace(".", ",") for v in Y]
-    y[5 : 5 + len(cells)] = cells
-    u = [cell(v).replace(".", ",") for v in U]
-    path = write(tmp_path, ["u;y", *rows((u, y), ";")])
-    with pytest.raises(InputError, match=message):
-        read_record(path, "u", "y", rate=200.0)
-    whole = write(tmp_path, ["u;y", *rows((u, Y), ";")], "whole.csv")
-    with pytest.raises(InputError, match=r"while the decimal sign|which may be"):
-        read_record(whole, "u", "y", rate=200.0, repair=True)
-
-
 @pytest.mark.parametrize("letter", ["D", "d"])
 @pytest.mark.parametrize("separator", ["  ", ",", ";"])
 def test_exponents_of_fortran(tmp_path: Path, letter: str, separator: str) -> None:

@@ -24,6 +24,7 @@ from hyst.io.stamps import seconds_of_stamps
 from hyst.io.table import Flaw
 
 _SAMPLED = 200
+_FEWEST_SURE = 3
 _FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")
 
 
@@ -84,7 +85,25 @@ def read_cells(cells: Sequence[str], decimal: str) -> ColumnOfCells:
         return ColumnOfCells(stamps.seconds, stamps.flaw, "s", "", stamps.notes, True)
     if kind in ("quantity", "pair"):
         return _with_unit(cells, decimal, kind)
+    other = "," if decimal == "." else "."
+    if _is_written_with(cells, other, decimal):
+        values = np.array([_plain(cell, other) for cell in cells])
+        note = f"read with the decimal sign {other!r}, where others in the file have {decimal!r}"
+        return ColumnOfCells(values, _first_flaw(values, cells), notes=(note,))
     return _with_thousands(plain, cells, decimal)
+
+
+def _is_written_with(cells: Sequence[str], sign: str, decimal: str) -> bool:
+    """Tell whether a whole column has another decimal sign, which cannot be one of thousands."""
+    written = [cell for cell in cells if not is_missing(cell)]
+    if any(decimal in cell for cell in written):
+        return False
+    number, thousands = number_pattern(sign), thousands_pattern(decimal)
+    if not all(number.fullmatch(cell) for cell in written):
+        return False
+    signed = [cell for cell in written if sign in cell]
+    sure = sum(thousands.fullmatch(cell) is None for cell in signed)
+    return sure >= _FEWEST_SURE and 2 * sure > len(signed)
 
 
 def _plain(cell: str, decimal: str) -> float:

@@ -147,8 +147,11 @@ def _increasing(samples: Samples, repair: bool, longest_gap: int) -> OnEvenSteps
             "the record at its gaps, or give a higher longest_gap"
         )
     step = samples.step(gap.median)
-    note = f"resampled linearly onto steps of {step:.6g} s; the worst gap was {worst}"
-    return OnEvenSteps(step, resample(time, samples.signals, gap.median), (note,))
+    signals = resample(time, samples.signals, gap.median)
+    more = signals[0].size - time.size
+    filled = f", {more} of {signals[0].size} samples filled in" if more > 0 else ""
+    note = f"resampled linearly onto steps of {step:.6g} s{filled}; the worst gap was {worst}"
+    return OnEvenSteps(step, signals, (note,))
 
 
 def _hindrance(time: Array, gap: Gap, longest_gap: int) -> str:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from hyst.checks.numbers import as_positive
 from hyst.errors import InputError
 from hyst.io.apart import Apart, read_apart
+from hyst.io.codes_in_rows import codes_of_column, refuse_codes
 from hyst.io.columns import find_column, refuse_flaws
 from hyst.io.entries import MOST_SAMPLES
 from hyst.io.formats import choose_table, read_table, read_tables
@@ -221,7 +222,8 @@ def read_column(
     Raises
     ------
     InputError
-        If the file cannot be read, the column is missing, or it holds text, NaN or infinity.
+        If the file cannot be read, the column is missing, or it holds text, NaN, infinity or
+        codes of an instrument.
     MissingExtraError
         If the format needs a package that is not installed.
 
@@ -236,6 +238,9 @@ def read_column(
     whole = read_table(path, columns=[column], table=table, format=format, max_samples=max_samples)
     found = find_column(whole, column)
     refuse_flaws(whole, found, "correct it or take the row out")
+    # A single peak of a wanted trajectory is none, unless it is a number that programs write.
+    codes = codes_of_column(whole, found, np.arange(whole.columns[found].size))
+    refuse_codes(whole, found, tuple(code for code in codes if code.meaning), "")
     return whole.columns[found], whole.names[found], whole.units[found]
 
 

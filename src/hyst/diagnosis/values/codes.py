@@ -111,7 +111,12 @@ def _end_of_the_others(ordered: NDArray[np.float64]) -> float:
     """Highest value below the first gap that is too wide for a measurement, else the highest."""
     count = ordered.size
     low = ordered[count // 10]
-    first = max(int(np.ceil((1.0 - _LARGEST_SHARE_THERE) * count)) - 1, 0)
+    first = int(np.ceil((1.0 - _LARGEST_SHARE) * count)) - 1
+    top = ordered[first:]
+    if np.count_nonzero(np.diff(top)) < _MOST_CODES:
+        first = max(int(np.ceil((1.0 - _LARGEST_SHARE_THERE) * count)) - 1, 0)
+    elif top[0] > low and (top[-1] - top[0]) / _FAR <= top[0] - low:
+        return float(top[-1])  # the usual case of a long record: no gap can be wide enough
     upper = ordered[first:]
     reach = upper[:-1] - low
     above = np.arange(upper.size - 1, 0, -1)
