@@ -214,6 +214,8 @@ def refuse_unusable(source: str, record: Record, dead_band: float | None) -> Non
                 "choose a column that moves"
             )
     u = record.u
+    if dead_band is None and reversals(u, float(np.ptp(u) / 4.0)).size >= _FEWEST_REVERSALS:
+        return  # no dead band that is proposed is wider
     threshold = suggest_dead_band(u) if dead_band is None else dead_band
     turns = reversals(u, threshold)
     if turns.size >= _FEWEST_REVERSALS:
