@@ -52,7 +52,8 @@ class DelayEvidence:
     Parameters
     ----------
     delay
-        Samples of the first record, > 0 where the output lags; 0 unless the records exclude it.
+        Samples of the first record, > 0 where the output lags; 0 unless the records exclude it,
+        ``stated`` says how surely.
     low, high
         Its 95 % interval, samples.
     limit
