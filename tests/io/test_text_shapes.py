@@ -187,6 +187,26 @@ def test_appended_files(tmp_path: Path, between: list[str]) -> None:
         read_record(path, "u", "y", time="time", table=4)
 
 
+@pytest.mark.parametrize("repair", [False, True])
+@pytest.mark.parametrize(
+    ("header", "again"),
+    [("u,y", "y,u"), ("u [V],y [um]", "u [mV],y [um]"), ("u (V),y (um)", "y (um),u (V)")],
+)
+def test_a_header_in_another_order_or_with_other_units_begins_a_table(
+    tmp_path: Path, header: str, again: str, repair: bool
+) -> None:
+    columns = {"u": U, "y": Y, "u [m": 1e3 * U}
+    second = [columns.get(name[:4], columns[name[0]]) for name in again.split(",")]
+    path = write(tmp_path, [header, *rows((U, Y)), again, *rows(second)])
+    # Left out as a row without numbers it would join the columns of one with those of the other.
+    with pytest.raises(InputError, match="holds 2 tables below each other"):
+        read_record(path, "u", "y", rate=200.0, repair=repair)
+    record = read_record(path, "u", "y", rate=200.0, table=2)
+    milli = record.input_unit == "mV"
+    assert milli == ("mV" in again)
+    same_signals(record, 1e3 * U if milli else U, Y)
+
+
 def test_tables_with_other_columns(tmp_path: Path) -> None:
     other = ["Results", "", "f,A,B,C", *rows((U, U, Y, Y))]
     path = write(tmp_path, ["Loop", "", HEADER, *BODY, "", *other, "", "Loop 2", HEADER, *BODY])
