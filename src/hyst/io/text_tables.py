@@ -68,7 +68,11 @@ class Heads:
 
 
 def find_blocks(
-    lines: Sequence[str], kinds: LineKinds, after_gap: frozenset[int], writing: Writing
+    lines: Sequence[str],
+    kinds: LineKinds,
+    after_gap: frozenset[int],
+    writing: Writing,
+    comments: Sequence[str] = (),
 ) -> list[Block]:
     """Find the tables below each other.
 
@@ -82,6 +86,8 @@ def find_blocks(
         Lines above which there is a blank line or comment.
     writing
         How the file is written.
+    comments
+        Those above all lines, where the header may be.
 
     Returns
     -------
@@ -111,7 +117,7 @@ def find_blocks(
         ends = high == len(lines)
         # Words between blanks make as many cells as it happens.
         whole = writing.separator is not None and (kinds.counts[low:high] == count).all()
-        heads = Heads(lines[above:start], writing)
+        heads = Heads([*(() if above else comments), *lines[above:start]], writing)
         if inner or (not ends and _begins_table(lines, kinds, after_gap, low, high, heads, count)):
             found += [Block(above, start, low, count, tuple(faulty)), *inner]
             above, start, faulty = (inner[-1].stop if inner else low), high, []
