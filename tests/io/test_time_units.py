@@ -132,6 +132,28 @@ def test_stamps_that_cannot_be_seconds_are_refused(tmp_path: Path, start: float)
     assert read_record(path, "u", "y", time="timestamp", time_unit="ms").dt == DT
 
 
+@pytest.mark.parametrize(
+    ("line", "per_second"),
+    [
+        *(("Time Unit,ms", 1e3), ("Horizontal Units: us", 1e6), ('"X Units";"ms";"Y";"V"', 1e3)),
+        *(("# time unit = ns", 1e9), ("Zeiteinheit: ms", 1e3), ("Time units: s", 1.0)),
+    ],
+)
+def test_a_unit_that_the_preamble_states(tmp_path: Path, line: str, per_second: float) -> None:
+    path = write(tmp_path, [line, "t;u;y", *rows((per_second * T, U, Y), ";")])
+    record = read_record(path, "u", "y", time="t")
+    # Nine digits or more of every stamp were written.
+    assert record.dt == pytest.approx(DT, rel=1e-7)
+    assert len(record.notes) == (per_second > 1.0)
+    # What is nearer to the numbers says it better.
+    path = write(tmp_path, [line, "t [ms];u;y", *rows((1e3 * T, U, Y), ";")])
+    assert read_record(path, "u", "y", time="t").dt == DT
+    dates = [f"2025-01-01T00:00:00.{k:02d}" for k in range(U.size)]
+    body = [f"{date};{row}" for date, row in zip(dates, rows((U, Y), ";"), strict=True)]
+    path = write(tmp_path, [line, "time;u;y", *body])
+    assert read_record(path, "u", "y", time="time").dt == pytest.approx(0.01, rel=1e-9)
+
+
 @pytest.mark.parametrize("start", [45000.25, 25569.0, 739000.5])
 @pytest.mark.parametrize("step", [DT, 0.25, 1.0])
 def test_dates_numbered_in_days_are_refused(tmp_path: Path, start: float, step: float) -> None:

@@ -26,6 +26,11 @@ _RATES = {"": 1.0, "hz": 1.0, "khz": 1e3, "mhz": 1e6, "ghz": 1e9}
 _PER_SECOND = {"s/s": 1.0, "sa/s": 1.0, "sps": 1.0, "samples/s": 1.0, "1/s": 1.0}
 _RATES |= _PER_SECOND | {f"k{unit}": 1e3 for unit in _PER_SECOND}
 _RATES |= {f"m{unit}": 1e6 for unit in _PER_SECOND} | {f"g{unit}": 1e9 for unit in _PER_SECOND}
+_UNIT_OF_TIME = re.compile(
+    r"(?<![\w.])(?:(?:time|t|x|horizontal|x[\s_-]?axis)[\s_-]?units?(?:[\s_-]?label)?|zeiteinheit)"
+    r"[\s\":=,;]+(?P<unit>[^\W\d_]+)",
+    re.IGNORECASE,
+)
 _START_NAMES = {"start", "t0", "x0", "xorigin"}
 _STEP_NAMES = {"increment", "tinc", "dx", "xincrement", "xincr"}
 
@@ -61,6 +66,18 @@ def stated_step(lines: Sequence[str]) -> float | None:
     if not usable or max(usable) > 1.001 * min(usable):
         return None
     return usable[0]
+
+
+def stated_unit_of_time(lines: Sequence[str]) -> str:
+    """Find the unit of the stamps that a preamble or comments state; nothing if none or seconds.
+
+    Examples
+    --------
+    >>> stated_unit_of_time(["Model,X1", "Time Unit,ms"]), stated_unit_of_time(["time: 5 ms"])
+    ('ms', '')
+    """
+    found = (match["unit"] for line in lines for match in _UNIT_OF_TIME.finditer(line))
+    return next((unit for unit in found if seconds_per_unit(unit) not in {None, 1.0}), "")
 
 
 def start_and_step(above: Sequence[str], writing: Writing) -> tuple[int, float, float] | None:
