@@ -132,7 +132,7 @@ def with_titles(
         _refuse_doubtful_row(page, block)
         titles = _numbered(columns)
     table = _joined(page.source, titles, columns, numbers)
-    stated = step or (axis[2] if axis else stated_step([*comments, *above]))
+    stated = step or (axis[2] if axis else stated_step([*comments, *above], writing))
     table = replace(table, notes=(*notes, *table.notes), step=stated)
     table = _with_unit_of_time(table, stated_unit_of_time([*comments, *above]))
     return _with_counted_time(table, axis[1], axis[2]) if axis else table
