@@ -11,7 +11,7 @@ from lab_files import DT, rows, signals, write
 from hyst.errors import InputError
 from hyst.io import read_record
 
-_, U, Y = signals()
+T, U, Y = signals()
 
 
 @pytest.mark.parametrize(
@@ -46,3 +46,21 @@ def test_the_unit_of_a_stated_step_in_a_cell_of_its_own(
     # A product of two doubles.
     assert record.dt == pytest.approx(DT, rel=1e-15)
     same_signals(record, U, Y)
+
+
+@pytest.mark.parametrize("repair", [False, True])
+@pytest.mark.parametrize("units", ["100ns;V;um", "1e-7 s;V;um", "10 us;;mm"])
+def test_a_row_of_units_with_one_that_is_not_known_is_not_left_out(
+    tmp_path: Path, units: str, repair: bool
+) -> None:
+    # Without it the stamps would be seconds.
+    path = write(tmp_path, ["time;u;y", units, *rows((5e4 * T, U, Y), ";")])
+    with pytest.raises(InputError, match="at line 2, a unit in a row where"):
+        read_record(path, "u", "y", time="time", repair=repair)
+
+
+@pytest.mark.parametrize("missing", ["-", "NaN", "ERR", "n/a"])
+def test_a_first_row_without_values_is_left_out(tmp_path: Path, missing: str) -> None:
+    path = write(tmp_path, ["time;u;y", f"0;{missing};{missing}", *rows((T, U, Y), ";")[1:]])
+    record = read_record(path, "u", "y", time="time", repair=True)
+    same_signals(record, U[1:], Y[1:])
