@@ -118,7 +118,7 @@ def test_the_step_of_decimal_stamps_is_a_decimal(tmp_path: Path) -> None:
         ({"rate": np.nan}, "rate is nan"),
         ({"rate": np.inf}, "rate is inf"),
         ({"rate": 1.0, "time_unit": "s"}, "time_unit is 's'; .* only with a time column"),
-        ({"time": 0, "time_unit": "days"}, "time_unit is 'days'; give s, ms"),
+        ({"time": 0, "time_unit": "weeks"}, "time_unit is 'weeks'; give s, ms"),
         ({"time": "stroke"}, "output and time are the same column, 'stroke/um'"),
         ({"time": 1}, r"input and time are the same column, 'Drive \[V\]'"),
         ({"rate": 1.0, "dead_band": -1.0}, "dead_band is -1.0"),

@@ -132,6 +132,62 @@ def test_stamps_that_cannot_be_seconds_are_refused(tmp_path: Path, start: float)
     assert read_record(path, "u", "y", time="timestamp", time_unit="ms").dt == DT
 
 
+@pytest.mark.parametrize(
+    ("line", "per_second"),
+    [
+        *(("Time Unit,ms", 1e3), ("Horizontal Units: us", 1e6), ('"X Units";"ms";"Y";"V"', 1e3)),
+        *(("# time unit = ns", 1e9), ("Zeiteinheit: ms", 1e3), ("Time units: s", 1.0)),
+    ],
+)
+def test_a_unit_that_the_preamble_states(tmp_path: Path, line: str, per_second: float) -> None:
+    path = write(tmp_path, [line, "t;u;y", *rows((per_second * T, U, Y), ";")])
+    record = read_record(path, "u", "y", time="t")
+    # Nine digits or more of every stamp were written.
+    assert record.dt == pytest.approx(DT, rel=1e-7)
+    assert len(record.notes) == (per_second > 1.0)
+    # What is nearer to the numbers says it better.
+    path = write(tmp_path, [line, "t [ms];u;y", *rows((1e3 * T, U, Y), ";")])
+    assert read_record(path, "u", "y", time="t").dt == DT
+    dates = [f"2025-01-01T00:00:00.{k:02d}" for k in range(U.size)]
+    body = [f"{date};{row}" for date, row in zip(dates, rows((U, Y), ";"), strict=True)]
+    path = write(tmp_path, [line, "time;u;y", *body])
+    assert read_record(path, "u", "y", time="time").dt == pytest.approx(0.01, rel=1e-9)
+
+
+@pytest.mark.parametrize("start", [45000.25, 25569.0, 739000.5])
+@pytest.mark.parametrize("step", [DT, 0.25, 1.0])
+def test_dates_numbered_in_days_are_refused(tmp_path: Path, start: float, step: float) -> None:
+    days = start + step * np.arange(U.size) / 86400.0
+    body = rows((days, U, Y), ",", lambda value: f"{value:.16g}")
+    path = write(tmp_path, ["Time,u,y", *body])
+    with pytest.raises(InputError, match="may be seconds, or days as spreadsheets and MATLAB"):
+        read_record(path, "u", "y", time="Time")
+    record = read_record(path, "u", "y", time="Time", time_unit="days")
+    # Two doubles near 739000 days are 10 us apart, over 59 steps.
+    assert record.dt == pytest.approx(step, abs=1e-6)
+    path = write(tmp_path, ["Time [days],u,y", *body])
+    assert read_record(path, "u", "y", time="Time").dt == record.dt
+
+
+@pytest.mark.parametrize("step", [1e-5, 2e-5, 5e-5, 1e-3])
+def test_seconds_of_a_clock_that_has_run_for_hours_are_no_days(tmp_path: Path, step: float) -> None:
+    body = rows((43200.0 + step * np.arange(U.size), U, Y), ",", lambda value: f"{value:.6f}")
+    path = write(tmp_path, ["Time,u,y", *body])
+    # The doubles near 43200 are 7e-12 apart.
+    assert read_record(path, "u", "y", time="Time").dt == pytest.approx(step, rel=1e-6)
+
+
+@pytest.mark.parametrize("header", ["Sample", "Point No.", "index", "idx", "sample_number", "N"])
+@pytest.mark.parametrize("first", [0, 1])
+def test_numbers_of_the_samples_are_no_time(tmp_path: Path, header: str, first: int) -> None:
+    count = first + np.arange(float(U.size))
+    path = write(tmp_path, [f"{header},u,y", *rows((count, U, Y))])
+    with pytest.raises(InputError, match="counts samples and is no time"):
+        read_record(path, "u", "y", time=0)
+    assert read_record(path, "u", "y", time=0, time_unit="s").dt == 1.0
+    assert read_record(path, "u", "y", rate=200.0).dt == DT
+
+
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
 @pytest.mark.parametrize("gap", [" ", ""])
 def test_units_in_the_cells(tmp_path: Path, separator: str, gap: str) -> None:

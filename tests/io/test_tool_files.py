@@ -258,6 +258,19 @@ def test_references_between_data_sets_and_circles_of_groups_are_harmless(tmp_pat
         read_column(path, "refs")
 
 
+@pytest.mark.parametrize("attribute", ["Units", "Unit", "UNITS", "unit"])
+def test_the_attribute_of_units_in_other_letters(tmp_path: Path, attribute: str) -> None:
+    path = tmp_path / "run.h5"
+    with h5py.File(path, "w") as file:
+        for name, values, unit in (("t", 1e3 * T, "ms"), ("u", U, "V"), ("y", Y, "um")):
+            file[name] = values
+            file[name].attrs[attribute] = unit
+    record = read_record(path, "u", "y", time="t")
+    # Without the unit the step would be a thousand times as long.
+    assert record.dt == pytest.approx(DT, rel=1e-12)
+    assert (record.input_unit, record.output_unit) == ("V", "um")
+
+
 def test_texts_that_would_keep_the_library_for_ever_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "run.h5"
     with h5py.File(path, "w") as file:

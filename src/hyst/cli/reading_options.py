@@ -35,7 +35,7 @@ TimeColumn = Annotated[
 ]
 TimeUnit = Annotated[
     str | None,
-    typer.Option(metavar="UNIT", show_default=False, help="Its unit: s, ms, us, ns, min or h."),
+    typer.Option(metavar="UNIT", show_default=False, help="Its unit: s, ms, us, ns, min, h, days."),
 ]
 Repair = Annotated[
     bool,

@@ -47,6 +47,8 @@ def decode(data: bytes, source: str) -> str:
     """
     # DOS editors end a file with this mark.
     text = _decoded(data, source).rstrip("\x00").removesuffix("\x1a")
+    # Spreadsheets set to Nordic and some other languages write the sign of mathematics.
+    text = text.replace("\N{MINUS SIGN}", "-")
     control = _CONTROL.search(text)
     if control:
         line = text.count("\n", 0, control.start()) + 1

@@ -170,7 +170,9 @@ def _matlab_array(item: Any, path: str, kind: str, contents: Contents) -> None:
 def _numbers(item: Any, path: str, separator: str, contents: Contents) -> None:
     """Add a data set of numbers, or those of the fields of a compound type that are numbers."""
     fields = item.dtype.names or ()
-    units = item.attrs.get("units", item.attrs.get("unit", ""))
+    attributes = {name.casefold(): name for name in item.attrs}
+    named = next((attributes[name] for name in ("units", "unit") if name in attributes), None)
+    units = "" if named is None else item.attrs[named]
     each = np.asarray(units).ravel() if np.ndim(units) else None
     if not fields:
         _store(item, path, contents, ())

@@ -112,7 +112,7 @@ def _may_be_unit(header: str, found: re.Match[str]) -> bool:
 
 def _is_plain_unit(name: str, unit: str, sign: str) -> bool:
     if seconds_per_unit(unit) is not None:
-        sure = unit.rstrip(".").casefold() not in {"s", "h", "min", "std", "seg"}
+        sure = unit.rstrip(".").casefold() not in {"s", "h", "min", "std", "seg", "day", "days"}
         return is_time(name) or (sure and sign != " ")
     if unit == "V":
         return not _NOT_SINGLE.fullmatch(name)

@@ -88,7 +88,7 @@ def _head(data: bytes, source: str) -> tuple[Page, Block] | None:
             return None
         writing = find_writing(lines.texts)
         kinds = sort_lines(lines.texts, writing)
-        blocks = find_blocks(lines.texts, kinds, lines.after_gap, writing)
+        blocks = find_blocks(lines.texts, kinds, lines.after_gap, writing, lines.comments)
     except InputError:
         return None  # the reader of all texts says it better
     if len(blocks) != 1 or blocks[0].faulty or blocks[0].loose:

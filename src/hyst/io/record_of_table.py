@@ -178,8 +178,8 @@ def _samples(
             )
     elif table.step is None:
         raise InputError(
-            f"neither of rate and time given, and {table.source} states no rate; give one, a rate "
-            "in Hz or a time column"
+            f"neither of rate and time given, and {table.source} states no rate that is "
+            "clear; give one, a rate in Hz or a time column"
         )
     else:
         period = table.step

@@ -60,7 +60,7 @@ def _tables(
 ) -> tuple[Table, ...]:
     texts = drop_trailing_separators(lines.texts, writing)
     kinds = sort_lines(texts, writing)
-    blocks = find_blocks(texts, kinds, lines.after_gap, writing)
+    blocks = find_blocks(texts, kinds, lines.after_gap, writing, lines.comments)
     if not blocks:
         raise _no_numbers(source)
     page = Page(source, replace(lines, texts=texts), kinds, writing)

@@ -13,9 +13,10 @@ from hyst.errors import InputError
 from hyst.io.cell_values import ColumnOfCells, read_cells
 from hyst.io.cells import is_missing, kind_of
 from hyst.io.dates_and_clocks import with_clocks
+from hyst.io.header import is_time, unit_of_time_in_name
 from hyst.io.line_kinds import NUMERIC, TEXT, LineKinds
 from hyst.io.notation import Writing
-from hyst.io.stated_step import start_and_step, stated_step
+from hyst.io.stated_step import start_and_step, stated_step, stated_unit_of_time
 from hyst.io.table import Table
 from hyst.io.text_lines import Lines
 from hyst.io.text_tables import ENOUGH_ROWS, Block
@@ -131,8 +132,9 @@ def with_titles(
         _refuse_doubtful_row(page, block)
         titles = _numbered(columns)
     table = _joined(page.source, titles, columns, numbers)
-    stated = step or (axis[2] if axis else stated_step([*comments, *above]))
+    stated = step or (axis[2] if axis else stated_step([*comments, *above], writing))
     table = replace(table, notes=(*notes, *table.notes), step=stated)
+    table = _with_unit_of_time(table, stated_unit_of_time([*comments, *above]))
     return _with_counted_time(table, axis[1], axis[2]) if axis else table
 
 
@@ -236,6 +238,24 @@ def _joined(
         aliases=titles.aliases,
         doubts=doubts,
         notes_of_columns={k: column.notes for k, column in enumerate(columns) if column.notes},
+    )
+
+
+def _with_unit_of_time(table: Table, unit: str) -> Table:
+    """Give the unit that stands above the columns to those of the time that have none."""
+    bare = [
+        k
+        for k, name in enumerate(table.names)
+        if unit and not table.units[k] and is_time(name) and not unit_of_time_in_name(name)
+    ]
+    told = dict.fromkeys(bare, (f"its unit {unit} stands above the columns",))
+    return replace(
+        table,
+        units=tuple(unit if k in told else each for k, each in enumerate(table.units)),
+        notes_of_columns={
+            k: (*table.notes_of_columns.get(k, ()), *told.get(k, ()))
+            for k in {*table.notes_of_columns, *told}
+        },
     )
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from hyst.io.known_units import is_unit
+
 # The last is how a spreadsheet is told the separator.
 COMMENTS = ("#", "%", "//", "sep=")
 # What spreadsheets write for a value they could not compute: a fault in a row, not a comment.
@@ -12,12 +14,14 @@ _SPREADSHEET_ERRORS = ("#N/A", "#DIV/0!", "#VALUE!", "#REF!", "#NAME?", "#NUM!",
 # A header may have line breaks in quotes; further down an odd quote is a fault.
 _HEAD = 200
 _LONGEST_QUOTE = 6
+_LETTERS = re.compile(r"[^\W\deE_]")
+_WORDS = re.compile(r"[^\W\d_]\w*(?![^\[]*\])(?![^(]*\))")
 _FIRST_COMMENT_CELL = re.compile(r"^(?:#|%|//)+\s?")
 
 
 @dataclass(frozen=True)
 class Lines:
-    """Lines that are neither blank nor comments.
+    """Lines that are neither blank nor comments; and headers that stand again, as comments too.
 
     Parameters
     ----------
@@ -59,18 +63,45 @@ def significant_lines(text: str) -> Lines:
     lines: list[str] = []
     comments: list[str] = []
     after_gap: set[int] = set()
+    headers: set[str] = set()
     for number, line in _joined(text.split("\n")):
         start = line.lstrip()
         if start.startswith(COMMENTS) and not start.startswith(_SPREADSHEET_ERRORS):
             after_gap.add(len(lines))
+            comment = _FIRST_COMMENT_CELL.sub("", start).strip()
             if not lines:
-                comments.append(_FIRST_COMMENT_CELL.sub("", start).strip())
+                comments.append(comment)
+            elif _is_header_again(comment, comments, lines[0]) or (
+                numbers[-1] == number - 1 and lines[-1] in headers and _all_units(comment)
+            ):
+                # As numpy.savetxt writes it, appending to a file.
+                numbers.append(number)
+                lines.append(comment)
+                headers.add(comment)
         elif start:
             numbers.append(number)
             lines.append(line)
         else:
             after_gap.add(len(lines))
     return Lines(lines, numbers, tuple(comments), frozenset(after_gap))
+
+
+def _is_header_again(comment: str, comments: list[str], first: str) -> bool:
+    """Tell whether a comment names what the header in the comments above the first line names."""
+    if not comments or _LETTERS.search(first):
+        return False  # the header is no comment
+    below = len(comments) > 1 and _all_units(comments[-1])
+    header = _names_in(comments[-2 if below else -1])
+    return len(header) > 1 and _names_in(comment) == header
+
+
+def _all_units(comment: str) -> bool:
+    return all(map(is_unit, re.split(r"[\s,;|]+", comment)))
+
+
+def _names_in(comment: str) -> list[str]:
+    """Give the names in a header in any order, without their units in brackets."""
+    return sorted(map(str.casefold, _WORDS.findall(comment)))
 
 
 def _joined(lines: list[str]) -> list[tuple[int, str]]:

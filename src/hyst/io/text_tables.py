@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.io.cells import is_missing
+from hyst.io.header import split_unit
 from hyst.io.line_kinds import MIXED, NUMERIC, TEXT, LineKinds
 from hyst.io.notation import SAMPLED, Writing
 
@@ -44,8 +46,33 @@ class Block:
     loose: tuple[int, ...] = ()
 
 
+class Heads:
+    """What stands above a table, to know its header again where it stands among the rows."""
+
+    def __init__(self, above: Sequence[str], writing: Writing) -> None:
+        self._writing = writing
+        self._last = above[-1].strip() if above else ""
+        self._names = [names for line in above if (names := self._sorted_names(line))]
+
+    def again(self, line: str) -> bool:
+        """Tell whether a line is the header, or its names in another order or with other units."""
+        if self._last and line.strip() == self._last:
+            return True
+        names = self._sorted_names(line)
+        return bool(names) and names in self._names
+
+    def _sorted_names(self, line: str) -> list[str]:
+        titles = [split_unit(title.strip())[0] for title in self._writing.titles(line)]
+        missing = any(map(is_missing, titles))
+        return [] if missing else sorted(map(str.casefold, titles))
+
+
 def find_blocks(
-    lines: Sequence[str], kinds: LineKinds, after_gap: frozenset[int], writing: Writing
+    lines: Sequence[str],
+    kinds: LineKinds,
+    after_gap: frozenset[int],
+    writing: Writing,
+    comments: Sequence[str] = (),
 ) -> list[Block]:
     """Find the tables below each other.
 
@@ -59,6 +86,8 @@ def find_blocks(
         Lines above which there is a blank line or comment.
     writing
         How the file is written.
+    comments
+        Those above all lines, where the header may be.
 
     Returns
     -------
@@ -88,8 +117,8 @@ def find_blocks(
         ends = high == len(lines)
         # Words between blanks make as many cells as it happens.
         whole = writing.separator is not None and (kinds.counts[low:high] == count).all()
-        header = lines[start - 1] if start > above else ""
-        if inner or (not ends and _begins_table(lines, kinds, after_gap, low, high, header, count)):
+        heads = Heads([*(() if above else comments), *lines[above:start]], writing)
+        if inner or (not ends and _begins_table(lines, kinds, after_gap, low, high, heads, count)):
             found += [Block(above, start, low, count, tuple(faulty)), *inner]
             above, start, faulty = (inner[-1].stop if inner else low), high, []
         elif ends and not whole and low - start >= ENOUGH_ROWS and high - low <= _LONGEST_FOOTER:
@@ -157,15 +186,15 @@ def _begins_table(
     after_gap: frozenset[int],
     low: int,
     high: int,
-    header: str,
+    heads: Heads,
     count: int,
 ) -> bool:
     """Tell whether lines among rows are the head of another table."""
-    if header and any(lines[row].strip() == header.strip() for row in range(low, high)):
+    if any(heads.again(lines[row]) for row in range(low, high) if kinds.kinds[row] == TEXT):
         return True
-    heads = kinds.kinds[high - 1] == TEXT and kinds.counts[high - 1] == count
+    named = kinds.kinds[high - 1] == TEXT and kinds.counts[high - 1] == count
     apart = any(row in after_gap for row in range(low, high)) or high - low > 1
-    return bool(heads and apart)
+    return bool(named and apart)
 
 
 def _first_row(lines: Sequence[str], kinds: LineKinds, count: int, writing: Writing) -> int:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,7 +13,16 @@ from hyst.io.table import Table
 from hyst.io.units_of_time import seconds_per_unit
 
 _MANY_SECONDS = 1e11
-_UNITS = "s, ms, us, ns, min or h"
+_UNITS = "s, ms, us, ns, min, h or days"
+_SECONDS_A_DAY = 86400.0
+# Days since 1900, as spreadsheets count them, and since the year 0, as MATLAB does: 1954 to 2064.
+_DAYS = ((20e3, 60e3), (714e3, 754e3))
+_LONGEST_STEP_OF_DAYS = 1e-4
+_COUNTERS = re.compile(
+    r"(?:samples?|points?|pts?|idx|index|scans?|rows?|n|nr|#)"
+    r"(?:[\s_.-]*(?:no|nr|num|number|index|idx|count|id|#)\.?)?",
+    re.IGNORECASE,
+)
 
 
 def require_time_unit(unit: str | None) -> None:
@@ -79,4 +90,35 @@ def _refuse_unlikely_seconds(
         raise InputError(
             f"{table.source}: {header!r} has no unit and reads {stamps[0]:.12g}, which are no "
             "seconds, but may be ms or us since 1970 or ns of a clock; give time_unit"
+        )
+    _refuse_days(table, header, stamps)
+    _refuse_counts(table, header, stamps)
+
+
+def _refuse_days(table: Table, header: str, stamps: NDArray[np.float64]) -> None:
+    """Refuse dates as spreadsheets and MATLAB number them: whole steps only if they are days."""
+    if stamps.size < 2 or not any(low <= stamps[0] <= high for low, high in _DAYS):
+        return
+    step = abs(float(stamps[-1] - stamps[0])) / (stamps.size - 1)
+    if 0.0 < step < _LONGEST_STEP_OF_DAYS and not _is_short(step):
+        raise InputError(
+            f"{table.source}: {header!r} has no unit and reads {stamps[0]:.12g} with steps of "
+            f"{step:.3g}, which may be seconds, or days as spreadsheets and MATLAB count them, "
+            f"{step * _SECONDS_A_DAY:.6g} s apart; give time_unit"
+        )
+
+
+def _is_short(step: float) -> bool:
+    """Tell whether two digits write a step, as those of samplers."""
+    return abs(float(f"{step:.1e}") - step) <= 1e-3 * step
+
+
+def _refuse_counts(table: Table, header: str, stamps: NDArray[np.float64]) -> None:
+    """Refuse the numbers of the samples as their time."""
+    if _COUNTERS.fullmatch(header.strip()) and np.array_equal(
+        np.diff(stamps), np.ones(stamps.size - 1)
+    ):
+        raise InputError(
+            f"{table.source}: {header!r} counts samples and is no time; choose the column of the "
+            "time, or give a rate instead (or time_unit s if the samples are 1 s apart)"
         )

@@ -27,6 +27,8 @@ _SPELLINGS = {
         *("h", "hr", "hrs", "hour", "hours", "std", "stunde", "stunden", "heure", "heures"),
         *("hora", "horas"),
     ),
+    # The letter alone is more often a name.
+    86400.0: ("day", "days"),
 }
 _SECONDS = {
     **{spelling: seconds for seconds, all_of in _SPELLINGS.items() for spelling in all_of},

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
+from hyst.io.cells import is_missing
 from hyst.io.codes_in_rows import (
     Codes,
     codes_of_both,
@@ -14,6 +15,7 @@ from hyst.io.codes_in_rows import (
     told_of_codes,
 )
 from hyst.io.columns import refuse_flaws
+from hyst.io.known_units import is_unit
 from hyst.io.table import Table
 
 LONGEST_GAP = 5
@@ -65,6 +67,7 @@ def usable_rows(
     if not missing:
         return _enough(table, rows), ()
     allowed = missing <= most_left_out(good.size)
+    _refuse_row_of_units(table, chosen)
     for k, usable in zip(chosen, finite, strict=True):
         flaw = table.flaws[k]
         if not (repair and usable.any() and not (flaw and flaw.why)):
@@ -81,6 +84,18 @@ def usable_rows(
         )
     _refuse_long_gap(table, rows, longest_gap)
     return _enough(table, rows), _told(table, chosen, codes, np.logical_and.reduce(finite))
+
+
+def _refuse_row_of_units(table: Table, chosen: list[int]) -> None:
+    """Refuse a first row with a unit in it: leaving it out would leave out the unit of the time."""
+    for k in chosen:
+        flaw = table.flaws[k]
+        if flaw and flaw.row == 0 and is_unit(flaw.text) and not is_missing(flaw.text):
+            raise InputError(
+                f"{table.source}: {table.names[k]!r} is {flaw.text!r} at {table.place(0)}, a unit "
+                "in a row where hyst does not know the others; make that row a comment with #, "
+                "and give time_unit or a rate"
+            )
 
 
 def _enough(table: Table, rows: NDArray[np.intp]) -> NDArray[np.intp]:
