@@ -38,7 +38,7 @@ def test_it_covers_actuators_of_no_class(loops: np.ndarray) -> None:
     held = [held_of(plant, loops) for plant in plants]
     assert np.mean([share for share, _ in held]) > 0.9
     # Percent of the range: a band of everything would be no use.
-    assert np.mean([width for _, width in held]) < 15.0
+    assert np.mean([width for _, width in held]) < 20.0
 
 
 def test_higher_levels_are_wider_and_the_model_is_inside(found: hyst.Identified) -> None:

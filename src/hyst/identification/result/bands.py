@@ -2,7 +2,7 @@
 
 The half-width of the band is the root of the sum of squares of
 
-- the noise of the records, and twice what the model leaves beside it: on another drive a wrong
+- the noise of the records, and three times what the model leaves beside it: on another drive a wrong
   shape is wrong by more than where it was fitted;
 - the standard error of the model's output, from the covariance of its constants;
 - how far rival models go apart that fit the records equally well;
@@ -39,10 +39,10 @@ from hyst.signals import estimate_noise
 
 Array = NDArray[np.float64]
 
-MISFIT_ELSEWHERE = 2.0
+MISFIT_ELSEWHERE = 3.0
 """Times what the model leaves beside noise where it was fitted."""
 
-SHARE_OF_OPENING = 8.0
+SHARE_OF_OPENING = 12.0
 """Half-width, in openings of the loop, at a distance of half the input range."""
 
 MISFITS = 150.0
