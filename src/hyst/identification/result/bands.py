@@ -2,8 +2,8 @@
 
 The half-width of the band is the root of the sum of squares of
 
-- the noise of the records, and three times what the model leaves beside it: on another drive a wrong
-  shape is wrong by more than where it was fitted;
+- the noise of the records, and three times what the model leaves beside it: on another drive a
+  wrong shape is wrong by more than where it was fitted;
 - the standard error of the model's output, from the covariance of its constants;
 - how far rival models go apart that fit the records equally well;
 - how far the drive leads the memory from all that the records contained;
