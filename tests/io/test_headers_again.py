@@ -61,7 +61,9 @@ def test_other_comments_among_the_rows_are_passed_over(tmp_path: Path) -> None:
     head = ["# by hand", "# u y"]
     body = rows((U, Y), " ")
     path = write(tmp_path, [*head, *body[:30], "# by hand", "# stage moved", "# u", *body[30:]])
-    same_signals(read_record(path, "u", "y", rate=200.0), U, Y)
+    record = read_record(path, "u", "y", rate=200.0)
+    same_signals(record, U, Y)
+    assert (record.samples, record.notes) == (U.size, ())
 
 
 def test_the_minus_sign_of_mathematics(tmp_path: Path) -> None:

@@ -64,3 +64,5 @@ def test_a_first_row_without_values_is_left_out(tmp_path: Path, missing: str) ->
     path = write(tmp_path, ["time;u;y", f"0;{missing};{missing}", *rows((T, U, Y), ";")[1:]])
     record = read_record(path, "u", "y", time="time", repair=True)
     same_signals(record, U[1:], Y[1:])
+    assert record.samples == U.size - 1
+    assert any("1 row" in each for each in record.notes), record.notes

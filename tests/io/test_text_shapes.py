@@ -261,17 +261,18 @@ def test_utf_16_without_a_mark_and_padding_of_zeros(
     text = "\n".join([HEADER, *BODY]) + "\n"
     for content in (text.encode(encoding), text.encode()):
         path = write(tmp_path, content + b"\0" * pad)
-        same_signals(read_record(path, "u", "y", time="time"), U, Y)
+        record = read_record(path, "u", "y", time="time")
+        same_signals(record, U, Y)
+        assert (record.dt, record.samples) == (DT, U.size)
 
 
 @pytest.mark.parametrize("name", ["loop.log", "loop.001", "loop", "loop.xyz", "loop.h5", "a.b.CSV"])
 def test_the_suffix_does_not_decide(tmp_path: Path, name: str) -> None:
-    if name.endswith(".h5"):
-        path = write(tmp_path, [HEADER, *BODY], name)
-        same_signals(read_record(path, "u", "y", time="time", format="text"), U, Y)
-        return
     path = write(tmp_path, [HEADER, *BODY], name)
-    same_signals(read_record(path, "u", "y", time="time"), U, Y)
+    stated = {"format": "text"} if name.endswith(".h5") else {}
+    record = read_record(path, "u", "y", time="time", **stated)
+    same_signals(record, U, Y)
+    assert (record.dt, record.samples) == (DT, U.size)
 
 
 def test_files_of_other_formats_are_known_by_their_beginning(tmp_path: Path) -> None:
@@ -297,6 +298,7 @@ def test_packed_files_of_other_formats(tmp_path: Path) -> None:
     packed = gzip.compress((tmp_path / "loop.npz").read_bytes())
     record = read_record(write(tmp_path, packed, "loop.npz.gz"), "u", "y", rate=200.0)
     same_signals(record, U, Y)
+    assert (record.dt, record.samples) == (0.005, U.size)
 
 
 def test_a_limit_of_samples(tmp_path: Path) -> None:

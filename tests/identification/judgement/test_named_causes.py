@@ -148,7 +148,9 @@ def test_an_error_that_grows_with_the_rate_is_told() -> None:
 @pytest.mark.parametrize("seed", [0, 1])
 def test_records_of_several_actuators_are_told(seed: int) -> None:
     verdict = verdict_on(FOREIGN["records"](drive("decaying sine", seed=seed), seed, NOISE))
-    told(verdict, "do not agree with one model")
+    sentence = told(verdict, "do not agree with one model")
+    assert numbers(sentence)[0] > 2.0 * NOISE, sentence
+    assert verdict.level != "good"
 
 
 def test_one_record_of_another_actuator_is_named() -> None:
@@ -162,7 +164,10 @@ def test_zeros_of_records_are_told() -> None:
     u = drive("decaying sine", seed=3)
     y = plays(seed=3)(u)
     records = [record(u, y + 0.1 * i, NOISE, i) for i in range(3)]
-    told(verdict_on(records), "different zeros")
+    verdict = verdict_on(records)
+    # 0, 0.1 and 0.2 about their mean: rms 0.0816.
+    assert numbers(told(verdict, "different zeros"))[0] == pytest.approx(0.0816, rel=0.05)
+    assert verdict.level == "fair"
 
 
 @pytest.mark.parametrize("kind", ["sine", "triangle"])
