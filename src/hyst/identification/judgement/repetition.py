@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.fft
 from numpy.typing import NDArray
 
+from hyst.diagnosis.drive_period import drive_period
+from hyst.diagnosis.interpolation import earlier, first_comparable
 from hyst.identification.judgement.regression import chance, correlation_time
 from hyst.identification.judgement.remainder import Part
 
@@ -14,35 +15,21 @@ Array = NDArray[np.float64]
 SAME_DRIVE = 2e-3
 """Of the input's range, rms: so near are two periods of a drive that repeats."""
 
-FEWEST_IN_A_PERIOD = 8
-MOST_TRIED = 12
-"""Periods looked at, that nearly repeat."""
-
 FEWEST_AT_A_PHASE = 3
 """Samples, on the average: a period is divided as finely as these allow."""
 
 
-def period_of(part: Part) -> int:
-    """Give the samples of the shortest period after which the drive repeats; 0 if it does not."""
-    u = part.u - part.u.mean()
-    n, power = u.size, float(u @ u)
-    if n < 2 * FEWEST_IN_A_PERIOD or power == 0.0:
-        return 0
-    transform = np.abs(scipy.fft.rfft(u, scipy.fft.next_fast_len(2 * n, real=True))) ** 2
-    alike = np.asarray(scipy.fft.irfft(transform))[: n // 2 + 1]
-    alike = alike / (np.arange(n, n - alike.size, -1) / n * power)
-    span = float(np.ptp(part.u))
-    inner = np.flatnonzero((alike[1:-1] >= alike[:-2]) & (alike[1:-1] >= alike[2:])) + 1
-    near = inner[(alike[inner] > 0.8) & (inner >= FEWEST_IN_A_PERIOD)]
-    for lag in near[:MOST_TRIED]:
-        for period in (lag, lag - 1, lag + 1):
-            apart = part.u[period:] - part.u[:-period]
-            if float(np.sqrt(np.mean(apart**2))) <= SAME_DRIVE * span:
-                return int(period)
-    return 0
+def period_of(part: Part) -> float:
+    """Give the samples, no whole number, after which all of the drive repeats; 0 if it does not."""
+    found = drive_period(part.u)
+    if found is None:
+        return 0.0
+    apart = part.u[first_comparable(found) :] - earlier(part.u, found)[0]
+    same = float(np.sqrt(np.mean(apart**2))) <= SAME_DRIVE * float(np.ptp(part.u))
+    return found if same else 0.0
 
 
-def repeating(error: Array, places: NDArray[np.intp], period: int, unlikely: float) -> float:
+def repeating(error: Array, places: NDArray[np.intp], period: float, unlikely: float) -> float:
     """Give the sum of squares of what repeats with the drive, or 0 if noise may do it.
 
     Parameters
@@ -56,8 +43,8 @@ def repeating(error: Array, places: NDArray[np.intp], period: int, unlikely: flo
     unlikely
         Probability below which noise does not do it.
     """
-    phases = min(period, max(error.size // FEWEST_AT_A_PHASE, 1))
-    phase = (places % period) * phases // period
+    phases = min(int(period), max(error.size // FEWEST_AT_A_PHASE, 1))
+    phase = np.minimum((places % period) * phases / period, phases - 1).astype(np.intp)
     count = np.bincount(phase, minlength=phases)
     mean = np.bincount(phase, error, minlength=phases) / np.maximum(count, 1)
     rest = error - mean[phase]
