@@ -219,7 +219,8 @@ def simplest_good(contenders: Sequence[Contender]) -> Contender:
     """Give the simplest contender within one standard error of its difference to the best.
 
     Simple means few free parameters; between equals the earlier is taken, so families must come
-    from the simplest to the richest.
+    from the simplest to the richest. Of records of one amplitude the simplest family is taken and
+    then its size: a map that such records do not ask for bends the smaller loops all the same.
 
     Parameters
     ----------
@@ -235,7 +236,10 @@ def simplest_good(contenders: Sequence[Contender]) -> Contender:
     Breiman et al., Classification and Regression Trees (1984), sec. 3.4.3: the one standard error
     rule, here of paired differences.
     """
-    return min(as_good_as_best(contenders), key=lambda each: each.candidate.parameters)
+    tied = as_good_as_best(contenders)
+    if not tied[0].overview.shows_minor_loops:
+        tied = [each for each in tied if each.candidate.family == tied[0].candidate.family]
+    return min(tied, key=lambda each: each.candidate.parameters)
 
 
 def first_contender(family: Family, overview: Overview, size: int) -> Contender:
