@@ -11,6 +11,7 @@
     ROW(pi)                  \
     ROW(play)                \
     ROW(rate_dependent_pi)   \
+    ROW(rate_shift)          \
     ROW(sections)            \
     ROW(state_space)         \
     ROW(stop)

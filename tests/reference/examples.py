@@ -25,6 +25,7 @@ from hyst.models import (
     PowerLaw,
     RambergOsgood,
     RateCurve,
+    RateShift,
     SecondOrderSections,
 )
 
@@ -123,6 +124,8 @@ OTHERS: dict[str, Operator] = {
     "dahl": Dahl(1.5, 200.0),
     "dahl ductile": Dahl(1.5, 2.0, 0.5, z0=-0.25, u0=0.5),
     "inverse dahl": Dahl(0.5, 400.0, 1.5).inverse(),
+    "rate shift": RateShift(0.3, 0.4, 0.1),
+    "plays behind a rate shift": PI @ RateShift(0.3, 0.7, 0.1, z0=0.5),
     "hysteresis before dynamics": LAG @ PI,
 }
 

@@ -36,6 +36,7 @@ from hyst.models import (
     PowerLaw,
     RambergOsgood,
     RateCurve,
+    RateShift,
     SecondOrderSections,
 )
 from reference.examples import EXAMPLES
@@ -202,6 +203,9 @@ RANDOM: dict[str, Operators] = {
     # A Coulomb force beyond every input of the contracts.
     "inverse-dahl": st.builds(Dahl, few, st.floats(1e3, 1e4), st.floats(1.0, 3.0)).map(
         lambda friction: friction.inverse()
+    ),
+    "rate-shift": st.builds(
+        RateShift, numbers(0.0, 2.0), st.floats(0.1, 2.0), st.sampled_from((0.5, 1.0, 2.0))
     ),
     "inverse": invertible.map(lambda operator: operator.inverse()),
 }
