@@ -121,8 +121,8 @@ class Chained(Operator):
     def in_units(self, input_scale: float, output_scale: float) -> Operator:
         """Give the same composition in other units.
 
-        Maps keep the unit of their signal; the first stage that is none turns the unit of the
-        input into that of the output.
+        Maps keep the unit of their signal, and so does what only shifts or delays it; the first
+        stage that is neither turns the unit of the input into that of the output.
         """
         shares = _scales_of_stages(self.parts, input_scale, output_scale)
         pairs = zip(self.parts, shares, strict=True)
