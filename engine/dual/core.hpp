@@ -12,6 +12,7 @@
 
 #define HYST_REAL_HEADER "dual/real.h"
 #define HYST_POWER_HEADER "dual/power.h"
+#define HYST_ROOT_HEADER "dual/root.h"
 
 namespace hyst {
 
@@ -19,6 +20,8 @@ namespace hyst {
 double core_power(double x, double e);
 double core_log2(double x);
 double core_exp2(double v);
+// hyst_root likewise.
+double core_root(double x);
 
 namespace HYST_KINDS {
 
@@ -57,6 +60,9 @@ static hyst_real step_from_rest(const hyst_masing *model, hyst_real *state, hyst
     return y;
 }
 #define hyst_masing_step step_from_rest
+
+// The pieces that hyst_preisach_step is made of; the file that holds a kind does not hold them.
+#include "preisach_branch.c"
 
 #include "core_kinds.inc"  // made by CMakeLists.txt: the sources that hold a kind, and the kinds
 

@@ -54,6 +54,11 @@ DECLARED = {
     "inverse of mpi": "-RMCOI",
     "dahl": "-R--OI",
     "inverse dahl": "-R--OI",
+    "preisach": "-RMCOI",
+    "preisach of relays alone": "-RMCO-",
+    "preisach from saturation": "-RMCOI",
+    "preisach of ridges": "-RMCOI",
+    "inverse preisach": "-RM-OI",
 }
 
 

@@ -34,6 +34,7 @@ from hyst.models import (
     MemoryFunction,
     PiecewiseLinear,
     PowerLaw,
+    Preisach,
     RambergOsgood,
     RateCurve,
     RateShift,
@@ -177,6 +178,21 @@ lags = st.builds(
     st.integers(0, 2),
 )
 
+
+@st.composite
+def relays(draw: st.DrawFn, least: float = 0.0) -> Preisach:
+    """Cells on edges a quarter or more apart, from rest or from where an input has left them."""
+    n = draw(st.integers(1, 4))
+    widths = draw(st.lists(numbers(0.25, 2.0), min_size=n, max_size=n))
+    edges = draw(numbers(-4.0, 1.0)) + np.cumsum([0.0, *widths])
+    count = n * (n + 1) // 2
+    weights = np.zeros((n, n))
+    weights[np.tril_indices(n)] = draw(st.lists(numbers(0.0, 2.0), min_size=count, max_size=count))
+    density = draw(st.sampled_from(("even", "ridges")))
+    p0, u0 = draw(numbers(least, 2.0)), draw(st.just(0.0) | numbers(-6.0, 6.0))
+    return Preisach(weights, edges, p0, u0, density)
+
+
 RANDOM: dict[str, Operators] = {
     "affine": affines,
     "play": st.builds(Play, numbers(0.0, 5.0), numbers(-4.0, 4.0)),
@@ -204,6 +220,8 @@ RANDOM: dict[str, Operators] = {
     "inverse-dahl": st.builds(Dahl, few, st.floats(1e3, 1e4), st.floats(1.0, 3.0)).map(
         lambda friction: friction.inverse()
     ),
+    "preisach": relays(),
+    "inverse-preisach": relays(0.25).map(lambda model: model.inverse()),
     "rate-shift": st.builds(
         RateShift, numbers(0.0, 2.0), st.floats(0.1, 2.0), st.sampled_from((0.5, 1.0, 2.0))
     ),
