@@ -26,7 +26,7 @@ from hyst.identification.record_use.overview import Overview
 
 Array = NDArray[np.float64]
 
-LEVELS, FINER_LEVELS = 24, 40
+LEVELS, FINER_LEVELS = 24, 32
 """What ``"auto"`` takes, and what it tries where the former leaves more than noise."""
 
 FEWEST_LEVELS, MOST_LEVELS = 4, 64

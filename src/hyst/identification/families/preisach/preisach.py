@@ -128,7 +128,7 @@ class Relays(Family):
     ----------
     levels
         Cells of the grid along a side, 4 to 64, evenly spaced over the range of the input; its
-        thresholds, input units; or ``"auto"``: 24, fewer for short records, and 40 where 24 leave
+        thresholds, input units; or ``"auto"``: 24, fewer for short records, and 32 where 24 leave
         more than noise.
     smoothness
         Strength of the prior that densities of neighbouring cells are alike, from 0; ``"auto"``:
