@@ -2,14 +2,7 @@
  *
  * Invariant: what rounding leaves of a branch still rises with its way, since every sum here adds terms
  * that do: the entries of the table, the shares of the first cell and the linear part. */
-#include "hyst/power.h"
 #include "hyst/preisach.h"
-#include "hyst/root.h"
-
-/* 2 to this is no number in any precision. */
-#define PREISACH_BEYOND HYST_REAL(1e6)
-/* Parts of a cell's rise below this move the input by less than rounding. */
-#define PREISACH_TINY HYST_REAL(1e-30)
 
 typedef struct {
     hyst_preisach_point start;
@@ -188,11 +181,6 @@ static hyst_preisach_piece preisach_part(const hyst_preisach_piece *whole, hyst_
     return part;
 }
 
-static int preisach_is_past(int rising, hyst_real value, hyst_real limit)
-{
-    return rising ? value > limit : value < limit;
-}
-
 static int preisach_has_bend(const hyst_preisach *model, const preisach_branch *branch, size_t cell)
 {
     return model->ridges != 0 && cell != branch->cell && branch->behind > HYST_REAL(0.0);
@@ -231,7 +219,7 @@ static hyst_preisach_piece preisach_first_to_output(const hyst_preisach *model, 
     while (high - low > 1u) {
         const size_t middle = low + (high - low) / 2u;
         const hyst_real u = rising ? table[4u * middle] : -table[4u * middle];
-        if (preisach_is_past(rising, y, table[4u * middle + 1u] + model->p0 * u)) {
+        if (hyst_preisach_is_past(rising, y, table[4u * middle + 1u] + model->p0 * u)) {
             low = middle;
         } else {
             high = middle;
@@ -255,11 +243,11 @@ hyst_preisach_piece hyst_preisach_to_input(const hyst_preisach *model, const hys
     const int rising = u > start->u;
     const preisach_branch branch = preisach_branch_of(model, start, rising);
     const hyst_real end = rising ? t[model->cells] : t[0];
-    if (!preisach_is_past(rising, u, branch.entry)) {
+    if (!hyst_preisach_is_past(rising, u, branch.entry)) {
         return preisach_outside(model, &branch, *start);
     }
-    if (preisach_is_past(rising, u, end)) {
-        const int crosses = preisach_is_past(rising, end, branch.entry);
+    if (hyst_preisach_is_past(rising, u, end)) {
+        const int crosses = hyst_preisach_is_past(rising, end, branch.entry);
         const hyst_real way = crosses ? preisach_way(model, &branch, rising ? model->cells : 0u) : zero;
         return preisach_outside(
             model, &branch,
@@ -271,7 +259,7 @@ hyst_preisach_piece hyst_preisach_to_input(const hyst_preisach *model, const hys
         return whole;
     }
     const hyst_preisach_point bend = preisach_bend(model, &branch, cell, &whole);
-    return preisach_part(&whole, bend, preisach_is_past(rising, u, bend.u));
+    return preisach_part(&whole, bend, hyst_preisach_is_past(rising, u, bend.u));
 }
 
 /* The cell of a branch, from its first on, that ends at or past an output; `cells` if none does. */
@@ -286,7 +274,7 @@ static size_t preisach_cell_of_output(const hyst_preisach *model, const preisach
         const size_t k = branch->rising ? branch->cell + 1u + middle : branch->cell - middle;
         const hyst_preisach_point edge =
             preisach_point_at(model, branch, t[k], preisach_way(model, branch, k));
-        if (preisach_is_past(branch->rising, y, edge.y)) {
+        if (hyst_preisach_is_past(branch->rising, y, edge.y)) {
             low = middle + 1u;
         } else {
             high = middle;
@@ -310,8 +298,8 @@ hyst_preisach_piece hyst_preisach_to_output(const hyst_preisach *model, const hy
     const hyst_real end = rising ? t[model->cells] : t[0];
     const hyst_preisach_point entry =
         preisach_point_at(model, &branch, branch.entry, HYST_REAL(0.0));
-    const int crosses = preisach_is_past(rising, end, branch.entry);
-    if (!crosses || !preisach_is_past(rising, y, entry.y)) {
+    const int crosses = hyst_preisach_is_past(rising, end, branch.entry);
+    if (!crosses || !hyst_preisach_is_past(rising, y, entry.y)) {
         return preisach_outside(model, &branch, *start);
     }
     const size_t cell = preisach_cell_of_output(model, &branch, y);
@@ -324,45 +312,5 @@ hyst_preisach_piece hyst_preisach_to_output(const hyst_preisach *model, const hy
         return whole;
     }
     const hyst_preisach_point bend = preisach_bend(model, &branch, cell, &whole);
-    return preisach_part(&whole, bend, preisach_is_past(rising, y, bend.y));
-}
-
-hyst_real hyst_preisach_output(const hyst_preisach_piece *piece, hyst_real u)
-{
-    const hyst_real e = (u - piece->from.u) / piece->width;
-    const hyst_real rise = e * (piece->line + piece->square * e);
-    const hyst_real y = piece->rising ? piece->from.y + rise : piece->from.y - rise;
-    if (piece->has_end && preisach_is_past(piece->rising, y, piece->to.y)) {
-        return HYST_ROUNDED(y, piece->to.y);
-    }
-    return y;
-}
-
-/* The part e of a piece whose rise is the part d of the whole: l e + s e^2 = d, l + s = 1. */
-static hyst_real preisach_part_of_rise(hyst_real l, hyst_real s, hyst_real d)
-{
-    if (!(s > HYST_REAL(0.0))) {
-        return d;
-    }
-    if (!(d > PREISACH_TINY)) {
-        return l > HYST_REAL(0.0) ? d / l : HYST_REAL(0.0);
-    }
-    return HYST_REAL(2.0) * d / (l + hyst_root(l * l + HYST_REAL(4.0) * s * d));
-}
-
-hyst_real hyst_preisach_input(const hyst_preisach_piece *piece, hyst_real y)
-{
-    const hyst_real zero = HYST_REAL(0.0);
-    const hyst_real way = piece->rising ? y - piece->from.y : piece->from.y - y;
-    const hyst_real rise = piece->line + piece->square;
-    if (!(rise > zero)) {
-        return way > zero ? hyst_exp2(PREISACH_BEYOND) : piece->from.u;
-    }
-    const hyst_real e =
-        preisach_part_of_rise(piece->line / rise, piece->square / rise, way / rise);
-    const hyst_real u = piece->from.u + e * piece->width;
-    if (piece->has_end && preisach_is_past(piece->rising, u, piece->to.u)) {
-        return HYST_ROUNDED(u, piece->to.u);
-    }
-    return u;
+    return preisach_part(&whole, bend, hyst_preisach_is_past(rising, y, bend.y));
 }

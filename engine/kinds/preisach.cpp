@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "fast/preisach.hpp"
 #include "kind.hpp"
 
 namespace hyst {
@@ -206,7 +207,7 @@ const Kind preisach = {
     fill_preisach,
     {"hyst/preisach.h", "$signal = hyst_preisach_step(&$model, $memory, $signal);"},
     nullptr,
-    nullptr,
+    HYST_IN_DOUBLE(run_preisach),
     nullptr};
 
 }  // namespace HYST_KINDS

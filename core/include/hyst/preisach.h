@@ -31,7 +31,9 @@
 #define HYST_PREISACH_H
 
 #include "hyst/kind.h"
+#include "hyst/power.h"
 #include "hyst/real.h"
+#include "hyst/root.h"
 
 #ifdef HYST_EXTERN_C
 extern "C" {
@@ -85,10 +87,6 @@ hyst_preisach_piece hyst_preisach_to_input(const hyst_preisach *model, const hys
 hyst_preisach_piece hyst_preisach_to_output(const hyst_preisach *model, const hyst_preisach_point *start,
                                             hyst_real y);
 
-/* y on a piece at u, and u at y; an output that no input reaches has an infinite one. */
-hyst_real hyst_preisach_output(const hyst_preisach_piece *piece, hyst_real u);
-hyst_real hyst_preisach_input(const hyst_preisach_piece *piece, hyst_real y);
-
 /* Reversals on the stack: never more than it has room for, whatever the state says. */
 size_t hyst_preisach_reversals(const hyst_preisach *model, const hyst_real *state);
 
@@ -97,6 +95,50 @@ size_t hyst_preisach_reversals(const hyst_preisach *model, const hyst_real *stat
 hyst_real hyst_preisach_step(const hyst_preisach *model, hyst_real *state, hyst_real input);
 
 extern const hyst_kind hyst_preisach_kind;
+
+static inline int hyst_preisach_is_past(int rising, hyst_real value, hyst_real limit)
+{
+    return rising ? value > limit : value < limit;
+}
+
+/* y on a piece at u. */
+static inline hyst_real hyst_preisach_output(const hyst_preisach_piece *piece, hyst_real u)
+{
+    const hyst_real e = (u - piece->from.u) / piece->width;
+    const hyst_real rise = e * (piece->line + piece->square * e);
+    const hyst_real y = piece->rising ? piece->from.y + rise : piece->from.y - rise;
+    return piece->has_end && hyst_preisach_is_past(piece->rising, y, piece->to.y)
+               ? HYST_ROUNDED(y, piece->to.y)
+               : y;
+}
+
+/* The part e of a piece whose rise is the part d of the whole: l e + s e^2 = d, l + s = 1. Parts below
+ * 1e-30 move the input by less than rounding. */
+static inline hyst_real hyst_preisach_part(hyst_real l, hyst_real s, hyst_real d)
+{
+    if (!(s > HYST_REAL(0.0))) {
+        return d;
+    }
+    if (!(d > HYST_REAL(1e-30))) {
+        return l > HYST_REAL(0.0) ? d / l : HYST_REAL(0.0);
+    }
+    return HYST_REAL(2.0) * d / (l + hyst_root(l * l + HYST_REAL(4.0) * s * d));
+}
+
+/* u on a piece at y; an infinity, 2 to the power 1e6, where no input reaches that output. */
+static inline hyst_real hyst_preisach_input(const hyst_preisach_piece *piece, hyst_real y)
+{
+    const hyst_real way = piece->rising ? y - piece->from.y : piece->from.y - y;
+    const hyst_real rise = piece->line + piece->square;
+    if (!(rise > HYST_REAL(0.0))) {
+        return way > HYST_REAL(0.0) ? hyst_exp2(HYST_REAL(1e6)) : piece->from.u;
+    }
+    const hyst_real e = hyst_preisach_part(piece->line / rise, piece->square / rise, way / rise);
+    const hyst_real u = piece->from.u + e * piece->width;
+    return piece->has_end && hyst_preisach_is_past(piece->rising, u, piece->to.u)
+               ? HYST_ROUNDED(u, piece->to.u)
+               : u;
+}
 
 #ifdef HYST_EXTERN_C
 }
