@@ -12,6 +12,7 @@
     ROW(play)                \
     ROW(rate_dependent_pi)   \
     ROW(sections)            \
+    ROW(state_map)           \
     ROW(state_space)         \
     ROW(stop)
 
@@ -31,6 +32,12 @@ const Kind *kind_named(const std::string &name) {
         if (name == each->name) return each;
     }
     return nullptr;
+}
+
+const Kind &known_kind(const std::string &name) {
+    const Kind *kind = kind_named(name);
+    if (kind == nullptr) throw std::invalid_argument("unknown kind of stage '" + name + "'");
+    return *kind;
 }
 
 const void *build(const Kind &kind, const Given &given, Constants &made) {

@@ -52,6 +52,8 @@ DECLARED = {
     "gpi after pi": "-RM-OI",
     "inverse of gpi": "-RM-OI",
     "inverse of mpi": "-RMCOI",
+    "butterfly": "-RM---",
+    "butterfly of friction": "-R----",
     "dahl": "-R--OI",
     "inverse dahl": "-R--OI",
 }

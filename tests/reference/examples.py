@@ -15,6 +15,7 @@ from hyst import (
     Stop,
 )
 from hyst.models import (
+    Butterfly,
     Dahl,
     LinearDynamics,
     MasingOperator,
@@ -124,6 +125,12 @@ OTHERS: dict[str, Operator] = {
     "dahl ductile": Dahl(1.5, 2.0, 0.5, z0=-0.25, u0=0.5),
     "inverse dahl": Dahl(0.5, 400.0, 1.5).inverse(),
     "hysteresis before dynamics": LAG @ PI,
+    "butterfly": Butterfly(GPI, [[0.5, 0.1, 0.4], [-0.2, 0.3, 0.0], [0.05, 0.0, 0.0]]),
+    "butterfly of a higher degree": Butterfly(
+        WAVY, [[0.5, 0.1, 0.4, 0.1], [-0.2, 0.3, 0.1, 0.0], [0.05, 0.02, 0.0, 0.0], [0.01, 0, 0, 0]]
+    ),
+    "butterfly of friction": Butterfly(Dahl(1.5, 200.0), [[0.0, 0.1, 0.01], [0.2, 0, 0], [0, 0, 0]]),
+    "butterfly in a chain": Affine(-2.0, 1.0) @ Butterfly(PI, [[0.0, 1.0], [0.5, 0.0]]),
 }
 
 EXAMPLES = {**PLAYS_AND_MAPS, **OTHERS}

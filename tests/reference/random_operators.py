@@ -27,6 +27,7 @@ from hyst import (
     Stop,
 )
 from hyst.models import (
+    Butterfly,
     Dahl,
     LinearDynamics,
     MasingOperator,
@@ -78,6 +79,16 @@ def rate_dependent_banks(draw: st.DrawFn) -> RateDependentPrandtlIshlinskii:
     curve = RateCurve(draw(numbers(0.0, 2.0)), powers, slopes, knees)
     dt = draw(st.sampled_from((0.5, 1.0, 2.0)))
     return RateDependentPrandtlIshlinskii(p, r, curve, dt, draw(numbers(-2.0, 2.0)))
+
+
+@st.composite
+def butterflies(draw: st.DrawFn) -> Butterfly:
+    rows = draw(st.integers(1, 4))
+    c = np.zeros((rows, rows))
+    for i, j in zip(*np.indices(c.shape).reshape(2, -1), strict=True):
+        if i + j < rows:
+            c[i, j] = draw(numbers(-2.0, 2.0))
+    return Butterfly(draw(banks() | st.builds(GeneralizedPrandtlIshlinskii, maps, banks())), c)
 
 
 affines = st.builds(Affine, numbers(-2.0, 2.0), numbers(-3.0, 3.0))
@@ -198,6 +209,7 @@ RANDOM: dict[str, Operators] = {
     "ramberg-osgood": st.builds(RambergOsgood, few, few, few, memories),
     "memory-element": elements,
     "inverse-memory-element": elements.map(lambda element: element.inverse()),
+    "butterfly": butterflies(),
     "dahl": st.builds(Dahl, few, few, st.floats(0.3, 3.0), numbers(-1.0, 1.0)),
     # A Coulomb force beyond every input of the contracts.
     "inverse-dahl": st.builds(Dahl, few, st.floats(1e3, 1e4), st.floats(1.0, 3.0)).map(
