@@ -54,6 +54,11 @@ DECLARED = {
     "inverse of mpi": "-RMCOI",
     "dahl": "-R--OI",
     "inverse dahl": "-R--OI",
+    "maxwell-slip": "-RMCOI",
+    "maxwell-slip that slides": "-RMCO-",
+    "generalized maxwell-slip": "------",
+    "lugre": "------",
+    "lugre without rate": "-r--O-",
 }
 
 
