@@ -6,7 +6,10 @@
     ROW(dahl)                \
     ROW(dead_zone)           \
     ROW(direction_dead_zone) \
+    ROW(generalized_maxwell_slip) \
+    ROW(lugre)               \
     ROW(masing)              \
+    ROW(maxwell_slip)        \
     ROW(memory_element)      \
     ROW(pi)                  \
     ROW(play)                \

@@ -56,6 +56,11 @@ DECLARED = {
     "butterfly of friction": "-R----",
     "dahl": "-R--OI",
     "inverse dahl": "-R--OI",
+    "maxwell-slip": "-RMCOI",
+    "maxwell-slip that slides": "-RMCO-",
+    "generalized maxwell-slip": "------",
+    "lugre": "------",
+    "lugre without rate": "-r--O-",
 }
 
 

@@ -17,8 +17,11 @@ from hyst import (
 from hyst.models import (
     Butterfly,
     Dahl,
+    GeneralizedMaxwellSlip,
     LinearDynamics,
+    LuGre,
     MasingOperator,
+    MaxwellSlip,
     MemoryElement,
     MemoryFunction,
     PiecewiseLinear,
@@ -124,6 +127,12 @@ OTHERS: dict[str, Operator] = {
     "dahl": Dahl(1.5, 200.0),
     "dahl ductile": Dahl(1.5, 2.0, 0.5, z0=-0.25, u0=0.5),
     "inverse dahl": Dahl(0.5, 400.0, 1.5).inverse(),
+    "maxwell-slip": MaxwellSlip([1.0, 0.5, 0.25], [0.5, 1.0, 1.0], 0.25),
+    "maxwell-slip that slides": MaxwellSlip([1.0, 0.5], [0.5, 1.0], z0=[0.25, -1.0]),
+    "generalized maxwell-slip": GeneralizedMaxwellSlip(
+        [1.0, 0.5], [0.375, 0.625], C=4.0, Fc=1.0, Fs=1.5, vs=20.0, dt=0.1, delta=1.5, sigma2=0.02
+    ),
+    "lugre": LuGre(1.5, 0.05, 0.02, Fc=2.0, Fs=3.0, vs=20.0, dt=0.1),
     "hysteresis before dynamics": LAG @ PI,
     "butterfly": Butterfly(GPI, [[0.5, 0.1, 0.4], [-0.2, 0.3, 0.0], [0.05, 0.0, 0.0]]),
     "butterfly of a higher degree": Butterfly(
@@ -133,4 +142,12 @@ OTHERS: dict[str, Operator] = {
     "butterfly in a chain": Affine(-2.0, 1.0) @ Butterfly(PI, [[0.0, 1.0], [0.5, 0.0]]),
 }
 
-EXAMPLES = {**PLAYS_AND_MAPS, **OTHERS}
+# Fs is Fc, below which it must not come: no difference to both sides can be taken there.
+WITHOUT_STRIBECK_CURVE: dict[str, Operator] = {
+    "generalized maxwell-slip at rest": GeneralizedMaxwellSlip(
+        [2.0], [1.0], 0.0, 1.0, 1.0, 1.0, 0.1
+    ),
+    "lugre without rate": LuGre(1.5, 0.0, 0.0, Fc=2.0, Fs=2.0, vs=1.0, dt=0.1),
+}
+
+EXAMPLES = {**PLAYS_AND_MAPS, **OTHERS, **WITHOUT_STRIBECK_CURVE}

@@ -29,8 +29,11 @@ from hyst import (
 from hyst.models import (
     Butterfly,
     Dahl,
+    GeneralizedMaxwellSlip,
     LinearDynamics,
+    LuGre,
     MasingOperator,
+    MaxwellSlip,
     MemoryElement,
     MemoryFunction,
     PiecewiseLinear,
@@ -89,6 +92,36 @@ def butterflies(draw: st.DrawFn) -> Butterfly:
         if i + j < rows:
             c[i, j] = draw(numbers(-2.0, 2.0))
     return Butterfly(draw(banks() | st.builds(GeneralizedPrandtlIshlinskii, maps, banks())), c)
+
+
+few = st.floats(0.1, 2.0)
+
+
+@st.composite
+def sliding_elements(draw: st.DrawFn) -> MaxwellSlip:
+    r = np.sort(draw(st.lists(st.floats(0.1, 5.0), max_size=5)))
+    k = np.array(draw(st.lists(st.floats(0.1, 2.0), min_size=r.size, max_size=r.size)))
+    return MaxwellSlip(k, k * r, draw(numbers(0.0, 2.0)))
+
+
+@st.composite
+def sliding_elements_by_rate(draw: st.DrawFn) -> GeneralizedMaxwellSlip:
+    n = draw(st.integers(1, 4))
+    several = st.lists(st.floats(0.1, 2.0), min_size=n, max_size=n)
+    Fc, dt = draw(few), draw(st.sampled_from((0.5, 1.0, 2.0)))
+    Fs, vs, C = Fc * draw(st.floats(1.0, 2.0)), draw(few), draw(numbers(0.0, 2.0))
+    k, alpha, delta = draw(several), draw(several), draw(st.floats(0.5, 2.0))
+    return GeneralizedMaxwellSlip(k, alpha, C, Fc, Fs, vs, dt, delta, draw(numbers(0.0, 0.5)))
+
+
+@st.composite
+def lugres(draw: st.DrawFn) -> LuGre:
+    """Half of them without what depends on the velocity."""
+    by_rate = draw(st.sampled_from((0.0, 1.0)))
+    sigma1, sigma2 = by_rate * draw(numbers(0.0, 0.5)), by_rate * draw(numbers(0.0, 0.5))
+    Fc, ratio = draw(few), 1.0 + by_rate * draw(st.floats(0.0, 1.0))
+    dt = draw(st.sampled_from((0.5, 1.0, 2.0)))
+    return LuGre(draw(few), sigma1, sigma2, Fc, Fc * ratio, draw(few), dt)
 
 
 affines = st.builds(Affine, numbers(-2.0, 2.0), numbers(-3.0, 3.0))
@@ -158,7 +191,6 @@ invertible: Operators = st.one_of(
     ),
 )
 
-few = st.floats(0.1, 2.0)
 memories = st.sampled_from(("masing", "last-reversal"))
 curves = st.builds(PowerLaw, few, few, few) | st.builds(
     lambda slopes: PiecewiseLinear(np.diff(slopes), np.arange(1.0, len(slopes)), slopes[0]),
@@ -215,6 +247,9 @@ RANDOM: dict[str, Operators] = {
     "inverse-dahl": st.builds(Dahl, few, st.floats(1e3, 1e4), st.floats(1.0, 3.0)).map(
         lambda friction: friction.inverse()
     ),
+    "maxwell-slip": sliding_elements(),
+    "generalized-maxwell-slip": sliding_elements_by_rate(),
+    "lugre": lugres(),
     "inverse": invertible.map(lambda operator: operator.inverse()),
 }
 

@@ -2,9 +2,13 @@
 
 from hyst.models.butterfly import Butterfly as Butterfly
 from hyst.models.dahl import Dahl as Dahl
+from hyst.models.generalized_maxwell_slip import (
+    GeneralizedMaxwellSlip as GeneralizedMaxwellSlip,
+)
 from hyst.models.given_thresholds import GivenThresholds as GivenThresholds
 from hyst.models.linear_dynamics import LinearDynamics as LinearDynamics
 from hyst.models.loading_curve import InverseCurve as InverseCurve
+from hyst.models.lugre import LuGre as LuGre
 from hyst.models.mapped_prandtl_ishlinskii import (
     GeneralizedPrandtlIshlinskii as GeneralizedPrandtlIshlinskii,
 )
@@ -12,6 +16,7 @@ from hyst.models.mapped_prandtl_ishlinskii import (
     ModifiedPrandtlIshlinskii as ModifiedPrandtlIshlinskii,
 )
 from hyst.models.masing import MasingOperator as MasingOperator
+from hyst.models.maxwell_slip import MaxwellSlip as MaxwellSlip
 from hyst.models.memory_element import InverseMemoryElement as InverseMemoryElement
 from hyst.models.memory_element import MemoryElement as MemoryElement
 from hyst.models.memory_function import MemoryFunction as MemoryFunction
