@@ -58,6 +58,8 @@ static hyst_real step_from_rest(const hyst_masing *model, hyst_real *state, hyst
 }
 #define hyst_masing_step step_from_rest
 
+#include "branch.c"
+
 #include "core_kinds.inc"  // made by CMakeLists.txt: the sources that hold a kind, and the kinds
 
 #undef hyst_masing_step
