@@ -52,6 +52,10 @@ DECLARED = {
     "gpi after pi": "-RM-OI",
     "inverse of gpi": "-RM-OI",
     "inverse of mpi": "-RMCOI",
+    "coleman-hodgdon": "-R--OI",
+    "coleman-hodgdon saturating": "-R--OI",
+    "coleman-hodgdon that falls": "-R----",
+    "inverse coleman-hodgdon": "-R--OI",
     "dahl": "-R--OI",
     "inverse dahl": "-R--OI",
 }

@@ -15,6 +15,7 @@ from hyst import (
     Stop,
 )
 from hyst.models import (
+    ColemanHodgdon,
     Dahl,
     LinearDynamics,
     MasingOperator,
@@ -120,6 +121,10 @@ OTHERS: dict[str, Operator] = {
         MemoryFunction.power_law(1.0, 0.5, 1.5), 0.1, "absolute", "sign-change"
     ),
     "inverse memory element": MemoryElement(CHARGE, 0.1).inverse(),
+    "coleman-hodgdon": ColemanHodgdon(0.25, 2.0, 1.5),
+    "coleman-hodgdon saturating": ColemanHodgdon(0.5, [2.0, 0.5], [1.75, 0.45], [3.0], 0.25, 0.25),
+    "coleman-hodgdon that falls": ColemanHodgdon(1.0, [2.0, 0.5], [0.75, 0.25], [3.0]),
+    "inverse coleman-hodgdon": ColemanHodgdon(0.5, [2.0, 0.5], [1.75, 0.45], [3.0]).inverse(),
     "dahl": Dahl(1.5, 200.0),
     "dahl ductile": Dahl(1.5, 2.0, 0.5, z0=-0.25, u0=0.5),
     "inverse dahl": Dahl(0.5, 400.0, 1.5).inverse(),
