@@ -3,6 +3,7 @@
 
 #define EACH_KIND(ROW)       \
     ROW(affine)              \
+    ROW(coleman_hodgdon)     \
     ROW(dahl)                \
     ROW(dead_zone)           \
     ROW(direction_dead_zone) \

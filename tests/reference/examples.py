@@ -16,6 +16,7 @@ from hyst import (
 )
 from hyst.models import (
     Butterfly,
+    ColemanHodgdon,
     Dahl,
     GeneralizedMaxwellSlip,
     LinearDynamics,
@@ -124,6 +125,10 @@ OTHERS: dict[str, Operator] = {
         MemoryFunction.power_law(1.0, 0.5, 1.5), 0.1, "absolute", "sign-change"
     ),
     "inverse memory element": MemoryElement(CHARGE, 0.1).inverse(),
+    "coleman-hodgdon": ColemanHodgdon(0.25, 2.0, 1.5),
+    "coleman-hodgdon saturating": ColemanHodgdon(0.5, [2.0, 0.5], [1.75, 0.45], [3.0], 0.25, 0.25),
+    "coleman-hodgdon that falls": ColemanHodgdon(1.0, [2.0, 0.5], [0.75, 0.25], [3.0]),
+    "inverse coleman-hodgdon": ColemanHodgdon(0.5, [2.0, 0.5], [1.75, 0.45], [3.0]).inverse(),
     "dahl": Dahl(1.5, 200.0),
     "dahl ductile": Dahl(1.5, 2.0, 0.5, z0=-0.25, u0=0.5),
     "inverse dahl": Dahl(0.5, 400.0, 1.5).inverse(),
@@ -138,7 +143,9 @@ OTHERS: dict[str, Operator] = {
     "butterfly of a higher degree": Butterfly(
         WAVY, [[0.5, 0.1, 0.4, 0.1], [-0.2, 0.3, 0.1, 0.0], [0.05, 0.02, 0.0, 0.0], [0.01, 0, 0, 0]]
     ),
-    "butterfly of friction": Butterfly(Dahl(1.5, 200.0), [[0.0, 0.1, 0.01], [0.2, 0, 0], [0, 0, 0]]),
+    "butterfly of friction": Butterfly(
+        Dahl(1.5, 200.0), [[0.0, 0.1, 0.01], [0.2, 0, 0], [0, 0, 0]]
+    ),
     "butterfly in a chain": Affine(-2.0, 1.0) @ Butterfly(PI, [[0.0, 1.0], [0.5, 0.0]]),
 }
 

@@ -28,6 +28,7 @@ from hyst import (
 )
 from hyst.models import (
     Butterfly,
+    ColemanHodgdon,
     Dahl,
     GeneralizedMaxwellSlip,
     LinearDynamics,
@@ -219,6 +220,17 @@ lags = st.builds(
     st.integers(0, 2),
 )
 
+
+@st.composite
+def coleman_hodgdons(draw: st.DrawFn, least: float) -> ColemanHodgdon:
+    """One piece or two of one width of loop; b is at least this share of a."""
+    alpha, slope = draw(few), draw(few)
+    width = slope * (1.0 - draw(st.floats(least, 0.95)))
+    pieces = [slope, slope * draw(st.floats(1.0, 3.0))][: draw(st.integers(1, 2))]
+    knots = [draw(numbers(0.5, 4.0))][: len(pieces) - 1]
+    return ColemanHodgdon(alpha, pieces, [each - width for each in pieces], knots)
+
+
 RANDOM: dict[str, Operators] = {
     "affine": affines,
     "play": st.builds(Play, numbers(0.0, 5.0), numbers(-4.0, 4.0)),
@@ -242,6 +254,8 @@ RANDOM: dict[str, Operators] = {
     "memory-element": elements,
     "inverse-memory-element": elements.map(lambda element: element.inverse()),
     "butterfly": butterflies(),
+    "coleman-hodgdon": coleman_hodgdons(least=0.0),
+    "inverse-coleman-hodgdon": coleman_hodgdons(least=0.7).map(lambda model: model.inverse()),
     "dahl": st.builds(Dahl, few, few, st.floats(0.3, 3.0), numbers(-1.0, 1.0)),
     # A Coulomb force beyond every input of the contracts.
     "inverse-dahl": st.builds(Dahl, few, st.floats(1e3, 1e4), st.floats(1.0, 3.0)).map(

@@ -1,6 +1,7 @@
 # The one list of models, for type checkers and for hyst/_lazy.py.
 
 from hyst.models.butterfly import Butterfly as Butterfly
+from hyst.models.coleman_hodgdon import ColemanHodgdon as ColemanHodgdon
 from hyst.models.dahl import Dahl as Dahl
 from hyst.models.generalized_maxwell_slip import (
     GeneralizedMaxwellSlip as GeneralizedMaxwellSlip,
