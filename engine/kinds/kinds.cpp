@@ -13,7 +13,8 @@
     ROW(rate_dependent_pi)   \
     ROW(sections)            \
     ROW(state_space)         \
-    ROW(stop)
+    ROW(stop)                \
+    ROW(two_envelope)
 
 namespace hyst {
 namespace HYST_KINDS {

@@ -54,6 +54,9 @@ DECLARED = {
     "inverse of mpi": "-RMCOI",
     "dahl": "-R--OI",
     "inverse dahl": "-R--OI",
+    "two envelopes": "-rMCOI",
+    "two envelopes without linear part": "-rMCO-",
+    "inverse of two envelopes": "-rM-OI",
 }
 
 
