@@ -18,7 +18,8 @@
     ROW(sections)            \
     ROW(state_map)           \
     ROW(state_space)         \
-    ROW(stop)
+    ROW(stop)                \
+    ROW(two_envelope)
 
 namespace hyst {
 namespace HYST_KINDS {

@@ -65,6 +65,9 @@ DECLARED = {
     "generalized maxwell-slip": "------",
     "lugre": "------",
     "lugre without rate": "-r--O-",
+    "two envelopes": "-rMCOI",
+    "two envelopes without linear part": "-rMCO-",
+    "inverse of two envelopes": "-rM-OI",
 }
 
 

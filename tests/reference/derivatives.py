@@ -19,6 +19,7 @@ WITHOUT_OWN = {
     "maxwell_slip",
     "memory_element",
     "state_map",
+    "two_envelope",
 }
 
 

@@ -31,6 +31,7 @@ from hyst.models import (
     RambergOsgood,
     RateCurve,
     SecondOrderSections,
+    TwoEnvelopePrandtlIshlinskii,
 )
 
 PI = PrandtlIshlinskii([0.5, 0.25, 0.7], [0.5, 1.5, 4.0], p0=0.3)
@@ -105,6 +106,10 @@ PLAYS_AND_MAPS: dict[str, Operator] = {
 
 LAG = LinearDynamics.from_transfer_function([0.5, 0.1], [1.0, -1.2, 0.5], dt=0.01)
 CHARGE = MemoryFunction.polynomial([1.0, 0.2, 0.1])
+# The gap between them is 0 at 0, -0.54 at 1, -0.24 at 4, and grows far out on either side.
+UP = DeadZone([1.0, -0.6, 0.2, 0.2, -0.1], [0.0, 1.0, -1.5, -3.0, 2.5])
+DOWN = DeadZone([0.7, -0.2, -0.25, 0.25], [0.0, 1.5, -1.0, -2.5])
+TWO_ENVELOPE = TwoEnvelopePrandtlIshlinskii([0.5, 0.3, 0.2], [1.0, 1.25, 2.5], UP, DOWN, p0=0.4)
 OTHERS: dict[str, Operator] = {
     "linear": LAG,
     "linear with delay": LinearDynamics.from_transfer_function([0.5], [1.0, -0.5], 0.01, delay=2),
@@ -138,6 +143,14 @@ OTHERS: dict[str, Operator] = {
         [1.0, 0.5], [0.375, 0.625], C=4.0, Fc=1.0, Fs=1.5, vs=20.0, dt=0.1, delta=1.5, sigma2=0.02
     ),
     "lugre": LuGre(1.5, 0.05, 0.02, Fc=2.0, Fs=3.0, vs=20.0, dt=0.1),
+    "two envelopes": TWO_ENVELOPE,
+    "two envelopes without linear part": TwoEnvelopePrandtlIshlinskii(
+        [0.5, 0.3],
+        [0.25, 1.5],
+        DeadZone([0.5, -0.4], [0.0, 2.0]),
+        DeadZone([0.5, 0.5, -0.1], [0.0, 2.0, -1.0]),
+    ),
+    "inverse of two envelopes": TWO_ENVELOPE.inverse(),
     "hysteresis before dynamics": LAG @ PI,
     "butterfly": Butterfly(GPI, [[0.5, 0.1, 0.4], [-0.2, 0.3, 0.0], [0.05, 0.0, 0.0]]),
     "butterfly of a higher degree": Butterfly(

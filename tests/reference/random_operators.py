@@ -42,6 +42,7 @@ from hyst.models import (
     RambergOsgood,
     RateCurve,
     SecondOrderSections,
+    TwoEnvelopePrandtlIshlinskii,
 )
 from reference.examples import EXAMPLES
 
@@ -231,6 +232,25 @@ def coleman_hodgdons(draw: st.DrawFn, least: float) -> ColemanHodgdon:
     return ColemanHodgdon(alpha, pieces, [each - width for each in pieces], knots)
 
 
+def two_envelopes(draw: st.DrawFn, least_p0: float = 0.0) -> TwoEnvelopePrandtlIshlinskii:
+    """One envelope, and the same with a steeper piece to the right and one to the left of 0."""
+    plain = draw(invertible_dead_zones().filter(lambda zone: zone.weights[0] > 0.0))
+    extra = [draw(numbers(0.0, 1.0)) for _ in range(2)]
+    start = [draw(numbers(0.25, 3.0)) for _ in range(2)]
+    width = [draw(numbers(0.25, 2.0)) for _ in range(2)]
+    weights, knots = plain.weights, plain.thresholds
+    for sign, s, a, b in zip((1.0, -1.0), extra, start, width, strict=True):
+        weights = np.concatenate([weights, [s, -s]])
+        knots = np.concatenate([knots, [sign * a, sign * (a + b)]])
+    pair = (plain, DeadZone(weights, knots))
+    rising, falling = pair if draw(st.booleans()) else pair[::-1]
+    # Twice the room that is needed: with all constants doubled it is needed twice.
+    least = max(s * b for s, b in zip(extra, width, strict=True))
+    r = least + np.array(sorted(draw(st.lists(numbers(0.0, 4.0), max_size=4))))
+    p = draw(st.lists(numbers(0.0, 2.0), min_size=r.size, max_size=r.size))
+    return TwoEnvelopePrandtlIshlinskii(p, r, rising, falling, draw(numbers(least_p0, 2.0)))
+
+
 RANDOM: dict[str, Operators] = {
     "affine": affines,
     "play": st.builds(Play, numbers(0.0, 5.0), numbers(-4.0, 4.0)),
@@ -264,6 +284,10 @@ RANDOM: dict[str, Operators] = {
     "maxwell-slip": sliding_elements(),
     "generalized-maxwell-slip": sliding_elements_by_rate(),
     "lugre": lugres(),
+    "two-envelope-prandtl-ishlinskii": two_envelopes(),
+    "inverse-two-envelope-prandtl-ishlinskii": two_envelopes(0.25).map(
+        lambda model: model.inverse()
+    ),
     "inverse": invertible.map(lambda operator: operator.inverse()),
 }
 

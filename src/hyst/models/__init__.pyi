@@ -32,3 +32,7 @@ from hyst.models.rate_dependent import (
 )
 from hyst.models.second_order_sections import SecondOrderSections as SecondOrderSections
 from hyst.models.stable_inverse import StableInverse as StableInverse
+from hyst.models.two_envelope import InverseTwoEnvelope as InverseTwoEnvelope
+from hyst.models.two_envelope import (
+    TwoEnvelopePrandtlIshlinskii as TwoEnvelopePrandtlIshlinskii,
+)
