@@ -19,7 +19,7 @@ from hyst.cli.reading_options import reads_records
 
 Models = Annotated[
     list[Path],
-    typer.Argument(metavar="MODEL...", show_default=False, help="Model files of one actuator."),
+    typer.Argument(metavar="MODEL", show_default=False, help="Model files of one actuator."),
 ]
 Data = Annotated[
     Path,
@@ -114,10 +114,11 @@ def _named(paths: Sequence[Path]) -> dict[str, Path]:
 
 def _short_name(path: Path, paths: Sequence[Path]) -> str:
     ends = {each: each.resolve().with_suffix("").parts for each in paths}
+    if len(paths) > 1 and len({each[-1] for each in ends.values()}) == 1:
+        ends = {each: parts[:-1] for each, parts in ends.items()}  # model.json, each in its folder
     own = ends[path]
     for count in range(1, len(own) + 1):
-        same = [each for each in paths if ends[each][-count:] == own[-count:]]
-        if len(same) == 1:
+        if [each[-count:] for each in ends.values()].count(own[-count:]) == 1:
             return "/".join(own[-count:])
     return str(path)  # of another suffix only
 

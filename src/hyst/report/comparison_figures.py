@@ -18,11 +18,13 @@ COLOURS = (SECOND, MODELLED, "#047857", "#7c3aed", "#be185d", "#0891b2")
 MOST_DRAWN = len(COLOURS)
 """More lines on each other tell nothing; the best are drawn."""
 
+_CUT = 4.0
+"""Times the largest error of the best model, where errors of others are cut off."""
+
 
 def drawn_models(found: Comparison) -> list[ComparedModel]:
-    """Give the models that figures show: the best ones, in the order they were given."""
-    best = sorted(found.models, key=found.error_of)[:MOST_DRAWN]
-    return [each for each in found.models if each in best]
+    """Give the models that figures show, the best first."""
+    return sorted(found.models, key=found.error_of)[:MOST_DRAWN]
 
 
 @drawn
@@ -42,15 +44,22 @@ def draw_compared_loops(found: Comparison) -> Figure:
     figure, (left, right) = blank(2, 1, 11.0, 4.9)
     models, windows = drawn_models(found), _windows(found)
     slope, offset = _straight_line(found, windows)
-    for number, (record, window) in enumerate(zip(found.records, windows, strict=True)):
-        u, line = record.u[window], slope * record.u[window] + offset
-        for axes, taken in ((left, 0.0), (right, line)):
-            label = "record" * (number == 0)
-            _dots(axes, u, record.y[window] - taken, label)
-            for colour, each in zip(COLOURS, models, strict=False):
-                y = each.outputs[number][window] - taken
-                name = _told(each) * (number == 0)
-                axes.plot(u, y, color=colour, linewidth=0.9, label=name, alpha=0.85)
+    ranked = list(zip(COLOURS, models, strict=False))
+    for axes, taken in ((left, (0.0, 0.0)), (right, (slope, offset))):
+        for number, (record, window) in enumerate(zip(found.records, windows, strict=True)):
+            u = record.u[window]
+            line = taken[0] * u + taken[1]
+            _dots(axes, u, record.y[window] - line, "record" * (number == 0))
+        low, high = axes.get_ylim()
+        for place, (colour, each) in enumerate(ranked):
+            for number, (record, window) in enumerate(zip(found.records, windows, strict=True)):
+                u = record.u[window]
+                y = each.outputs[number][window] - (taken[0] * u + taken[1])
+                name, above = _told(each) * (number == 0), 3.0 - place / MOST_DRAWN
+                axes.plot(u, y, color=colour, linewidth=0.9, label=name, zorder=above)
+        # A model that is far off must not make the loop small.
+        room = 0.15 * (high - low)
+        axes.set_ylim(low - room, high + room)
     first = found.records[0]
     right.axhline(0.0, color=FAINT, linewidth=1.0, zorder=0)
     left.set_title("Loops, recorded and of the models")
@@ -68,6 +77,8 @@ def draw_compared_loops(found: Comparison) -> Figure:
 def draw_compared_errors(found: Comparison) -> Figure:
     """Draw the error of each model over time, all in one scale, the records after each other.
 
+    The scale is cut where a bad model would make the errors of the best one small.
+
     Parameters
     ----------
     found
@@ -81,28 +92,35 @@ def draw_compared_errors(found: Comparison) -> Figure:
     models, windows = drawn_models(found), _windows(found)
     figure, axes = blank(1, len(models), 10.0, 0.7 + 1.75 * len(models))
     unit = found.records[0].output_unit
-    largest = 0.0
-    for at, colour, each in zip(axes, COLOURS, models, strict=False):
+    reach = [_largest_error(each, found, windows) for each in models]
+    shown = 1.08 * min(max(reach), _CUT * reach[0]) or 1.0
+    for at, colour, each, most in zip(axes, COLOURS, models, reach, strict=False):
         begin = 0.0
         for number, (record, window) in enumerate(zip(found.records, windows, strict=True)):
             error = (each.outputs[number] - record.y)[window]
-            largest = max(largest, float(np.abs(error).max()))
             at.plot(begin + record.time[window], error, color=colour, linewidth=0.7)
             begin += record.duration + record.dt
             if number + 1 < len(found.records):
                 at.axvline(begin, color=FAINT)
         at.axhline(0.0, color="#4b5563", linewidth=0.7)
-        at.set_title(_told(each))
+        at.set_title(_told(each) + (f", cut off: up to {most:.3g}" if most > shown else ""))
         at.set_ylabel(with_unit("error", unit))
         at.margins(x=0.01)
-    for at in axes:
-        at.set_ylim(-1.08 * largest or -1.0, 1.08 * largest or 1.0)
+        at.set_ylim(-shown, shown)
     axes[-1].set_xlabel("time [s]")
     return figure
 
 
 def _told(each: ComparedModel) -> str:
     return f"{each.name}: {each.metrics.rms_percent:.3g} % rms"
+
+
+def _largest_error(each: ComparedModel, found: Comparison, windows: Sequence[slice]) -> float:
+    errors = (
+        np.abs(y[window] - record.y[window]).max()
+        for y, record, window in zip(each.outputs, found.records, windows, strict=True)
+    )
+    return float(max(errors))
 
 
 def _windows(found: Comparison) -> list[slice]:

@@ -16,6 +16,7 @@ from hyst.identification.comparison.compared_model import ComparedModel, WorstPl
 from hyst.identification.comparison.comparison import Comparison
 from hyst.identification.options import listed
 from hyst.identification.record_use.overview import Overview
+from hyst.identification.record_use.part_of_a_sample import by_whole_samples
 from hyst.identification.record_use.strokes import OUTERMOST
 from hyst.identification.record_use.used_samples import Data, require_same_units
 from hyst.identification.result.identified import Identified
@@ -80,7 +81,8 @@ def compare(
     overview = Overview(data)
     blocks = blocks_of(overview)
     compared = tuple(_compared(name, each, overview, blocks) for name, each in named.items())
-    return Comparison(given, compared, data.used(), overview.shows_minor_loops, _line(data))
+    line = _line(data, [lag_on(each.description, given[0]) for each in named.values()])
+    return Comparison(given, compared, data.used(), overview.shows_minor_loops, line)
 
 
 def _named(
@@ -247,11 +249,16 @@ def _share_outside(low: float | None, high: float | None, data: Data) -> float |
     return float(np.mean((u < low) | (u > high)))
 
 
-def _line(data: Data) -> float:
-    """Root mean square error of the straight line that fits these very samples best."""
-    u, y = data.inputs(), data.measured()
-    y = y - y.mean()
-    if np.ptp(u) == 0.0:
-        return _rms(y)
-    u = (u - u.mean()) / np.ptp(u)
-    return _rms(y - float(np.dot(u, y)) / float(np.dot(u, u)) * u)
+def _line(data: Data, lags: Sequence[float]) -> float:
+    """Root mean square error of the straight line that fits best, with the best of these delays."""
+    y = data.measured()
+    y, errors = y - y.mean(), []
+    for lag in dict.fromkeys(lags):
+        late = data.delayed(lag)
+        records = zip(late.records, late.whole_lags(), data.windows(), strict=True)
+        u = data.joined([by_whole_samples(r.u, whole)[window] for r, whole, window in records])
+        u = u - u.mean()
+        u = u / (float(np.abs(u).max()) or 1.0)
+        power = float(np.dot(u, u))
+        errors.append(_rms(y - (float(np.dot(u, y)) / power if power else 0.0) * u))
+    return min(errors)

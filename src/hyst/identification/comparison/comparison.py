@@ -35,7 +35,8 @@ class Comparison:
     shows_minor_loops
         Whether the records hold enough of loops inside the largest one to judge these by.
     straight_line_rms
-        Root mean square error of the straight line that fits these very samples best, output units.
+        Root mean square error of the straight line that fits these very samples best, with the
+        delay of one of the models, output units.
     """
 
     records: tuple[Record, ...]
