@@ -15,6 +15,7 @@
     ROW(pi)                  \
     ROW(play)                \
     ROW(rate_dependent_pi)   \
+    ROW(rate_shift)          \
     ROW(sections)            \
     ROW(state_map)           \
     ROW(state_space)         \

@@ -18,6 +18,7 @@ WITHOUT_OWN = {
     "masing",
     "maxwell_slip",
     "memory_element",
+    "rate_shift",
     "state_map",
     "two_envelope",
 }

@@ -30,6 +30,7 @@ from hyst.models import (
     PowerLaw,
     RambergOsgood,
     RateCurve,
+    RateShift,
     SecondOrderSections,
     TwoEnvelopePrandtlIshlinskii,
 )
@@ -151,6 +152,8 @@ OTHERS: dict[str, Operator] = {
         DeadZone([0.5, 0.5, -0.1], [0.0, 2.0, -1.0]),
     ),
     "inverse of two envelopes": TWO_ENVELOPE.inverse(),
+    "rate shift": RateShift(0.3, 0.4, 0.1),
+    "plays behind a rate shift": PI @ RateShift(0.3, 0.7, 0.1, z0=0.5),
     "hysteresis before dynamics": LAG @ PI,
     "butterfly": Butterfly(GPI, [[0.5, 0.1, 0.4], [-0.2, 0.3, 0.0], [0.05, 0.0, 0.0]]),
     "butterfly of a higher degree": Butterfly(

@@ -41,6 +41,7 @@ from hyst.models import (
     PowerLaw,
     RambergOsgood,
     RateCurve,
+    RateShift,
     SecondOrderSections,
     TwoEnvelopePrandtlIshlinskii,
 )
@@ -287,6 +288,8 @@ RANDOM: dict[str, Operators] = {
     "two-envelope-prandtl-ishlinskii": two_envelopes(),
     "inverse-two-envelope-prandtl-ishlinskii": two_envelopes(0.25).map(
         lambda model: model.inverse()
+    "rate-shift": st.builds(
+        RateShift, numbers(0.0, 2.0), st.floats(0.1, 2.0), st.sampled_from((0.5, 1.0, 2.0))
     ),
     "inverse": invertible.map(lambda operator: operator.inverse()),
 }
