@@ -54,6 +54,9 @@ DECLARED = {
     "inverse of mpi": "-RMCOI",
     "dahl": "-R--OI",
     "inverse dahl": "-R--OI",
+    "creep": "-----I",
+    "creep that goes back": "-----I",
+    "inverse creep": "-----I",
 }
 
 

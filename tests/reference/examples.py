@@ -15,6 +15,7 @@ from hyst import (
     Stop,
 )
 from hyst.models import (
+    Creep,
     Dahl,
     LinearDynamics,
     MasingOperator,
@@ -123,6 +124,10 @@ OTHERS: dict[str, Operator] = {
     "dahl": Dahl(1.5, 200.0),
     "dahl ductile": Dahl(1.5, 2.0, 0.5, z0=-0.25, u0=0.5),
     "inverse dahl": Dahl(0.5, 400.0, 1.5).inverse(),
+    "creep": Creep([0.03, 0.02, 0.01], [0.05, 0.5, 5.0], dt=0.01, rest=0.5),
+    "creep that goes back": Creep([0.3, -0.2], [0.1, 1.0], dt=0.01),
+    "inverse creep": Creep([0.2, 0.1], [0.03, 0.4], dt=0.01).inverse(),
+    "creep of hysteresis": Creep([0.02, 0.02], [0.1, 1.0], dt=0.01) @ PI,
     "hysteresis before dynamics": LAG @ PI,
 }
 
