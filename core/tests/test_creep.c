@@ -30,11 +30,11 @@ static void follows_hand_calculation_and_back(void)
     }
 }
 
-/* 1 - exp(-1), and exp(-x) - 1 = -x + x^2 / 2 of a small x. */
+/* 1 - exp(-1), and 1 - exp(-x) = x - x^2 / 2 + x^3 / 6 of a small x. */
 static void gains_keep_their_digits(void)
 {
     CHECK_NEAR((double)hyst_creep_gain(R(1.0)), 0.6321205588285577, 4.0 * (double)REAL_EPSILON);
-    CHECK_NEAR((double)hyst_creep_gain(R(1e6)) * 1e6, 1.0 - 0.5e-6, 8.0 * (double)REAL_EPSILON);
+    CHECK_NEAR((double)hyst_creep_gain(R(1e6)) * 1e6, 1.0 - 0.5e-6 + 1e-12 / 6.0, 8.0 * (double)REAL_EPSILON);
     CHECK_EQUAL(hyst_creep_gain(R(1e-6)), R(1.0));
 }
 
