@@ -4,6 +4,7 @@
 #define EACH_KIND(ROW)       \
     ROW(affine)              \
     ROW(coleman_hodgdon)     \
+    ROW(creep)               \
     ROW(dahl)                \
     ROW(dead_zone)           \
     ROW(direction_dead_zone) \

@@ -68,6 +68,9 @@ DECLARED = {
     "two envelopes": "-rMCOI",
     "two envelopes without linear part": "-rMCO-",
     "inverse of two envelopes": "-rM-OI",
+    "creep": "-----I",
+    "creep that goes back": "-----I",
+    "inverse creep": "-----I",
 }
 
 

@@ -12,6 +12,7 @@ Array = NDArray[np.float64]
 # Kinds of stages whose row has no derivative of its own.
 WITHOUT_OWN = {
     "coleman_hodgdon",
+    "creep",
     "dahl",
     "generalized_maxwell_slip",
     "lugre",

@@ -17,6 +17,7 @@ from hyst import (
 from hyst.models import (
     Butterfly,
     ColemanHodgdon,
+    Creep,
     Dahl,
     GeneralizedMaxwellSlip,
     LinearDynamics,
@@ -154,6 +155,10 @@ OTHERS: dict[str, Operator] = {
     "inverse of two envelopes": TWO_ENVELOPE.inverse(),
     "rate shift": RateShift(0.3, 0.4, 0.1),
     "plays behind a rate shift": PI @ RateShift(0.3, 0.7, 0.1, z0=0.5),
+    "creep": Creep([0.03, 0.02, 0.01], [0.05, 0.5, 5.0], dt=0.01, rest=0.5),
+    "creep that goes back": Creep([0.3, -0.2], [0.1, 1.0], dt=0.01),
+    "inverse creep": Creep([0.2, 0.1], [0.03, 0.4], dt=0.01).inverse(),
+    "creep of hysteresis": Creep([0.02, 0.02], [0.1, 1.0], dt=0.01) @ PI,
     "hysteresis before dynamics": LAG @ PI,
     "butterfly": Butterfly(GPI, [[0.5, 0.1, 0.4], [-0.2, 0.3, 0.0], [0.05, 0.0, 0.0]]),
     "butterfly of a higher degree": Butterfly(

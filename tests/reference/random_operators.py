@@ -29,6 +29,7 @@ from hyst import (
 from hyst.models import (
     Butterfly,
     ColemanHodgdon,
+    Creep,
     Dahl,
     GeneralizedMaxwellSlip,
     LinearDynamics,
@@ -58,6 +59,13 @@ def numbers(low: float, high: float) -> st.SearchStrategy[float]:
 
 def signals(low: float = -8.0, high: float = 8.0, most: int = 16) -> st.SearchStrategy[Array]:
     return st.lists(numbers(low, high), min_size=1, max_size=most).map(np.array)
+
+
+@st.composite
+def creeps(draw: st.DrawFn, most: float) -> Creep:
+    times = draw(st.lists(st.floats(1e-3, 1e3), max_size=4))
+    weights = [draw(numbers(-0.5, most)) for _ in times]
+    return Creep(weights, times, 0.01, rest=draw(numbers(-2.0, 2.0)))
 
 
 @st.composite
@@ -278,6 +286,10 @@ RANDOM: dict[str, Operators] = {
     "coleman-hodgdon": coleman_hodgdons(least=0.0),
     "inverse-coleman-hodgdon": coleman_hodgdons(least=0.7).map(lambda model: model.inverse()),
     "dahl": st.builds(Dahl, few, few, st.floats(0.3, 3.0), numbers(-1.0, 1.0)),
+    "creep": creeps(1.0),
+    "inverse-creep": creeps(0.5)
+    .filter(lambda creep: creep.is_invertible())
+    .map(lambda creep: creep.inverse()),
     # A Coulomb force beyond every input of the contracts.
     "inverse-dahl": st.builds(Dahl, few, st.floats(1e3, 1e4), st.floats(1.0, 3.0)).map(
         lambda friction: friction.inverse()

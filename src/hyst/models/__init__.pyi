@@ -2,6 +2,7 @@
 
 from hyst.models.butterfly import Butterfly as Butterfly
 from hyst.models.coleman_hodgdon import ColemanHodgdon as ColemanHodgdon
+from hyst.models.creep import Creep as Creep
 from hyst.models.dahl import Dahl as Dahl
 from hyst.models.generalized_maxwell_slip import (
     GeneralizedMaxwellSlip as GeneralizedMaxwellSlip,
