@@ -52,13 +52,33 @@ DECLARED = {
     "gpi after pi": "-RM-OI",
     "inverse of gpi": "-RM-OI",
     "inverse of mpi": "-RMCOI",
+    "butterfly": "-RM---",
+    "butterfly of friction": "-R----",
+    "coleman-hodgdon": "-R--OI",
+    "coleman-hodgdon saturating": "-R--OI",
+    "coleman-hodgdon that falls": "-R----",
+    "inverse coleman-hodgdon": "-R--OI",
     "dahl": "-R--OI",
     "inverse dahl": "-R--OI",
+<<<<<<< HEAD
     "preisach": "-RMCOI",
     "preisach of relays alone": "-RMCO-",
     "preisach from saturation": "-RMCOI",
     "preisach of ridges": "-RMCOI",
     "inverse preisach": "-RM-OI",
+=======
+    "maxwell-slip": "-RMCOI",
+    "maxwell-slip that slides": "-RMCO-",
+    "generalized maxwell-slip": "------",
+    "lugre": "------",
+    "lugre without rate": "-r--O-",
+    "two envelopes": "-rMCOI",
+    "two envelopes without linear part": "-rMCO-",
+    "inverse of two envelopes": "-rM-OI",
+    "creep": "-----I",
+    "creep that goes back": "-----I",
+    "inverse creep": "-----I",
+>>>>>>> main
 }
 
 
