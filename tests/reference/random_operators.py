@@ -259,6 +259,8 @@ def two_envelopes(draw: st.DrawFn, least_p0: float = 0.0) -> TwoEnvelopePrandtlI
     r = least + np.array(sorted(draw(st.lists(numbers(0.0, 4.0), max_size=4))))
     p = draw(st.lists(numbers(0.0, 2.0), min_size=r.size, max_size=r.size))
     return TwoEnvelopePrandtlIshlinskii(p, r, rising, falling, draw(numbers(least_p0, 2.0)))
+
+
 def relays(draw: st.DrawFn, least: float = 0.0) -> Preisach:
     """Cells on edges a quarter or more apart, from rest or from where an input has left them."""
     n = draw(st.integers(1, 4))

@@ -115,7 +115,7 @@ def fitted_grid(
     kept = overview.kept
     if smoothness is None:
         blocks = overview.once("blocks", lambda: blocks_of(overview))
-        smoothness = chosen_strength(fit, blocks, kept)
+        smoothness = chosen_strength(fit, blocks, kept, smoothest=not overview.shows_minor_loops)
     rows = np.ones(fit.y.size, dtype=bool) if kept is None else kept
     normal, moment = fit.gram(rows)
     held = fit.held(smoothness)
@@ -128,9 +128,7 @@ def fitted_grid(
     return GridFit(under_prior, theta, smoothness, rms, _correlation(left))
 
 
-def best_grid(
-    overview: Overview, coarse: GridFit, finer: Callable[[float], GridFit]
-) -> GridFit:
+def best_grid(overview: Overview, coarse: GridFit, finer: Callable[[float], GridFit]) -> GridFit:
     """Take a finer grid where the coarse one leaves more than noise and the finer one less.
 
     Parameters

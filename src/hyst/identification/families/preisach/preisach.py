@@ -132,7 +132,8 @@ class Relays(Family):
         more than noise.
     smoothness
         Strength of the prior that densities of neighbouring cells are alike, from 0; ``"auto"``:
-        the largest that does not predict left-out blocks worse.
+        what predicts left-out blocks best; of records without minor loops the largest that does
+        not predict them worse.
     """
 
     levels: Any = option(AUTO, LEVELS_OPTION)
@@ -198,7 +199,9 @@ class Relays(Family):
         weights = weights_of(fit.operator)
         columns = evaluation.jacobian(fit.solution.theta)[:, 1 : 1 + weights.size]
         # Per weight in the units of the fit: the columns of the cells are shares of one number.
-        turned = crossed(columns / np.abs(parametrization.transform).max(axis=0)[1 : 1 + weights.size])
+        turned = crossed(
+            columns / np.abs(parametrization.transform).max(axis=0)[1 : 1 + weights.size]
+        )
         one_size = not shows_minor_loops(stroke_lengths(data))
         return about_coverage(weights, turned, parametrization.effective, one_size=one_size)
 
