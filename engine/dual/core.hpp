@@ -61,10 +61,8 @@ static hyst_real step_from_rest(const hyst_masing *model, hyst_real *state, hyst
 }
 #define hyst_masing_step step_from_rest
 
-<<<<<<< HEAD
 // The pieces that hyst_preisach_step is made of; the file that holds a kind does not hold them.
 #include "preisach_branch.c"
-=======
 #include "state_polynomial.c"
 #include "branch.c"
 
@@ -80,7 +78,6 @@ hyst_real hyst_coleman_way(hyst_real line, hyst_real bend, hyst_real w)
     const double slope = line.v + bend.v * (1.0 - share);
     return {x.v, (w.d - x.v * line.d - share * bend.d) / slope};
 }
->>>>>>> main
 
 #include "core_kinds.inc"  // made by CMakeLists.txt: the sources that hold a kind, and the kinds
 

@@ -1,23 +1,6 @@
 // All kinds of stages, a line each.
 #include "kind.hpp"
 
-<<<<<<< HEAD
-#define EACH_KIND(ROW)       \
-    ROW(affine)              \
-    ROW(dahl)                \
-    ROW(dead_zone)           \
-    ROW(direction_dead_zone) \
-    ROW(masing)              \
-    ROW(memory_element)      \
-    ROW(pi)                  \
-    ROW(play)                \
-    ROW(preisach)            \
-    ROW(rate_dependent_pi)   \
-    ROW(rate_shift)          \
-    ROW(sections)            \
-    ROW(state_space)         \
-    ROW(stop)
-=======
 #define EACH_KIND(ROW)              \
     ROW(affine)                     \
     ROW(coleman_hodgdon)            \
@@ -32,6 +15,7 @@
     ROW(memory_element)             \
     ROW(pi)                         \
     ROW(play)                       \
+    ROW(preisach)                   \
     ROW(rate_dependent_pi)          \
     ROW(rate_shift)                 \
     ROW(sections)                   \
@@ -39,7 +23,6 @@
     ROW(state_space)                \
     ROW(stop)                       \
     ROW(two_envelope)
->>>>>>> main
 
 namespace hyst {
 namespace HYST_KINDS {

@@ -60,13 +60,11 @@ DECLARED = {
     "inverse coleman-hodgdon": "-R--OI",
     "dahl": "-R--OI",
     "inverse dahl": "-R--OI",
-<<<<<<< HEAD
     "preisach": "-RMCOI",
     "preisach of relays alone": "-RMCO-",
     "preisach from saturation": "-RMCOI",
     "preisach of ridges": "-RMCOI",
     "inverse preisach": "-RM-OI",
-=======
     "maxwell-slip": "-RMCOI",
     "maxwell-slip that slides": "-RMCO-",
     "generalized maxwell-slip": "------",
@@ -78,7 +76,6 @@ DECLARED = {
     "creep": "-----I",
     "creep that goes back": "-----I",
     "inverse creep": "-----I",
->>>>>>> main
 }
 
 

@@ -10,9 +10,6 @@ from hyst import Operator, _engine
 Array = NDArray[np.float64]
 
 # Kinds of stages whose row has no derivative of its own.
-<<<<<<< HEAD
-WITHOUT_OWN = {"dahl", "masing", "memory_element", "preisach", "rate_shift"}
-=======
 WITHOUT_OWN = {
     "coleman_hodgdon",
     "creep",
@@ -22,11 +19,11 @@ WITHOUT_OWN = {
     "masing",
     "maxwell_slip",
     "memory_element",
+    "preisach",
     "rate_shift",
     "state_map",
     "two_envelope",
 }
->>>>>>> main
 
 
 def jacobian(operator: Operator, u: Array, derivative: str) -> Array:
