@@ -18,7 +18,6 @@ from hyst.identification.families.preisach.layout import (
     with_prior,
 )
 from hyst.identification.families.preisach.smoothness import (
-    LinearFit,
     chosen_strength,
     effective_count,
 )

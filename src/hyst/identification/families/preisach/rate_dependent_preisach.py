@@ -67,6 +67,7 @@ class RateDependentPreisach(Relays):
     name = "rate-dependent-preisach"
     methods = ("trajectory",)
     depends_on_rate: ClassVar[bool] = True
+    settles_delay: ClassVar[bool] = False
     explains = ("rate dependence", "dynamics")  # its loops widen as the rate grows
     words = Words(
         full_name="rate-dependent Preisach model",
@@ -78,8 +79,8 @@ class RateDependentPreisach(Relays):
         explanations=(
             RELAY_TEXT,
             ESTIMATES_TEXT,
-            "The faster the input moves, the later the relays switch: \u03b1 grows and \u03b2 falls "
-            "by c |du/dt|\u1d50.",
+            "The faster the input moves, the later the relays switch: \u03b1 grows and \u03b2 "
+            "falls by c |du/dt|\u1d50.",
         ),
     )
 
