@@ -42,7 +42,6 @@ from hyst.identification.families.preisach.grid_choice import (
 )
 from hyst.identification.families.preisach.layout import (
     CellParametrization,
-    cells_of,
     parametrized,
     weights_of,
 )
