@@ -25,7 +25,12 @@ from hyst.identification.choice.blocks import Block
 from hyst.identification.families.preisach.cells import Cells, even_cells
 from hyst.identification.families.preisach.grid_choice import (
     FEWEST_LEVELS,
+    FINER_LEVELS,
+    LEVELS,
     MOST_LEVELS,
+    ROUNDING,
+    WORTH_IT,
+    correlation_beyond_noise,
     levels_for,
 )
 from hyst.identification.families.preisach.smoothness import (
@@ -90,7 +95,8 @@ def identify_from_reversal_curves(
     records
         Driven as by ``hyst.signals.forc``; one or more.
     levels
-        Cells of the grid along a side, 4 to 64; ``"auto"``: 24, fewer for few samples.
+        Cells of the grid along a side, 4 to 64; ``"auto"``: 24, fewer for few samples,
+        and 32 where 24 leave more than noise.
     smoothness
         Strength of the prior that densities of neighbouring cells are alike, from 0; ``"auto"``:
         what predicts left-out curves best.
@@ -133,7 +139,12 @@ def identify_from_reversal_curves(
     cells = even_cells(float(u.min()), float(u.max()), side)
     sign = 1.0 if float((u - u.mean()) @ y) >= 0.0 else -1.0
     with threadpool_limits(1, user_api="blas"):
-        return _fitted(curves, cells, strength, (sign, span, output_range))
+        found, like_noise = _fitted(curves, cells, strength, (sign, span, output_range))
+        if levels != AUTO or like_noise or u.size < FINER_LEVELS * LEVELS:
+            return found
+        finer = even_cells(float(u.min()), float(u.max()), FINER_LEVELS)
+        other, _ = _fitted(curves, finer, found.smoothness, (sign, span, output_range))
+        return other if other.rms < WORTH_IT * found.rms else found
 
 
 def everett_shares(cells: Cells, alpha: Array, beta: Array) -> Array:
@@ -166,10 +177,14 @@ def _fitted(
     cells: Cells,
     strength: float | None,
     scales: tuple[float, float, float],
-) -> ReversalCurveFit:
+) -> tuple[ReversalCurveFit, bool]:
+    """Give the fit on a grid, and whether it leaves nothing but noise."""
     sign, span, output_range = scales
     of_curve = np.repeat(np.arange(len(curves)), [each.u.size for each in curves])
-    u, beta = np.concatenate([each.u for each in curves]), np.array([c.beta for c in curves])[of_curve]
+    u, beta = (
+        np.concatenate([each.u for each in curves]),
+        np.array([c.beta for c in curves])[of_curve],
+    )
     y = sign * np.concatenate([each.y for each in curves])
     between = 2.0 * everett_shares(cells, u, beta)
     columns = np.column_stack([u - beta, between])
@@ -193,9 +208,11 @@ def _fitted(
     rms = float(np.sqrt(np.mean(np.square(left))))
     determined = effective_count(normal, held, theta > fit.lower)
     model = Affine(sign, offset) @ relays
-    return ReversalCurveFit(
+    found = ReversalCurveFit(
         model, curves, rms, 100.0 * rms / output_range, chosen, round(determined)
     )
+    small = rms <= ROUNDING * output_range
+    return found, small or correlation_beyond_noise(left) <= 1.0
 
 
 def _without_offsets(

@@ -256,9 +256,7 @@ class Preisach(_Relays):
         widths = np.diff(self.thresholds)
         area = np.multiply.outer(widths, widths) * (1.0 - 0.5 * np.eye(widths.size))
         density = np.where(np.tri(widths.size, dtype=bool), self.weights / area, np.nan)
-        return Portrait(
-            ("relays", "loop"), p0=self.p0, thresholds=self.thresholds, density=density
-        )
+        return Portrait(("relays", "loop"), p0=self.p0, thresholds=self.thresholds, density=density)
 
     def lipschitz_constant(self) -> float:
         """Give a bound: p0, and twice the mass along the densest staircase, over its height.
