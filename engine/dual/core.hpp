@@ -12,6 +12,7 @@
 
 #define HYST_REAL_HEADER "dual/real.h"
 #define HYST_POWER_HEADER "dual/power.h"
+#define HYST_ROOT_HEADER "dual/root.h"
 
 namespace hyst {
 
@@ -19,6 +20,8 @@ namespace hyst {
 double core_power(double x, double e);
 double core_log2(double x);
 double core_exp2(double v);
+// hyst_root likewise.
+double core_root(double x);
 
 namespace HYST_KINDS {
 
@@ -73,6 +76,9 @@ hyst_real hyst_coleman_way(hyst_real line, hyst_real bend, hyst_real w)
     const double slope = line.v + bend.v * (1.0 - share);
     return {x.v, (w.d - x.v * line.d - share * bend.d) / slope};
 }
+
+// The pieces that hyst_preisach_step is made of; the file that holds a kind does not hold them.
+#include "preisach_branch.c"
 
 #include "core_kinds.inc"  // made by CMakeLists.txt: the sources that hold a kind, and the kinds
 

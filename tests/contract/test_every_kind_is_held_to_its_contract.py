@@ -71,6 +71,11 @@ DECLARED = {
     "creep": "-----I",
     "creep that goes back": "-----I",
     "inverse creep": "-----I",
+    "preisach": "-RMCOI",
+    "preisach of relays alone": "-RMCO-",
+    "preisach from saturation": "-RMCOI",
+    "preisach of ridges": "-RMCOI",
+    "inverse preisach": "-RM-OI",
 }
 
 

@@ -29,6 +29,7 @@ from hyst.models import (
     PiecewiseLinear,
     PolynomialCurve,
     PowerLaw,
+    Preisach,
     RambergOsgood,
     RateCurve,
     RateShift,
@@ -112,6 +113,9 @@ CHARGE = MemoryFunction.polynomial([1.0, 0.2, 0.1])
 UP = DeadZone([1.0, -0.6, 0.2, 0.2, -0.1], [0.0, 1.0, -1.5, -3.0, 2.5])
 DOWN = DeadZone([0.7, -0.2, -0.25, 0.25], [0.0, 1.5, -1.0, -2.5])
 TWO_ENVELOPE = TwoEnvelopePrandtlIshlinskii([0.5, 0.3, 0.2], [1.0, 1.25, 2.5], UP, DOWN, p0=0.4)
+RELAYS = Preisach(
+    [[0.25, 0.0, 0.0], [0.5, 0.75, 0.0], [0.2, 1.0, 0.5]], [-3.0, -1.0, 0.5, 4.0], p0=0.5
+)
 OTHERS: dict[str, Operator] = {
     "linear": LAG,
     "linear with delay": LinearDynamics.from_transfer_function([0.5], [1.0, -0.5], 0.01, delay=2),
@@ -159,6 +163,11 @@ OTHERS: dict[str, Operator] = {
     "creep that goes back": Creep([0.3, -0.2], [0.1, 1.0], dt=0.01),
     "inverse creep": Creep([0.2, 0.1], [0.03, 0.4], dt=0.01).inverse(),
     "creep of hysteresis": Creep([0.02, 0.02], [0.1, 1.0], dt=0.01) @ PI,
+    "preisach": RELAYS,
+    "preisach of relays alone": Preisach([[0.0, 0.0], [1.0, 0.5]], [-1.0, 0.0, 1.5]),
+    "preisach from saturation": Preisach([[0.5, 0.0], [1.0, 0.5]], [0.0, 2.0, 3.0], 0.2, u0=-5.0),
+    "preisach of ridges": Preisach(RELAYS.weights, [-3.0, -1.0, 1.0, 3.0], 0.4, density="ridges"),
+    "inverse preisach": RELAYS.inverse(),
     "hysteresis before dynamics": LAG @ PI,
     "butterfly": Butterfly(GPI, [[0.5, 0.1, 0.4], [-0.2, 0.3, 0.0], [0.05, 0.0, 0.0]]),
     "butterfly of a higher degree": Butterfly(

@@ -40,6 +40,7 @@ from hyst.models import (
     MemoryFunction,
     PiecewiseLinear,
     PowerLaw,
+    Preisach,
     RambergOsgood,
     RateCurve,
     RateShift,
@@ -261,6 +262,20 @@ def two_envelopes(draw: st.DrawFn, least_p0: float = 0.0) -> TwoEnvelopePrandtlI
     return TwoEnvelopePrandtlIshlinskii(p, r, rising, falling, draw(numbers(least_p0, 2.0)))
 
 
+@st.composite
+def relays(draw: st.DrawFn, least: float = 0.0) -> Preisach:
+    """Cells on edges a quarter or more apart, from rest or from where an input has left them."""
+    n = draw(st.integers(1, 4))
+    widths = draw(st.lists(numbers(0.25, 2.0), min_size=n, max_size=n))
+    edges = draw(numbers(-4.0, 1.0)) + np.cumsum([0.0, *widths])
+    count = n * (n + 1) // 2
+    weights = np.zeros((n, n))
+    weights[np.tril_indices(n)] = draw(st.lists(numbers(0.0, 2.0), min_size=count, max_size=count))
+    density = draw(st.sampled_from(("even", "ridges")))
+    p0, u0 = draw(numbers(least, 2.0)), draw(st.just(0.0) | numbers(-6.0, 6.0))
+    return Preisach(weights, edges, p0, u0, density)
+
+
 RANDOM: dict[str, Operators] = {
     "affine": affines,
     "play": st.builds(Play, numbers(0.0, 5.0), numbers(-4.0, 4.0)),
@@ -305,6 +320,8 @@ RANDOM: dict[str, Operators] = {
     "rate-shift": st.builds(
         RateShift, numbers(0.0, 2.0), st.floats(0.1, 2.0), st.sampled_from((0.5, 1.0, 2.0))
     ),
+    "preisach": relays(),
+    "inverse-preisach": relays(0.25).map(lambda model: model.inverse()),
     "inverse": invertible.map(lambda operator: operator.inverse()),
 }
 

@@ -26,6 +26,7 @@ from hyst.models.piecewise_linear import PiecewiseLinear as PiecewiseLinear
 from hyst.models.polynomial_curve import PolynomialCurve as PolynomialCurve
 from hyst.models.power_law import PowerLaw as PowerLaw
 from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii as PrandtlIshlinskii
+from hyst.models.preisach import Preisach as Preisach
 from hyst.models.ramberg_osgood import RambergOsgood as RambergOsgood
 from hyst.models.rate_curve import RateCurve as RateCurve
 from hyst.models.rate_dependent import (
