@@ -61,6 +61,8 @@ static hyst_real step_from_rest(const hyst_masing *model, hyst_real *state, hyst
 }
 #define hyst_masing_step step_from_rest
 
+// The pieces that hyst_preisach_step is made of; the file that holds a kind does not hold them.
+#include "preisach_branch.c"
 #include "state_polynomial.c"
 #include "branch.c"
 

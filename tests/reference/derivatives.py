@@ -19,6 +19,7 @@ WITHOUT_OWN = {
     "masing",
     "maxwell_slip",
     "memory_element",
+    "preisach",
     "rate_shift",
     "state_map",
     "two_envelope",

@@ -109,6 +109,9 @@ PLAYS_AND_MAPS: dict[str, Operator] = {
 
 LAG = LinearDynamics.from_transfer_function([0.5, 0.1], [1.0, -1.2, 0.5], dt=0.01)
 CHARGE = MemoryFunction.polynomial([1.0, 0.2, 0.1])
+RELAYS = Preisach(
+    [[0.25, 0.0, 0.0], [0.5, 0.75, 0.0], [0.2, 1.0, 0.5]], [-3.0, -1.0, 0.5, 4.0], p0=0.5
+)
 # The gap between them is 0 at 0, -0.54 at 1, -0.24 at 4, and grows far out on either side.
 UP = DeadZone([1.0, -0.6, 0.2, 0.2, -0.1], [0.0, 1.0, -1.5, -3.0, 2.5])
 DOWN = DeadZone([0.7, -0.2, -0.25, 0.25], [0.0, 1.5, -1.0, -2.5])
@@ -143,6 +146,11 @@ OTHERS: dict[str, Operator] = {
     "dahl": Dahl(1.5, 200.0),
     "dahl ductile": Dahl(1.5, 2.0, 0.5, z0=-0.25, u0=0.5),
     "inverse dahl": Dahl(0.5, 400.0, 1.5).inverse(),
+    "preisach": RELAYS,
+    "preisach of relays alone": Preisach([[0.0, 0.0], [1.0, 0.5]], [-1.0, 0.0, 1.5]),
+    "preisach from saturation": Preisach([[0.5, 0.0], [1.0, 0.5]], [0.0, 2.0, 3.0], 0.2, u0=-5.0),
+    "preisach of ridges": Preisach(RELAYS.weights, [-3.0, -1.0, 1.0, 3.0], 0.4, density="ridges"),
+    "inverse preisach": RELAYS.inverse(),
     "maxwell-slip": MaxwellSlip([1.0, 0.5, 0.25], [0.5, 1.0, 1.0], 0.25),
     "maxwell-slip that slides": MaxwellSlip([1.0, 0.5], [0.5, 1.0], z0=[0.25, -1.0]),
     "generalized maxwell-slip": GeneralizedMaxwellSlip(

@@ -153,5 +153,3 @@ def _require_a_butterfly(overview: Overview) -> None:
             "never rises; a butterfly turns on a branch of its loop: use family 'pi', 'gpi' or "
             "'mpi'"
         )
-
-
