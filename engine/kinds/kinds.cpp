@@ -3,6 +3,7 @@
 
 #define EACH_KIND(ROW)       \
     ROW(affine)              \
+    ROW(bouc_wen)            \
     ROW(dahl)                \
     ROW(dead_zone)           \
     ROW(direction_dead_zone) \

@@ -52,6 +52,10 @@ DECLARED = {
     "gpi after pi": "-RM-OI",
     "inverse of gpi": "-RM-OI",
     "inverse of mpi": "-RMCOI",
+    "bouc-wen": "-R--OI",
+    "bouc-wen sharp": "-R--OI",
+    "bouc-wen without inverse": "-R----",
+    "inverse bouc-wen": "-R--OI",
     "dahl": "-R--OI",
     "inverse dahl": "-R--OI",
 }

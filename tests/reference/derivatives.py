@@ -10,7 +10,7 @@ from hyst import Operator, _engine
 Array = NDArray[np.float64]
 
 # Kinds of stages whose row has no derivative of its own.
-WITHOUT_OWN = {"dahl", "masing", "memory_element"}
+WITHOUT_OWN = {"bouc_wen", "dahl", "masing", "memory_element"}
 
 
 def jacobian(operator: Operator, u: Array, derivative: str) -> Array:

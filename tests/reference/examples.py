@@ -15,6 +15,7 @@ from hyst import (
     Stop,
 )
 from hyst.models import (
+    BoucWen,
     Dahl,
     LinearDynamics,
     MasingOperator,
@@ -123,6 +124,10 @@ OTHERS: dict[str, Operator] = {
     "dahl": Dahl(1.5, 200.0),
     "dahl ductile": Dahl(1.5, 2.0, 0.5, z0=-0.25, u0=0.5),
     "inverse dahl": Dahl(0.5, 400.0, 1.5).inverse(),
+    "bouc-wen": BoucWen(0.6, 0.35, 0.12, 0.06, h=-1.0),
+    "bouc-wen sharp": BoucWen(0.2, 1.5, 0.7, -0.3, 1.7, phi=0.1, z0=-0.25, u0=0.5),
+    "bouc-wen without inverse": BoucWen(0.5, 0.4, 0.5, 0.1, 0.6, -1.0),
+    "inverse bouc-wen": BoucWen(1.1, 0.4, 0.2, 0.1, 2.5, -1.0, 0.02).inverse(),
     "hysteresis before dynamics": LAG @ PI,
 }
 

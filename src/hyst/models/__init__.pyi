@@ -1,5 +1,6 @@
 # The one list of models, for type checkers and for hyst/_lazy.py.
 
+from hyst.models.bouc_wen import BoucWen as BoucWen
 from hyst.models.dahl import Dahl as Dahl
 from hyst.models.given_thresholds import GivenThresholds as GivenThresholds
 from hyst.models.linear_dynamics import LinearDynamics as LinearDynamics
