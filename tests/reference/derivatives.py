@@ -11,6 +11,7 @@ Array = NDArray[np.float64]
 
 # Kinds of stages whose row has no derivative of its own.
 WITHOUT_OWN = {
+    "bouc_wen",
     "coleman_hodgdon",
     "creep",
     "dahl",

@@ -27,6 +27,7 @@ from hyst import (
     Stop,
 )
 from hyst.models import (
+    BoucWen,
     Butterfly,
     ColemanHodgdon,
     Creep,
@@ -220,6 +221,20 @@ elements = st.builds(
     st.sampled_from(("never", "sign-change")),
     numbers(-1.0, 1.0),
 )
+# gamma over beta, and phi over what it may be, inside what is admissible.
+bouc_wens = st.builds(
+    lambda k, a, beta, share, n, h, tilt, z0: BoucWen(
+        k, a, beta, share * beta, n, h, 0.5 * tilt * (1.0 + share) * beta, z0
+    ),
+    numbers(0.0, 3.0),
+    few,
+    few,
+    st.floats(-0.75, 1.0),
+    st.sampled_from((0.5, 1.0, 2.0)) | st.floats(0.3, 4.0),
+    st.sampled_from((1.0, -1.0)),
+    st.floats(-0.5, 0.5),
+    st.just(0.0),
+)
 # Poles and zeros inside the unit circle.
 lags = st.builds(
     lambda zero, poles, gain, delay: LinearDynamics.from_zeros_poles_gain(
@@ -301,6 +316,10 @@ RANDOM: dict[str, Operators] = {
     "butterfly": butterflies(),
     "coleman-hodgdon": coleman_hodgdons(least=0.0),
     "inverse-coleman-hodgdon": coleman_hodgdons(least=0.7).map(lambda model: model.inverse()),
+    "bouc-wen": bouc_wens,
+    "inverse-bouc-wen": bouc_wens.filter(lambda model: model.traits().invertible).map(
+        lambda model: model.inverse()
+    ),
     "dahl": st.builds(Dahl, few, few, st.floats(0.3, 3.0), numbers(-1.0, 1.0)),
     "creep": creeps(1.0),
     "inverse-creep": creeps(0.5)

@@ -1,5 +1,6 @@
 # The one list of models, for type checkers and for hyst/_lazy.py.
 
+from hyst.models.bouc_wen import BoucWen as BoucWen
 from hyst.models.butterfly import Butterfly as Butterfly
 from hyst.models.coleman_hodgdon import ColemanHodgdon as ColemanHodgdon
 from hyst.models.creep import Creep as Creep
