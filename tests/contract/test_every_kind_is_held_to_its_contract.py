@@ -58,6 +58,12 @@ DECLARED = {
     "inverse coleman-hodgdon": "-R--OI",
     "dahl": "-R--OI",
     "inverse dahl": "-R--OI",
+    "jiles-atherton": "-R--OI",
+    "jiles-atherton 1992": "-R--OI",
+    "jiles-atherton 1986": "-R--OI",
+    "jiles-atherton of B": "-R--OI",
+    "inverse jiles-atherton": "-R--OI",
+    "inverse jiles-atherton of B": "-R--OI",
 }
 
 

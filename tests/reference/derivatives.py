@@ -10,7 +10,7 @@ from hyst import Operator, _engine
 Array = NDArray[np.float64]
 
 # Kinds of stages whose row has no derivative of its own.
-WITHOUT_OWN = {"coleman_hodgdon", "dahl", "masing", "memory_element"}
+WITHOUT_OWN = {"coleman_hodgdon", "dahl", "jiles_atherton", "masing", "memory_element"}
 
 
 def jacobian(operator: Operator, u: Array, derivative: str) -> Array:

@@ -17,6 +17,7 @@ from hyst import (
 from hyst.models import (
     ColemanHodgdon,
     Dahl,
+    JilesAtherton,
     LinearDynamics,
     MasingOperator,
     MemoryElement,
@@ -128,6 +129,14 @@ OTHERS: dict[str, Operator] = {
     "dahl": Dahl(1.5, 200.0),
     "dahl ductile": Dahl(1.5, 2.0, 0.5, z0=-0.25, u0=0.5),
     "inverse dahl": Dahl(0.5, 400.0, 1.5).inverse(),
+    "jiles-atherton": JilesAtherton(2.0, 3.0, 2.0, 0.2, 1.0),
+    "jiles-atherton 1992": JilesAtherton(2.0, 3.0, 2.0, 0.2, 1.0, "jiles-thoelke-devine-1992"),
+    "jiles-atherton 1986": JilesAtherton(2.0, 3.0, 5.0, 0.3, 1.0, "jiles-atherton-1986"),
+    "jiles-atherton of B": JilesAtherton(2.0, 3.0, 1.0, 0.1, 1.5, output="B", mu0=0.5),
+    "inverse jiles-atherton": JilesAtherton(200.0, 3.0, 2.0, 0.4, 0.01).inverse(),
+    "inverse jiles-atherton of B": JilesAtherton(
+        2.0, 3.0, 2.0, 0.2, 1.0, output="B", mu0=0.5
+    ).inverse(),
     "hysteresis before dynamics": LAG @ PI,
 }
 

@@ -29,6 +29,7 @@ from hyst import (
 from hyst.models import (
     ColemanHodgdon,
     Dahl,
+    JilesAtherton,
     LinearDynamics,
     MasingOperator,
     MemoryElement,
@@ -39,6 +40,7 @@ from hyst.models import (
     RateCurve,
     SecondOrderSections,
 )
+from hyst.models.jiles_atherton import VARIANTS
 from reference.examples import EXAMPLES
 
 Array = NDArray[np.float64]
@@ -188,6 +190,16 @@ def coleman_hodgdons(draw: st.DrawFn, least: float) -> ColemanHodgdon:
     return ColemanHodgdon(alpha, pieces, [each - width for each in pieces], knots)
 
 
+@st.composite
+def magnets(draw: st.DrawFn, outputs: st.SearchStrategy[str]) -> JilesAtherton:
+    """Of any variant, twice whose constants are a magnet, too: alpha Ms / (3 a) at most 0.4."""
+    saturation, shape = draw(few), draw(st.floats(0.5, 4.0))
+    coupling = draw(st.floats(0.0, 1.2)) * shape / saturation
+    pinning, reversible = shape * draw(st.floats(0.2, 4.0)), draw(st.floats(0.05, 0.45))
+    variant, output = draw(st.sampled_from(VARIANTS)), draw(outputs)
+    return JilesAtherton(saturation, shape, pinning, reversible, coupling, variant, output, 0.5)
+
+
 RANDOM: dict[str, Operators] = {
     "affine": affines,
     "play": st.builds(Play, numbers(0.0, 5.0), numbers(-4.0, 4.0)),
@@ -217,6 +229,8 @@ RANDOM: dict[str, Operators] = {
     "inverse-dahl": st.builds(Dahl, few, st.floats(1e3, 1e4), st.floats(1.0, 3.0)).map(
         lambda friction: friction.inverse()
     ),
+    "jiles-atherton": magnets(st.sampled_from(("M", "B"))),
+    "inverse-jiles-atherton": magnets(st.just("B")).map(lambda magnet: magnet.inverse()),
     "inverse": invertible.map(lambda operator: operator.inverse()),
 }
 

@@ -3,6 +3,7 @@
 from hyst.models.coleman_hodgdon import ColemanHodgdon as ColemanHodgdon
 from hyst.models.dahl import Dahl as Dahl
 from hyst.models.given_thresholds import GivenThresholds as GivenThresholds
+from hyst.models.jiles_atherton import JilesAtherton as JilesAtherton
 from hyst.models.linear_dynamics import LinearDynamics as LinearDynamics
 from hyst.models.loading_curve import InverseCurve as InverseCurve
 from hyst.models.mapped_prandtl_ishlinskii import (
