@@ -29,6 +29,7 @@
     ROW(dahl)                \
     ROW(dead_zone)           \
     ROW(direction_dead_zone) \
+    ROW(jiles_atherton)      \
     ROW(masing)              \
     ROW(memory_element)      \
     ROW(pi)                  \

@@ -85,6 +85,12 @@ DECLARED = {
     "preisach from saturation": "-RMCOI",
     "preisach of ridges": "-RMCOI",
     "inverse preisach": "-RM-OI",
+    "jiles-atherton": "-R--OI",
+    "jiles-atherton 1992": "-R--OI",
+    "jiles-atherton 1986": "-R--OI",
+    "jiles-atherton of B": "-R--OI",
+    "inverse jiles-atherton": "-R--OI",
+    "inverse jiles-atherton of B": "-R--OI",
 }
 
 

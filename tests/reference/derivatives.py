@@ -16,6 +16,7 @@ WITHOUT_OWN = {
     "creep",
     "dahl",
     "generalized_maxwell_slip",
+    "jiles_atherton",
     "lugre",
     "masing",
     "maxwell_slip",

@@ -21,6 +21,7 @@ from hyst.models import (
     Creep,
     Dahl,
     GeneralizedMaxwellSlip,
+    JilesAtherton,
     LinearDynamics,
     LuGre,
     MasingOperator,
@@ -181,6 +182,14 @@ OTHERS: dict[str, Operator] = {
     "bouc-wen sharp": BoucWen(0.2, 1.5, 0.7, -0.3, 1.7, phi=0.1, z0=-0.25, u0=0.5),
     "bouc-wen without inverse": BoucWen(0.5, 0.4, 0.5, 0.1, 0.6, -1.0),
     "inverse bouc-wen": BoucWen(1.1, 0.4, 0.2, 0.1, 2.5, -1.0, 0.02).inverse(),
+    "jiles-atherton": JilesAtherton(2.0, 3.0, 2.0, 0.2, 1.0),
+    "jiles-atherton 1992": JilesAtherton(2.0, 3.0, 2.0, 0.2, 1.0, "jiles-thoelke-devine-1992"),
+    "jiles-atherton 1986": JilesAtherton(2.0, 3.0, 5.0, 0.3, 1.0, "jiles-atherton-1986"),
+    "jiles-atherton of B": JilesAtherton(2.0, 3.0, 1.0, 0.1, 1.5, output="B", mu0=0.5),
+    "inverse jiles-atherton": JilesAtherton(200.0, 3.0, 2.0, 0.4, 0.01).inverse(),
+    "inverse jiles-atherton of B": JilesAtherton(
+        2.0, 3.0, 2.0, 0.2, 1.0, output="B", mu0=0.5
+    ).inverse(),
     "hysteresis before dynamics": LAG @ PI,
     "butterfly": Butterfly(GPI, [[0.5, 0.1, 0.4], [-0.2, 0.3, 0.0], [0.05, 0.0, 0.0]]),
     "butterfly of a higher degree": Butterfly(

@@ -33,6 +33,7 @@ from hyst.models import (
     Creep,
     Dahl,
     GeneralizedMaxwellSlip,
+    JilesAtherton,
     LinearDynamics,
     LuGre,
     MasingOperator,
@@ -48,6 +49,7 @@ from hyst.models import (
     SecondOrderSections,
     TwoEnvelopePrandtlIshlinskii,
 )
+from hyst.models.jiles_atherton import VARIANTS
 from reference.examples import EXAMPLES
 
 Array = NDArray[np.float64]
@@ -291,6 +293,15 @@ def relays(draw: st.DrawFn, least: float = 0.0) -> Preisach:
     return Preisach(weights, edges, p0, u0, density)
 
 
+def magnets(draw: st.DrawFn, outputs: st.SearchStrategy[str]) -> JilesAtherton:
+    """Of any variant, twice whose constants are a magnet, too: alpha Ms / (3 a) at most 0.4."""
+    saturation, shape = draw(few), draw(st.floats(0.5, 4.0))
+    coupling = draw(st.floats(0.0, 1.2)) * shape / saturation
+    pinning, reversible = shape * draw(st.floats(0.2, 4.0)), draw(st.floats(0.05, 0.45))
+    variant, output = draw(st.sampled_from(VARIANTS)), draw(outputs)
+    return JilesAtherton(saturation, shape, pinning, reversible, coupling, variant, output, 0.5)
+
+
 RANDOM: dict[str, Operators] = {
     "affine": affines,
     "play": st.builds(Play, numbers(0.0, 5.0), numbers(-4.0, 4.0)),
@@ -343,6 +354,8 @@ RANDOM: dict[str, Operators] = {
     ),
     "preisach": relays(),
     "inverse-preisach": relays(0.25).map(lambda model: model.inverse()),
+    "jiles-atherton": magnets(st.sampled_from(("M", "B"))),
+    "inverse-jiles-atherton": magnets(st.just("B")).map(lambda magnet: magnet.inverse()),
     "inverse": invertible.map(lambda operator: operator.inverse()),
 }
 

@@ -9,6 +9,7 @@ from hyst.models.generalized_maxwell_slip import (
     GeneralizedMaxwellSlip as GeneralizedMaxwellSlip,
 )
 from hyst.models.given_thresholds import GivenThresholds as GivenThresholds
+from hyst.models.jiles_atherton import JilesAtherton as JilesAtherton
 from hyst.models.linear_dynamics import LinearDynamics as LinearDynamics
 from hyst.models.loading_curve import InverseCurve as InverseCurve
 from hyst.models.lugre import LuGre as LuGre
