@@ -131,7 +131,7 @@ OTHERS: dict[str, Operator] = {
     "generalized maxwell-slip": GeneralizedMaxwellSlip(
         [1.0, 0.5], [0.375, 0.625], C=4.0, Fc=1.0, Fs=1.5, vs=20.0, dt=0.1, delta=1.5, sigma2=0.02
     ),
-    "lugre": LuGre(1.5, 0.05, 0.02, Fc=2.0, Fs=3.0, vs=20.0, dt=0.1),
+    "lugre": LuGre(1.5, 0.05, 0.02, Fc=2.0, Fs=3.0, vs=20.0, dt=0.1, Fv=0.5, vv=15.0),
     "hysteresis before dynamics": LAG @ PI,
 }
 
