@@ -182,8 +182,8 @@ class LuGre(Operator):
         if not (self.sigma2 or self.Fv):
             raise NotInvertibleError(
                 f"sigma2 and Fv are 0: in sliding the force is {self.Fc:.6g} whatever the "
-                "velocity, so it does not tell the position; hyst.Dahl, to which these constants come down in slow "
-                "motion, inverts forces below that of sliding"
+                "velocity, so it does not tell the position; hyst.Dahl, to which these constants "
+                "come down in slow motion, inverts forces below that of sliding"
             )
         raise NotInvertibleError(
             f"sigma2 is {self.sigma2:.6g} and Fv {self.Fv:.6g}: in sliding a force tells a "
