@@ -101,6 +101,11 @@ _MAKE: dict[str, Callable[[], FamilyExample]] = {
         (decaying(),),
         {"stribeck": "free", "viscosity": "linear"},
     ),
+    "maxwell-slip": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.MaxwellSlip([3.0, 1.0], [0.36, 0.41], 0.5),
+        (decaying(),),
+        {"plays": 2},
+    ),
     "ramberg-osgood": lambda: FamilyExample(
         Affine(1.0, 0.3) @ hyst.RambergOsgood(1.0, 0.6, 0.8),
         (decaying(),),
