@@ -190,6 +190,7 @@ OTHERS: dict[str, Operator] = {
     "inverse jiles-atherton of B": JilesAtherton(
         2.0, 3.0, 2.0, 0.2, 1.0, output="B", mu0=0.5
     ).inverse(),
+    "lugre": LuGre(1.5, 0.05, 0.02, Fc=2.0, Fs=3.0, vs=20.0, dt=0.1, Fv=0.5, vv=15.0),
     "hysteresis before dynamics": LAG @ PI,
     "butterfly": Butterfly(GPI, [[0.5, 0.1, 0.4], [-0.2, 0.3, 0.0], [0.05, 0.0, 0.0]]),
     "butterfly of a higher degree": Butterfly(

@@ -135,6 +135,16 @@ def _hammerstein() -> FamilyExample:
 _MAKE: dict[str, Callable[[], FamilyExample]] = {
     "linear": lambda: FamilyExample(Affine(-1.3, 0.4), (decaying(),)),
     "dahl": lambda: FamilyExample(Affine(-1.0, 0.3) @ hyst.Dahl(4.0, 1.5), (decaying(),)),
+    "lugre": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.LuGre(30.0, 0.02, 0.03, 1.0, 1.6, 5.0, DT),
+        (decaying(),),
+        {"stribeck": "free", "viscosity": "linear"},
+    ),
+    "maxwell-slip": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.MaxwellSlip([3.0, 1.0], [0.36, 0.41], 0.5),
+        (decaying(),),
+        {"plays": 2},
+    ),
     "ramberg-osgood": lambda: FamilyExample(
         Affine(1.0, 0.3) @ hyst.RambergOsgood(1.0, 0.6, 0.8),
         (decaying(),),

@@ -136,7 +136,8 @@ def lugres(draw: st.DrawFn) -> LuGre:
     sigma1, sigma2 = by_rate * draw(numbers(0.0, 0.5)), by_rate * draw(numbers(0.0, 0.5))
     Fc, ratio = draw(few), 1.0 + by_rate * draw(st.floats(0.0, 1.0))
     dt = draw(st.sampled_from((0.5, 1.0, 2.0)))
-    return LuGre(draw(few), sigma1, sigma2, Fc, Fc * ratio, draw(few), dt)
+    Fv, vv = by_rate * draw(numbers(0.0, 0.5)), draw(few)
+    return LuGre(draw(few), sigma1, sigma2, Fc, Fc * ratio, draw(few), dt, Fv, vv)
 
 
 affines = st.builds(Affine, numbers(-2.0, 2.0), numbers(-3.0, 3.0))
