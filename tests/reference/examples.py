@@ -16,6 +16,8 @@ from hyst import (
 )
 from hyst.models import (
     Dahl,
+    ExponentialCurve,
+    Iwan,
     LinearDynamics,
     MasingOperator,
     MemoryElement,
@@ -116,9 +118,18 @@ OTHERS: dict[str, Operator] = {
     "masing of a power": MasingOperator(PowerLaw(1.0, 0.5, 0.7)),
     "masing of plays": MasingOperator(PiecewiseLinear([0.5, -0.3], [1.0, 2.0], p0=0.4)),
     "masing of a polynomial": MasingOperator(PolynomialCurve([1.0, 0.25])),
+    "masing that stiffens": MasingOperator(ExponentialCurve(1.0, 0.75, 2.0)),
+    "masing that softens": MasingOperator(ExponentialCurve(0.5, -1.0, 1.5)),
+    "masing that saturates": MasingOperator(ExponentialCurve(0.0, -1.0, 1.5)),
+    "inverse of a masing that stiffens": MasingOperator(ExponentialCurve(1.0, 0.75, 2.0)).inverse(),
+    "inverse of a masing that softens": MasingOperator(ExponentialCurve(0.5, -1.0, 1.5)).inverse(),
+    "iwan": Iwan(2.0, 1.5, -0.4, 0.25, 0.1),
+    "iwan without a spring": Iwan(2.0, 1.5),
+    "inverse iwan": Iwan(2.0, 1.5, -0.4, 0.25, 0.1).inverse(),
     "masing that forgets": MasingOperator(PowerLaw(1.0, 0.5, 0.7), "last-reversal", dead_band=0.3),
     "ramberg-osgood": RambergOsgood(1.0, 0.5, 1.2),
     "ramberg-osgood that forgets": RambergOsgood(1.0, 0.5, 1.2, "last-reversal"),
+    "ramberg-osgood that starts flat": RambergOsgood(0.0, 0.5, 0.8),
     "inverse ramberg-osgood": RambergOsgood(1.0, 0.5, 1.2).inverse(),
     "memory element": MemoryElement(CHARGE, 0.1, start=0.5),
     "memory element of rates": MemoryElement(

@@ -1,7 +1,10 @@
 # The one list of models, for type checkers and for hyst/_lazy.py.
 
 from hyst.models.dahl import Dahl as Dahl
+from hyst.models.exponential_curve import ExponentialCurve as ExponentialCurve
 from hyst.models.given_thresholds import GivenThresholds as GivenThresholds
+from hyst.models.iwan import Iwan as Iwan
+from hyst.models.iwan_curve import IwanCurve as IwanCurve
 from hyst.models.linear_dynamics import LinearDynamics as LinearDynamics
 from hyst.models.loading_curve import InverseCurve as InverseCurve
 from hyst.models.mapped_prandtl_ishlinskii import (
