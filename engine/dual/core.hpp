@@ -43,6 +43,7 @@ hyst_real hyst_unloading(const hyst_loading_curve *curve, hyst_real w)
 {
     const hyst_real x = iterated(curve, w).v;
     const double slope = hyst_loading_slope(curve, x).v;
+    if (!(slope > 0.0)) return x.v;  // a curve that starts flat: no derivative to speak of
     return {x.v, (w.d - hyst_loading(curve, x).d) / slope};
 }
 

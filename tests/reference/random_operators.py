@@ -32,7 +32,9 @@ from hyst.models import (
     ColemanHodgdon,
     Creep,
     Dahl,
+    ExponentialCurve,
     GeneralizedMaxwellSlip,
+    Iwan,
     JilesAtherton,
     LinearDynamics,
     LuGre,
@@ -208,9 +210,16 @@ invertible: Operators = st.one_of(
 )
 
 memories = st.sampled_from(("masing", "last-reversal"))
-curves = st.builds(PowerLaw, few, few, few) | st.builds(
-    lambda slopes: PiecewiseLinear(np.diff(slopes), np.arange(1.0, len(slopes)), slopes[0]),
-    st.lists(few, min_size=1, max_size=4),
+exponentials = st.builds(
+    lambda first, last, way: ExponentialCurve(last, last - first, way), few, few, few
+)
+curves = (
+    st.builds(PowerLaw, few, few, few)
+    | exponentials
+    | st.builds(
+        lambda slopes: PiecewiseLinear(np.diff(slopes), np.arange(1.0, len(slopes)), slopes[0]),
+        st.lists(few, min_size=1, max_size=4),
+    )
 )
 functions = st.builds(MemoryFunction.power_law, few, few, few) | st.builds(
     lambda values: MemoryFunction.table(np.arange(float(len(values))), values),
@@ -323,6 +332,7 @@ RANDOM: dict[str, Operators] = {
     ),
     "masing": st.builds(MasingOperator, curves, memories),
     "ramberg-osgood": st.builds(RambergOsgood, few, few, few, memories),
+    "iwan": st.builds(Iwan, few, few, st.floats(-0.45, 1.0), numbers(0.0, 2.0), numbers(0.0, 1.0)),
     "memory-element": elements,
     "inverse-memory-element": elements.map(lambda element: element.inverse()),
     "butterfly": butterflies(),
