@@ -129,7 +129,9 @@ OTHERS: dict[str, Operator] = {
     "butterfly of a higher degree": Butterfly(
         WAVY, [[0.5, 0.1, 0.4, 0.1], [-0.2, 0.3, 0.1, 0.0], [0.05, 0.02, 0.0, 0.0], [0.01, 0, 0, 0]]
     ),
-    "butterfly of friction": Butterfly(Dahl(1.5, 200.0), [[0.0, 0.1, 0.01], [0.2, 0, 0], [0, 0, 0]]),
+    "butterfly of friction": Butterfly(
+        Dahl(1.5, 200.0), [[0.0, 0.1, 0.01], [0.2, 0, 0], [0, 0, 0]]
+    ),
     "butterfly in a chain": Affine(-2.0, 1.0) @ Butterfly(PI, [[0.0, 1.0], [0.5, 0.0]]),
 }
 
