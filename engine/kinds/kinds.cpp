@@ -3,18 +3,25 @@
 
 #define EACH_KIND(ROW)       \
     ROW(affine)              \
+    ROW(coleman_hodgdon)     \
+    ROW(creep)               \
     ROW(dahl)                \
     ROW(dead_zone)           \
     ROW(direction_dead_zone) \
+    ROW(generalized_maxwell_slip) \
+    ROW(lugre)               \
     ROW(masing)              \
+    ROW(maxwell_slip)        \
     ROW(memory_element)      \
     ROW(pi)                  \
     ROW(play)                \
     ROW(rate_dependent_pi)   \
+    ROW(rate_shift)          \
     ROW(sections)            \
     ROW(state_map)           \
     ROW(state_space)         \
-    ROW(stop)
+    ROW(stop)                \
+    ROW(two_envelope)
 
 namespace hyst {
 namespace HYST_KINDS {

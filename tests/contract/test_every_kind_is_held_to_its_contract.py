@@ -54,8 +54,23 @@ DECLARED = {
     "inverse of mpi": "-RMCOI",
     "butterfly": "-RM---",
     "butterfly of friction": "-R----",
+    "coleman-hodgdon": "-R--OI",
+    "coleman-hodgdon saturating": "-R--OI",
+    "coleman-hodgdon that falls": "-R----",
+    "inverse coleman-hodgdon": "-R--OI",
     "dahl": "-R--OI",
     "inverse dahl": "-R--OI",
+    "maxwell-slip": "-RMCOI",
+    "maxwell-slip that slides": "-RMCO-",
+    "generalized maxwell-slip": "------",
+    "lugre": "------",
+    "lugre without rate": "-r--O-",
+    "two envelopes": "-rMCOI",
+    "two envelopes without linear part": "-rMCO-",
+    "inverse of two envelopes": "-rM-OI",
+    "creep": "-----I",
+    "creep that goes back": "-----I",
+    "inverse creep": "-----I",
 }
 
 
