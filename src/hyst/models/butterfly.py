@@ -53,8 +53,8 @@ class Butterfly(Operator):
     -----
     y is the same for ``z -> a z + b u + b0`` with other coefficients: scale, offset and linear part
     of z are no constants that a record could show. A hysteresis without a linear part, as plays
-    with p0 = 0, and of a given range is a good choice. Mason, Phys. Rev. 74 (1948) 1134; Devonshire,
-    Adv. Phys. 3 (1954) 85-130.
+    with p0 = 0, and of a given range is a good choice. Mason, Phys. Rev. 74 (1948) 1134;
+    Devonshire, Adv. Phys. 3 (1954) 85-130.
 
     Examples
     --------

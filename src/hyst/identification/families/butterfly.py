@@ -108,8 +108,8 @@ class Butterfly(Family):
         left, curve = guesses[0].residual, residual_of_a_curve(overview)
         if left > HYSTERESIS_PAYS * curve:
             raise NotIdentifiableError(
-                "the output turns with the input but shows no hysteresis of a butterfly: a curve of "
-                f"the input alone leaves {100.0 * curve / overview.output_range:.3g} % of the "
+                "the output turns with the input but shows no hysteresis of a butterfly: a curve "
+                f"of the input alone leaves {100.0 * curve / overview.output_range:.3g} % of the "
                 f"range, and plays {100.0 * left / overview.output_range:.3g} %; stay on one side "
                 "of the turn and use family 'pi'"
             )
