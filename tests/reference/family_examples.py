@@ -11,6 +11,7 @@ import numpy as np
 import hyst
 from hyst import Record
 from hyst.operators import Affine, Operator
+from reference.foreign_records import switching
 
 DT = 1e-3
 
@@ -37,6 +38,9 @@ class FamilyExample:
         What the family tells beside constants of its model, with its true value.
     told_units
         Powers of the input's and the output's unit in it; what is not named has no unit.
+        What the family tells beside constants of its model, which has no unit, with its true value.
+    foreign
+        What another actuator makes of a drive, of which the family must know that it is none of it.
     """
 
     model: Operator
@@ -47,6 +51,7 @@ class FamilyExample:
     unit_of_its_own: str = "?"
     told: dict[str, float] = field(default_factory=dict)
     told_units: dict[str, tuple[int, int]] = field(default_factory=dict)
+    foreign: Callable[[np.ndarray], np.ndarray] = lambda u: switching(u) ** 2  # a butterfly
 
     def records(self, noise: float = 0.0, seed: int = 0) -> list[Record]:
         """Give the records of the actuator with noise of a share of the output's range."""
@@ -132,8 +137,31 @@ def _hammerstein() -> FamilyExample:
     )
 
 
+def _butterfly() -> FamilyExample:
+    """Strain of a material that switches, and a loop that only rises, which is none."""
+    drive = decaying()
+    low, high = float(drive.min()), float(drive.max())
+    ends = np.linspace(low, high, 6)
+    slopes = np.array([0.3, 1.6, 0.5, 1.9, 0.4])
+    slopes *= (high - low) / float(slopes @ np.diff(ends))  # the envelope rises by the range
+    a, b, c, d, e = slopes
+    envelope = hyst.DeadZone([c, a - b, b - c, d - c, e - d], [0.0, *ends[1:5]])
+    r = np.array([0.3, 0.6])
+    p = np.array([0.6, 0.4])
+    p /= float(p @ (0.5 * (high - low) - r))  # the state goes from -1 to 1
+    plays = hyst.PrandtlIshlinskii(p, r)
+    strain = [[0.3, 0.05, 1.0], [0.1, 0.4, 0.0], [0.15, 0.0, 0.0]]
+    return FamilyExample(
+        hyst.Butterfly(hyst.GeneralizedPrandtlIshlinskii(envelope, plays), strain),
+        (drive,),
+        {"plays": 2, "knots": 4},
+        foreign=switching,
+    )
+
+
 _MAKE: dict[str, Callable[[], FamilyExample]] = {
     "linear": lambda: FamilyExample(Affine(-1.3, 0.4), (decaying(),)),
+    "butterfly": _butterfly,
     "dahl": lambda: FamilyExample(Affine(-1.0, 0.3) @ hyst.Dahl(4.0, 1.5), (decaying(),)),
     "lugre": lambda: FamilyExample(
         Affine(-1.0, 0.3) @ hyst.LuGre(30.0, 0.02, 0.03, 1.0, 1.6, 5.0, DT),
