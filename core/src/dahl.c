@@ -1,6 +1,7 @@
 /* Dahl's model, one sample at a time. */
 #include "hyst/dahl.h"
 
+#include "hyst/branch.h"
 #include "hyst/finite.h"
 #include "hyst/power.h"
 
@@ -75,13 +76,13 @@ hyst_real hyst_dahl_step(const hyst_dahl *model, hyst_real *state, hyst_real inp
     const hyst_real zero = HYST_REAL(0.0);
     const hyst_real value = model->inverse ? input / model->force : input;
     /* The input turns, be it the position or the force. */
-    const hyst_real last = model->inverse ? state[1] : state[0];
-    const hyst_real began = model->inverse ? state[3] : state[2];
-    hyst_real u_turn = state[2];
-    hyst_real z_turn = state[3];
-    if ((value > last && last < began) || (value < last && last > began)) {
-        u_turn = state[0];
-        z_turn = state[1];
+    const hyst_real last = model->inverse ? state[HYST_BRANCH_Z] : state[HYST_BRANCH_U];
+    const hyst_real began = model->inverse ? state[HYST_BRANCH_Z_TURN] : state[HYST_BRANCH_U_TURN];
+    hyst_real u_turn = state[HYST_BRANCH_U_TURN];
+    hyst_real z_turn = state[HYST_BRANCH_Z_TURN];
+    if (hyst_branch_turns(began, last, value)) {
+        u_turn = state[HYST_BRANCH_U];
+        z_turn = state[HYST_BRANCH_Z];
     }
     const hyst_real way = value - (model->inverse ? z_turn : u_turn);
     const hyst_real sign = way < zero ? HYST_REAL(-1.0) : HYST_REAL(1.0);
@@ -95,17 +96,17 @@ hyst_real hyst_dahl_step(const hyst_dahl *model, hyst_real *state, hyst_real inp
     } else {
         z = dahl_after(model->excess, z_turn, sign, model->rate * (sign * way));
     }
-    state[0] = u;
-    state[1] = z;
-    state[2] = u_turn;
-    state[3] = z_turn;
+    state[HYST_BRANCH_U] = u;
+    state[HYST_BRANCH_Z] = z;
+    state[HYST_BRANCH_U_TURN] = u_turn;
+    state[HYST_BRANCH_Z_TURN] = z_turn;
     return model->inverse ? u : model->force * z;
 }
 
 static size_t dahl_length(const void *model)
 {
     (void)model;
-    return 4;
+    return HYST_BRANCH_LENGTH;
 }
 
 static hyst_real dahl_step(const void *model, hyst_real *state, hyst_real u)

@@ -58,6 +58,22 @@ static hyst_real step_from_rest(const hyst_masing *model, hyst_real *state, hyst
 }
 #define hyst_masing_step step_from_rest
 
+#include "state_polynomial.c"
+#include "branch.c"
+
+#include "hyst/coleman_hodgdon.h"
+#define hyst_coleman_way iterated_way
+#include "coleman_way.c"
+#undef hyst_coleman_way
+
+hyst_real hyst_coleman_way(hyst_real line, hyst_real bend, hyst_real w)
+{
+    const hyst_real x = iterated_way(line.v, bend.v, w.v).v;
+    const double share = hyst_coleman_share(x).v;
+    const double slope = line.v + bend.v * (1.0 - share);
+    return {x.v, (w.d - x.v * line.d - share * bend.d) / slope};
+}
+
 #include "core_kinds.inc"  // made by CMakeLists.txt: the sources that hold a kind, and the kinds
 
 #undef hyst_masing_step

@@ -10,7 +10,19 @@ from hyst import Operator, _engine
 Array = NDArray[np.float64]
 
 # Kinds of stages whose row has no derivative of its own.
-WITHOUT_OWN = {"dahl", "masing", "memory_element"}
+WITHOUT_OWN = {
+    "coleman_hodgdon",
+    "creep",
+    "dahl",
+    "generalized_maxwell_slip",
+    "lugre",
+    "masing",
+    "maxwell_slip",
+    "memory_element",
+    "rate_shift",
+    "state_map",
+    "two_envelope",
+}
 
 
 def jacobian(operator: Operator, u: Array, derivative: str) -> Array:
