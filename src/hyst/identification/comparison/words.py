@@ -15,7 +15,7 @@ SMALL_PART = 0.6
 """Of the input range a model was identified over: records of less say little of its large loops."""
 
 HARDLY_OUTSIDE = 5e-3
-"""Of the range a model was identified over: an input that goes further by less is told by nobody."""
+"""Of the range a model was identified over: an input that goes less far beyond it is not told."""
 
 
 def which_for_what(found: Comparison) -> tuple[str, ...]:
