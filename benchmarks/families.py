@@ -13,7 +13,7 @@ import multiprocessing
 import re
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -87,9 +87,9 @@ def _asked() -> argparse.Namespace:
     return parser.parse_args(sys.argv[1:])
 
 
-def _entries(task: Task, asked: argparse.Namespace) -> list[Entry]:
+def _entries(task: Task, asked: argparse.Namespace) -> Iterator[Entry]:
     names = asked.family.split(",") if asked.family else ["auto", *hyst.families]
-    return [within(asked.limit, name, task) for name in names]
+    return (within(asked.limit, name, task) for name in names)
 
 
 def within(limit: float, name: str, task: Task) -> Entry:
