@@ -1,26 +1,26 @@
 // All kinds of stages, a line each.
 #include "kind.hpp"
 
-#define EACH_KIND(ROW)       \
-    ROW(affine)              \
-    ROW(coleman_hodgdon)     \
-    ROW(creep)               \
-    ROW(dahl)                \
-    ROW(dead_zone)           \
-    ROW(direction_dead_zone) \
-    ROW(generalized_maxwell_slip) \
-    ROW(lugre)               \
-    ROW(masing)              \
-    ROW(maxwell_slip)        \
-    ROW(memory_element)      \
-    ROW(pi)                  \
-    ROW(play)                \
-    ROW(rate_dependent_pi)   \
-    ROW(rate_shift)          \
-    ROW(sections)            \
-    ROW(state_map)           \
-    ROW(state_space)         \
-    ROW(stop)                \
+#define EACH_KIND(ROW)              \
+    ROW(affine)                     \
+    ROW(coleman_hodgdon)            \
+    ROW(creep)                      \
+    ROW(dahl)                       \
+    ROW(dead_zone)                  \
+    ROW(direction_dead_zone)        \
+    ROW(generalized_maxwell_slip)   \
+    ROW(lugre)                      \
+    ROW(masing)                     \
+    ROW(maxwell_slip)               \
+    ROW(memory_element)             \
+    ROW(pi)                         \
+    ROW(play)                       \
+    ROW(rate_dependent_pi)          \
+    ROW(rate_shift)                 \
+    ROW(sections)                   \
+    ROW(state_map)                  \
+    ROW(state_space)                \
+    ROW(stop)                       \
     ROW(two_envelope)
 
 namespace hyst {

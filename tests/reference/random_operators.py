@@ -300,6 +300,7 @@ RANDOM: dict[str, Operators] = {
     "two-envelope-prandtl-ishlinskii": two_envelopes(),
     "inverse-two-envelope-prandtl-ishlinskii": two_envelopes(0.25).map(
         lambda model: model.inverse()
+    ),
     "rate-shift": st.builds(
         RateShift, numbers(0.0, 2.0), st.floats(0.1, 2.0), st.sampled_from((0.5, 1.0, 2.0))
     ),
