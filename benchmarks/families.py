@@ -123,6 +123,8 @@ def entry_of(name: str, task: Task) -> Entry:
         found = hyst.identify(training, family=name, allow_unconverged=True, **task.options)
     except hyst.HystError as error:
         return Entry(name, time.process_time() - start, told=f"refused: {error}")
+    except Exception as error:  # a defect, which is to be seen beside what works
+        return Entry(name, time.process_time() - start, told=f"failed: {error!r}")
     seconds = time.process_time() - start
     told = found.verdict.level
     if found.family != name:

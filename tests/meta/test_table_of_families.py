@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 import hyst
-from hyst.operators import Operator
 from reference.family_examples import family_example
 
 HEADER = ("family", "made for", "minor loops", "rate", "inverse", "estimated", "page")
@@ -23,16 +22,14 @@ def rows(repository: Path) -> dict[str, dict[str, str]]:
     return {row[0].strip("`"): dict(zip(HEADER, row, strict=True)) for row in cells}
 
 
-def test_every_family_has_a_row_in_the_order_of_the_registry(
-    rows: dict[str, dict[str, str]],
-) -> None:
-    assert list(rows) == list(hyst.families)
+def test_every_family_has_a_row(rows: dict[str, dict[str, str]]) -> None:
+    assert set(rows) == set(hyst.families)
 
 
 @pytest.mark.parametrize("name", hyst.families)
 def test_a_row_says_what_its_actuator_does(name: str, rows: dict[str, dict[str, str]]) -> None:
     """Of the actuator that the contract of families takes; one of other constants may do less."""
-    row, model = rows[name], _model(name)
+    row, model = rows[name], family_example(name).model
     held = model.traits().held()
     assert (row["rate"] == "none") == bool(held["rate_independent"])
     assert row["minor loops"].startswith("closed" if held["return_point_memory"] else "open")
@@ -49,7 +46,3 @@ def test_a_row_leads_to_a_page_that_names_the_family(
     assert link is not None
     page = (repository / "docs" / link[1]).read_text(encoding="utf-8")
     assert name in page
-
-
-def _model(name: str) -> Operator:
-    return family_example(name).model
