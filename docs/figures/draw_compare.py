@@ -16,7 +16,6 @@ from pathlib import Path
 import numpy as np
 from benchmarks.plants import nested_loops, plants, shrinking_loops
 
-import hyst
 from hyst.cli import main
 from hyst.io import write_columns
 
@@ -40,11 +39,9 @@ def draw() -> None:
             main(["identify", training, *COLUMNS, "--family", family, "-o", out])
         files = [str(folder / each / "model.json") for each in FAMILIES]
         out = folder / "out"
-        print("=" * 80)
         main(["compare", *files, str(folder / "fresh.csv"), *COLUMNS, "-o", str(out)])
         shutil.copy(out / "loops.png", HERE / "compare-loops.png")
 
 
 if __name__ == "__main__":
-    print(hyst.__version__)
     draw()

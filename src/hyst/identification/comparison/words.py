@@ -181,7 +181,7 @@ def _outside(found: Comparison) -> Iterator[str]:
         if share and beyond > HARDLY_OUTSIDE * (span[1] - span[0]):
             yield (
                 f"Warning: the input goes from {low:.6g} to {high:.6g}, {said}; "
-                f"{100.0 * share:.2g} % of the samples are extrapolation."
+                f"{100.0 * share:.3g} % of the samples are extrapolation."
             )
         elif high - low < SMALL_PART * (span[1] - span[0]):
             yield (
