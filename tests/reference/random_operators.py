@@ -241,6 +241,7 @@ def coleman_hodgdons(draw: st.DrawFn, least: float) -> ColemanHodgdon:
     return ColemanHodgdon(alpha, pieces, [each - width for each in pieces], knots)
 
 
+@st.composite
 def two_envelopes(draw: st.DrawFn, least_p0: float = 0.0) -> TwoEnvelopePrandtlIshlinskii:
     """One envelope, and the same with a steeper piece to the right and one to the left of 0."""
     plain = draw(invertible_dead_zones().filter(lambda zone: zone.weights[0] > 0.0))
