@@ -147,7 +147,8 @@ static hyst_preisach_piece preisach_in_cell(const hyst_preisach *model, const pr
     piece.from = preisach_point_at(model, branch, begin, before);
     piece.to = preisach_point_at(model, branch, model->threshold[far], after);
     piece.width = piece.to.u - begin;
-    piece.square = is_straight ? HYST_REAL(0.0) : (triangle < rise ? triangle : rise);
+    piece.square = is_straight ? HYST_REAL(0.0)
+                               : (triangle > rise ? HYST_ROUNDED(triangle, rise) : triangle);
     piece.line = (rise - piece.square) + model->p0 * preisach_size(piece.width);
     piece.rising = branch->rising;
     piece.has_end = 1;
