@@ -50,9 +50,9 @@ class ColemanHodgdon(Family):
             "dC/du = \u03b1 s (f(u) - C) + g(u),  s = sgn(du)",
         ),
         explanations=(
-            "The output relaxes to a curve f with the slopes a, over a way of 1 / \u03b1 (alpha) of "
+            "The output relaxes to a curve f with the slopes a, over a way 1 / \u03b1 (alpha) of "
             "the input, and moves with the slope b = g(u) <= a where it crosses f; the loop is as "
-            "wide as a is above b. Minor loops drift until they close; those of plays close at once.",
+            "wide as a is above b. Minor loops drift until they close, unlike those of plays.",
         ),
     )
 
@@ -89,7 +89,7 @@ class ColemanHodgdon(Family):
         if way > 2.0 * data.half_range:
             told.append(
                 f"a branch forgets its turn over a way of {way:.4g}, longer than the strokes of "
-                "the record: alpha, a and b are extrapolations, of which the record shows products only"
+                "the record: alpha, a and b are extrapolations, of which it shows products only"
             )
         return tuple(told)
 
