@@ -49,6 +49,11 @@ class Parametrization:
         How many there are, g.
     is_allowed
         Tells whether theta makes an operator at all, where bounds alone do not say it.
+    prior
+        Shape (q, m): what is small before any record is seen, over the norm of the centred output;
+        its square is added to the cost. None where nothing is known before.
+    is_linear
+        Whether the constants only weight what the operator answers, so that one step solves it.
     """
 
     template: Operator
@@ -60,6 +65,8 @@ class Parametrization:
     gauges: Callable[[Array], tuple[Array, Array]] | None = None
     gauge_count: int = 0
     is_allowed: Callable[[Array], bool] | None = None
+    prior: Array | None = None
+    is_linear: bool = False
 
     @property
     def size(self) -> int:
