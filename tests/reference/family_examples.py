@@ -101,6 +101,13 @@ _MAKE: dict[str, Callable[[], FamilyExample]] = {
         (decaying(),),
         unit_of_its_own=".c2",  # the input's unit to the power c3 is in it
     ),
+    "masing": lambda: FamilyExample(
+        Affine(1.0, 0.3) @ hyst.MasingOperator(hyst.models.ExponentialCurve(1.5, 1.0, 0.4)),
+        (decaying(),),
+    ),
+    "iwan": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.Iwan(1.0, 3.0, -0.3, 0.5, 0.4), (decaying(),)
+    ),
     "pi": lambda: FamilyExample(Affine(-1.0, 0.3) @ _plays(), (decaying(),), {"plays": 2}),
     # Knots where the family puts them: evenly over the signal the map acts on.
     "gpi": lambda: FamilyExample(
