@@ -15,6 +15,7 @@
     ROW(memory_element)             \
     ROW(pi)                         \
     ROW(play)                       \
+    ROW(preisach)                   \
     ROW(rate_dependent_pi)          \
     ROW(rate_shift)                 \
     ROW(sections)                   \

@@ -199,8 +199,10 @@ def test_the_result_does_not_depend_on_units(name: str) -> None:
         factors = plain.model.parameter_scales(input_scale, output_scale)
         for i, each in enumerate(plain.parameter_names):
             if each in example.told:
-                assert scaled.parameter_values[i] == plain.parameter_values[i]
-                errors = scaled.standard_errors[i], plain.standard_errors[i]
+                of_input, of_output = example.told_units.get(each, (0, 0))
+                factor = input_scale**of_input * output_scale**of_output
+                assert scaled.parameter_values[i] == factor * plain.parameter_values[i]
+                errors = scaled.standard_errors[i], factor * plain.standard_errors[i]
                 np.testing.assert_allclose(*errors, rtol=1e-9)
                 continue
             at = expected.names.index(each)
