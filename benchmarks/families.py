@@ -63,6 +63,7 @@ class Entry:
 def main() -> None:
     """Print a table for each data set, and write all of them if asked to."""
     asked = _asked()
+    _load_what_is_slow()
     rows: list[tuple[Task, list[Entry]]] = []
     notes: list[str] = []
     for task in tasks():
@@ -85,6 +86,12 @@ def _asked() -> argparse.Namespace:
     parser.add_argument("--data", default="")
     parser.add_argument("--limit", type=float, default=LIMIT)
     return parser.parse_args(sys.argv[1:])
+
+
+def _load_what_is_slow() -> None:
+    """Identify something, so that no fit is charged for what is imported on first use."""
+    u = np.sin(np.linspace(0.0, 30.0, 300))
+    hyst.identify(hyst.Record(u, hyst.Play(0.3)(u), 1.0), family="pi,rdpi", delay="auto")
 
 
 def _entries(task: Task, asked: argparse.Namespace) -> Iterator[Entry]:
