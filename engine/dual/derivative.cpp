@@ -4,7 +4,9 @@
 #include <cstring>
 
 #include "../simd/kernels.hpp"
+#include "hyst/bouc_wen_branch.h"
 #include "hyst/power.h"
+#include "hyst/root.h"
 
 // What CMakeLists.txt compiles for each number of tangents, and for each instruction set with it.
 #define HYST_PASS(name)             \
@@ -63,6 +65,20 @@ const Width &width_for(std::size_t columns) {
 double core_power(double x, double e) { return hyst_power(x, e); }
 double core_log2(double x) { return hyst_log2(x); }
 double core_exp2(double v) { return hyst_exp2(v); }
+double core_root(double x) { return hyst_root(x); }
+
+double core_rising(double n, double join, double share) {
+    return hyst_bouc_wen_rising(n, join, share);
+}
+double core_falling(double n, double ratio, double share) {
+    return hyst_bouc_wen_falling(n, ratio, share);
+}
+double core_risen(double n, double join, double tilt, double from, double way) {
+    return hyst_bouc_wen_risen(n, join, tilt, from, way);
+}
+double core_fallen(double n, double ratio, double tilt, double from, double way) {
+    return hyst_bouc_wen_fallen(n, ratio, tilt, from, way);
+}
 
 void kernel_jacobian(const Said &said, const double *state, const Tangents &t) {
     const std::size_t columns = t.incoming + said.constants.size();

@@ -11,14 +11,17 @@ Array = NDArray[np.float64]
 
 # Kinds of stages whose row has no derivative of its own.
 WITHOUT_OWN = {
+    "bouc_wen",
     "coleman_hodgdon",
     "creep",
     "dahl",
     "generalized_maxwell_slip",
+    "jiles_atherton",
     "lugre",
     "masing",
     "maxwell_slip",
     "memory_element",
+    "preisach",
     "rate_shift",
     "state_map",
     "two_envelope",

@@ -1,13 +1,18 @@
 # The one list of models, for type checkers and for hyst/_lazy.py.
 
+from hyst.models.bouc_wen import BoucWen as BoucWen
 from hyst.models.butterfly import Butterfly as Butterfly
 from hyst.models.coleman_hodgdon import ColemanHodgdon as ColemanHodgdon
 from hyst.models.creep import Creep as Creep
 from hyst.models.dahl import Dahl as Dahl
+from hyst.models.exponential_curve import ExponentialCurve as ExponentialCurve
 from hyst.models.generalized_maxwell_slip import (
     GeneralizedMaxwellSlip as GeneralizedMaxwellSlip,
 )
 from hyst.models.given_thresholds import GivenThresholds as GivenThresholds
+from hyst.models.iwan import Iwan as Iwan
+from hyst.models.iwan_curve import IwanCurve as IwanCurve
+from hyst.models.jiles_atherton import JilesAtherton as JilesAtherton
 from hyst.models.linear_dynamics import LinearDynamics as LinearDynamics
 from hyst.models.loading_curve import InverseCurve as InverseCurve
 from hyst.models.lugre import LuGre as LuGre
@@ -26,6 +31,7 @@ from hyst.models.piecewise_linear import PiecewiseLinear as PiecewiseLinear
 from hyst.models.polynomial_curve import PolynomialCurve as PolynomialCurve
 from hyst.models.power_law import PowerLaw as PowerLaw
 from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii as PrandtlIshlinskii
+from hyst.models.preisach import Preisach as Preisach
 from hyst.models.ramberg_osgood import RambergOsgood as RambergOsgood
 from hyst.models.rate_curve import RateCurve as RateCurve
 from hyst.models.rate_dependent import (

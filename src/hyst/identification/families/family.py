@@ -78,6 +78,8 @@ class Family(ABC):
     """Whether samples left out of a record would change the model."""
     explains: ClassVar[tuple[str, ...]] = ()
     """Findings that make no record doubtful of which it leaves nothing but noise."""
+    describes: ClassVar[tuple[str, ...]] = ()
+    """Findings that are what the family is for: they make no record of it doubtful."""
     wraps: ClassVar[str] = ""
     """The option that holds a family this one is made around; empty where there is none."""
 

@@ -17,9 +17,6 @@ CROSSED = 0.01
 FEWEST_CROSSED = 0.5
 """Of the area of the grid: a record that crosses less is refused."""
 
-HARDLY_KNOWN = 1.0 / 3.0
-"""Of the cells with mass: fewer combinations that the record determines are told."""
-
 MASSLESS = 1e-6
 """Of the largest weight: no mass."""
 
@@ -64,7 +61,9 @@ def require_crossed(cells: Cells, turned: Rows) -> None:
         )
 
 
-def about_coverage(weights: Array, turned: Rows, effective: int) -> tuple[str, ...]:
+def about_coverage(
+    weights: Array, turned: Rows, effective: int, *, one_size: bool
+) -> tuple[str, ...]:
     """Say what the record leaves to the prior.
 
     Parameters
@@ -75,6 +74,8 @@ def about_coverage(weights: Array, turned: Rows, effective: int) -> tuple[str, .
         Shape (cells,), of ``crossed``.
     effective
         How many combinations of the weights the records determine.
+    one_size
+        Whether the records show no minor loops.
     """
     said, total = [], float(weights.sum())
     if not turned.all():
@@ -83,11 +84,11 @@ def about_coverage(weights: Array, turned: Rows, effective: int) -> tuple[str, .
             f"{int((~turned).sum())} of {turned.size} cells of the grid were never crossed; the "
             f"prior of smoothness filled them, with {100.0 * share:.1f} % of the mass"
         )
-    loaded = int((weights > MASSLESS * weights.max(initial=0.0)).sum())
-    if effective < HARDLY_KNOWN * loaded:
+    if one_size:
+        loaded = int((weights > MASSLESS * weights.max(initial=0.0)).sum())
         said.append(
-            f"the records determine about {effective} combinations of the weights of {loaded} "
-            "cells; the prior of smoothness decides the rest, so loops that differ from those of "
-            f"the records are an extrapolation: {ADVICE}"
+            f"the records show no minor loops: they determine about {effective} combinations of "
+            f"the weights of {loaded} cells, and the prior of smoothness decides the rest, so "
+            f"minor loops are an extrapolation; {ADVICE}"
         )
     return tuple(said)

@@ -23,18 +23,18 @@ from hyst.identification.families.preisach.smoothness import (
     effective_count,
 )
 from hyst.identification.record_use.overview import Overview
-from hyst.signals import estimate_noise
 
 Array = NDArray[np.float64]
 
-LEVELS, FINER_LEVELS = 24, 40
+LEVELS, FINER_LEVELS = 24, 32
 """What ``"auto"`` takes, and what it tries where the former leaves more than noise."""
 
 FEWEST_LEVELS, MOST_LEVELS = 4, 64
 SAMPLES_A_LEVEL = 8
 
-MISFIT = 1.15
-"""Mean square residual, over that of its white part, from which on a finer grid is tried."""
+MISFIT, SURE = 0.1, 3.0
+"""Correlation of neighbouring residuals from which on a finer grid is tried, at least so many of
+its standard deviations."""
 
 WORTH_IT = 0.97
 """Residual of a finer grid, over that of the other, up to which it is taken."""
@@ -51,16 +51,19 @@ class GridFit:
     ----------
     parametrization, theta
         Free parameters and their best values.
+    strength
+        Of the prior.
     rms
         Of the residual, output units.
-    white
-        The part of it that is noise, output units.
+    correlation
+        Of neighbouring residuals, over what noise alone may show.
     """
 
     parametrization: CellParametrization
     theta: Array
+    strength: float
     rms: float
-    white: float
+    correlation: float
 
 
 def levels_for(samples: int) -> int:
@@ -112,17 +115,20 @@ def fitted_grid(
     kept = overview.kept
     if smoothness is None:
         blocks = overview.once("blocks", lambda: blocks_of(overview))
-        smoothness = chosen_strength(fit, blocks, kept)
+        smoothness = chosen_strength(fit, blocks, kept, smoothest=not overview.shows_minor_loops)
     rows = np.ones(fit.y.size, dtype=bool) if kept is None else kept
     normal, moment = fit.gram(rows)
     held = fit.held(smoothness)
     theta = fit.solve(normal + held, moment, start_of(parametrization) + 1.0)
     free = (theta > fit.lower) & (theta < fit.upper)
     effective = effective_count(normal, held, free)
-    return _judged(fit, rows, with_prior(parametrization, fit.prior, smoothness, effective), theta)
+    under_prior = with_prior(parametrization, fit.prior, smoothness, effective)
+    left = (fit.columns @ theta - fit.y)[rows]
+    rms = float(np.sqrt(np.mean(np.square(left))))
+    return GridFit(under_prior, theta, smoothness, rms, _correlation(left))
 
 
-def best_grid(overview: Overview, coarse: GridFit, finer: Callable[[], GridFit]) -> GridFit:
+def best_grid(overview: Overview, coarse: GridFit, finer: Callable[[float], GridFit]) -> GridFit:
     """Take a finer grid where the coarse one leaves more than noise and the finer one less.
 
     Parameters
@@ -132,18 +138,16 @@ def best_grid(overview: Overview, coarse: GridFit, finer: Callable[[], GridFit])
     coarse
         Fitted.
     finer
-        Fits a finer one.
+        Fits a finer one with a prior of a strength, which means the same on every grid.
     """
-    small = coarse.rms <= ROUNDING * overview.output_range
-    if small or coarse.rms**2 <= MISFIT * coarse.white**2:
+    if coarse.rms <= ROUNDING * overview.output_range or coarse.correlation <= 1.0:
         return coarse
-    other = finer()
+    other = finer(coarse.strength)
     return other if other.rms < WORTH_IT * coarse.rms else coarse
 
 
-def _judged(
-    fit: LinearFit, rows: NDArray[np.bool_], parametrization: CellParametrization, theta: Array
-) -> GridFit:
-    left = (fit.columns @ theta - fit.y)[rows]
-    rms = float(np.sqrt(np.mean(np.square(left))))
-    return GridFit(parametrization, theta, rms, estimate_noise(left))
+def _correlation(left: Array) -> float:
+    """Give the correlation of neighbours over the largest that counts as noise."""
+    power = float(left @ left)
+    found = float(left[:-1] @ left[1:]) / power if power > 0.0 else 0.0
+    return found / max(MISFIT, SURE / float(np.sqrt(left.size)))

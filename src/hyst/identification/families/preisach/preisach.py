@@ -49,6 +49,7 @@ from hyst.identification.families.preisach.layout import (
 from hyst.identification.families.preisach.told import estimates_of
 from hyst.identification.fit.problem import Evaluation
 from hyst.identification.record_use.overview import Overview
+from hyst.identification.record_use.strokes import shows_minor_loops, stroke_lengths
 from hyst.identification.record_use.thinning import thinned
 from hyst.identification.record_use.used_samples import Data
 
@@ -127,11 +128,12 @@ class Relays(Family):
     ----------
     levels
         Cells of the grid along a side, 4 to 64, evenly spaced over the range of the input; its
-        thresholds, input units; or ``"auto"``: 24, fewer for short records, and 40 where 24 leave
+        thresholds, input units; or ``"auto"``: 24, fewer for short records, and 32 where 24 leave
         more than noise.
     smoothness
         Strength of the prior that densities of neighbouring cells are alike, from 0; ``"auto"``:
-        the largest that does not predict left-out blocks worse.
+        what predicts left-out blocks best; of records without minor loops the largest that does
+        not predict them worse.
     """
 
     levels: Any = option(AUTO, LEVELS_OPTION)
@@ -197,8 +199,11 @@ class Relays(Family):
         weights = weights_of(fit.operator)
         columns = evaluation.jacobian(fit.solution.theta)[:, 1 : 1 + weights.size]
         # Per weight in the units of the fit: the columns of the cells are shares of one number.
-        turned = crossed(columns / np.abs(parametrization.transform).max(axis=0)[1 : 1 + weights.size])
-        return about_coverage(weights, turned, parametrization.effective)
+        turned = crossed(
+            columns / np.abs(parametrization.transform).max(axis=0)[1 : 1 + weights.size]
+        )
+        one_size = not shows_minor_loops(stroke_lengths(data))
+        return about_coverage(weights, turned, parametrization.effective, one_size=one_size)
 
     def estimates(self, fit: Fit) -> Estimates:
         """Give the few numbers that hundreds of weights come to."""
@@ -238,13 +243,15 @@ class Preisach(Relays):
         return [(found.parametrization, found.theta)]
 
     def _found(self, overview: Overview) -> GridFit:
-        coarse = self._fitted(overview, finer=False)
+        coarse = self._fitted(overview, self.strength, finer=False)
         if self.levels != AUTO or overview.input.size < FINER_LEVELS * LEVELS:
             return coarse
-        return best_grid(overview, coarse, lambda: self._fitted(overview, finer=True))
+        return best_grid(
+            overview, coarse, lambda strength: self._fitted(overview, strength, finer=True)
+        )
 
-    def _fitted(self, overview: Overview, *, finer: bool) -> GridFit:
+    def _fitted(self, overview: Overview, strength: float | None, *, finer: bool) -> GridFit:
         low = min(float(each.u.min()) for each in overview.data.records)
         high = max(float(each.u.max()) for each in overview.data.records)
         cells = self.cells(low, high, overview.input.size, finer=finer)
-        return fitted_grid(overview, cells, parametrized(overview, cells), self.strength)
+        return fitted_grid(overview, cells, parametrized(overview, cells), strength)

@@ -133,9 +133,7 @@ def shift_of(fit: Fit) -> models.RateShift:
     fit
         Of this family.
     """
-    return next(
-        each for each in leaves_of(fit.operator) if isinstance(each, models.RateShift)
-    )
+    return next(each for each in leaves_of(fit.operator) if isinstance(each, models.RateShift))
 
 
 def _require_rates(data: Data) -> float:
@@ -159,11 +157,7 @@ def _search(overview: Overview, fastest: float) -> tuple[float, float]:
         share, exponent = float(np.exp(place[0])), float(np.exp(place[1]))
         return _misfit(overview, share * half / fastest**exponent, exponent)
 
-    tried = [
-        np.log([share, exponent])
-        for share in SHIFTS
-        for exponent in EXPONENTS
-    ]
+    tried = [np.log([share, exponent]) for share in SHIFTS for exponent in EXPONENTS]
     first = min(tried, key=cost)
     bounds = [
         (np.log(1e-3), np.log(LARGEST_SHIFT)),
@@ -183,7 +177,9 @@ def _search(overview: Overview, fastest: float) -> tuple[float, float]:
 def _misfit(overview: Overview, shift: float, exponent: float) -> float:
     """Give the squared error of the weights of a coarse grid behind a shift."""
     data = overview.data
-    cells = even_cells(*_seen(data, shift, exponent), min(SEARCH_LEVELS, levels_for(data.measured().size)))
+    cells = even_cells(
+        *_seen(data, shift, exponent), min(SEARCH_LEVELS, levels_for(data.measured().size))
+    )
     front = (models.RateShift(shift, exponent, data.records[0].dt),)
     parametrization = parametrized(overview, cells, front)
     fit = linear_fit(overview, parametrization, cells)

@@ -1,7 +1,7 @@
 """How smooth a density is: the strength of the prior, chosen on left-out parts of the records.
 
-The strength is the largest that does not predict what was left out worse than the best one does.
-So a record that leaves the density open gets a smooth one, and one that shows it gets its shape.
+The best one is taken of records that show minor loops. Blocks of one amplitude repeat each other and
+say nothing of what is inside: of those the largest strength is taken that does not predict worse.
 """
 
 from __future__ import annotations
@@ -93,7 +93,9 @@ def effective_count(normal: Array, held: Array, free: Rows) -> float:
     return float(np.trace(share))
 
 
-def chosen_strength(fit: LinearFit, blocks: Sequence[Block], kept: Rows | None) -> float:
+def chosen_strength(
+    fit: LinearFit, blocks: Sequence[Block], kept: Rows | None, *, smoothest: bool
+) -> float:
     """Choose the strength of the prior.
 
     Parameters
@@ -104,12 +106,14 @@ def chosen_strength(fit: LinearFit, blocks: Sequence[Block], kept: Rows | None) 
         What is left out together.
     kept
         Shape (N,), which samples are fitted and judged by; None for all.
+    smoothest
+        Whether to take the largest that does not predict worse, and not the best.
     """
     counts = np.ones(fit.y.size, dtype=bool) if kept is None else kept
     scores = _Scores(fit, blocks, counts)
     best = _walk(scores, 0)
     step = best
-    while step < MOST_STEPS and not scores.of(step + 1).seems_worse(scores.of(best)):
+    while smoothest and step < MOST_STEPS and not scores.of(step + 1).seems_worse(scores.of(best)):
         step += 1
     return _strength(step)
 

@@ -1,0 +1,46 @@
+/* Where a stretch of a Jiles-Atherton branch comes to what is sought. */
+#include "hyst/jiles_atherton.h"
+
+/* A step this small is the last: the next would be its square, or a part in 1e9 of it. */
+#ifdef HYST_SINGLE
+#define JILES_NEAR HYST_REAL(1e-5)
+#else
+#define JILES_NEAR HYST_REAL(3e-11)
+#endif
+
+static hyst_real jiles_size(hyst_real x)
+{
+    return x < HYST_REAL(0.0) ? -x : x;
+}
+
+hyst_real hyst_jiles_root(const hyst_jiles_stretch *on, hyst_real target, hyst_real low,
+                          hyst_real high)
+{
+    const hyst_real at_low = hyst_jiles_sought(on, low) - target;
+    const hyst_real at_high = hyst_jiles_sought(on, high) - target;
+    if (!(at_low < HYST_REAL(0.0))) {
+        return low;
+    }
+    if (!(at_high > HYST_REAL(0.0))) {
+        return high;
+    }
+    hyst_real x = low + (high - low) * (at_low / (at_low - at_high));
+    for (size_t left = HYST_JILES_LIMIT; left > 0u; --left) {
+        const hyst_real miss = hyst_jiles_sought(on, x) - target;
+        if (miss > HYST_REAL(0.0)) {
+            high = x;
+        } else {
+            low = x;
+        }
+        hyst_real next = x - miss / hyst_jiles_slope(on, x);
+        if (!(next >= low && next <= high)) {
+            next = low + HYST_REAL(0.5) * (high - low);
+        }
+        const hyst_real step = jiles_size(next - x);
+        x = next;
+        if (step <= JILES_NEAR * (HYST_REAL(1.0) + jiles_size(x))) {
+            break;
+        }
+    }
+    return x;
+}
