@@ -23,21 +23,6 @@
     ROW(state_space)                \
     ROW(stop)                       \
     ROW(two_envelope)
-#define EACH_KIND(ROW)       \
-    ROW(affine)              \
-    ROW(bouc_wen)            \
-    ROW(dahl)                \
-    ROW(dead_zone)           \
-    ROW(direction_dead_zone) \
-    ROW(jiles_atherton)      \
-    ROW(masing)              \
-    ROW(memory_element)      \
-    ROW(pi)                  \
-    ROW(play)                \
-    ROW(rate_dependent_pi)   \
-    ROW(sections)            \
-    ROW(state_space)         \
-    ROW(stop)
 
 namespace hyst {
 namespace HYST_KINDS {

@@ -159,17 +159,11 @@ OTHERS: dict[str, Operator] = {
     "dahl": Dahl(1.5, 200.0),
     "dahl ductile": Dahl(1.5, 2.0, 0.5, z0=-0.25, u0=0.5),
     "inverse dahl": Dahl(0.5, 400.0, 1.5).inverse(),
-    "preisach": RELAYS,
-    "preisach of relays alone": Preisach([[0.0, 0.0], [1.0, 0.5]], [-1.0, 0.0, 1.5]),
-    "preisach from saturation": Preisach([[0.5, 0.0], [1.0, 0.5]], [0.0, 2.0, 3.0], 0.2, u0=-5.0),
-    "preisach of ridges": Preisach(RELAYS.weights, [-3.0, -1.0, 1.0, 3.0], 0.4, density="ridges"),
-    "inverse preisach": RELAYS.inverse(),
     "maxwell-slip": MaxwellSlip([1.0, 0.5, 0.25], [0.5, 1.0, 1.0], 0.25),
     "maxwell-slip that slides": MaxwellSlip([1.0, 0.5], [0.5, 1.0], z0=[0.25, -1.0]),
     "generalized maxwell-slip": GeneralizedMaxwellSlip(
         [1.0, 0.5], [0.375, 0.625], C=4.0, Fc=1.0, Fs=1.5, vs=20.0, dt=0.1, delta=1.5, sigma2=0.02
     ),
-    "lugre": LuGre(1.5, 0.05, 0.02, Fc=2.0, Fs=3.0, vs=20.0, dt=0.1),
     "two envelopes": TWO_ENVELOPE,
     "two envelopes without linear part": TwoEnvelopePrandtlIshlinskii(
         [0.5, 0.3],

@@ -303,6 +303,7 @@ def relays(draw: st.DrawFn, least: float = 0.0) -> Preisach:
     return Preisach(weights, edges, p0, u0, density)
 
 
+@st.composite
 def magnets(draw: st.DrawFn, outputs: st.SearchStrategy[str]) -> JilesAtherton:
     """Of any variant, twice whose constants are a magnet, too: alpha Ms / (3 a) at most 0.4."""
     saturation, shape = draw(few), draw(st.floats(0.5, 4.0))
@@ -358,8 +359,6 @@ RANDOM: dict[str, Operators] = {
     "inverse-two-envelope-prandtl-ishlinskii": two_envelopes(0.25).map(
         lambda model: model.inverse()
     ),
-    "preisach": relays(),
-    "inverse-preisach": relays(0.25).map(lambda model: model.inverse()),
     "rate-shift": st.builds(
         RateShift, numbers(0.0, 2.0), st.floats(0.1, 2.0), st.sampled_from((0.5, 1.0, 2.0))
     ),
