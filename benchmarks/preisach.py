@@ -1,9 +1,9 @@
 """Preisach 40 x 40: a sample in times of ten plays in numba, forwards and backwards.
 
-Prints, for one machine and one run, on a smooth input (20 periods of two sines), on a rough one (white
-noise) and on a nested one (a hundred ever smaller loops),
-- the time of a sample through the model and through its inverse, beside numba's loop of ten plays on
-  the same input,
+Prints, for one machine and one run, on a smooth input (20 periods of two sines), on a rough one
+(white noise) and on a nested one (a hundred times a hundred ever smaller loops),
+- the time of a sample through the model and through its inverse, beside numba's loop of ten plays
+  on the same input,
 - the ratios that have goals: 6 on smooth input, 24 on rough, the inverse 6 of its own forward;
 and the time of the Jacobian by 821 parameters.
 """

@@ -11,9 +11,8 @@ int hyst_branch_turns(hyst_real began, hyst_real last, hyst_real input)
     return (input > last && last < began) || (input < last && last > began);
 }
 
-/* z after a way of h towards sign, from u and z. */
-static hyst_real branch_advance(const hyst_branch_equation *of, hyst_real u, hyst_real z,
-                                hyst_real sign, hyst_real h)
+hyst_real hyst_branch_advance(const hyst_branch_equation *of, hyst_real u, hyst_real z,
+                              hyst_real sign, hyst_real h)
 {
     const hyst_real du = sign * h;
 #define BRANCH_SLOPE(share, change) \
@@ -96,10 +95,10 @@ hyst_real hyst_branch_step(const hyst_branch_equation *of, hyst_real *state, hys
     const size_t count = last - node < most ? (size_t)(last - node) : HYST_BRANCH_MOST;
     for (size_t left = count; left > 0u; --left) {
         const hyst_real passed = (last - (hyst_real)left) * of->width;
-        z_node = branch_advance(of, u_turn + sign * passed, z_node, sign, of->width);
+        z_node = hyst_branch_advance(of, u_turn + sign * passed, z_node, sign, of->width);
     }
     const hyst_real from = last * of->width;
-    const hyst_real z = branch_advance(of, u_turn + sign * from, z_node, sign, way - from);
+    const hyst_real z = hyst_branch_advance(of, u_turn + sign * from, z_node, sign, way - from);
     if (hyst_is_finite(z) == 0) {
         return z;
     }

@@ -19,7 +19,12 @@ hyst_real hyst_lugre_step(const hyst_lugre *model, hyst_real *state, hyst_real u
     }
     /* dz/dt = v (1 - sgn v w / s), in the order that overflows last. */
     const hyst_real slip = model->damping * (HYST_REAL(1.0) - sign * force[0] / limit);
-    const hyst_real total = force[0] + (slip + model->viscosity) * v;
+    hyst_real total = force[0] + (slip + model->viscosity) * v;
+    if (way > zero) {
+        /* tanh(q) = (1 - e) / (1 + e) of e = exp(-2 q), with all digits of a small q. */
+        const hyst_real gone = hyst_stribeck_share(HYST_REAL(2.0) * sign * v * model->thin);
+        total += sign * model->thinning * gone / (HYST_REAL(2.0) - gone);
+    }
     if (hyst_is_finite(total) == 0 || hyst_is_finite(force[0]) == 0) {
         return total; /* a velocity beyond every number leaves the memory as it is */
     }

@@ -12,6 +12,8 @@ static hyst_lugre friction(hyst_real excess, hyst_real damping, hyst_real viscos
     model.stiffness = R(2.0);
     model.damping = damping;
     model.viscosity = viscosity;
+    model.thinning = R(0.0);
+    model.thin = R(0.25);
     model.curve.coulomb = R(1.0);
     model.curve.excess = excess;
     model.curve.rate = R(0.5);
@@ -48,6 +50,14 @@ static void every_term_by_hand(void)
     const double s = 1.0 + exp(-1.0), w = s * (1.0 - exp(-1.0 / s));
     const double expected = w + 6.0 * (1.0 - w / s) + 1.0;
     CHECK_NEAR((double)hyst_lugre_step(&model, state, R(0.5)), expected, CLOSE * expected);
+    /* v = -2, and 3 tanh(v / 4) more: tanh(1/2) = 0.46211715726. */
+    hyst_lugre thinning = model;
+    hyst_real other[4] = {state[0], state[1], state[2], state[3]};
+    thinning.thinning = R(3.0);
+    hyst_real plain[4] = {state[0], state[1], state[2], state[3]};
+    const double more = (double)(hyst_lugre_step(&thinning, other, R(0.0)) -
+                                 hyst_lugre_step(&model, plain, R(0.0)));
+    CHECK_NEAR(more, -3.0 * 0.46211715726000976, 20.0 * CLOSE);
     /* At rest only the bristles are left. */
     CHECK_NEAR((double)hyst_lugre_step(&model, state, R(0.5)), w, CLOSE);
 }

@@ -21,22 +21,26 @@ hyst_stribeck stribeck_of(Constants &of) {
     return {of.number("coulomb"), of.number("excess"), of.number("slowness")};
 }
 
-// sigma0, sigma1, sigma2, Fc, Fs, vs.
+// sigma0, sigma1, sigma2, Fc, Fs, vs, Fv, vv.
 void derive_lugre(const Given &given, Constants &made) {
-    given.require(given.constants.size() == 6);
+    given.require(given.constants.size() == 8);
     made.number("stiffness", given.constants[0], of_memory);
     made.number("damping", given.constants[1], {Offer::tunable, "damping of the bristles"});
     made.number("viscosity", given.constants[2], {Offer::tunable, "viscous friction"});
+    made.number("thinning", given.constants[6],
+                {Offer::tunable, "what the viscous friction that saturates ends at"});
+    made.number("thin", hyst_real(1.0) / given.constants[7], not_offered);
     add_stribeck(given, 3, made);
     made.number("rate", hyst_real(1.0) / given.dt, not_offered);
     made.structure =
-        "hyst_lugre $model = {$stiffness, $damping, $viscosity, {$coulomb, $excess, $slowness}, "
-        "$rate};";
+        "hyst_lugre $model = {$stiffness, $damping, $viscosity, $thinning, $thin, {$coulomb, "
+        "$excess, $slowness}, $rate};";
 }
 
 const void *fill_lugre(Constants &of) {
     return of.hold(hyst_lugre{of.number("stiffness"), of.number("damping"), of.number("viscosity"),
-                              stribeck_of(of), of.number("rate")});
+                              of.number("thinning"), of.number("thin"), stribeck_of(of),
+                              of.number("rate")});
 }
 
 // k, alpha, C, Fc, Fs, vs, delta, sigma2.

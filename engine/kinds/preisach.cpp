@@ -206,7 +206,7 @@ const Kind preisach = {
     derive_preisach,
     fill_preisach,
     {"hyst/preisach.h", "$signal = hyst_preisach_step(&$model, $memory, $signal);"},
-    nullptr,
+    HYST_IN_DOUBLE(preisach_jacobian),
     HYST_IN_DOUBLE(run_preisach),
     nullptr};
 

@@ -106,7 +106,8 @@ def along(model: LuGre, u: Array) -> Array:
         solved = solve_ivp(rate, (0.0, model.dt), [z], "Radau", rtol=1e-10, atol=1e-14)
         z = float(solved.y[0, -1])
         dz = float(rate(0.0, np.array([z]))[0])
-        y.append(model.sigma0 * z + model.sigma1 * dz + model.sigma2 * v)
+        viscous = model.sigma2 * v + model.Fv * np.tanh(v / model.vv)
+        y.append(model.sigma0 * z + model.sigma1 * dz + viscous)
     return np.array(y)
 
 
@@ -114,7 +115,7 @@ def along(model: LuGre, u: Array) -> Array:
     "model",
     [
         LuGre(50.0, 0.0, 0.0, 1.0, 1.0, 1.0, DT),
-        LuGre(50.0, 0.5, 0.3, 1.0, 1.6, 0.5, DT),
+        LuGre(50.0, 0.5, 0.3, 1.0, 1.6, 0.5, DT, Fv=0.6, vv=0.3),
         LuGre(400.0, 2.0, 0.0, 0.7, 2.0, 0.2, DT),
     ],
     ids=["Dahl's", "all terms", "steep"],
@@ -225,6 +226,7 @@ REFUSALS = [
     (lambda: LuGre(1.0, 0.0, -1.0, 1.0, 1.0, 1.0, DT), "sigma2 is -1.0"),
     (lambda: LuGre(1.0, 0.0, 0.0, 1.0, 1.0, 0.0, DT), "vs is 0.0"),
     (lambda: LuGre(1.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0), "dt is 0.0"),
+    (lambda: LuGre(1.0, 0.0, 0.0, 1.0, 1.0, 1.0, DT, Fv=-1.0), "Fv is -1.0"),
     (lambda: GeneralizedMaxwellSlip([], [], 0.0, 1.0, 1.0, 1.0, DT), "k has no entry"),
     (lambda: GeneralizedMaxwellSlip([1.0], [1.0], 0.0, 1.0, 0.5, 1.0, DT), "Fs is 0.5, below"),
     (lambda: GeneralizedMaxwellSlip([1.0], [1.0], -1.0, 1.0, 1.0, 1.0, DT), "C is -1.0"),
@@ -242,8 +244,8 @@ def test_constants_that_are_none_of_friction_are_refused(make: object, words: st
     [
         (MaxwellSlip([1.0, 2.0], [0.5, 1.5]), "k0 is 0: .* stays at 2"),
         (LuGre(1.0, 0.0, 0.0, 1.0, 2.0, 1.0, DT), "Fs is 2 and Fc 1: .* two velocities"),
-        (LuGre(1.0, 0.0, 0.0, 1.0, 1.0, 1.0, DT), r"sigma2 is 0: .*hyst\.Dahl"),
-        (LuGre(1.0, 0.0, 0.5, 1.0, 1.0, 1.0, DT), r"sigma2 is 0\.5: .* velocity only"),
+        (LuGre(1.0, 0.0, 0.0, 1.0, 1.0, 1.0, DT), r"sigma2 and Fv are 0: .*hyst\.Dahl"),
+        (LuGre(1.0, 0.0, 0.5, 1.0, 1.0, 1.0, DT), r"sigma2 is 0\.5 and Fv 0: .* velocity only"),
         (
             GeneralizedMaxwellSlip([1.0], [1.0], 0.0, 3.0, 3.0, 1.0, DT),
             r"Fc is 3: .*hyst\.MaxwellSlip",

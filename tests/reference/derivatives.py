@@ -11,10 +11,12 @@ Array = NDArray[np.float64]
 
 # Kinds of stages whose row has no derivative of its own.
 WITHOUT_OWN = {
+    "bouc_wen",
     "coleman_hodgdon",
     "creep",
     "dahl",
     "generalized_maxwell_slip",
+    "jiles_atherton",
     "lugre",
     "masing",
     "maxwell_slip",

@@ -12,6 +12,7 @@ import numpy as np
 import hyst
 from hyst import Record
 from hyst.operators import Affine, Operator
+from reference.foreign_records import switching
 
 DT = 1e-3
 
@@ -38,6 +39,9 @@ class FamilyExample:
         What the family tells beside constants of its model, with its true value.
     told_units
         Powers of the input's and the output's unit in it; what is not named has no unit.
+        What the family tells beside constants of its model, which has no unit, with its true value.
+    foreign
+        What another actuator makes of a drive, of which the family must know that it is none of it.
     """
 
     model: Operator
@@ -48,6 +52,7 @@ class FamilyExample:
     unit_of_its_own: str = "?"
     told: dict[str, float] = field(default_factory=dict)
     told_units: dict[str, tuple[int, int]] = field(default_factory=dict)
+    foreign: Callable[[np.ndarray], np.ndarray] = lambda u: switching(u) ** 2  # a butterfly
 
     def records(self, noise: float = 0.0, seed: int = 0) -> list[Record]:
         """Give the records of the actuator with noise of a share of the output's range."""
@@ -77,6 +82,15 @@ def _plays(p0: float = 1.0) -> hyst.PrandtlIshlinskii:
 
 def _map(knots: list[float]) -> hyst.DeadZone:
     return hyst.DeadZone([1.0, 0.2, -0.15], [0.0, *knots])
+
+
+def _two_envelopes(u: np.ndarray) -> hyst.TwoEnvelopePrandtlIshlinskii:
+    """Slopes 0.7, 1, 0.6 up and 1.2, 0.8, 0.9 down, between thirds of the input."""
+    low, high = _thirds(u)
+    ends = [float(u.min()), low, high, float(u.max())]
+    rising = hyst.DeadZone([1.0, -0.3, -0.4], [0.0, low, high])
+    falling = hyst.DeadZone([0.8, -0.5, 0.4, 0.1, -0.3], [0.0, *ends])
+    return hyst.TwoEnvelopePrandtlIshlinskii([0.5, 0.3], [0.2, 0.45], rising, falling, 1.0)
 
 
 def _rate_dependent() -> Operator:
@@ -158,13 +172,64 @@ def _hammerstein() -> FamilyExample:
     )
 
 
+def _butterfly() -> FamilyExample:
+    """Strain of a material that switches, and a loop that only rises, which is none."""
+    drive = decaying()
+    low, high = float(drive.min()), float(drive.max())
+    ends = np.linspace(low, high, 6)
+    slopes = np.array([0.3, 1.6, 0.5, 1.9, 0.4])
+    slopes *= (high - low) / float(slopes @ np.diff(ends))  # the envelope rises by the range
+    a, b, c, d, e = slopes
+    envelope = hyst.DeadZone([c, a - b, b - c, d - c, e - d], [0.0, *ends[1:5]])
+    r = np.array([0.3, 0.6])
+    p = np.array([0.6, 0.4])
+    p /= float(p @ (0.5 * (high - low) - r))  # the state goes from -1 to 1
+    plays = hyst.PrandtlIshlinskii(p, r)
+    strain = [[0.3, 0.05, 1.0], [0.1, 0.4, 0.0], [0.15, 0.0, 0.0]]
+    return FamilyExample(
+        hyst.Butterfly(hyst.GeneralizedPrandtlIshlinskii(envelope, plays), strain),
+        (drive,),
+        {"plays": 2, "knots": 4},
+        foreign=switching,
+    )
+
+
 _MAKE: dict[str, Callable[[], FamilyExample]] = {
     "linear": lambda: FamilyExample(Affine(-1.3, 0.4), (decaying(),)),
+    "butterfly": _butterfly,
     "dahl": lambda: FamilyExample(Affine(-1.0, 0.3) @ hyst.Dahl(4.0, 1.5), (decaying(),)),
+    "bouc-wen": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.BoucWen(1.2, 0.6, 1.4, 0.5, h=-1.0), (decaying(),)
+    ),
+    "lugre": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.LuGre(30.0, 0.02, 0.03, 1.0, 1.6, 5.0, DT),
+        (decaying(),),
+        {"stribeck": "free", "viscosity": "linear"},
+    ),
+    "maxwell-slip": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.MaxwellSlip([3.0, 1.0], [0.36, 0.41], 0.5),
+        (decaying(),),
+        {"plays": 2},
+
+
+    "coleman-hodgdon": lambda: FamilyExample(
+        Affine(1.0, 0.3) @ hyst.ColemanHodgdon(2.0, 1.5, 1.1), (decaying(),)
+    ),
+    "dahl": lambda: FamilyExample(Affine(-1.0, 0.3) @ hyst.Dahl(4.0, 1.5), (decaying(),)),
+    "jiles-atherton": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.JilesAtherton(2.0, 0.25, 0.2, 0.3, 0.15), (decaying(600),)
+    ),
     "ramberg-osgood": lambda: FamilyExample(
         Affine(1.0, 0.3) @ hyst.RambergOsgood(1.0, 0.6, 0.8),
         (decaying(),),
         unit_of_its_own=".c2",  # the input's unit to the power c3 is in it
+    ),
+    "masing": lambda: FamilyExample(
+        Affine(1.0, 0.3) @ hyst.MasingOperator(hyst.models.ExponentialCurve(1.5, 1.0, 0.4)),
+        (decaying(),),
+    ),
+    "iwan": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.Iwan(1.0, 3.0, -0.3, 0.5, 0.4), (decaying(),)
     ),
     "pi": lambda: FamilyExample(Affine(-1.0, 0.3) @ _plays(), (decaying(),), {"plays": 2}),
     # Knots where the family puts them: evenly over the signal the map acts on.
@@ -177,6 +242,10 @@ _MAKE: dict[str, Callable[[], FamilyExample]] = {
     # anywhere, and its slopes must come out as 1.
     "mpi": lambda: FamilyExample(
         Affine(1.0, 0.3) @ _plays(), (decaying(),), {"plays": 2, "knots": 2}
+    ),
+    # Knots where the family puts them, and at the ends of the input, beyond which both go on alike.
+    "two-envelope": lambda: FamilyExample(
+        Affine(1.0, 0.3) @ _two_envelopes(decaying()), (decaying(),), {"plays": 2, "knots": 2}
     ),
     "rdpi": lambda: FamilyExample(
         _rate_dependent(), (sine(1.0, 1700), sine(20.0, 300), sine(60.0, 300)), {"plays": 2}

@@ -27,11 +27,15 @@ from hyst import (
     Stop,
 )
 from hyst.models import (
+    BoucWen,
     Butterfly,
     ColemanHodgdon,
     Creep,
     Dahl,
+    ExponentialCurve,
     GeneralizedMaxwellSlip,
+    Iwan,
+    JilesAtherton,
     LinearDynamics,
     LuGre,
     MasingOperator,
@@ -47,6 +51,7 @@ from hyst.models import (
     SecondOrderSections,
     TwoEnvelopePrandtlIshlinskii,
 )
+from hyst.models.jiles_atherton import VARIANTS
 from reference.examples import EXAMPLES
 
 Array = NDArray[np.float64]
@@ -133,7 +138,8 @@ def lugres(draw: st.DrawFn) -> LuGre:
     sigma1, sigma2 = by_rate * draw(numbers(0.0, 0.5)), by_rate * draw(numbers(0.0, 0.5))
     Fc, ratio = draw(few), 1.0 + by_rate * draw(st.floats(0.0, 1.0))
     dt = draw(st.sampled_from((0.5, 1.0, 2.0)))
-    return LuGre(draw(few), sigma1, sigma2, Fc, Fc * ratio, draw(few), dt)
+    Fv, vv = by_rate * draw(numbers(0.0, 0.5)), draw(few)
+    return LuGre(draw(few), sigma1, sigma2, Fc, Fc * ratio, draw(few), dt, Fv, vv)
 
 
 affines = st.builds(Affine, numbers(-2.0, 2.0), numbers(-3.0, 3.0))
@@ -204,9 +210,16 @@ invertible: Operators = st.one_of(
 )
 
 memories = st.sampled_from(("masing", "last-reversal"))
-curves = st.builds(PowerLaw, few, few, few) | st.builds(
-    lambda slopes: PiecewiseLinear(np.diff(slopes), np.arange(1.0, len(slopes)), slopes[0]),
-    st.lists(few, min_size=1, max_size=4),
+exponentials = st.builds(
+    lambda first, last, way: ExponentialCurve(last, last - first, way), few, few, few
+)
+curves = (
+    st.builds(PowerLaw, few, few, few)
+    | exponentials
+    | st.builds(
+        lambda slopes: PiecewiseLinear(np.diff(slopes), np.arange(1.0, len(slopes)), slopes[0]),
+        st.lists(few, min_size=1, max_size=4),
+    )
 )
 functions = st.builds(MemoryFunction.power_law, few, few, few) | st.builds(
     lambda values: MemoryFunction.table(np.arange(float(len(values))), values),
@@ -219,6 +232,20 @@ elements = st.builds(
     st.sampled_from(("signed", "absolute")),
     st.sampled_from(("never", "sign-change")),
     numbers(-1.0, 1.0),
+)
+# gamma over beta, and phi over what it may be, inside what is admissible.
+bouc_wens = st.builds(
+    lambda k, a, beta, share, n, h, tilt, z0: BoucWen(
+        k, a, beta, share * beta, n, h, 0.5 * tilt * (1.0 + share) * beta, z0
+    ),
+    numbers(0.0, 3.0),
+    few,
+    few,
+    st.floats(-0.75, 1.0),
+    st.sampled_from((0.5, 1.0, 2.0)) | st.floats(0.3, 4.0),
+    st.sampled_from((1.0, -1.0)),
+    st.floats(-0.5, 0.5),
+    st.just(0.0),
 )
 # Poles and zeros inside the unit circle.
 lags = st.builds(
@@ -242,6 +269,7 @@ def coleman_hodgdons(draw: st.DrawFn, least: float) -> ColemanHodgdon:
     return ColemanHodgdon(alpha, pieces, [each - width for each in pieces], knots)
 
 
+@st.composite
 def two_envelopes(draw: st.DrawFn, least_p0: float = 0.0) -> TwoEnvelopePrandtlIshlinskii:
     """One envelope, and the same with a steeper piece to the right and one to the left of 0."""
     plain = draw(invertible_dead_zones().filter(lambda zone: zone.weights[0] > 0.0))
@@ -261,6 +289,7 @@ def two_envelopes(draw: st.DrawFn, least_p0: float = 0.0) -> TwoEnvelopePrandtlI
     return TwoEnvelopePrandtlIshlinskii(p, r, rising, falling, draw(numbers(least_p0, 2.0)))
 
 
+@st.composite
 def relays(draw: st.DrawFn, least: float = 0.0) -> Preisach:
     """Cells on edges a quarter or more apart, from rest or from where an input has left them."""
     n = draw(st.integers(1, 4))
@@ -272,6 +301,16 @@ def relays(draw: st.DrawFn, least: float = 0.0) -> Preisach:
     density = draw(st.sampled_from(("even", "ridges")))
     p0, u0 = draw(numbers(least, 2.0)), draw(st.just(0.0) | numbers(-6.0, 6.0))
     return Preisach(weights, edges, p0, u0, density)
+
+
+@st.composite
+def magnets(draw: st.DrawFn, outputs: st.SearchStrategy[str]) -> JilesAtherton:
+    """Of any variant, twice whose constants are a magnet, too: alpha Ms / (3 a) at most 0.4."""
+    saturation, shape = draw(few), draw(st.floats(0.5, 4.0))
+    coupling = draw(st.floats(0.0, 1.2)) * shape / saturation
+    pinning, reversible = shape * draw(st.floats(0.2, 4.0)), draw(st.floats(0.05, 0.45))
+    variant, output = draw(st.sampled_from(VARIANTS)), draw(outputs)
+    return JilesAtherton(saturation, shape, pinning, reversible, coupling, variant, output, 0.5)
 
 
 RANDOM: dict[str, Operators] = {
@@ -294,11 +333,16 @@ RANDOM: dict[str, Operators] = {
     ),
     "masing": st.builds(MasingOperator, curves, memories),
     "ramberg-osgood": st.builds(RambergOsgood, few, few, few, memories),
+    "iwan": st.builds(Iwan, few, few, st.floats(-0.45, 1.0), numbers(0.0, 2.0), numbers(0.0, 1.0)),
     "memory-element": elements,
     "inverse-memory-element": elements.map(lambda element: element.inverse()),
     "butterfly": butterflies(),
     "coleman-hodgdon": coleman_hodgdons(least=0.0),
     "inverse-coleman-hodgdon": coleman_hodgdons(least=0.7).map(lambda model: model.inverse()),
+    "bouc-wen": bouc_wens,
+    "inverse-bouc-wen": bouc_wens.filter(lambda model: model.traits().invertible).map(
+        lambda model: model.inverse()
+    ),
     "dahl": st.builds(Dahl, few, few, st.floats(0.3, 3.0), numbers(-1.0, 1.0)),
     "creep": creeps(1.0),
     "inverse-creep": creeps(0.5)
@@ -315,11 +359,13 @@ RANDOM: dict[str, Operators] = {
     "inverse-two-envelope-prandtl-ishlinskii": two_envelopes(0.25).map(
         lambda model: model.inverse()
     ),
-    "preisach": relays(),
-    "inverse-preisach": relays(0.25).map(lambda model: model.inverse()),
     "rate-shift": st.builds(
         RateShift, numbers(0.0, 2.0), st.floats(0.1, 2.0), st.sampled_from((0.5, 1.0, 2.0))
     ),
+    "preisach": relays(),
+    "inverse-preisach": relays(0.25).map(lambda model: model.inverse()),
+    "jiles-atherton": magnets(st.sampled_from(("M", "B"))),
+    "inverse-jiles-atherton": magnets(st.just("B")).map(lambda magnet: magnet.inverse()),
     "inverse": invertible.map(lambda operator: operator.inverse()),
 }
 

@@ -67,6 +67,10 @@ typedef struct {
     hyst_real width;                                                                 /* > 0 */
 } hyst_branch_equation;
 
+/* z after a way of h towards sign, from u and z: one step, for models that place their own nodes. */
+hyst_real hyst_branch_advance(const hyst_branch_equation *equation, hyst_real u, hyst_real z,
+                              hyst_real sign, hyst_real h);
+
 /* z at u, which ends up in the state. */
 hyst_real hyst_branch_step(const hyst_branch_equation *equation, hyst_real *state, hyst_real u);
 

@@ -1,9 +1,10 @@
 /* The LuGre model of friction: bristles that bend, and slide at the force of the Stribeck curve.
  *
- *     dz/dt = v - sigma0 |v| z / s(v),   F = sigma0 z + sigma1 dz/dt + sigma2 v
+ *     dz/dt = v - sigma0 |v| z / s(v),   F = sigma0 z + sigma1 dz/dt + sigma2 v + Fv tanh(v / vv)
  *
  * C. Canudas de Wit, H. Olsson, K. J. Astrom and P. Lischinsky, A new model for control of systems with
- * friction, IEEE Trans. Automatic Control 40 (1995) 419-425, eqs. 3-5.
+ * friction, IEEE Trans. Automatic Control 40 (1995) 419-425, eqs. 3-5, whose viscous force is any function
+ * of v; one that saturates is that of fluids which thin as they are sheared.
  *
  * The velocity is constant from sample to sample, v = (u_k - u_{k-1}) / dt, so with w = sigma0 z and
  * x = sigma0 |u_k - u_{k-1}| / s(v) a sample is exact:
@@ -29,6 +30,8 @@ typedef struct {
     hyst_real stiffness; /* sigma0 > 0, of the bristles */
     hyst_real damping;   /* sigma1 >= 0, of the bristles */
     hyst_real viscosity; /* sigma2 >= 0 */
+    hyst_real thinning;  /* Fv >= 0, what thinning viscosity ends at */
+    hyst_real thin;      /* 1 / vv > 0 */
     hyst_stribeck curve; /* with delta = 2 */
     hyst_real rate; /* 1 / dt */
 } hyst_lugre;

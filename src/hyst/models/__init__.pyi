@@ -1,13 +1,18 @@
 # The one list of models, for type checkers and for hyst/_lazy.py.
 
+from hyst.models.bouc_wen import BoucWen as BoucWen
 from hyst.models.butterfly import Butterfly as Butterfly
 from hyst.models.coleman_hodgdon import ColemanHodgdon as ColemanHodgdon
 from hyst.models.creep import Creep as Creep
 from hyst.models.dahl import Dahl as Dahl
+from hyst.models.exponential_curve import ExponentialCurve as ExponentialCurve
 from hyst.models.generalized_maxwell_slip import (
     GeneralizedMaxwellSlip as GeneralizedMaxwellSlip,
 )
 from hyst.models.given_thresholds import GivenThresholds as GivenThresholds
+from hyst.models.iwan import Iwan as Iwan
+from hyst.models.iwan_curve import IwanCurve as IwanCurve
+from hyst.models.jiles_atherton import JilesAtherton as JilesAtherton
 from hyst.models.linear_dynamics import LinearDynamics as LinearDynamics
 from hyst.models.loading_curve import InverseCurve as InverseCurve
 from hyst.models.lugre import LuGre as LuGre

@@ -53,8 +53,8 @@ class Butterfly(Operator):
     -----
     y is the same for ``z -> a z + b u + b0`` with other coefficients: scale, offset and linear part
     of z are no constants that a record could show. A hysteresis without a linear part, as plays
-    with p0 = 0, and of a given range is a good choice. Mason, Phys. Rev. 74 (1948) 1134; Devonshire,
-    Adv. Phys. 3 (1954) 85-130; butterfly operators: Jayawardhana et al., Automatica 96 (2018) 1-8.
+    with p0 = 0, and of a given range is a good choice. Mason, Phys. Rev. 74 (1948) 1134;
+    Devonshire, Adv. Phys. 3 (1954) 85-130.
 
     Examples
     --------
@@ -82,7 +82,7 @@ class Butterfly(Operator):
     @property
     def degree(self) -> int:
         """The largest i + j of ``u^i z^j``."""
-        return self.c.shape[0] - 1
+        return int(self.c.shape[0]) - 1
 
     @property
     def dt(self) -> float | None:
@@ -126,14 +126,14 @@ class Butterfly(Operator):
         amplitude, u = turn
         raise NotInvertibleError(
             f"the output is not monotone in the input: driven between {-amplitude:.4g} and "
-            f"{amplitude:.4g} it turns where the rising input passes {u:.4g}, so one output belongs "
-            "to several inputs; use compensation method 'trajectory', with limits on one side of "
-            "the turn"
+            f"{amplitude:.4g} it turns where the rising input passes {u:.4g}, so one output "
+            "belongs to several inputs; use compensation method 'trajectory', with limits on one "
+            "side of the turn"
         )
 
     def parameters(self) -> Parameters:
         """Give those of the hysteresis, then c row by row as far as i + j goes."""
-        own, rows = self.hysteresis.parameters(), self._rows()
+        own, rows = self.hysteresis.parameters(), terms(self.degree)
         free = np.full(rows[0].size, np.inf)
         return Parameters(
             values=np.concatenate([own.values, self.c[rows]]),
@@ -153,7 +153,7 @@ class Butterfly(Operator):
 
     def with_parameters(self, theta: Sequence[float] | Array) -> Butterfly:
         """Give the same hysteresis and map with other constants."""
-        count, rows = len(self.hysteresis.parameters()), self._rows()
+        count, rows = len(self.hysteresis.parameters()), terms(self.degree)
         vector = as_parameter_vector(theta, count + rows[0].size)
         c = np.zeros_like(self.c)
         c[rows] = vector[count:]
@@ -163,7 +163,7 @@ class Butterfly(Operator):
         """Give the factors of the parameters; z keeps its numbers."""
         own = self.hysteresis.parameter_scales(input_scale, 1.0)
         powers = float(input_scale) ** -np.arange(self.degree + 1.0)
-        return np.concatenate([own, (output_scale * powers)[self._rows()[0]]])
+        return np.concatenate([own, (output_scale * powers)[terms(self.degree)[0]]])
 
     def in_units(self, input_scale: float, output_scale: float) -> Butterfly:
         """Give the model in other units, with the memory of its hysteresis."""
@@ -173,7 +173,8 @@ class Butterfly(Operator):
 
     def lipschitz_constant(self) -> float:
         """Give infinity, but for a plane: powers grow without bound."""
-        if np.any(self.c[self._beyond_a_plane()]):
+        i, j = terms(self.degree)
+        if np.any(self.c[i, j][i + j > 1]):
             return float("inf")
         slopes = np.abs(self.c[:2, :2])
         if self.degree == 0:
@@ -206,16 +207,6 @@ class Butterfly(Operator):
         inside, choices = self.hysteresis.stages(), {"degree": self.degree}
         return (Stage("state_map", constants, choices=choices, dt=self.dt, inside=inside),)
 
-    def _rows(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Give i and j of the coefficients in the order of the core."""
-        i, j = np.indices(self.c.shape)
-        inside = i + j <= self.degree
-        return i[inside], j[inside]
-
-    def _beyond_a_plane(self) -> NDArray[np.bool_]:
-        i, j = np.indices(self.c.shape)
-        return np.asarray(i + j > 1)
-
     def _turn(self) -> tuple[float, float] | None:
         """Find an amplitude and an input at which the output turns on a stroke between its ends."""
         known = self.description
@@ -235,6 +226,19 @@ class Butterfly(Operator):
         return None
 
 
+def terms(degree: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Give i and j of the terms ``u^i z^j`` of a polynomial, in the order of the core.
+
+    Parameters
+    ----------
+    degree
+        The largest i + j.
+    """
+    rows = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
+    at = np.array(rows, dtype=np.intp)
+    return at[:, 0], at[:, 1]
+
+
 def _as_coefficients(c: ArrayLike) -> Array:
     matrix = finite_array(c, "c")
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
@@ -242,14 +246,14 @@ def _as_coefficients(c: ArrayLike) -> Array:
     degree = matrix.shape[0] - 1
     if not 0 <= degree <= MOST_DEGREE:
         raise InputError(f"c is of degree {degree}; give 1 to {MOST_DEGREE + 1} rows and columns")
-    i, j = np.indices(matrix.shape)
-    wrong = np.argwhere((i + j > degree) & (matrix != 0.0))
+    beyond = np.add.outer(np.arange(degree + 1), np.arange(degree + 1)) > degree
+    wrong = np.argwhere(beyond & (matrix != 0.0))
     if wrong.size:
         at = tuple(int(each) for each in wrong[0])
         raise InputError(
-            f"c[{at[0]},{at[1]}] is {matrix[at]:.6g}, beyond the degree {degree}; make it 0, or give "
-            f"{sum(at) + 1} rows and columns"
+            f"c[{at[0]},{at[1]}] is {matrix[at]:.6g}, beyond the degree {degree}; make it 0, or "
+            f"give {sum(at) + 1} rows and columns"
         )
-    coefficients: Array = np.where(i + j > degree, 0.0, matrix)
+    coefficients: Array = np.where(beyond, 0.0, matrix)
     coefficients.flags.writeable = False
     return coefficients

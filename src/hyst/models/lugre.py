@@ -20,7 +20,7 @@ from hyst.operators.traits import Degree, Traits
 
 Array = NDArray[np.float64]
 
-_NAMES = ("sigma0", "sigma1", "sigma2", "Fc", "Fs", "vs")
+_NAMES = ("sigma0", "sigma1", "sigma2", "Fc", "Fs", "vs", "Fv", "vv")
 _SMALLEST = float(np.nextafter(0.0, 1.0))
 
 
@@ -30,7 +30,8 @@ _SMALLEST = float(np.nextafter(0.0, 1.0))
 class LuGre(Operator):
     """LuGre friction: bristles z that bend, and slide at the force of a Stribeck curve s.
 
-        dz/dt = v - sigma0 |v| z / s(v),   y = sigma0 z + sigma1 dz/dt + sigma2 v
+        dz/dt = v - sigma0 |v| z / s(v)
+        y = sigma0 z + sigma1 dz/dt + sigma2 v + Fv tanh(v / vv)
         s(v) = Fc + (Fs - Fc) exp(-(v / vs)^2)
 
     The velocity is taken as constant from sample to sample, ``v = (u_k - u_{k-1}) / dt``, and a
@@ -53,6 +54,11 @@ class LuGre(Operator):
         > 0, Stribeck velocity, input units per second; without effect where Fs is Fc.
     dt
         > 0, sample time, seconds.
+    Fv
+        >= 0, what viscosity that saturates ends at, output units, as that of fluids which thin as
+        they are sheared; none by default.
+    vv
+        > 0, its velocity, input units per second; without effect where Fv is 0.
 
     Raises
     ------
@@ -62,7 +68,8 @@ class LuGre(Operator):
     Notes
     -----
     C. Canudas de Wit, H. Olsson, K. J. Astrom and P. Lischinsky, A new model for control of systems
-    with friction, IEEE Trans. Automatic Control 40 (1995) 419-425, eqs. 3-5.
+    with friction, IEEE Trans. Automatic Control 40 (1995) 419-425, eqs. 3-5, with a
+    viscous force of two terms.
 
     Examples
     --------
@@ -78,6 +85,8 @@ class LuGre(Operator):
     Fs: float
     vs: float
     sample_time: float
+    Fv: float
+    vv: float
 
     kind = "lugre"
 
@@ -90,6 +99,8 @@ class LuGre(Operator):
         Fs: float,
         vs: float,
         dt: float,
+        Fv: float = 0.0,
+        vv: float = 1.0,
     ) -> None:
         object.__setattr__(self, "sigma0", as_positive(sigma0, "sigma0"))
         object.__setattr__(self, "sigma1", as_not_negative(sigma1, "sigma1"))
@@ -97,6 +108,8 @@ class LuGre(Operator):
         for name, value in zip(("Fc", "Fs", "vs"), as_stribeck(Fc, Fs, vs), strict=True):
             object.__setattr__(self, name, value)
         object.__setattr__(self, "sample_time", as_sample_time(dt))
+        object.__setattr__(self, "Fv", as_not_negative(Fv, "Fv"))
+        object.__setattr__(self, "vv", as_positive(vv, "vv"))
 
     @property
     def dt(self) -> float:
@@ -109,14 +122,15 @@ class LuGre(Operator):
 
     def at_sample_time(self, dt: float) -> LuGre:
         """Give the same model for records of another sample time: rates are in seconds."""
-        return self if dt == self.dt else LuGre(*self._constants(), dt)
+        return self if dt == self.dt else self._of(self._constants(), dt)
 
     def passivity_margin(self) -> float:
         """Give ``sigma2 - sigma1 (Fs / Fc - 1)``; below 0 friction would give energy away.
 
         Not negative is necessary and sufficient for a passive map from velocity to force. It is
         sufficient since with the energy ``w^2 / (2 sigma0)`` of the bristles, w = sigma0 z, the
-        power lost is ``sigma2 v^2 + sigma1 v (v - |v| w / s) + |v| w^2 / s``, and |w| <= Fs.
+        power lost is ``sigma2 v^2 + sigma1 v (v - |v| w / s) + |v| w^2 / s`` at least, and no |w|
+        passes Fs.
 
         Returns
         -------
@@ -137,7 +151,7 @@ class LuGre(Operator):
 
     def traits(self) -> Traits:
         """Give the traits; without Stribeck curve and damping it is Dahl's model."""
-        plain = self.sigma1 == 0.0 and self.sigma2 == 0.0 and self.Fs == self.Fc
+        plain = not (self.sigma1 or self.sigma2 or self.Fv) and self.Fs == self.Fc
         return Traits(
             memoryless=False,
             rate_independent=Degree.TO_ROUNDING if plain else Degree.NO,
@@ -165,24 +179,25 @@ class LuGre(Operator):
                 "velocities have one force, so a force does not tell the position; Dahl's model "
                 "has an exact inverse"
             )
-        if self.sigma2 == 0.0:
+        if not (self.sigma2 or self.Fv):
             raise NotInvertibleError(
-                f"sigma2 is 0: in sliding the force is {self.Fc:.6g} whatever the velocity, so it "
-                "does not tell the position; hyst.Dahl, to which these constants come down in slow "
-                "motion, inverts forces below that of sliding"
+                f"sigma2 and Fv are 0: in sliding the force is {self.Fc:.6g} whatever the "
+                "velocity, so it does not tell the position; hyst.Dahl, to which these constants "
+                "come down in slow motion, inverts forces below that of sliding"
             )
         raise NotInvertibleError(
-            f"sigma2 is {self.sigma2:.6g}: in sliding a force tells a velocity only, which adds up "
-            "to a position with every error of the force; command the velocity instead"
+            f"sigma2 is {self.sigma2:.6g} and Fv {self.Fv:.6g}: in sliding a force tells a "
+            "velocity only, which adds up to a position with every error of the force; command the "
+            "velocity instead"
         )
 
     def parameters(self) -> Parameters:
-        """Give sigma0, sigma1, sigma2, Fc, Fs and vs."""
+        """Give sigma0, sigma1, sigma2, Fc, Fs, vs, Fv and vv."""
         return Parameters(
             values=np.array(self._constants()),
             names=_NAMES,
-            lower=np.array([_SMALLEST, 0.0, 0.0, _SMALLEST, _SMALLEST, _SMALLEST]),
-            upper=np.full(6, np.inf),
+            lower=np.array([_SMALLEST, 0.0, 0.0, *(3 * [_SMALLEST]), 0.0, _SMALLEST]),
+            upper=np.full(len(_NAMES), np.inf),
         )
 
     def nearest_parameters(self, theta: Array) -> Array:
@@ -193,13 +208,13 @@ class LuGre(Operator):
 
     def with_parameters(self, theta: Sequence[float] | Array) -> LuGre:
         """Give the model of other constants with the same sample time."""
-        vector = as_parameter_vector(theta, len(_NAMES)).tolist()
-        return LuGre(**dict(zip(_NAMES, vector, strict=True)), dt=self.dt)
+        return self._of(as_parameter_vector(theta, len(_NAMES)).tolist(), self.dt)
 
     def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
-        """Give the factors of the six constants."""
+        """Give the factors of the constants."""
         ratio = output_scale / input_scale
-        return np.array([ratio, ratio, ratio, output_scale, output_scale, input_scale])
+        curve = [output_scale, output_scale, input_scale]
+        return np.array([ratio, ratio, ratio, *curve, output_scale, input_scale])
 
     def in_units(self, input_scale: float, output_scale: float) -> LuGre:
         """Give the model in other units."""
@@ -233,5 +248,9 @@ class LuGre(Operator):
         """Give the one stage of this operator."""
         return (Stage("lugre", self._constants(), dt=self.dt),)
 
-    def _constants(self) -> tuple[float, float, float, float, float, float]:
-        return self.sigma0, self.sigma1, self.sigma2, self.Fc, self.Fs, self.vs
+    def _constants(self) -> tuple[float, ...]:
+        return tuple(getattr(self, name) for name in _NAMES)
+
+    @staticmethod
+    def _of(constants: Sequence[float], dt: float) -> LuGre:
+        return LuGre(**dict(zip(_NAMES, constants, strict=True)), dt=dt)

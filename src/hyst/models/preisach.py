@@ -166,7 +166,8 @@ class Preisach(_Relays):
         is that state itself; at or below ``-max(abs(thresholds))`` is negative saturation.
     density
         ``"even"``: mass all over a cell. ``"ridges"``: mass along the line from corner to corner,
-        which makes cells Krasnoselskii-Pokrovskii hysterons, see ``KrasnoselskiiPokrovskii``.
+        which makes each cell a hysteron of Krasnoselskii and Pokrovskii; see
+        ``krasnoselskii_pokrovskii``.
     depth
         Reversals there is room for. When they are used up, loops nested deeper are traced without
         area and still close; ``overflowed`` tells it.
@@ -191,6 +192,46 @@ class Preisach(_Relays):
     """
 
     kind = "preisach"
+
+    @classmethod
+    def krasnoselskii_pokrovskii(
+        cls, weights: ArrayLike, thresholds: ArrayLike, p0: float = 0.0, u0: float = 0.0
+    ) -> Preisach:
+        """Give the model of Krasnoselskii and Pokrovskii: ``y = p0 u + sum_ij w_ij k_ij``.
+
+        The hysteron k_ij goes from -1 to 1 along a ridge between ``thresholds[i]`` and
+        ``thresholds[i + 1]`` while the input rises, and back along one between ``thresholds[j]``
+        and ``thresholds[j + 1]`` while it falls. A ridge is a row of relays on the line from corner
+        to corner of a cell, so that this is the Preisach model with mass on those lines: exactly,
+        with its memory and its inverse. Evenly spaced thresholds make the published model, whose
+        ridges are all as wide as a cell.
+
+        Parameters
+        ----------
+        weights, thresholds, p0, u0
+            As in the class.
+
+        Returns
+        -------
+        Preisach
+
+        Raises
+        ------
+        InputError
+            As the class.
+
+        Notes
+        -----
+        M. Krasnoselskii and A. Pokrovskii, Systems with Hysteresis (Springer 1989); H. T. Banks,
+        A. J. Kurdila and G. Webb, Math. Probl. Eng. 3 (1997) 287-328, eqs. 2-5.
+
+        Examples
+        --------
+        >>> ridge = Preisach.krasnoselskii_pokrovskii([[0, 0], [1, 0]], [-1.0, 0.0, 1.0])
+        >>> ridge([0.5, 1.0, 0.0, -0.25, 0.25]).tolist()
+        [0.0, 1.0, 1.0, 0.5, 0.5]
+        """
+        return cls(weights, thresholds, p0, u0, "ridges")
 
     def traits(self) -> Traits:
         """Give the traits of a superposition of relays."""

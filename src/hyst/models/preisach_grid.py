@@ -37,7 +37,7 @@ def as_edges(thresholds: ArrayLike) -> Array:
             f"thresholds has {edges.size} entries; give the edges of the cells, one more than cells"
         )
     with np.errstate(over="ignore"):
-        widths = np.diff(edges)
+        widths, span = np.diff(edges), edges[-1] - edges[0]
     wrong = np.flatnonzero(~(widths > 0.0))
     if wrong.size:
         i = int(wrong[0]) + 1
@@ -45,7 +45,7 @@ def as_edges(thresholds: ArrayLike) -> Array:
             f"thresholds[{i}] = {edges[i]:.6g} is not above thresholds[{i - 1}] = "
             f"{edges[i - 1]:.6g}; give edges that ascend"
         )
-    if not np.isfinite(edges[-1] - edges[0]):
+    if not np.isfinite(span):
         raise InputError(
             f"thresholds reach from {edges[0]:.6g} to {edges[-1]:.6g}, further apart than a number "
             "can say; choose another input unit"

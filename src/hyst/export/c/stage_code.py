@@ -202,7 +202,7 @@ def _stands_alone(stage: CoreStage) -> bool:
 
 
 def _first_inside(stages: tuple[CoreStage, ...]) -> dict[int, list[int]]:
-    """Give, by the first stage inside, the stages around it that need its input, outermost first."""
+    """Give, by the first stage inside, the stages around it that need its input, outer first."""
     result: dict[int, list[int]] = {}
     firsts: list[int] = []
     for index, stage in enumerate(stages):

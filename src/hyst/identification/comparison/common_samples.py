@@ -9,7 +9,7 @@ import numpy as np
 
 from hyst.errors import InputError
 from hyst.identification.record_use.part_of_a_sample import lag_in_samples
-from hyst.identification.record_use.used_samples import Data, prepare
+from hyst.identification.record_use.used_samples import Data, UsedSamples, prepare
 from hyst.operators import ModelDescription
 from hyst.signals import Record
 
@@ -28,7 +28,9 @@ def lag_on(about: ModelDescription, record: Record) -> float:
     return lag_in_samples(about.delay, own, record.dt)
 
 
-def common_samples(records: Sequence[Record], about: Sequence[ModelDescription]) -> Data:
+def common_samples(
+    records: Sequence[Record], about: Sequence[ModelDescription]
+) -> tuple[Data, tuple[UsedSamples, ...]]:
     """Give the records with those samples that every model can be judged on.
 
     Of each model they are the samples a validation record is judged on: from where the input has
@@ -46,6 +48,8 @@ def common_samples(records: Sequence[Record], about: Sequence[ModelDescription])
     -------
     Data
         Without a delay; what counts is marked.
+    tuple of UsedSamples
+        The first and last of them, for each record.
 
     Raises
     ------
@@ -65,5 +69,7 @@ def common_samples(records: Sequence[Record], about: Sequence[ModelDescription])
                 f"the models ({', '.join(f'{each.delay:.4g}' for each in about)} samples); give a "
                 "longer one"
             )
-    kept = tuple(np.arange(len(record)) < stop for record, stop in zip(given, stops, strict=True))
-    return replace(prepare(given, "auto"), starts=starts, kept=kept)
+    sizes = [len(record) for record in given]
+    kept = tuple(np.arange(size) < stop for size, stop in zip(sizes, stops, strict=True))
+    data = replace(prepare(given, "auto"), starts=starts, kept=kept)
+    return data, tuple(map(UsedSamples, starts, stops, sizes))

@@ -77,12 +77,12 @@ def compare(
     if not given:
         raise InputError("there is no record; give at least one")
     _refuse_other_signals(named, given)
-    data = common_samples(given, [each.description for each in named.values()])
+    data, used = common_samples(given, [each.description for each in named.values()])
     overview = Overview(data)
     blocks = blocks_of(overview)
     compared = tuple(_compared(name, each, overview, blocks) for name, each in named.items())
     line = _line(data, [lag_on(each.description, given[0]) for each in named.values()])
-    return Comparison(given, compared, data.used(), overview.shows_minor_loops, line)
+    return Comparison(given, compared, used, overview.shows_minor_loops, line)
 
 
 def _named(

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 SMALL_PART = 0.6
 """Of the input range a model was identified over: records of less say little of its large loops."""
 
-HARDLY_OUTSIDE = 1e-3
-"""Share of samples outside a model's range that is noise of the drive."""
+HARDLY_OUTSIDE = 5e-3
+"""Of the range a model was identified over: an input that goes less far beyond it is not told."""
 
 
 def which_for_what(found: Comparison) -> tuple[str, ...]:
@@ -177,10 +177,11 @@ def _outside(found: Comparison) -> Iterator[str]:
         names = [name for name, its in ranges.items() if its == span]
         share = found[names[0]].extrapolated
         said = f"{_listed(names)} {_was(names)} identified from {span[0]:.6g} to {span[1]:.6g}"
-        if share is not None and share > HARDLY_OUTSIDE:
+        beyond = max(high - span[1], span[0] - low)
+        if share and beyond > HARDLY_OUTSIDE * (span[1] - span[0]):
             yield (
                 f"Warning: the input goes from {low:.6g} to {high:.6g}, {said}; "
-                f"{100.0 * share:.2g} % of the samples are extrapolation."
+                f"{100.0 * share:.3g} % of the samples are extrapolation."
             )
         elif high - low < SMALL_PART * (span[1] - span[0]):
             yield (

@@ -29,7 +29,7 @@ from hyst.models.butterfly import MOST_DEGREE
 
 Array = NDArray[np.float64]
 
-SIZES = (1, 2, 3, 4)
+SIZES = (1, 2, 4, 6)
 """Numbers of plays that ``"auto"`` compares."""
 
 MOST_PLAYS, MOST_KNOTS = 20, 50
@@ -60,7 +60,7 @@ class Butterfly(Family):
     """
 
     name = "butterfly"
-    explains = ("butterfly", "run direction")
+    describes = ("butterfly", "run direction")  # one wing is run one way, the other the other way
     methods = ("trajectory",)
     words = Words(
         full_name="butterfly model",
@@ -69,18 +69,18 @@ class Butterfly(Family):
             "z(t) = \u03a3 p\u1d62 F\u1d63\u1d62[\u03b3(u)](t)",
         ),
         explanations=(
-            "z is what the material remembers, as its polarization, between about -1 and 1: plays F "
-            "(backlash of half-width r, a share of half the range) of \u03b3(u), a rising piecewise "
-            "linear map of the input that is steep where the material switches.",
-            "The output is a polynomial of input u and state z, as strain is: z\u00b2 electrostriction "
-            "around the polarization, u z the piezoelectric effect, which turns with it. It falls and "
-            "rises with the input, so a wanted output does not determine a command.",
+            "z is what the material remembers, as its polarization, between about -1 and 1: plays "
+            "F (backlash of half-width r) of \u03b3(u), a rising piecewise linear map of the input "
+            "that is steep where the material switches.",
+            "The output is a polynomial of input u and state z, as strain is: z\u00b2 stands for "
+            "electrostriction, u z for the piezoelectric effect, which turns with z. It falls and "
+            "rises with the input, so a wanted output alone does not determine a command.",
         ),
     )
 
     plays: Any = option(AUTO, whole_number_or_auto(1, MOST_PLAYS, "Number of plays."))
     knots: Any = option(
-        14, whole_number(1, MOST_KNOTS, "Knots of the map of the input before the plays.")
+        20, whole_number(1, MOST_KNOTS, "Knots of the map of the input before the plays.")
     )
     degree: Any = option(
         2, whole_number(2, MOST_DEGREE, "Degree of the polynomial of input and hysteresis.")
@@ -92,7 +92,8 @@ class Butterfly(Family):
 
     def least_parameters(self, size: int) -> int:
         """Give the number of slopes, weights, radii and coefficients, less two scales."""
-        return int(self.knots) - 1 + 2 * size + (self.degree + 1) * (self.degree + 2) // 2
+        coefficients = int(self.degree + 1) * int(self.degree + 2) // 2
+        return int(self.knots) - 1 + 2 * size + coefficients
 
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
         """Give the best of a grid over where and how steeply the material switches.
@@ -103,26 +104,28 @@ class Butterfly(Family):
             If the output goes one way with the input, or turns but has no memory.
         """
         _require_a_butterfly(overview)
-        guesses = best_guesses(overview, size, self.knots, self.degree)
+        guesses = best_guesses(overview, size, self.knots, self.degree, max(most, 2))
         left, curve = guesses[0].residual, residual_of_a_curve(overview)
         if left > HYSTERESIS_PAYS * curve:
             raise NotIdentifiableError(
-                f"the output turns with the input but shows no hysteresis that a butterfly would "
-                f"explain: a curve of the input alone leaves {curve / overview.output_range:.3%} of "
-                f"the range, plays {left / overview.output_range:.3%}; give the curve's own branch "
-                "to family 'pi', or undo the curve before"
+                "the output turns with the input but shows no hysteresis of a butterfly: a curve "
+                f"of the input alone leaves {100.0 * curve / overview.output_range:.3g} % of the "
+                f"range, and plays {100.0 * left / overview.output_range:.3g} %; stay on one side "
+                "of the turn and use family 'pi'"
             )
-        return [parametrize_butterfly(overview, each) for each in guesses[: max(most, 2)]]
+        return [parametrize_butterfly(each) for each in guesses]
 
     def simplified(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
         """Fit again without plays that came out idle, until none is."""
         while True:
             found = _layout(fit).hysteresis(fit.solution.theta)
             working = found.p > _SMALLEST_WEIGHT * found.p.max()
-            working[working] = np.diff(found.r[working], prepend=-np.inf) > _SMALLEST_GAP
+            working[working] = (
+                np.diff(found.r[working], prepend=-np.inf) > _SMALLEST_GAP * found.half
+            )
             if working.all():
                 return fit
-            parametrization, theta = parametrize_butterfly(overview, found.with_plays(working))
+            parametrization, theta = parametrize_butterfly(found.with_plays(working))
             fit = replace(fit, parametrization=parametrization)
             problem = fit.problem(overview.data, overview.kept)
             fit = replace(fit, solution=self.solve(problem, theta, max_iterations))
@@ -149,7 +152,7 @@ def _require_a_butterfly(overview: Overview) -> None:
     share = overview.once("turning share", lambda: turning_share(overview.data))
     if share < LEAST_TURN:
         raise NotIdentifiableError(
-            f"the output never falls while the input rises, but for {share:.1%} of its range, or "
-            "never rises; a butterfly turns on a branch of its loop: use family 'pi', 'gpi' or "
-            "'mpi'"
+            "the output never falls while the input rises, or never rises, but for "
+            f"{100.0 * share:.2g} % of its range; a butterfly turns on a branch of its loop: use "
+            "family 'pi', 'gpi' or 'mpi'"
         )

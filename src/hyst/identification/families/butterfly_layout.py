@@ -1,7 +1,7 @@
 """Free parameters of a butterfly, and the scales that no record can determine.
 
-theta = (slopes of the envelope, p_1 .. p_n, r_1 .. r_n, c). The envelope rises by 2 over the range
-of the input, and the plays make of that a state that goes from -1 to 1: both are gauges.
+theta = (slopes of the envelope, p_1 .. p_n, r_1 .. r_n, c). The envelope rises by the range of the
+input, and the plays make of that a state that goes from -1 to 1: both are gauges.
 """
 
 from __future__ import annotations
@@ -12,17 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.fit.parametrization import Parametrization
-from hyst.identification.record_use.overview import Overview
 from hyst.models import Butterfly, GeneralizedPrandtlIshlinskii, PrandtlIshlinskii
+from hyst.models.butterfly import terms
 from hyst.operators import DeadZone
 
 Array = NDArray[np.float64]
 
 SMALLEST_RADIUS, LARGEST_RADIUS = 2e-3, 0.95
-"""Of half the range of the envelope: narrower plays are the envelope itself, wider ones rest."""
+"""Of half the input range: narrower plays are the envelope itself, wider ones rest."""
 
 LARGEST_SLOPE = 1e3
-"""Of the envelope, over its mean slope."""
+"""Of the envelope, whose mean slope is 1."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +38,7 @@ class Hysteresis:
     slopes
         Shape (k + 1,), of the envelope between them, >= 0.
     p, r
-        Shape (n,), weights and radii of the plays.
+        Shape (n,), weights and radii of the plays, the radii in input units.
     c
         Shape (degree + 1, degree + 1).
     residual
@@ -56,12 +56,20 @@ class Hysteresis:
 
     def model(self) -> Butterfly:
         """Give the operator, its two scales as the gauges want them."""
-        slopes = self.slopes * (2.0 / float(self.slopes @ self.widths()))
-        weights = weights_of_slopes(self.knots) @ slopes
+        weights = weights_of_slopes(self.knots) @ self.unit_slopes()
         envelope = DeadZone(weights, np.concatenate([[0.0], self.knots]))
-        p = self.p / float(self.p @ (1.0 - self.r))
+        p = self.p / float(self.p @ (self.half - self.r))
         plays = PrandtlIshlinskii(p, self.r)
         return Butterfly(GeneralizedPrandtlIshlinskii(envelope, plays), self.c)
+
+    @property
+    def half(self) -> float:
+        """Half the range of the input."""
+        return 0.5 * (self.high - self.low)
+
+    def unit_slopes(self) -> Array:
+        """Give the slopes of an envelope that rises by the range of the input."""
+        return self.slopes * (2.0 * self.half / float(self.slopes @ self.widths()))
 
     def widths(self) -> Array:
         """Give the widths of the pieces of the envelope, shape (k + 1,)."""
@@ -70,7 +78,8 @@ class Hysteresis:
     def with_plays(self, working: NDArray[np.bool_]) -> Hysteresis:
         """Give the same with some of the plays, each with the weight of those left out after it."""
         owner = np.maximum(np.cumsum(working) - 1, 0)
-        p = np.bincount(owner, self.p, minlength=int(working.sum()))
+        p: Array = np.zeros(int(working.sum()))
+        np.add.at(p, owner, self.p)
         return replace(self, p=p, r=self.r[working])
 
 
@@ -116,22 +125,16 @@ class ButterflyParametrization(Parametrization):
     def hysteresis(self, theta: Array) -> Hysteresis:
         """Give envelope, plays and map of theta."""
         slopes, p, r = _parts(theta, self.first)
-        degree = self.first.c.shape[0] - 1
-        i, j = np.indices(self.first.c.shape)
         c = np.zeros_like(self.first.c)
-        c[i + j <= degree] = theta[slopes.size + p.size + r.size :]
+        c[terms(c.shape[0] - 1)] = theta[slopes.size + p.size + r.size :]
         return replace(self.first, slopes=slopes, p=p, r=r, c=c)
 
 
-def parametrize_butterfly(
-    overview: Overview, first: Hysteresis
-) -> tuple[ButterflyParametrization, Array]:
+def parametrize_butterfly(first: Hysteresis) -> tuple[ButterflyParametrization, Array]:
     """Lay out theta over the constants of a butterfly.
 
     Parameters
     ----------
-    overview
-        The records.
     first
         Where to start.
 
@@ -151,9 +154,8 @@ def parametrize_butterfly(
     transform[rest, pieces:] = np.eye(size - pieces)
     fixed = np.zeros(constants.size)
     fixed[pieces : 2 * pieces] = constants[pieces : 2 * pieces]
-    slopes = first.slopes * (2.0 / float(first.slopes @ first.widths()))
-    lower, upper = _bounds(overview, first, size)
-    theta = np.clip(np.concatenate([slopes, constants[rest]]), lower, upper)
+    lower, upper = _bounds(first, size)
+    theta = np.clip(np.concatenate([first.unit_slopes(), constants[rest]]), lower, upper)
     parametrization = ButterflyParametrization(
         template,
         transform,
@@ -168,13 +170,13 @@ def parametrize_butterfly(
     return parametrization, theta
 
 
-def _bounds(overview: Overview, first: Hysteresis, size: int) -> tuple[Array, Array]:
+def _bounds(first: Hysteresis, size: int) -> tuple[Array, Array]:
     pieces, n = first.slopes.size, first.p.size
     lower, upper = np.full(size, -np.inf), np.full(size, np.inf)
     lower[: pieces + n] = 0.0
-    upper[:pieces] = LARGEST_SLOPE / overview.data.half_range
+    upper[:pieces] = LARGEST_SLOPE
     radii = slice(pieces + n, pieces + 2 * n)
-    lower[radii], upper[radii] = SMALLEST_RADIUS, LARGEST_RADIUS
+    lower[radii], upper[radii] = SMALLEST_RADIUS * first.half, LARGEST_RADIUS * first.half
     return lower, upper
 
 
@@ -192,11 +194,11 @@ def _sorted(theta: Array, first: Hysteresis) -> Array:
 
 
 def _scales(theta: Array, first: Hysteresis) -> tuple[Array, Array]:
-    """Give by how much the envelope's rise is not 2, and that of the state, with derivatives."""
+    """Give by which shares the rises of envelope and state are off, with their derivatives."""
     slopes, p, r = _parts(theta, first)
     pieces, n = slopes.size, p.size
     rows = np.zeros((2, theta.size))
-    rows[0, :pieces] = 0.5 * first.widths()
-    rows[1, pieces : pieces + n], rows[1, pieces + n : pieces + 2 * n] = 1.0 - r, -p
-    values = np.array([rows[0, :pieces] @ slopes - 1.0, p @ (1.0 - r) - 1.0])
+    rows[0, :pieces] = 0.5 * first.widths() / first.half
+    rows[1, pieces : pieces + n], rows[1, pieces + n : pieces + 2 * n] = first.half - r, -p
+    values = np.array([rows[0, :pieces] @ slopes - 1.0, p @ (first.half - r) - 1.0])
     return values, rows

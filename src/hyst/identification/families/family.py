@@ -80,6 +80,8 @@ class Family(ABC):
     """Whether samples left out of a record would change the model."""
     explains: ClassVar[tuple[str, ...]] = ()
     """Findings that make no record doubtful of which it leaves nothing but noise."""
+    describes: ClassVar[tuple[str, ...]] = ()
+    """Findings that are what the family is for: they make no record of it doubtful."""
     wraps: ClassVar[str] = ""
     """The option that holds a family this one is made around; empty where there is none."""
 
@@ -140,13 +142,7 @@ class Family(ABC):
         return data if self.depends_on_rate else thinned(data)
 
     def fitted(self, data: Data) -> Data:
-        """Give what the last fit and its standard errors take: all samples, if memory allows.
-
-        Parameters
-        ----------
-        data
-            The records.
-        """
+        """Give what the last fit and its standard errors take: all samples, if memory allows."""
         return data
 
     def in_units(self, input_scale: float, output_scale: float) -> Self:

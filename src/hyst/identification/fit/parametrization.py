@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Self, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,6 +90,11 @@ class Parametrization:
 
     def operator(self, theta: Array) -> Operator:
         """Give the operator for canonical theta."""
+        return self.as_template(theta)
+
+    @final
+    def as_template(self, theta: Array) -> Operator:
+        """Give the operator in the form of the template, which is what is fitted."""
         made: Operator = self.template.with_parameters(self.constants(theta))
         return made
 
@@ -108,7 +113,7 @@ class Parametrization:
         input_scale, output_scale
             By which the numbers of input and output grow.
         """
-        operator = self.operator(theta)
+        operator = self.as_template(theta)
         scales = operator.parameter_scales(input_scale, output_scale)
         return replace(
             self,
