@@ -65,7 +65,7 @@ def least_within(normal: Array, moment: Array, lower: Array, upper: Array, first
     fewest, patience = side.size + 1, PATIENCE
     for _ in range(MOST_EXCHANGES * (side.size + 1)):
         x, wrong = _exchange(a, b, low, high, side)
-        count = np.count_nonzero(wrong != side)
+        count = int(np.count_nonzero(wrong != side))
         if count == 0:
             # What is held lies on its bound to the last bit: others ask by comparing.
             free = np.clip(x / scale, lower, upper)
