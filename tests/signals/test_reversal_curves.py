@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -27,7 +29,7 @@ def test_curves_are_found_where_they_were_driven() -> None:
 
 def test_rises_inside_are_passed_over() -> None:
     turns = [-1.0, 1.0, 0.5, 1.0, 0.0, 1.0, -0.5, 0.5, -0.2, 1.0, -1.0, 1.0]
-    u = np.concatenate([np.linspace(a, b, 50) for a, b in zip(turns, turns[1:], strict=False)])
+    u = np.concatenate([np.linspace(a, b, 50) for a, b in pairwise(turns)])
     curves = reversal_curves(Record(u, u, 0.01))
     # That from -0.2 came from 0.5, inside.
     assert [round(each.beta, 6) for each in curves] == [-1.0, -0.5, 0.0, 0.5]

@@ -135,8 +135,8 @@ def forc_density(
         rho(alpha, beta) = -1/2 d^2 y / (d alpha d beta)
 
     At every point of a grid a polynomial of second order is fitted to the samples within
-    ``smoothing`` spacings of reversals and of the grid; its mixed term is the density. What does not
-    change from curve to curve, as a linear part or a drift from one to the next, has none.
+    ``smoothing`` spacings of reversals and of the grid; its mixed term is the density. What does
+    not change from curve to curve, as a linear part or a drift from one to the next, has none.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ def record(turns: list[float], samples: int = 100) -> hyst.Record:
 
 
 def test_records_that_cross_a_part_of_the_grid_are_refused() -> None:
-    """A third of the range on either side: what is up at the one and down at the other is unseen."""
+    """A third of the range on either side: relays up at the one and down at the other rest."""
     parts = [record([-1.0, -0.4, -1.0, -0.4]), record([0.4, 1.0, 0.4, 1.0])]
     with pytest.raises(NotIdentifiableError, match=r"cross \d+ of 300 cells .*hyst\.signals\.forc"):
         hyst.identify(parts, family="preisach", delay=0, levels=24)
