@@ -78,6 +78,7 @@ class BoucWen(Family):
     """
 
     name = "bouc-wen"
+    in_reserve = True
     words = Words(
         full_name="Bouc-Wen model",
         equations=(

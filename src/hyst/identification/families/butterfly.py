@@ -60,6 +60,7 @@ class Butterfly(Family):
     """
 
     name = "butterfly"
+    in_reserve = True
     describes = ("butterfly", "run direction")  # one wing is run one way, the other the other way
     methods = ("trajectory",)
     words = Words(
