@@ -55,6 +55,22 @@ def _loading(curve: str, constants: Array, x: Array) -> tuple[Array, Array, Arra
         value = p0 * x + np.maximum(x[:, None] - r, 0.0) @ p
         error = 6.0 * UNIT * (abs(p0) + np.abs(p).sum()) * np.full_like(x, x.max())
         return value, p0 + past @ p, error
+    if curve == "exponential":
+        c, d, b = constants
+        lost = -np.expm1(-x / b)
+        # An exponential is off by six roundings, a sum of terms of one sign by one for each.
+        error = UNIT * (8.0 * (abs(c) + abs(d)) * x + 16.0 * abs(d) * b * lost)
+        return c * x - d * b * lost, c - d * (1.0 - lost), error
+    if curve == "iwan":
+        force, total, chi, beta, residual = constants
+        share, exponent = beta + (chi + 1.0) / (chi + 2.0), chi + 2.0
+        limit = force * (1.0 + beta) / (total * share)
+        along = np.minimum(x, limit)
+        power = total / ((1.0 + beta) * exponent) * along * (along / limit) ** (chi + 1.0)
+        slips = power_rounding(along, exponent) + power_rounding(np.array([limit]), chi + 1.0)
+        error = power * (slips + 12.0 * UNIT) + 4.0 * UNIT * (total + residual) * x
+        slope = np.where(x < limit, total - exponent * power / np.maximum(along, 1e-30), 0.0)
+        return total * along - power + residual * x, slope + residual, error
     degrees = np.arange(1, len(constants) + 1)
     powers = x[:, None] ** degrees
     slope = (degrees * constants * x[:, None] ** (degrees - 1)).sum(axis=1)

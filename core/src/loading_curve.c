@@ -41,6 +41,67 @@ static hyst_real polynomial_slope(const hyst_polynomial *f, hyst_real x)
     return sum;
 }
 
+/* Beyond the largest number in any precision, as a power of two. */
+#define CURVE_BEYOND HYST_REAL(1e6)
+#define CURVE_LN2 HYST_REAL(0.6931471805599453)
+#define CURVE_LOG2_E HYST_REAL(1.4426950408889634)
+
+/* 1 - exp(-t) for t >= 0, with all its digits where t is small. */
+static hyst_real lost(hyst_real t)
+{
+    if (t < HYST_REAL(0.25)) {
+        hyst_real sum = HYST_REAL(1.0);
+        for (size_t k = 13; k > 1u; --k) {
+            sum = HYST_REAL(1.0) - sum * t / (hyst_real)k;
+        }
+        return t * sum;
+    }
+    return HYST_REAL(1.0) - hyst_exp2(-CURVE_LOG2_E * t);
+}
+
+/* t - (1 - exp(-t)) for t >= 0, likewise: t^2 / 2 - t^3 / 6 + .. */
+static hyst_real gained(hyst_real t)
+{
+    if (t < HYST_REAL(0.5)) {
+        hyst_real sum = HYST_REAL(1.0);
+        for (size_t k = 15; k > 2u; --k) {
+            sum = HYST_REAL(1.0) - sum * t / (hyst_real)k;
+        }
+        return HYST_REAL(0.5) * t * t * sum;
+    }
+    return t - lost(t);
+}
+
+/* f(b t) / b, in the form in which no term takes away from another. */
+static hyst_real exponential(const hyst_exponential *f, hyst_real t)
+{
+    return f->change < HYST_REAL(0.0) ? f->last * t - f->change * lost(t)
+                                      : f->first * t + f->change * gained(t);
+}
+
+static hyst_real exponential_slope(const hyst_exponential *f, hyst_real t)
+{
+    return f->change < HYST_REAL(0.0) ? f->last - f->change * hyst_exp2(-CURVE_LOG2_E * t)
+                                      : f->first + f->change * lost(t);
+}
+
+static hyst_real iwan(const hyst_iwan *f, hyst_real x)
+{
+    if (x < f->limit) {
+        return x * (f->stiffness - f->factor * hyst_power(x, f->exponent - HYST_REAL(1.0)));
+    }
+    return f->force + f->residual * x;
+}
+
+static hyst_real iwan_slope(const hyst_iwan *f, hyst_real x)
+{
+    if (x < f->limit) {
+        return f->stiffness -
+               f->exponent * f->factor * hyst_power(x, f->exponent - HYST_REAL(1.0));
+    }
+    return f->residual;
+}
+
 hyst_real hyst_loading(const hyst_loading_curve *curve, hyst_real x)
 {
     switch (curve->kind) {
@@ -51,6 +112,12 @@ hyst_real hyst_loading(const hyst_loading_curve *curve, hyst_real x)
     }
     case HYST_POLYNOMIAL:
         return polynomial(&curve->as.polynomial, x);
+    case HYST_EXPONENTIAL: {
+        const hyst_exponential *f = &curve->as.exponential;
+        return f->way * exponential(f, x / f->way);
+    }
+    case HYST_IWAN:
+        return iwan(&curve->as.iwan, x);
     case HYST_POWER_LAW:
     default: {
         const hyst_power_law *f = &curve->as.power_law;
@@ -68,6 +135,10 @@ hyst_real hyst_loading_slope(const hyst_loading_curve *curve, hyst_real x)
     }
     case HYST_POLYNOMIAL:
         return polynomial_slope(&curve->as.polynomial, x);
+    case HYST_EXPONENTIAL:
+        return exponential_slope(&curve->as.exponential, x / curve->as.exponential.way);
+    case HYST_IWAN:
+        return iwan_slope(&curve->as.iwan, x);
     case HYST_POWER_LAW:
     default: {
         const hyst_power_law *f = &curve->as.power_law;
@@ -165,6 +236,127 @@ static hyst_real inverse_polynomial(const hyst_polynomial *f, hyst_real w)
     return x;
 }
 
+/* The t > 0 with exponential(f, t) = w > 0 of a slope that grows from a to c = a + d.
+ *
+ * The left side is convex, so Newton's steps go down from any t that is too large: w / a; (w + d) / c,
+ * since no more than d is lost; and the root of 3 w / d where that is below 1, since t - 1 + exp(-t)
+ * is at least t^2 / 3 there. The least of them is near. */
+static hyst_real solve_growing(const hyst_exponential *f, hyst_real w)
+{
+    const hyst_real square = HYST_REAL(3.0) * w;
+    hyst_real t = (w + f->change) / f->last;
+    if (square < f->change) {
+        const hyst_real root = hyst_power(square / f->change, HYST_REAL(0.5));
+        t = root < t ? root : t;
+    }
+    if (w < f->first * t) {
+        t = w / f->first;
+    }
+    for (int i = 0; i < HYST_EXPONENTIAL_LIMIT; ++i) {
+        const hyst_real step = (exponential(f, t) - w) / exponential_slope(f, t);
+        if (!(step > HYST_REAL(0.0))) {
+            return t;
+        }
+        t -= step;
+        if (step * step < HYST_REAL(1e-17) * t * t) {
+            return t;
+        }
+    }
+    return t;
+}
+
+/* -ln(1 - v) for 0 <= v < 1. */
+static hyst_real unlost(hyst_real v)
+{
+    if (v < HYST_REAL(0.25)) {
+        /* 2 artanh(q) with q = v / (2 - v). */
+        const hyst_real q = v / (HYST_REAL(2.0) - v);
+        const hyst_real s = q * q;
+        hyst_real sum = HYST_REAL(0.0);
+        for (size_t k = 10; k > 0u; --k) {
+            sum = (sum + HYST_REAL(1.0) / (hyst_real)(2u * k + 1u)) * s;
+        }
+        return HYST_REAL(2.0) * q * (HYST_REAL(1.0) + sum);
+    }
+    return -CURVE_LN2 * hyst_log2(HYST_REAL(1.0) - v);
+}
+
+/* The same of a slope that falls from c + e to c > 0:  c t + e (1 - exp(-t)) = w.
+ *
+ * Concave, so Newton's steps go up from any t that is too small: w / (c + e), or (w - e) / c. They are
+ * no longer than 1 where the exponential decides; those of  t + ln(1 - (w - c t) / e) = 0, which is
+ * concave too, are fast just there. The longer one is never too long. */
+static hyst_real solve_falling(const hyst_exponential *f, hyst_real w)
+{
+    const hyst_real e = -f->change;
+    hyst_real t = w / f->first;
+    if (w - e > f->last * t) {
+        t = (w - e) / f->last;
+    }
+    for (int i = 0; i < HYST_EXPONENTIAL_LIMIT; ++i) {
+        hyst_real step = (w - exponential(f, t)) / exponential_slope(f, t);
+        const hyst_real rest = (e - w + f->last * t) / e;
+        if (t > HYST_REAL(1.0) && rest > HYST_REAL(0.0)) {
+            const hyst_real other = -(t + CURVE_LN2 * hyst_log2(rest)) * rest / (rest + f->last / e);
+            step = other > step ? other : step;
+        }
+        t += step;
+        if (step * step < HYST_REAL(1e-17) * t * t) {
+            return t;
+        }
+    }
+    return t;
+}
+
+static hyst_real inverse_exponential(const hyst_exponential *f, hyst_real value)
+{
+    const hyst_real zero = HYST_REAL(0.0);
+    const hyst_real w = value / f->way;
+    if (!(w > zero)) {
+        return zero;
+    }
+    if (!(f->change < zero)) {
+        return f->change > zero ? f->way * solve_growing(f, w) : value / f->last;
+    }
+    if (f->last > zero) {
+        return f->way * solve_falling(f, w);
+    }
+    if (!(w < f->first)) {
+        return hyst_exp2(CURVE_BEYOND); /* an infinity: no way leads there */
+    }
+    return f->way * unlost(w / f->first);
+}
+
+/* Concave, so Newton's steps go up from w / stiffness, which is too small. */
+static hyst_real inverse_iwan(const hyst_iwan *f, hyst_real w)
+{
+    hyst_real x = w / f->stiffness;
+    if (!(w > HYST_REAL(0.0))) {
+        return HYST_REAL(0.0);
+    }
+    if (!(w < f->force + f->residual * f->limit)) {
+        return f->residual > HYST_REAL(0.0) ? (w - f->force) / f->residual
+                                            : hyst_exp2(CURVE_BEYOND);
+    }
+    for (int i = 0; i < HYST_IWAN_LIMIT; ++i) {
+        const hyst_real lost_stiffness =
+            f->factor * hyst_power(x, f->exponent - HYST_REAL(1.0));
+        const hyst_real slope = f->stiffness - f->exponent * lost_stiffness;
+        const hyst_real step = (w - x * (f->stiffness - lost_stiffness)) / slope;
+        if (!(step > HYST_REAL(0.0))) {
+            return x;
+        }
+        x += step;
+        if (!(x < f->limit)) {
+            return f->limit;
+        }
+        if (step * step < HYST_REAL(1e-18) * x * x) {
+            return x;
+        }
+    }
+    return x;
+}
+
 hyst_real hyst_unloading(const hyst_loading_curve *curve, hyst_real w)
 {
     switch (curve->kind) {
@@ -175,6 +367,10 @@ hyst_real hyst_unloading(const hyst_loading_curve *curve, hyst_real w)
     }
     case HYST_POLYNOMIAL:
         return inverse_polynomial(&curve->as.polynomial, w);
+    case HYST_EXPONENTIAL:
+        return inverse_exponential(&curve->as.exponential, w);
+    case HYST_IWAN:
+        return inverse_iwan(&curve->as.iwan, w);
     case HYST_POWER_LAW:
     default:
         return inverse_power_law(&curve->as.power_law, w);

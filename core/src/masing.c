@@ -91,7 +91,9 @@ static size_t left_open(const hyst_real *state, size_t count, int rising, hyst_r
     return count;
 }
 
-/* A branch ends where it closes its loop; rounding must not carry it beyond. */
+/* A branch ends where it closes its loop; rounding must not carry it beyond. Where a curve is flat it
+ * is as far before: then the output is the branch's own, and so is what numbers with derivatives
+ * carry beside it. */
 static hyst_real within_loop(const hyst_real *state, size_t count, int rising, hyst_real output)
 {
     hyst_real limit;
@@ -99,7 +101,7 @@ static hyst_real within_loop(const hyst_real *state, size_t count, int rising, h
         return output;
     }
     limit = count >= 2u ? point_at(state, count - 2u).output : -point_at(state, 0u).output;
-    return reached(rising, output, limit) ? limit : output;
+    return (rising ? output > limit : output < limit) ? limit : output;
 }
 
 /* What was kept beyond the last reversal leaves no trace, so that equal memories are equal bits. */

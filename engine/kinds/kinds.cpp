@@ -1,21 +1,28 @@
 // All kinds of stages, a line each.
 #include "kind.hpp"
 
-#define EACH_KIND(ROW)       \
-    ROW(affine)              \
-    ROW(coleman_hodgdon)     \
-    ROW(dahl)                \
-    ROW(dead_zone)           \
-    ROW(direction_dead_zone) \
-    ROW(jiles_atherton)      \
-    ROW(masing)              \
-    ROW(memory_element)      \
-    ROW(pi)                  \
-    ROW(play)                \
-    ROW(rate_dependent_pi)   \
-    ROW(sections)            \
-    ROW(state_space)         \
-    ROW(stop)
+#define EACH_KIND(ROW)              \
+    ROW(affine)                     \
+    ROW(coleman_hodgdon)            \
+    ROW(creep)                      \
+    ROW(dahl)                       \
+    ROW(dead_zone)                  \
+    ROW(direction_dead_zone)        \
+    ROW(generalized_maxwell_slip)   \
+    ROW(lugre)                      \
+    ROW(masing)                     \
+    ROW(maxwell_slip)               \
+    ROW(memory_element)             \
+    ROW(pi)                         \
+    ROW(play)                       \
+    ROW(preisach)                   \
+    ROW(rate_dependent_pi)          \
+    ROW(rate_shift)                 \
+    ROW(sections)                   \
+    ROW(state_map)                  \
+    ROW(state_space)                \
+    ROW(stop)                       \
+    ROW(two_envelope)
 
 namespace hyst {
 namespace HYST_KINDS {
@@ -33,6 +40,12 @@ const Kind *kind_named(const std::string &name) {
         if (name == each->name) return each;
     }
     return nullptr;
+}
+
+const Kind &known_kind(const std::string &name) {
+    const Kind *kind = kind_named(name);
+    if (kind == nullptr) throw std::invalid_argument("unknown kind of stage '" + name + "'");
+    return *kind;
 }
 
 const void *build(const Kind &kind, const Given &given, Constants &made) {

@@ -61,6 +61,47 @@ void derive_polynomial(const Given &given, Constants &made) {
         "$model.curve.as.polynomial.least_slope = $least_slope;" MEMORY_OF_REVERSALS;
 }
 
+// c d b: f(x) = c x - d b (1 - exp(-x / b)).
+void derive_exponential(const Given &given, Constants &made) {
+    given.require(given.constants.size() == 3);
+    const hyst_real c = given.constants[0], d = given.constants[1];
+    made.form = "HYST_EXPONENTIAL";
+    made.number("first", c - d, not_offered);
+    made.number("last", c, not_offered);
+    made.number("change", d, not_offered);
+    made.number("way", given.constants[2], not_offered);
+    made.structure =
+        "hyst_masing $model; $model.curve.kind = $form; "
+        "$model.curve.as.exponential.first = $first; $model.curve.as.exponential.last = $last; "
+        "$model.curve.as.exponential.change = $change; "
+        "$model.curve.as.exponential.way = $way;" MEMORY_OF_REVERSALS;
+}
+
+// F_S K_T chi beta K_inf. With K = K_T / (1 + beta) the stiffness of what is spread:
+// limit = F_S / (K (beta + (chi + 1) / (chi + 2))), q = K / ((chi + 2) limit^(chi + 1)).
+void derive_iwan(const Given &given, Constants &made) {
+    given.require(given.constants.size() == 5);
+    const hyst_real force = given.constants[0], total = given.constants[1];
+    const hyst_real chi = given.constants[2], beta = given.constants[3];
+    const hyst_real residual = given.constants[4], one = HYST_REAL(1.0);
+    const hyst_real exponent = chi + HYST_REAL(2.0);
+    const hyst_real spread = total / (one + beta);
+    const hyst_real limit = force / (spread * (beta + (chi + one) / exponent));
+    made.form = "HYST_IWAN";
+    made.number("stiffness", total + residual, not_offered);
+    made.number("factor", spread / (exponent * hyst_power(limit, chi + one)), not_offered);
+    made.number("exponent", exponent, not_offered);
+    made.number("limit", limit, not_offered);
+    made.number("force", force, not_offered);
+    made.number("residual", residual, not_offered);
+    made.structure =
+        "hyst_masing $model; $model.curve.kind = $form; "
+        "$model.curve.as.iwan.stiffness = $stiffness; $model.curve.as.iwan.factor = $factor; "
+        "$model.curve.as.iwan.exponent = $exponent; $model.curve.as.iwan.limit = $limit; "
+        "$model.curve.as.iwan.force = $force; "
+        "$model.curve.as.iwan.residual = $residual;" MEMORY_OF_REVERSALS;
+}
+
 void derive_masing(const Given &given, Constants &made) {
     made.number("dead_band", given.kept("dead_band").at(0), not_offered);
     if (given.form == "power-law") {
@@ -69,6 +110,10 @@ void derive_masing(const Given &given, Constants &made) {
         derive_pieces(given, made);
     } else if (given.form == "polynomial") {
         derive_polynomial(given, made);
+    } else if (given.form == "exponential") {
+        derive_exponential(given, made);
+    } else if (given.form == "iwan") {
+        derive_iwan(given, made);
     } else {
         throw std::invalid_argument("unknown loading curve '" + given.form + "'");
     }
@@ -85,6 +130,14 @@ hyst_loading_curve curve_of(const Constants &of) {
     } else if (of.form == "HYST_PLAYS") {
         made.kind = HYST_PLAYS;
         made.as.pieces = {of.size("knot"), of.table("knot"), of.table("value"), of.table("slope")};
+    } else if (of.form == "HYST_EXPONENTIAL") {
+        made.kind = HYST_EXPONENTIAL;
+        made.as.exponential = {of.number("first"), of.number("last"), of.number("change"),
+                               of.number("way")};
+    } else if (of.form == "HYST_IWAN") {
+        made.kind = HYST_IWAN;
+        made.as.iwan = {of.number("stiffness"), of.number("factor"), of.number("exponent"),
+                        of.number("limit"),     of.number("force"),  of.number("residual")};
     } else {
         made.kind = HYST_POLYNOMIAL;
         made.as.polynomial = {of.size("coefficient"), of.table("coefficient"),

@@ -68,7 +68,7 @@ void keep_in_order(const hyst_masing &model, double last, double end, double *y,
         if (model.last_reversal) {
             last = y[k] = (rising ? y[k] >= last : y[k] <= last) ? y[k] : last;
         } else {
-            y[k] = (rising ? y[k] >= end : y[k] <= end) ? end : y[k];
+            y[k] = (rising ? y[k] > end : y[k] < end) ? end : y[k];
         }
     }
 }

@@ -46,7 +46,8 @@ class RambergOsgood(Operator):
     Parameters
     ----------
     c1
-        Slope right after a reversal, > 0, output units per input unit.
+        Slope right after a reversal, >= 0, output units per input unit; 0 with c2 > 0 only. The
+        output then starts without a slope from every turn, and the inverse with an infinite one.
     c2
         Growth of the slope, >= 0.
     c3
@@ -64,8 +65,8 @@ class RambergOsgood(Operator):
     Raises
     ------
     InputError
-        If c1 or c3 is not positive, c2 is negative, or an argument is not allowed. Softening curves
-        (-1 < c3 < 0) and c1 = 0 are taken by ``MasingOperator(PowerLaw(c1, c2, c3))``.
+        If c1 or c2 is negative or both are 0, c3 is not positive, or an argument is not allowed.
+        Softening curves (-1 < c3 < 0) are taken by ``MasingOperator(PowerLaw(c1, c2, c3))``.
 
     Notes
     -----
@@ -93,12 +94,16 @@ class RambergOsgood(Operator):
     def __post_init__(self) -> None:
         for name in ("c1", "c2", "c3"):
             object.__setattr__(self, name, as_number(getattr(self, name), name))
-        for name in ("c1", "c3"):
-            if getattr(self, name) <= 0.0:
-                raise InputError(
-                    f"{name} is {getattr(self, name):.6g}; a Ramberg-Osgood model needs it "
-                    "positive (MasingOperator(PowerLaw(...)) takes c1 = 0 and -1 < c3 < 0)"
-                )
+        if self.c1 < 0.0 or (self.c1 == 0.0 and self.c2 <= 0.0):
+            raise InputError(
+                f"c1 is {self.c1:.6g} and c2 is {self.c2:.6g}; a Ramberg-Osgood model needs c1 "
+                "positive, or 0 with a positive c2"
+            )
+        if self.c3 <= 0.0:
+            raise InputError(
+                f"c3 is {self.c3:.6g}; a Ramberg-Osgood model needs it positive "
+                "(MasingOperator(PowerLaw(...)) takes -1 < c3 < 0)"
+            )
         if self.c2 < 0.0:
             # By logarithms and bounded, for a small c3 puts it beyond the largest number.
             log_way = (math.log(self.c1) - math.log(-self.c2)) / self.c3
@@ -247,7 +252,7 @@ class RambergOsgood(Operator):
         return Parameters(
             values=np.array([self.c1, self.c2, self.c3]),
             names=("c1", "c2", "c3"),
-            lower=np.array([_SMALLEST, 0.0, _SMALLEST]),
+            lower=np.array([min(self.c1, _SMALLEST), 0.0, _SMALLEST]),
             upper=np.full(3, np.inf),
         )
 

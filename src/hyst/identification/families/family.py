@@ -68,6 +68,8 @@ class Family(ABC):
     """Of compensation, the one that suits best first."""
     compared: ClassVar[bool] = False
     """Whether ``family="auto"`` compares it."""
+    in_reserve: ClassVar[bool] = False
+    """Whether it does so only where what it compares first leaves more than noise."""
     has_memory: ClassVar[bool] = True
     """Whether its delay is worth judging by the family itself."""
     answers_late: ClassVar[bool] = False
@@ -76,6 +78,8 @@ class Family(ABC):
     """Whether samples left out of a record would change the model."""
     explains: ClassVar[tuple[str, ...]] = ()
     """Findings that make no record doubtful of which it leaves nothing but noise."""
+    describes: ClassVar[tuple[str, ...]] = ()
+    """Findings that are what the family is for: they make no record of it doubtful."""
     wraps: ClassVar[str] = ""
     """The option that holds a family this one is made around; empty where there is none."""
 
