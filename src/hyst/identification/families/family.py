@@ -72,6 +72,8 @@ class Family(ABC):
     """Whether it does so only where what it compares first leaves more than noise."""
     has_memory: ClassVar[bool] = True
     """Whether its delay is worth judging by the family itself."""
+    settles_delay: ClassVar[bool] = True
+    """Whether it may choose among delays that the records leave possible: a fit for each of them."""
     answers_late: ClassVar[bool] = False
     """Whether the delay of the output is part of the model, so that none is looked for before."""
     depends_on_rate: ClassVar[bool] = False
@@ -140,13 +142,7 @@ class Family(ABC):
         return data if self.depends_on_rate else thinned(data)
 
     def fitted(self, data: Data) -> Data:
-        """Give what the last fit and its standard errors take: all samples, if memory allows.
-
-        Parameters
-        ----------
-        data
-            The records.
-        """
+        """Give what the last fit and its standard errors take: all samples, if memory allows."""
         return data
 
     def in_units(self, input_scale: float, output_scale: float) -> Self:
