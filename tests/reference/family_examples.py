@@ -197,15 +197,9 @@ def _butterfly() -> FamilyExample:
 _MAKE: dict[str, Callable[[], FamilyExample]] = {
     "linear": lambda: FamilyExample(Affine(-1.3, 0.4), (decaying(),)),
     "butterfly": _butterfly,
-    "coleman-hodgdon": lambda: FamilyExample(
-        Affine(1.0, 0.3) @ hyst.ColemanHodgdon(2.0, 1.5, 1.1), (decaying(),)
-    ),
     "dahl": lambda: FamilyExample(Affine(-1.0, 0.3) @ hyst.Dahl(4.0, 1.5), (decaying(),)),
     "bouc-wen": lambda: FamilyExample(
         Affine(-1.0, 0.3) @ hyst.BoucWen(1.2, 0.6, 1.4, 0.5, h=-1.0), (decaying(),)
-    ),
-    "jiles-atherton": lambda: FamilyExample(
-        Affine(-1.0, 0.3) @ hyst.JilesAtherton(2.0, 0.25, 0.2, 0.3, 0.15), (decaying(600),)
     ),
     "lugre": lambda: FamilyExample(
         Affine(-1.0, 0.3) @ hyst.LuGre(30.0, 0.02, 0.03, 1.0, 1.6, 5.0, DT),
@@ -216,6 +210,12 @@ _MAKE: dict[str, Callable[[], FamilyExample]] = {
         Affine(-1.0, 0.3) @ hyst.MaxwellSlip([3.0, 1.0], [0.36, 0.41], 0.5),
         (decaying(),),
         {"plays": 2},
+    ),
+    "coleman-hodgdon": lambda: FamilyExample(
+        Affine(1.0, 0.3) @ hyst.ColemanHodgdon(2.0, 1.5, 1.1), (decaying(),)
+    ),
+    "jiles-atherton": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.JilesAtherton(2.0, 0.25, 0.2, 0.3, 0.15), (decaying(600),)
     ),
     "ramberg-osgood": lambda: FamilyExample(
         Affine(1.0, 0.3) @ hyst.RambergOsgood(1.0, 0.6, 0.8),

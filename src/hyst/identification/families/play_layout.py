@@ -13,9 +13,7 @@ from numpy.typing import NDArray
 
 from hyst.identification.fit.parametrization import SMALLEST_SLOPE, Parametrization
 from hyst.identification.fit.weight_rules import INVERTIBLE, NON_NEGATIVE, SLIDING, basis
-from hyst.models import MaxwellSlip, PrandtlIshlinskii
-from hyst.identification.fit.weight_rules import NON_NEGATIVE, basis
-from hyst.models import PrandtlIshlinskii, TwoEnvelopePrandtlIshlinskii
+from hyst.models import MaxwellSlip, PrandtlIshlinskii, TwoEnvelopePrandtlIshlinskii
 from hyst.operators import DeadZone, Operator
 from hyst.operators.composition import leaves_of
 from hyst.signals import reversals
