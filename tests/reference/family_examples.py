@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -124,6 +125,31 @@ def _preisach() -> FamilyExample:
     )
 
 
+def resting(turns: list[float], samples: int) -> np.ndarray:
+    """Give straight strokes of so many samples a unit, each followed by three samples of rest."""
+    parts = [np.full(3, turns[0])]
+    for start, end in pairwise(turns):
+        steps = round(samples * abs(end - start))
+        parts.append(start + (end - start) * np.arange(1, steps + 1) / steps)
+        parts.append(np.full(3, end))
+    return np.concatenate(parts)
+
+
+def _rate_dependent_relays() -> FamilyExample:
+    """Rests at the ends show the relays the whole range, whatever their shift: the same cells."""
+    turns = [0.0, 1.0, -1.0, 0.6, -0.5, 0.3, -1.0, 1.0, -0.3, 0.4, -0.7, 1.0, 0.1, 0.8, -1.0]
+    drives = tuple(resting(turns, samples) for samples in (80, 20, 6))
+    relays = _relays(np.array([-1.0, 1.0]), levels=5)
+    return FamilyExample(
+        Affine(1.0, 0.3) @ relays @ hyst.RateShift(0.02, 0.4, DT),
+        drives,
+        {"levels": 5, "smoothness": 0},
+        unit_of_its_own=".c",  # the input's unit to the power 1 - m is in it
+        told=_means(relays),
+        told_units=RELAY_UNITS,
+    )
+
+
 def _hammerstein() -> FamilyExample:
     """Plays before a resonance, ``(0.2 q^-1 + 0.1 q^-2) / (1 + a1 q^-1 + a2 q^-2)``: gain 1."""
     a1, a2 = -1.4, 0.7
@@ -163,6 +189,9 @@ _MAKE: dict[str, Callable[[], FamilyExample]] = {
     "linear": lambda: FamilyExample(Affine(-1.3, 0.4), (decaying(),)),
     "butterfly": _butterfly,
     "dahl": lambda: FamilyExample(Affine(-1.0, 0.3) @ hyst.Dahl(4.0, 1.5), (decaying(),)),
+    "bouc-wen": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.BoucWen(1.2, 0.6, 1.4, 0.5, h=-1.0), (decaying(),)
+    ),
     "lugre": lambda: FamilyExample(
         Affine(-1.0, 0.3) @ hyst.LuGre(30.0, 0.02, 0.03, 1.0, 1.6, 5.0, DT),
         (decaying(),),
@@ -172,6 +201,14 @@ _MAKE: dict[str, Callable[[], FamilyExample]] = {
         Affine(-1.0, 0.3) @ hyst.MaxwellSlip([3.0, 1.0], [0.36, 0.41], 0.5),
         (decaying(),),
         {"plays": 2},
+
+
+    "coleman-hodgdon": lambda: FamilyExample(
+        Affine(1.0, 0.3) @ hyst.ColemanHodgdon(2.0, 1.5, 1.1), (decaying(),)
+    ),
+    "dahl": lambda: FamilyExample(Affine(-1.0, 0.3) @ hyst.Dahl(4.0, 1.5), (decaying(),)),
+    "jiles-atherton": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.JilesAtherton(2.0, 0.25, 0.2, 0.3, 0.15), (decaying(600),)
     ),
     "ramberg-osgood": lambda: FamilyExample(
         Affine(1.0, 0.3) @ hyst.RambergOsgood(1.0, 0.6, 0.8),
@@ -194,6 +231,7 @@ _MAKE: dict[str, Callable[[], FamilyExample]] = {
         _rate_dependent(), (sine(1.0, 1700), sine(20.0, 300), sine(60.0, 300)), {"plays": 2}
     ),
     "preisach": _preisach,
+    "rate-dependent-preisach": _rate_dependent_relays,
     "hammerstein": _hammerstein,
 }
 
