@@ -84,6 +84,15 @@ def _map(knots: list[float]) -> hyst.DeadZone:
     return hyst.DeadZone([1.0, 0.2, -0.15], [0.0, *knots])
 
 
+def _two_envelopes(u: np.ndarray) -> hyst.TwoEnvelopePrandtlIshlinskii:
+    """Slopes 0.7, 1, 0.6 up and 1.2, 0.8, 0.9 down, between thirds of the input."""
+    low, high = _thirds(u)
+    ends = [float(u.min()), low, high, float(u.max())]
+    rising = hyst.DeadZone([1.0, -0.3, -0.4], [0.0, low, high])
+    falling = hyst.DeadZone([0.8, -0.5, 0.4, 0.1, -0.3], [0.0, *ends])
+    return hyst.TwoEnvelopePrandtlIshlinskii([0.5, 0.3], [0.2, 0.45], rising, falling, 1.0)
+
+
 def _rate_dependent() -> Operator:
     plays = hyst.RateDependentPrandtlIshlinskii([0.5, 0.3], [0.15, 0.3], 4e-3, DT, p0=1.0)
     return Affine(1.0, 0.3) @ plays
@@ -215,6 +224,13 @@ _MAKE: dict[str, Callable[[], FamilyExample]] = {
         (decaying(),),
         unit_of_its_own=".c2",  # the input's unit to the power c3 is in it
     ),
+    "masing": lambda: FamilyExample(
+        Affine(1.0, 0.3) @ hyst.MasingOperator(hyst.models.ExponentialCurve(1.5, 1.0, 0.4)),
+        (decaying(),),
+    ),
+    "iwan": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.Iwan(1.0, 3.0, -0.3, 0.5, 0.4), (decaying(),)
+    ),
     "pi": lambda: FamilyExample(Affine(-1.0, 0.3) @ _plays(), (decaying(),), {"plays": 2}),
     # Knots where the family puts them: evenly over the signal the map acts on.
     "gpi": lambda: FamilyExample(
@@ -226,6 +242,10 @@ _MAKE: dict[str, Callable[[], FamilyExample]] = {
     # anywhere, and its slopes must come out as 1.
     "mpi": lambda: FamilyExample(
         Affine(1.0, 0.3) @ _plays(), (decaying(),), {"plays": 2, "knots": 2}
+    ),
+    # Knots where the family puts them, and at the ends of the input, beyond which both go on alike.
+    "two-envelope": lambda: FamilyExample(
+        Affine(1.0, 0.3) @ _two_envelopes(decaying()), (decaying(),), {"plays": 2, "knots": 2}
     ),
     "rdpi": lambda: FamilyExample(
         _rate_dependent(), (sine(1.0, 1700), sine(20.0, 300), sine(60.0, 300)), {"plays": 2}

@@ -31,6 +31,9 @@ _PARTS = 16
 _ROUNDS = 12
 """Of cutting: 16^-12 of an interval is below the last digit of an input."""
 
+_NO_CLOSER = 1e-9
+"""Of what the output misses: a closer look that gains no more is the last."""
+
 _OUT_OF_REACH = 1e-6
 """Of the reach of the output: by what a reference may be missed without being out of reach."""
 
@@ -158,8 +161,11 @@ class _Look:
             at = int(np.argmin(np.abs(error)))
             ends = points[max(at - 1, 0)], points[min(at + 1, points.size - 1)]
             closer = np.unique(np.append(np.linspace(*ends, _PARTS + 1), points[at]))
-            points, error = closer, self._error(closer)
-            if _crossings(error).size or points.size < 3:
+            missed = self._error(closer)
+            if np.abs(missed).min() > (1.0 - _NO_CLOSER) * abs(error[at]):
+                break
+            points, error = closer, missed
+            if _crossings(error).size:
                 break
         return points, error
 

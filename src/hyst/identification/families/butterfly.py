@@ -60,7 +60,7 @@ class Butterfly(Family):
     """
 
     name = "butterfly"
-    describes = ("butterfly",)
+    describes = ("butterfly", "run direction")  # one wing is run one way, the other the other way
     methods = ("trajectory",)
     words = Words(
         full_name="butterfly model",

@@ -142,13 +142,7 @@ class Family(ABC):
         return data if self.depends_on_rate else thinned(data)
 
     def fitted(self, data: Data) -> Data:
-        """Give what the last fit and its standard errors take: all samples, if memory allows.
-
-        Parameters
-        ----------
-        data
-            The records.
-        """
+        """Give what the last fit and its standard errors take: all samples, if memory allows."""
         return data
 
     def in_units(self, input_scale: float, output_scale: float) -> Self:
