@@ -210,12 +210,10 @@ _MAKE: dict[str, Callable[[], FamilyExample]] = {
         Affine(-1.0, 0.3) @ hyst.MaxwellSlip([3.0, 1.0], [0.36, 0.41], 0.5),
         (decaying(),),
         {"plays": 2},
-
-
+    ),
     "coleman-hodgdon": lambda: FamilyExample(
         Affine(1.0, 0.3) @ hyst.ColemanHodgdon(2.0, 1.5, 1.1), (decaying(),)
     ),
-    "dahl": lambda: FamilyExample(Affine(-1.0, 0.3) @ hyst.Dahl(4.0, 1.5), (decaying(),)),
     "jiles-atherton": lambda: FamilyExample(
         Affine(-1.0, 0.3) @ hyst.JilesAtherton(2.0, 0.25, 0.2, 0.3, 0.15), (decaying(600),)
     ),

@@ -13,9 +13,7 @@ from numpy.typing import NDArray
 
 from hyst.identification.fit.parametrization import SMALLEST_SLOPE, Parametrization
 from hyst.identification.fit.weight_rules import INVERTIBLE, NON_NEGATIVE, SLIDING, basis
-from hyst.models import MaxwellSlip, PrandtlIshlinskii
-from hyst.identification.fit.weight_rules import NON_NEGATIVE, basis
-from hyst.models import PrandtlIshlinskii, TwoEnvelopePrandtlIshlinskii
+from hyst.models import MaxwellSlip, PrandtlIshlinskii, TwoEnvelopePrandtlIshlinskii
 from hyst.operators import DeadZone, Operator
 from hyst.operators.composition import leaves_of
 from hyst.signals import reversals
@@ -218,13 +216,12 @@ def half_swings(operator: Operator, u: Array) -> Array:
     """
     signal = u
     for leaf in leaves_of(operator):
-        if isinstance(leaf, PrandtlIshlinskii | MaxwellSlip):
         if isinstance(leaf, TwoEnvelopePrandtlIshlinskii):
             turns = signal[reversals(signal)]
             up, down = leaf.rising(turns), leaf.falling(turns)
             swings = np.where(np.diff(turns) > 0.0, up[1:] - down[:-1], up[:-1] - down[1:])
             return np.abs(swings) / 2.0
-        if isinstance(leaf, PrandtlIshlinskii):
+        if isinstance(leaf, PrandtlIshlinskii | MaxwellSlip):
             break
         signal = leaf(signal)
     return np.abs(np.diff(signal[reversals(signal)])) / 2.0
