@@ -14,15 +14,21 @@ import sys  # noqa: E402
 
 import benchmarks  # noqa: E402
 
-SUPPORT = {"__main__", "timing", "peers", "plants"}
+SUPPORT = {"__main__", "measured_tasks", "peers", "plants", "timing"}
 
 
 def main(names: list[str]) -> None:
     found = [each.name for each in pkgutil.iter_modules(benchmarks.__path__)]
-    for name in names or [each for each in sorted(found) if each not in SUPPORT]:
+    # A benchmark reads its options itself.
+    for name in _without_options(names) or [each for each in sorted(found) if each not in SUPPORT]:
         print(f"## {name}\n", flush=True)
         importlib.import_module(f"benchmarks.{name}").main()
         print(flush=True)
+
+
+def _without_options(words: list[str]) -> list[str]:
+    options = [k for k, word in enumerate(words) if word.startswith("-")]
+    return words[: options[0]] if options else words
 
 
 if __name__ == "__main__":

@@ -1,19 +1,15 @@
 #include "chain.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace hyst {
 
 Chain::Chain(const std::vector<kinds::Given> &stages) : given_(stages) {
     for (const kinds::Given &given : given_) {
-        const kinds::Kind *kind = kinds::kind_named(given.kind);
-        if (kind == nullptr) {
-            throw std::invalid_argument("unknown kind of stage '" + given.kind + "'");
-        }
+        const kinds::Kind &kind = kinds::known_kind(given.kind);
         constants_.emplace_back();
-        const void *model = kinds::build(*kind, given, constants_.back());
-        stages_.push_back({kind, model, given.dt, given.constants.size()});
+        const void *model = kinds::build(kind, given, constants_.back());
+        stages_.push_back({&kind, model, given.dt, given.constants.size()});
         core_.push_back(stages_.back().core());
     }
 }

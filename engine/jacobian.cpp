@@ -1,10 +1,21 @@
 #include "jacobian.hpp"
 
+#include <utility>
 #include <vector>
 
 #include "dual/derivative.hpp"
 
 namespace hyst {
+namespace {
+
+Said said_of(const kinds::Given &given) {
+    std::vector<Said> inside;
+    for (const kinds::Given &each : given.inside) inside.push_back(said_of(each));
+    return {given.kind, given.form, given.constants, given.fixed, given.choices, given.dt,
+            std::move(inside)};
+}
+
+}  // namespace
 
 void jacobian(const Chain &chain, double *state, const double *u, std::size_t samples,
               Derivative derivative, double *jacobian) {
@@ -13,10 +24,7 @@ void jacobian(const Chain &chain, double *state, const double *u, std::size_t sa
     for (std::size_t i = 0; i < chain.stages().size(); ++i) {
         const Stage &stage = chain.stages()[i];
         if (derivative == Derivative::kernel || stage.kind->jacobian == nullptr) {
-            const kinds::Given &given = chain.given(i);
-            kernel_jacobian({given.kind, given.form, given.constants, given.fixed, given.choices,
-                             given.dt},
-                            state, tangents);
+            kernel_jacobian(said_of(chain.given(i)), state, tangents);
         } else {
             stage.kind->jacobian(stage.model, stage.dt, state, tangents);
         }

@@ -1,46 +1,13 @@
 /* Dahl's model, one sample at a time. */
 #include "hyst/dahl.h"
 
+#include "hyst/branch.h"
 #include "hyst/finite.h"
 #include "hyst/power.h"
+#include "hyst/small_steps.h"
 
-/* Below this size of v the logarithm of 1 + v is summed, since 1 + v has lost digits of v. */
-#define DAHL_SMALL HYST_REAL(0.25)
 /* 2 to this is no number in any precision. */
 #define DAHL_BEYOND HYST_REAL(1e6)
-#define DAHL_LN2 HYST_REAL(0.6931471805599453)
-#define DAHL_LOG2_E HYST_REAL(1.4426950408889634)
-
-/* ln(1 + m t) / m, and its limit t where m is 0; v = m t > -1. */
-static hyst_real dahl_logarithm(hyst_real m, hyst_real t)
-{
-    const hyst_real v = m * t;
-    if (v < DAHL_SMALL && v > -DAHL_SMALL) {
-        /* 2 artanh(q) / m with q = v / (2 + v), the m taken out before it can divide. */
-        const hyst_real q = v / (HYST_REAL(2.0) + v);
-        const hyst_real s = q * q;
-        hyst_real sum = HYST_REAL(0.0);
-        for (size_t k = 10; k > 0u; --k) {
-            sum = (sum + HYST_REAL(1.0) / (hyst_real)(2u * k + 1u)) * s;
-        }
-        return HYST_REAL(2.0) * t / (HYST_REAL(2.0) + v) * (HYST_REAL(1.0) + sum);
-    }
-    return DAHL_LN2 * hyst_log2(HYST_REAL(1.0) + v) / m;
-}
-
-/* (exp(m l) - 1) / m, and its limit l where m is 0. */
-static hyst_real dahl_exponential(hyst_real m, hyst_real l)
-{
-    const hyst_real v = m * l;
-    if (v < DAHL_SMALL && v > -DAHL_SMALL) {
-        hyst_real sum = HYST_REAL(1.0);
-        for (size_t k = 13; k > 1u; --k) {
-            sum = HYST_REAL(1.0) + sum * v / (hyst_real)k;
-        }
-        return l * sum;
-    }
-    return (hyst_exp2(DAHL_LOG2_E * v) - HYST_REAL(1.0)) / m;
-}
 
 /* z after a way of x >= 0 towards sign. */
 static hyst_real dahl_after(hyst_real m, hyst_real z, hyst_real sign, hyst_real x)
@@ -55,7 +22,7 @@ static hyst_real dahl_after(hyst_real m, hyst_real z, hyst_real sign, hyst_real 
         return sign; /* n < 1 reaches the end in a finite way */
     }
     /* What w loses, not what is left of it: a small way keeps its digits. */
-    const hyst_real after = z - sign * w * dahl_exponential(one, -dahl_logarithm(m, t));
+    const hyst_real after = z - sign * w * hyst_small_exponential(one, -hyst_small_logarithm(m, t));
     return sign * after > one ? sign : after;
 }
 
@@ -66,8 +33,8 @@ static hyst_real dahl_way(hyst_real m, hyst_real from, hyst_real sign, hyst_real
     if (!(left > HYST_REAL(0.0))) {
         return hyst_exp2(DAHL_BEYOND); /* an infinity: no way leads there */
     }
-    const hyst_real l = dahl_logarithm(HYST_REAL(1.0), sign * (z - from) / left);
-    return dahl_exponential(m, l) / hyst_power(HYST_REAL(1.0) - sign * from, m);
+    const hyst_real l = hyst_small_logarithm(HYST_REAL(1.0), sign * (z - from) / left);
+    return hyst_small_exponential(m, l) / hyst_power(HYST_REAL(1.0) - sign * from, m);
 }
 
 hyst_real hyst_dahl_step(const hyst_dahl *model, hyst_real *state, hyst_real input)
@@ -75,13 +42,13 @@ hyst_real hyst_dahl_step(const hyst_dahl *model, hyst_real *state, hyst_real inp
     const hyst_real zero = HYST_REAL(0.0);
     const hyst_real value = model->inverse ? input / model->force : input;
     /* The input turns, be it the position or the force. */
-    const hyst_real last = model->inverse ? state[1] : state[0];
-    const hyst_real began = model->inverse ? state[3] : state[2];
-    hyst_real u_turn = state[2];
-    hyst_real z_turn = state[3];
-    if ((value > last && last < began) || (value < last && last > began)) {
-        u_turn = state[0];
-        z_turn = state[1];
+    const hyst_real last = model->inverse ? state[HYST_BRANCH_Z] : state[HYST_BRANCH_U];
+    const hyst_real began = model->inverse ? state[HYST_BRANCH_Z_TURN] : state[HYST_BRANCH_U_TURN];
+    hyst_real u_turn = state[HYST_BRANCH_U_TURN];
+    hyst_real z_turn = state[HYST_BRANCH_Z_TURN];
+    if (hyst_branch_turns(began, last, value)) {
+        u_turn = state[HYST_BRANCH_U];
+        z_turn = state[HYST_BRANCH_Z];
     }
     const hyst_real way = value - (model->inverse ? z_turn : u_turn);
     const hyst_real sign = way < zero ? HYST_REAL(-1.0) : HYST_REAL(1.0);
@@ -95,17 +62,17 @@ hyst_real hyst_dahl_step(const hyst_dahl *model, hyst_real *state, hyst_real inp
     } else {
         z = dahl_after(model->excess, z_turn, sign, model->rate * (sign * way));
     }
-    state[0] = u;
-    state[1] = z;
-    state[2] = u_turn;
-    state[3] = z_turn;
+    state[HYST_BRANCH_U] = u;
+    state[HYST_BRANCH_Z] = z;
+    state[HYST_BRANCH_U_TURN] = u_turn;
+    state[HYST_BRANCH_Z_TURN] = z_turn;
     return model->inverse ? u : model->force * z;
 }
 
 static size_t dahl_length(const void *model)
 {
     (void)model;
-    return 4;
+    return HYST_BRANCH_LENGTH;
 }
 
 static hyst_real dahl_step(const void *model, hyst_real *state, hyst_real u)

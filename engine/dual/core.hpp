@@ -12,6 +12,7 @@
 
 #define HYST_REAL_HEADER "dual/real.h"
 #define HYST_POWER_HEADER "dual/power.h"
+#define HYST_ROOT_HEADER "dual/root.h"
 
 namespace hyst {
 
@@ -19,46 +20,31 @@ namespace hyst {
 double core_power(double x, double e);
 double core_log2(double x);
 double core_exp2(double v);
+// hyst_root likewise.
+double core_root(double x);
+
+// Ways and shares of Bouc-Wen's branches in double; hyst/bouc_wen_branch.h.
+double core_rising(double n, double join, double share);
+double core_falling(double n, double ratio, double share);
+double core_risen(double n, double join, double tilt, double from, double way);
+double core_fallen(double n, double ratio, double tilt, double from, double way);
+
+// The Langevin function and a root on a branch of Jiles and Atherton's in double.
+double core_langevin(double x);
+double core_langevin_slope(double x);
+double core_langevin_inverse(double v);
+double core_jiles_root(int variant, const double *constants, int rests, const double *stretch,
+                       double target, const double *ends);
 
 namespace HYST_KINDS {
 
 // What solves an equation by iteration is differentiated by the implicit function theorem instead:
 // from f(x) = w, df + f'(x) dx = dw. The derivative of the last iterate would lag behind its value
 // by up to the square of the tolerance, and the iteration would carry tangents for nothing.
-#include "hyst/loading_curve.h"
-#define hyst_unloading iterated
-#include "loading_curve.c"
-#undef hyst_unloading
-
-hyst_real hyst_unloading(const hyst_loading_curve *curve, hyst_real w)
-{
-    const hyst_real x = iterated(curve, w).v;
-    const double slope = hyst_loading_slope(curve, x).v;
-    if (!(slope > 0.0)) return x.v;  // a curve that starts flat: no derivative to speak of
-    return {x.v, (w.d - hyst_loading(curve, x).d) / slope};
-}
-
-// A loading curve answers an input that rests with the output it has stored. Its derivative is that
-// of the input the sample before; what the input's has changed by goes along the branch.
-#include "masing.c"
-static hyst_real step_from_rest(const hyst_masing *model, hyst_real *state, hyst_real u)
-{
-    const hyst_real last = state[HYST_MASING_INPUT];
-    hyst_real y = hyst_masing_step(model, state, u);
-    if (u == last) {
-        const size_t count = hyst_masing_reversals(model, state);
-        const double along =
-            count > 0 ? 0.5 * u.v - 0.5 * state[HYST_MASING_STACK + 2 * (count - 1)].v : u.v;
-        const double x = model->inverse ? iterated(&model->curve, fabs(along)).v : fabs(along);
-        const double slope = hyst_loading_slope(&model->curve, x).v;
-        y.d = y.d + (model->inverse ? 1.0 / slope : slope) * (u.d - last.d);
-        state[HYST_MASING_INPUT] = u;
-        state[HYST_MASING_OUTPUT] = y;
-    }
-    return y;
-}
-#define hyst_masing_step step_from_rest
-
+//
+// Each kind with something to iterate has its rule in a file of dual/rules, and names there what of the
+// core it stands for.
+#include "rules.inc"       // made by CMakeLists.txt: the files of dual/rules
 #include "core_kinds.inc"  // made by CMakeLists.txt: the sources that hold a kind, and the kinds
 
 #undef hyst_masing_step

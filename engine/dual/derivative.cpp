@@ -4,7 +4,11 @@
 #include <cstring>
 
 #include "../simd/kernels.hpp"
+#include "hyst/bouc_wen_branch.h"
+#include "hyst/jiles_atherton.h"
+#include "hyst/langevin.h"
 #include "hyst/power.h"
+#include "hyst/root.h"
 
 // What CMakeLists.txt compiles for each number of tangents, and for each instruction set with it.
 #define HYST_PASS(name)             \
@@ -62,7 +66,37 @@ const Width &width_for(std::size_t columns) {
 
 double core_power(double x, double e) { return hyst_power(x, e); }
 double core_log2(double x) { return hyst_log2(x); }
+double core_langevin(double x) { return hyst_langevin(x); }
+double core_langevin_slope(double x) { return hyst_langevin_slope(x); }
+double core_langevin_inverse(double v) { return hyst_langevin_inverse(v); }
+double core_jiles_root(int variant, const double *constants, int rests, const double *stretch,
+                       double target, const double *ends) {
+    hyst_jiles_atherton of{};
+    of.variant = static_cast<hyst_jiles_variant>(variant);
+    of.eta = constants[0];
+    of.kappa = constants[1];
+    of.c = constants[2];
+    of.width = constants[3];
+    of.reach = constants[4];
+    const hyst_jiles_stretch on = {&of,        rests,      stretch[0], stretch[1],
+                                   stretch[2], stretch[3], stretch[4], stretch[5]};
+    return hyst_jiles_root(&on, target, ends[0], ends[1], ends[2], ends[3]);
+}
 double core_exp2(double v) { return hyst_exp2(v); }
+double core_root(double x) { return hyst_root(x); }
+
+double core_rising(double n, double join, double share) {
+    return hyst_bouc_wen_rising(n, join, share);
+}
+double core_falling(double n, double ratio, double share) {
+    return hyst_bouc_wen_falling(n, ratio, share);
+}
+double core_risen(double n, double join, double tilt, double from, double way) {
+    return hyst_bouc_wen_risen(n, join, tilt, from, way);
+}
+double core_fallen(double n, double ratio, double tilt, double from, double way) {
+    return hyst_bouc_wen_fallen(n, ratio, tilt, from, way);
+}
 
 void kernel_jacobian(const Said &said, const double *state, const Tangents &t) {
     const std::size_t columns = t.incoming + said.constants.size();

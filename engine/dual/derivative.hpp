@@ -20,6 +20,7 @@ struct Said {
     const std::map<std::string, std::vector<double>> &fixed;
     const std::map<std::string, std::size_t> &choices;
     double dt;
+    std::vector<Said> inside;
 };
 
 // Columns [first, first + count) of the rows of a record.

@@ -89,3 +89,4 @@ HYST_INLINE hyst_real hyst_select(bool condition, hyst_real a, hyst_real b)
 
 #define HYST_REAL(literal) literal
 #define HYST_SELECT(condition, a, b) hyst_select(condition, a, b)
+#define HYST_ROUNDED(exact, rounded) hyst_real((rounded).v, (exact).d)

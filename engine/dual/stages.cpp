@@ -12,10 +12,18 @@ extern const Pass run_pass;
 
 const Pass run_pass = pass;
 
-// Runs columns `at` of the Jacobian of the stage that is said.
-void run_columns(const Said &said, const double *state, const Columns &at, Pass run) {
+// Stages inside have constants among those of the stage around them; their own tell how many.
+static Given given_of(const Said &said)
+{
     Given given{said.kind, said.form, {}, said.fixed, said.choices, said.dt};
     for (double constant : said.constants) given.constants.emplace_back(constant);
+    for (const Said &each : said.inside) given.inside.push_back(given_of(each));
+    return given;
+}
+
+// Runs columns `at` of the Jacobian of the stage that is said.
+void run_columns(const Said &said, const double *state, const Columns &at, Pass run) {
+    Given given = given_of(said);
     for (std::size_t c = 0; c < at.count; ++c) {
         if (at.first + c < at.incoming) continue;
         hyst_real &constant = given.constants[at.first + c - at.incoming];

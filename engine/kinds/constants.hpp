@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "hyst/chain.h"
 #include "hyst/real.h"
 
 #ifndef HYST_KINDS
@@ -31,6 +32,8 @@ struct Given {
     std::map<std::string, std::vector<double>> fixed;  // constants that are no parameters
     std::map<std::string, std::size_t> choices;
     double dt;  // seconds; 0 where any will do
+    // Stages inside this one, whose constants come first among its own.
+    std::vector<Given> inside = {};
 
     // `count` of the constants from place `first` on.
     Reals part(std::size_t first, std::size_t count) const {
@@ -69,6 +72,8 @@ struct Constant {
     Offer offer;
 };
 
+struct Inside;
+
 // What the core needs of one stage, and the memory that its structure points into.
 class Constants {
 public:
@@ -92,6 +97,12 @@ public:
         }
         throw std::invalid_argument(std::string("a stage has no choice '") + name + "'");
     }
+    bool has_choice(const char *name) const {
+        for (const auto &each : choices_) {
+            if (each.first == name) return true;
+        }
+        return false;
+    }
     int is(const char *name) const { return static_cast<int>(choice(name)); }
 
     const std::vector<Constant> &all() const { return all_; }
@@ -100,6 +111,8 @@ public:
     std::string form;       // which curve or function: the enumerator of the core, or ""
     const char *structure = "";    // the C that makes the structure; see kind.hpp
     bool feeds_through = true;     // whether the output of a sample depends on its input
+    std::vector<Inside> inside;    // stages inside this one; see kind.hpp
+    std::vector<hyst_stage> stages;  // the same as the core has them, once they are filled
 
     // Keeps a structure of the core as long as its constants.
     template <class Model>

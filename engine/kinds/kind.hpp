@@ -23,7 +23,7 @@ namespace HYST_KINDS {
 
 // How an export calls the kind: the header it includes and the call of one sample. $signal is the
 // input and afterwards the output, $memory points to the state, $model is the structure, $name a
-// constant, $form the enumerator of the form. Constants::structure says how the structure is made, with
+// constant, $form the enumerator of the form, $input what the signal was before the stages inside. Constants::structure says how the structure is made, with
 // #name for the entries of a table, or for a choice that is a size. What starts with "TYPE $model = {"
 // can stand at the head of a file; anything else is statements.
 struct Written {
@@ -55,9 +55,16 @@ struct Kind {
     const Plays *plays;
 };
 
-// All rows, and the row of a name or null.
+// A stage inside another one.
+struct Inside {
+    const Kind *kind;
+    Constants constants;
+};
+
+// All rows; the row of a name or null; and the row of a name, or a refusal.
 std::vector<const Kind *> all_kinds();
 const Kind *kind_named(const std::string &name);
+const Kind &known_kind(const std::string &name);
 
 // Derives and fills; what the model is made of stays in `made`.
 const void *build(const Kind &kind, const Given &given, Constants &made);

@@ -1,19 +1,29 @@
 // All kinds of stages, a line each.
 #include "kind.hpp"
 
-#define EACH_KIND(ROW)       \
-    ROW(affine)              \
-    ROW(dahl)                \
-    ROW(dead_zone)           \
-    ROW(direction_dead_zone) \
-    ROW(masing)              \
-    ROW(memory_element)      \
-    ROW(pi)                  \
-    ROW(play)                \
-    ROW(rate_dependent_pi)   \
-    ROW(sections)            \
-    ROW(state_space)         \
-    ROW(stop)                \
+#define EACH_KIND(ROW)              \
+    ROW(affine)                     \
+    ROW(bouc_wen)                   \
+    ROW(coleman_hodgdon)            \
+    ROW(creep)                      \
+    ROW(dahl)                       \
+    ROW(dead_zone)                  \
+    ROW(direction_dead_zone)        \
+    ROW(generalized_maxwell_slip)   \
+    ROW(jiles_atherton)             \
+    ROW(lugre)                      \
+    ROW(masing)                     \
+    ROW(maxwell_slip)               \
+    ROW(memory_element)             \
+    ROW(pi)                         \
+    ROW(play)                       \
+    ROW(preisach)                   \
+    ROW(rate_dependent_pi)          \
+    ROW(rate_shift)                 \
+    ROW(sections)                   \
+    ROW(state_map)                  \
+    ROW(state_space)                \
+    ROW(stop)                       \
     ROW(two_envelope)
 
 namespace hyst {
@@ -32,6 +42,12 @@ const Kind *kind_named(const std::string &name) {
         if (name == each->name) return each;
     }
     return nullptr;
+}
+
+const Kind &known_kind(const std::string &name) {
+    const Kind *kind = kind_named(name);
+    if (kind == nullptr) throw std::invalid_argument("unknown kind of stage '" + name + "'");
+    return *kind;
 }
 
 const void *build(const Kind &kind, const Given &given, Constants &made) {

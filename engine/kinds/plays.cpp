@@ -39,6 +39,24 @@ hyst_pi bank_of(Constants &of) {
 
 const void *fill_pi(Constants &of) { return of.hold(bank_of(of)); }
 
+// Maxwell-slip: k0, stiffnesses k, breakaway forces f of stops, which are plays taken from springs:
+// p0 = k0 + sum k, p = -k, r = f / k.
+void derive_maxwell_slip(const Given &given, Constants &made) {
+    const std::size_t elements = given.constants.size() / 2;
+    given.require(given.constants.size() == 1 + 2 * elements);
+    Reals p = given.part(1, elements), r = given.part(1 + elements, elements);
+    hyst_real p0 = given.constants[0];
+    for (std::size_t i = 0; i < elements; ++i) {
+        p0 = p0 + p[i];
+        r[i] = r[i] / p[i];
+        p[i] = -p[i];
+    }
+    made.number("p0", p0, linear_part);
+    made.table("p", std::move(p), {Offer::tunable, "weight of a play"});
+    made.table("r", std::move(r), threshold);
+    made.structure = "hyst_pi $model = {#p, $p0, $p, $r};";
+}
+
 // p0 p r beta powers slopes; the knees are fixed. The core's curve is over the change of the input in
 // one sample, x dt, so what is over the rate is scaled by dt.
 void derive_rate_dependent_pi(const Given &given, Constants &made) {
@@ -81,7 +99,7 @@ const void *fill_rate_dependent_pi(Constants &of) {
 
 }  // namespace
 
-extern const Kind play, stop, pi, rate_dependent_pi;
+extern const Kind play, stop, pi, maxwell_slip, rate_dependent_pi;
 
 const Kind play = {"play",
                    &hyst_play_kind,
@@ -108,6 +126,16 @@ const Kind pi = {
     fill_pi,
     {"hyst/prandtl_ishlinskii.h", "$signal = hyst_pi_step(&$model, $memory, $signal);"},
     HYST_IN_DOUBLE(pi_jacobian),
+    nullptr,
+    HYST_IN_DOUBLE(&lanes_of_pi)};
+
+const Kind maxwell_slip = {
+    "maxwell_slip",
+    &hyst_pi_kind,
+    derive_maxwell_slip,
+    fill_pi,
+    {"hyst/prandtl_ishlinskii.h", "$signal = hyst_pi_step(&$model, $memory, $signal);"},
+    nullptr,
     nullptr,
     HYST_IN_DOUBLE(&lanes_of_pi)};
 

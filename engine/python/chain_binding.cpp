@@ -28,6 +28,7 @@ kinds::Given as_given(nb::handle stage) {
     given.choices = of<std::map<std::string, std::size_t>>(stage, "choices");
     const nb::object dt = stage.attr("dt");
     given.dt = dt.is_none() ? 0.0 : nb::cast<double>(dt);
+    for (nb::handle each : stage.attr("inside")) given.inside.push_back(as_given(each));
     return given;
 }
 
@@ -41,11 +42,7 @@ void construct(Chain *chain, nb::iterable stages) {
     }
 }
 
-// What the core is given of stage i, in the order of its structure; and how C writes it.
-nb::dict constants(const Chain &chain, std::size_t i) {
-    if (i >= chain.stages().size()) throw nb::index_error("the chain has no such stage");
-    const Stage &stage = chain.stages()[i];
-    const kinds::Constants &made = chain.constants(i);
+nb::dict told_of(const kinds::Kind &kind, const kinds::Constants &made, std::size_t state_length) {
     nb::dict numbers, tables, choices, offers;
     for (const kinds::Constant &each : made.all()) {
         const nb::str name(each.name.c_str());
@@ -58,18 +55,31 @@ nb::dict constants(const Chain &chain, std::size_t i) {
     }
     for (const auto &each : made.choices()) choices[nb::str(each.first.c_str())] = each.second;
     nb::dict told;
-    told["kind"] = stage.kind->name;
+    told["kind"] = kind.name;
     told["numbers"] = numbers;
     told["tables"] = tables;
     told["choices"] = choices;
     told["form"] = made.form;
-    told["state_length"] = stage.state_length();
+    told["state_length"] = state_length;
     told["offers"] = offers;
     told["feeds_through"] = made.feeds_through;
-    told["header"] = stage.kind->written.header;
+    told["header"] = kind.written.header;
     told["structure"] = made.structure;
-    told["call"] = stage.kind->written.call;
+    told["call"] = kind.written.call;
+    nb::list inside;
+    for (std::size_t i = 0; i < made.inside.size(); ++i) {
+        const kinds::Inside &each = made.inside[i];
+        inside.append(told_of(*each.kind, each.constants, hyst_stage_state_length(&made.stages[i])));
+    }
+    told["inside"] = inside;
     return told;
+}
+
+// What the core is given of stage i, in the order of its structure; and how C writes it.
+nb::dict constants(const Chain &chain, std::size_t i) {
+    if (i >= chain.stages().size()) throw nb::index_error("the chain has no such stage");
+    const Stage &stage = chain.stages()[i];
+    return told_of(*stage.kind, chain.constants(i), stage.state_length());
 }
 
 std::vector<std::string> names_of_kinds() {

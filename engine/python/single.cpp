@@ -48,15 +48,16 @@ public:
         : state_(start.begin(), start.end()) {
         std::size_t length = 0;
         for (const Description &each : stages) {
-            constants_.push_back(rounded(each));
-            if (std::get<0>(each) == "tracking_controller") {
-                add_controller(constants_.back());
+            const std::string &name = std::get<0>(each);
+            if (name == "tracking_controller") {
+                controls_.push_back(rounded(each));
+                add_controller(controls_.back());
                 length += controller_.order;
             } else {
-                add_stage(std::get<0>(each), constants_.back());
-                length += hyst_stage_state_length(&stages_.back());
+                add_stage(hyst::kinds::known_kind(name), rounded(each));
             }
         }
+        for (const hyst_stage &each : stages_) length += hyst_stage_state_length(&each);
         if (length != state_.size()) throw std::invalid_argument("start has the wrong length");
         controller_.inverse = {stages_.size(), stages_.data()};
     }
@@ -88,13 +89,23 @@ private:
         has_two_inputs_ = true;
     }
 
-    void add_stage(const std::string &name, hyst::kinds::Constants &of) {
-        const hyst::kinds::Kind *kind = hyst::kinds::kind_named(name);
-        if (kind == nullptr) throw std::invalid_argument("unknown kind of stage '" + name + "'");
-        stages_.push_back({kind->core, kind->fill(of)});
+    // The last stages before one that says how many are inside it are those.
+    void add_stage(const hyst::kinds::Kind &kind, hyst::kinds::Constants constants) {
+        const std::size_t inside = constants.has_choice("inside") ? constants.choice("inside") : 0;
+        if (inside > made_.size()) throw std::invalid_argument("too few stages before '" +
+                                                              std::string(kind.name) + "'");
+        const std::size_t kept = made_.size() - inside;
+        for (std::size_t i = kept; i < made_.size(); ++i) {
+            constants.inside.push_back(std::move(made_[i]));
+        }
+        made_.resize(kept);
+        stages_.resize(kept);
+        made_.push_back({&kind, std::move(constants)});
+        stages_.push_back({kind.core, kind.fill(made_.back().constants)});
     }
 
-    std::deque<hyst::kinds::Constants> constants_;
+    std::deque<hyst::kinds::Constants> controls_;
+    std::deque<hyst::kinds::Inside> made_;
     std::vector<hyst_stage> stages_;
     std::vector<float> state_;
     hyst_tracking_controller controller_{};

@@ -21,7 +21,9 @@ from hyst.errors import MissingExtraError as MissingExtraError
 from hyst.errors import NotIdentifiableError as NotIdentifiableError
 from hyst.errors import NotInvertibleError as NotInvertibleError
 from hyst.errors import SolverError as SolverError
+from hyst.identification import Comparison as Comparison
 from hyst.identification import Identified as Identified
+from hyst.identification import compare as compare
 from hyst.identification import identify as identify
 from hyst.identification.families.registry import families as families
 from hyst.identification.fit_model import fit as fit

@@ -15,7 +15,6 @@ from hyst import InputError, NotIdentifiableError, NotInvertibleError
 from hyst.identification import Identified
 from hyst.identification.families.family import Family
 from reference.family_examples import DT, FamilyExample, family_example, names_with_an_example
-from reference.foreign_records import switching
 
 NAMES = tuple(hyst.families)
 RUNS = 40
@@ -200,8 +199,10 @@ def test_the_result_does_not_depend_on_units(name: str) -> None:
         factors = plain.model.parameter_scales(input_scale, output_scale)
         for i, each in enumerate(plain.parameter_names):
             if each in example.told:
-                assert scaled.parameter_values[i] == plain.parameter_values[i]
-                errors = scaled.standard_errors[i], plain.standard_errors[i]
+                of_input, of_output = example.told_units.get(each, (0, 0))
+                factor = input_scale**of_input * output_scale**of_output
+                assert scaled.parameter_values[i] == factor * plain.parameter_values[i]
+                errors = scaled.standard_errors[i], factor * plain.standard_errors[i]
                 np.testing.assert_allclose(*errors, rtol=1e-9)
                 continue
             at = expected.names.index(each)
@@ -251,9 +252,9 @@ def test_the_verdict_is_good_on_its_own_record_and_on_no_foreign_one(name: str) 
     assert noisy_fits(name)[0].verdict.level == "good"
     example = family_example(name)
     assert identified(name, example.records()).verdict.level == "good"
-    butterflies = [hyst.Record(u, switching(u) ** 2, DT) for u in example.drives]
+    others = [hyst.Record(u, example.foreign(u), DT) for u in example.drives]
     try:
-        foreign = identified(name, butterflies, allow_unconverged=True)
+        foreign = identified(name, others, allow_unconverged=True)
     except NotIdentifiableError:
         return  # a refusal says as much
     assert foreign.verdict.level == "unfit"

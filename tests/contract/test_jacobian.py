@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from hyst import Affine, Operator, Play, PrandtlIshlinskii
 from reference.derivatives import jacobian as jacobian_by
 from reference.derivatives import off_their_bounds
-from reference.examples import EXAMPLES
+from reference.examples import EXAMPLES, WITHOUT_STRIBECK_CURVE
 from reference.numpy_operators import Trace, flat, has_twin, jumps_behind_rounding, simulate
 from reference.random_operators import RANDOM
 
@@ -27,7 +27,9 @@ Array = NDArray[np.float64]
 
 STEP = 1e-5
 TWINS = {name: each for name, each in EXAMPLES.items() if has_twin(each.to_dict())}
-OTHERS = {name: each for name, each in EXAMPLES.items() if name not in TWINS}
+OTHERS = {
+    name: each for name, each in EXAMPLES.items() if name not in TWINS | WITHOUT_STRIBECK_CURVE
+}
 # Names of the constants in a dictionary, in the order of the parameter vector.
 ORDER = {
     "affine": ("gain", "offset"),

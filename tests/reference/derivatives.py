@@ -10,7 +10,22 @@ from hyst import Operator, _engine
 Array = NDArray[np.float64]
 
 # Kinds of stages whose row has no derivative of its own.
-WITHOUT_OWN = {"dahl", "masing", "memory_element", "two_envelope"}
+WITHOUT_OWN = {
+    "bouc_wen",
+    "coleman_hodgdon",
+    "creep",
+    "dahl",
+    "generalized_maxwell_slip",
+    "jiles_atherton",
+    "lugre",
+    "masing",
+    "maxwell_slip",
+    "memory_element",
+    "preisach",
+    "rate_shift",
+    "state_map",
+    "two_envelope",
+}
 
 
 def jacobian(operator: Operator, u: Array, derivative: str) -> Array:

@@ -15,18 +15,28 @@ from hyst import (
     Stop,
 )
 from hyst.models import (
+    BoucWen,
+    Butterfly,
+    ColemanHodgdon,
+    Creep,
     Dahl,
     ExponentialCurve,
+    GeneralizedMaxwellSlip,
     Iwan,
+    JilesAtherton,
     LinearDynamics,
+    LuGre,
     MasingOperator,
+    MaxwellSlip,
     MemoryElement,
     MemoryFunction,
     PiecewiseLinear,
     PolynomialCurve,
     PowerLaw,
+    Preisach,
     RambergOsgood,
     RateCurve,
+    RateShift,
     SecondOrderSections,
     TwoEnvelopePrandtlIshlinskii,
 )
@@ -103,10 +113,16 @@ PLAYS_AND_MAPS: dict[str, Operator] = {
 
 LAG = LinearDynamics.from_transfer_function([0.5, 0.1], [1.0, -1.2, 0.5], dt=0.01)
 CHARGE = MemoryFunction.polynomial([1.0, 0.2, 0.1])
+RELAYS = Preisach(
+    [[0.25, 0.0, 0.0], [0.5, 0.75, 0.0], [0.2, 1.0, 0.5]], [-3.0, -1.0, 0.5, 4.0], p0=0.5
+)
 # The gap between them is 0 at 0, -0.54 at 1, -0.24 at 4, and grows far out on either side.
 UP = DeadZone([1.0, -0.6, 0.2, 0.2, -0.1], [0.0, 1.0, -1.5, -3.0, 2.5])
 DOWN = DeadZone([0.7, -0.2, -0.25, 0.25], [0.0, 1.5, -1.0, -2.5])
 TWO_ENVELOPE = TwoEnvelopePrandtlIshlinskii([0.5, 0.3, 0.2], [1.0, 1.25, 2.5], UP, DOWN, p0=0.4)
+RELAYS = Preisach(
+    [[0.25, 0.0, 0.0], [0.5, 0.75, 0.0], [0.2, 1.0, 0.5]], [-3.0, -1.0, 0.5, 4.0], p0=0.5
+)
 OTHERS: dict[str, Operator] = {
     "linear": LAG,
     "linear with delay": LinearDynamics.from_transfer_function([0.5], [1.0, -0.5], 0.01, delay=2),
@@ -136,9 +152,18 @@ OTHERS: dict[str, Operator] = {
         MemoryFunction.power_law(1.0, 0.5, 1.5), 0.1, "absolute", "sign-change"
     ),
     "inverse memory element": MemoryElement(CHARGE, 0.1).inverse(),
+    "coleman-hodgdon": ColemanHodgdon(0.25, 2.0, 1.5),
+    "coleman-hodgdon saturating": ColemanHodgdon(0.5, [2.0, 0.5], [1.75, 0.45], [3.0], 0.25, 0.25),
+    "coleman-hodgdon that falls": ColemanHodgdon(1.0, [2.0, 0.5], [0.75, 0.25], [3.0]),
+    "inverse coleman-hodgdon": ColemanHodgdon(0.5, [2.0, 0.5], [1.75, 0.45], [3.0]).inverse(),
     "dahl": Dahl(1.5, 200.0),
     "dahl ductile": Dahl(1.5, 2.0, 0.5, z0=-0.25, u0=0.5),
     "inverse dahl": Dahl(0.5, 400.0, 1.5).inverse(),
+    "maxwell-slip": MaxwellSlip([1.0, 0.5, 0.25], [0.5, 1.0, 1.0], 0.25),
+    "maxwell-slip that slides": MaxwellSlip([1.0, 0.5], [0.5, 1.0], z0=[0.25, -1.0]),
+    "generalized maxwell-slip": GeneralizedMaxwellSlip(
+        [1.0, 0.5], [0.375, 0.625], C=4.0, Fc=1.0, Fs=1.5, vs=20.0, dt=0.1, delta=1.5, sigma2=0.02
+    ),
     "two envelopes": TWO_ENVELOPE,
     "two envelopes without linear part": TwoEnvelopePrandtlIshlinskii(
         [0.5, 0.3],
@@ -147,7 +172,47 @@ OTHERS: dict[str, Operator] = {
         DeadZone([0.5, 0.5, -0.1], [0.0, 2.0, -1.0]),
     ),
     "inverse of two envelopes": TWO_ENVELOPE.inverse(),
+    "rate shift": RateShift(0.3, 0.4, 0.1),
+    "plays behind a rate shift": PI @ RateShift(0.3, 0.7, 0.1, z0=0.5),
+    "creep": Creep([0.03, 0.02, 0.01], [0.05, 0.5, 5.0], dt=0.01, rest=0.5),
+    "creep that goes back": Creep([0.3, -0.2], [0.1, 1.0], dt=0.01),
+    "inverse creep": Creep([0.2, 0.1], [0.03, 0.4], dt=0.01).inverse(),
+    "creep of hysteresis": Creep([0.02, 0.02], [0.1, 1.0], dt=0.01) @ PI,
+    "preisach": RELAYS,
+    "preisach of relays alone": Preisach([[0.0, 0.0], [1.0, 0.5]], [-1.0, 0.0, 1.5]),
+    "preisach from saturation": Preisach([[0.5, 0.0], [1.0, 0.5]], [0.0, 2.0, 3.0], 0.2, u0=-5.0),
+    "preisach of ridges": Preisach(RELAYS.weights, [-3.0, -1.0, 1.0, 3.0], 0.4, density="ridges"),
+    "inverse preisach": RELAYS.inverse(),
+    "bouc-wen": BoucWen(0.6, 0.35, 0.12, 0.06, h=-1.0),
+    "bouc-wen sharp": BoucWen(0.2, 1.5, 0.7, -0.3, 1.7, phi=0.1, z0=-0.25, u0=0.5),
+    "bouc-wen without inverse": BoucWen(0.5, 0.4, 0.5, 0.1, 0.6, -1.0),
+    "inverse bouc-wen": BoucWen(1.1, 0.4, 0.2, 0.1, 2.5, -1.0, 0.02).inverse(),
+    "jiles-atherton": JilesAtherton(2.0, 3.0, 2.0, 0.2, 1.0),
+    "jiles-atherton 1992": JilesAtherton(2.0, 3.0, 2.0, 0.2, 1.0, "jiles-thoelke-devine-1992"),
+    "jiles-atherton 1986": JilesAtherton(2.0, 3.0, 5.0, 0.3, 1.0, "jiles-atherton-1986"),
+    "jiles-atherton of B": JilesAtherton(2.0, 3.0, 1.0, 0.1, 1.5, output="B", mu0=0.5),
+    "inverse jiles-atherton": JilesAtherton(200.0, 3.0, 2.0, 0.4, 0.01).inverse(),
+    "inverse jiles-atherton of B": JilesAtherton(
+        2.0, 3.0, 2.0, 0.2, 1.0, output="B", mu0=0.5
+    ).inverse(),
+    "lugre": LuGre(1.5, 0.05, 0.02, Fc=2.0, Fs=3.0, vs=20.0, dt=0.1, Fv=0.5, vv=15.0),
     "hysteresis before dynamics": LAG @ PI,
+    "butterfly": Butterfly(GPI, [[0.5, 0.1, 0.4], [-0.2, 0.3, 0.0], [0.05, 0.0, 0.0]]),
+    "butterfly of a higher degree": Butterfly(
+        WAVY, [[0.5, 0.1, 0.4, 0.1], [-0.2, 0.3, 0.1, 0.0], [0.05, 0.02, 0.0, 0.0], [0.01, 0, 0, 0]]
+    ),
+    "butterfly of friction": Butterfly(
+        Dahl(1.5, 200.0), [[0.0, 0.1, 0.01], [0.2, 0, 0], [0, 0, 0]]
+    ),
+    "butterfly in a chain": Affine(-2.0, 1.0) @ Butterfly(PI, [[0.0, 1.0], [0.5, 0.0]]),
 }
 
-EXAMPLES = {**PLAYS_AND_MAPS, **OTHERS}
+# Fs is Fc, below which it must not come: no difference to both sides can be taken there.
+WITHOUT_STRIBECK_CURVE: dict[str, Operator] = {
+    "generalized maxwell-slip at rest": GeneralizedMaxwellSlip(
+        [2.0], [1.0], 0.0, 1.0, 1.0, 1.0, 0.1
+    ),
+    "lugre without rate": LuGre(1.5, 0.0, 0.0, Fc=2.0, Fs=2.0, vs=1.0, dt=0.1),
+}
+
+EXAMPLES = {**PLAYS_AND_MAPS, **OTHERS, **WITHOUT_STRIBECK_CURVE}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 import hyst
 from hyst import Record
 from hyst.operators import Affine, Operator
+from reference.foreign_records import switching
 
 DT = 1e-3
 
@@ -34,7 +36,12 @@ class FamilyExample:
     unit_of_its_own
         How the names of constants end whose unit depends on another constant; nothing by default.
     told
+        What the family tells beside constants of its model, with its true value.
+    told_units
+        Powers of the input's and the output's unit in it; what is not named has no unit.
         What the family tells beside constants of its model, which has no unit, with its true value.
+    foreign
+        What another actuator makes of a drive, of which the family must know that it is none of it.
     """
 
     model: Operator
@@ -44,6 +51,8 @@ class FamilyExample:
     exactly: float = 1e-6
     unit_of_its_own: str = "?"
     told: dict[str, float] = field(default_factory=dict)
+    told_units: dict[str, tuple[int, int]] = field(default_factory=dict)
+    foreign: Callable[[np.ndarray], np.ndarray] = lambda u: switching(u) ** 2  # a butterfly
 
     def records(self, noise: float = 0.0, seed: int = 0) -> list[Record]:
         """Give the records of the actuator with noise of a share of the output's range."""
@@ -89,6 +98,67 @@ def _rate_dependent() -> Operator:
     return Affine(1.0, 0.3) @ plays
 
 
+def _relays(u: np.ndarray, levels: int = 6) -> hyst.Preisach:
+    """A density that falls away from a middle, constant in the cells that the family takes."""
+    edges = u.min() + np.ptp(u) * np.arange(levels + 1) / levels
+    beta, alpha = np.meshgrid((edges[1:] + edges[:-1]) / 2.0, (edges[1:] + edges[:-1]) / 2.0)
+    density = np.exp(-(((alpha - beta) / 2.0 - 0.4) ** 2) - ((alpha + beta) / 2.0) ** 2 / 2.0)
+    weights = np.tril(density * (1.0 - 0.5 * np.eye(levels)))
+    return hyst.Preisach(weights / weights.sum(), edges, 0.2)
+
+
+def _means(relays: hyst.Preisach) -> dict[str, float]:
+    """Mass and mean thresholds of relays; of a triangle a third of its side lies between them."""
+    low, side = relays.thresholds[:-1], np.diff(relays.thresholds)
+    alpha = low[:, None] + np.where(np.eye(side.size) > 0.0, 2.0 / 3.0, 0.5) * side[:, None]
+    beta = low + np.where(np.eye(side.size) > 0.0, 1.0 / 3.0, 0.5) * side
+    mass = relays.weights.sum()
+    return {
+        "preisach.switched": 2.0 * mass,
+        "preisach.coercive": float((relays.weights * (alpha - beta)).sum() / (2.0 * mass)),
+        "preisach.bias": float((relays.weights * (alpha + beta)).sum() / (2.0 * mass)),
+    }
+
+
+RELAY_UNITS = {"preisach.switched": (0, 1), "preisach.coercive": (1, 0), "preisach.bias": (1, 0)}
+
+
+def _preisach() -> FamilyExample:
+    relays = _relays(decaying())
+    return FamilyExample(
+        Affine(1.0, 0.3) @ relays,
+        (decaying(),),
+        {"levels": 6},
+        told=_means(relays),
+        told_units=RELAY_UNITS,
+    )
+
+
+def resting(turns: list[float], samples: int) -> np.ndarray:
+    """Give straight strokes of so many samples a unit, each followed by three samples of rest."""
+    parts = [np.full(3, turns[0])]
+    for start, end in pairwise(turns):
+        steps = round(samples * abs(end - start))
+        parts.append(start + (end - start) * np.arange(1, steps + 1) / steps)
+        parts.append(np.full(3, end))
+    return np.concatenate(parts)
+
+
+def _rate_dependent_relays() -> FamilyExample:
+    """Rests at the ends show the relays the whole range, whatever their shift: the same cells."""
+    turns = [0.0, 1.0, -1.0, 0.6, -0.5, 0.3, -1.0, 1.0, -0.3, 0.4, -0.7, 1.0, 0.1, 0.8, -1.0]
+    drives = tuple(resting(turns, samples) for samples in (80, 20, 6))
+    relays = _relays(np.array([-1.0, 1.0]), levels=5)
+    return FamilyExample(
+        Affine(1.0, 0.3) @ relays @ hyst.RateShift(0.02, 0.4, DT),
+        drives,
+        {"levels": 5, "smoothness": 0},
+        unit_of_its_own=".c",  # the input's unit to the power 1 - m is in it
+        told=_means(relays),
+        told_units=RELAY_UNITS,
+    )
+
+
 def _hammerstein() -> FamilyExample:
     """Plays before a resonance, ``(0.2 q^-1 + 0.1 q^-2) / (1 + a1 q^-1 + a2 q^-2)``: gain 1."""
     a1, a2 = -1.4, 0.7
@@ -102,9 +172,51 @@ def _hammerstein() -> FamilyExample:
     )
 
 
+def _butterfly() -> FamilyExample:
+    """Strain of a material that switches, and a loop that only rises, which is none."""
+    drive = decaying()
+    low, high = float(drive.min()), float(drive.max())
+    ends = np.linspace(low, high, 6)
+    slopes = np.array([0.3, 1.6, 0.5, 1.9, 0.4])
+    slopes *= (high - low) / float(slopes @ np.diff(ends))  # the envelope rises by the range
+    a, b, c, d, e = slopes
+    envelope = hyst.DeadZone([c, a - b, b - c, d - c, e - d], [0.0, *ends[1:5]])
+    r = np.array([0.3, 0.6])
+    p = np.array([0.6, 0.4])
+    p /= float(p @ (0.5 * (high - low) - r))  # the state goes from -1 to 1
+    plays = hyst.PrandtlIshlinskii(p, r)
+    strain = [[0.3, 0.05, 1.0], [0.1, 0.4, 0.0], [0.15, 0.0, 0.0]]
+    return FamilyExample(
+        hyst.Butterfly(hyst.GeneralizedPrandtlIshlinskii(envelope, plays), strain),
+        (drive,),
+        {"plays": 2, "knots": 4},
+        foreign=switching,
+    )
+
+
 _MAKE: dict[str, Callable[[], FamilyExample]] = {
     "linear": lambda: FamilyExample(Affine(-1.3, 0.4), (decaying(),)),
+    "butterfly": _butterfly,
     "dahl": lambda: FamilyExample(Affine(-1.0, 0.3) @ hyst.Dahl(4.0, 1.5), (decaying(),)),
+    "bouc-wen": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.BoucWen(1.2, 0.6, 1.4, 0.5, h=-1.0), (decaying(),)
+    ),
+    "lugre": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.LuGre(30.0, 0.02, 0.03, 1.0, 1.6, 5.0, DT),
+        (decaying(),),
+        {"stribeck": "free", "viscosity": "linear"},
+    ),
+    "maxwell-slip": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.MaxwellSlip([3.0, 1.0], [0.36, 0.41], 0.5),
+        (decaying(),),
+        {"plays": 2},
+    ),
+    "coleman-hodgdon": lambda: FamilyExample(
+        Affine(1.0, 0.3) @ hyst.ColemanHodgdon(2.0, 1.5, 1.1), (decaying(),)
+    ),
+    "jiles-atherton": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.JilesAtherton(2.0, 0.25, 0.2, 0.3, 0.15), (decaying(600),)
+    ),
     "ramberg-osgood": lambda: FamilyExample(
         Affine(1.0, 0.3) @ hyst.RambergOsgood(1.0, 0.6, 0.8),
         (decaying(),),
@@ -136,6 +248,8 @@ _MAKE: dict[str, Callable[[], FamilyExample]] = {
     "rdpi": lambda: FamilyExample(
         _rate_dependent(), (sine(1.0, 1700), sine(20.0, 300), sine(60.0, 300)), {"plays": 2}
     ),
+    "preisach": _preisach,
+    "rate-dependent-preisach": _rate_dependent_relays,
     "hammerstein": _hammerstein,
 }
 

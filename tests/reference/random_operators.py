@@ -27,20 +27,31 @@ from hyst import (
     Stop,
 )
 from hyst.models import (
+    BoucWen,
+    Butterfly,
+    ColemanHodgdon,
+    Creep,
     Dahl,
     ExponentialCurve,
+    GeneralizedMaxwellSlip,
     Iwan,
+    JilesAtherton,
     LinearDynamics,
+    LuGre,
     MasingOperator,
+    MaxwellSlip,
     MemoryElement,
     MemoryFunction,
     PiecewiseLinear,
     PowerLaw,
+    Preisach,
     RambergOsgood,
     RateCurve,
+    RateShift,
     SecondOrderSections,
     TwoEnvelopePrandtlIshlinskii,
 )
+from hyst.models.jiles_atherton import VARIANTS
 from reference.examples import EXAMPLES
 
 Array = NDArray[np.float64]
@@ -54,6 +65,13 @@ def numbers(low: float, high: float) -> st.SearchStrategy[float]:
 
 def signals(low: float = -8.0, high: float = 8.0, most: int = 16) -> st.SearchStrategy[Array]:
     return st.lists(numbers(low, high), min_size=1, max_size=most).map(np.array)
+
+
+@st.composite
+def creeps(draw: st.DrawFn, most: float) -> Creep:
+    times = draw(st.lists(st.floats(1e-3, 1e3), max_size=4))
+    weights = [draw(numbers(-0.5, most)) for _ in times]
+    return Creep(weights, times, 0.01, rest=draw(numbers(-2.0, 2.0)))
 
 
 @st.composite
@@ -81,6 +99,47 @@ def rate_dependent_banks(draw: st.DrawFn) -> RateDependentPrandtlIshlinskii:
     curve = RateCurve(draw(numbers(0.0, 2.0)), powers, slopes, knees)
     dt = draw(st.sampled_from((0.5, 1.0, 2.0)))
     return RateDependentPrandtlIshlinskii(p, r, curve, dt, draw(numbers(-2.0, 2.0)))
+
+
+@st.composite
+def butterflies(draw: st.DrawFn) -> Butterfly:
+    rows = draw(st.integers(1, 4))
+    c = np.zeros((rows, rows))
+    for i, j in zip(*np.indices(c.shape).reshape(2, -1), strict=True):
+        if i + j < rows:
+            c[i, j] = draw(numbers(-2.0, 2.0))
+    return Butterfly(draw(banks() | st.builds(GeneralizedPrandtlIshlinskii, maps, banks())), c)
+
+
+few = st.floats(0.1, 2.0)
+
+
+@st.composite
+def sliding_elements(draw: st.DrawFn) -> MaxwellSlip:
+    r = np.sort(draw(st.lists(st.floats(0.1, 5.0), max_size=5)))
+    k = np.array(draw(st.lists(st.floats(0.1, 2.0), min_size=r.size, max_size=r.size)))
+    return MaxwellSlip(k, k * r, draw(numbers(0.0, 2.0)))
+
+
+@st.composite
+def sliding_elements_by_rate(draw: st.DrawFn) -> GeneralizedMaxwellSlip:
+    n = draw(st.integers(1, 4))
+    several = st.lists(st.floats(0.1, 2.0), min_size=n, max_size=n)
+    Fc, dt = draw(few), draw(st.sampled_from((0.5, 1.0, 2.0)))
+    Fs, vs, C = Fc * draw(st.floats(1.0, 2.0)), draw(few), draw(numbers(0.0, 2.0))
+    k, alpha, delta = draw(several), draw(several), draw(st.floats(0.5, 2.0))
+    return GeneralizedMaxwellSlip(k, alpha, C, Fc, Fs, vs, dt, delta, draw(numbers(0.0, 0.5)))
+
+
+@st.composite
+def lugres(draw: st.DrawFn) -> LuGre:
+    """Half of them without what depends on the velocity."""
+    by_rate = draw(st.sampled_from((0.0, 1.0)))
+    sigma1, sigma2 = by_rate * draw(numbers(0.0, 0.5)), by_rate * draw(numbers(0.0, 0.5))
+    Fc, ratio = draw(few), 1.0 + by_rate * draw(st.floats(0.0, 1.0))
+    dt = draw(st.sampled_from((0.5, 1.0, 2.0)))
+    Fv, vv = by_rate * draw(numbers(0.0, 0.5)), draw(few)
+    return LuGre(draw(few), sigma1, sigma2, Fc, Fc * ratio, draw(few), dt, Fv, vv)
 
 
 affines = st.builds(Affine, numbers(-2.0, 2.0), numbers(-3.0, 3.0))
@@ -150,7 +209,6 @@ invertible: Operators = st.one_of(
     ),
 )
 
-few = st.floats(0.1, 2.0)
 memories = st.sampled_from(("masing", "last-reversal"))
 exponentials = st.builds(
     lambda first, last, way: ExponentialCurve(last, last - first, way), few, few, few
@@ -175,6 +233,20 @@ elements = st.builds(
     st.sampled_from(("never", "sign-change")),
     numbers(-1.0, 1.0),
 )
+# gamma over beta, and phi over what it may be, inside what is admissible.
+bouc_wens = st.builds(
+    lambda k, a, beta, share, n, h, tilt, z0: BoucWen(
+        k, a, beta, share * beta, n, h, 0.5 * tilt * (1.0 + share) * beta, z0
+    ),
+    numbers(0.0, 3.0),
+    few,
+    few,
+    st.floats(-0.75, 1.0),
+    st.sampled_from((0.5, 1.0, 2.0)) | st.floats(0.3, 4.0),
+    st.sampled_from((1.0, -1.0)),
+    st.floats(-0.5, 0.5),
+    st.just(0.0),
+)
 # Poles and zeros inside the unit circle.
 lags = st.builds(
     lambda zero, poles, gain, delay: LinearDynamics.from_zeros_poles_gain(
@@ -185,6 +257,16 @@ lags = st.builds(
     few,
     st.integers(0, 2),
 )
+
+
+@st.composite
+def coleman_hodgdons(draw: st.DrawFn, least: float) -> ColemanHodgdon:
+    """One piece or two of one width of loop; b is at least this share of a."""
+    alpha, slope = draw(few), draw(few)
+    width = slope * (1.0 - draw(st.floats(least, 0.95)))
+    pieces = [slope, slope * draw(st.floats(1.0, 3.0))][: draw(st.integers(1, 2))]
+    knots = [draw(numbers(0.5, 4.0))][: len(pieces) - 1]
+    return ColemanHodgdon(alpha, pieces, [each - width for each in pieces], knots)
 
 
 @st.composite
@@ -205,6 +287,30 @@ def two_envelopes(draw: st.DrawFn, least_p0: float = 0.0) -> TwoEnvelopePrandtlI
     r = least + np.array(sorted(draw(st.lists(numbers(0.0, 4.0), max_size=4))))
     p = draw(st.lists(numbers(0.0, 2.0), min_size=r.size, max_size=r.size))
     return TwoEnvelopePrandtlIshlinskii(p, r, rising, falling, draw(numbers(least_p0, 2.0)))
+
+
+@st.composite
+def relays(draw: st.DrawFn, least: float = 0.0) -> Preisach:
+    """Cells on edges a quarter or more apart, from rest or from where an input has left them."""
+    n = draw(st.integers(1, 4))
+    widths = draw(st.lists(numbers(0.25, 2.0), min_size=n, max_size=n))
+    edges = draw(numbers(-4.0, 1.0)) + np.cumsum([0.0, *widths])
+    count = n * (n + 1) // 2
+    weights = np.zeros((n, n))
+    weights[np.tril_indices(n)] = draw(st.lists(numbers(0.0, 2.0), min_size=count, max_size=count))
+    density = draw(st.sampled_from(("even", "ridges")))
+    p0, u0 = draw(numbers(least, 2.0)), draw(st.just(0.0) | numbers(-6.0, 6.0))
+    return Preisach(weights, edges, p0, u0, density)
+
+
+@st.composite
+def magnets(draw: st.DrawFn, outputs: st.SearchStrategy[str]) -> JilesAtherton:
+    """Of any variant, twice whose constants are a magnet, too: alpha Ms / (3 a) at most 0.4."""
+    saturation, shape = draw(few), draw(st.floats(0.5, 4.0))
+    coupling = draw(st.floats(0.0, 1.2)) * shape / saturation
+    pinning, reversible = shape * draw(st.floats(0.2, 4.0)), draw(st.floats(0.05, 0.45))
+    variant, output = draw(st.sampled_from(VARIANTS)), draw(outputs)
+    return JilesAtherton(saturation, shape, pinning, reversible, coupling, variant, output, 0.5)
 
 
 RANDOM: dict[str, Operators] = {
@@ -230,15 +336,36 @@ RANDOM: dict[str, Operators] = {
     "iwan": st.builds(Iwan, few, few, st.floats(-0.45, 1.0), numbers(0.0, 2.0), numbers(0.0, 1.0)),
     "memory-element": elements,
     "inverse-memory-element": elements.map(lambda element: element.inverse()),
+    "butterfly": butterflies(),
+    "coleman-hodgdon": coleman_hodgdons(least=0.0),
+    "inverse-coleman-hodgdon": coleman_hodgdons(least=0.7).map(lambda model: model.inverse()),
+    "bouc-wen": bouc_wens,
+    "inverse-bouc-wen": bouc_wens.filter(lambda model: model.traits().invertible).map(
+        lambda model: model.inverse()
+    ),
     "dahl": st.builds(Dahl, few, few, st.floats(0.3, 3.0), numbers(-1.0, 1.0)),
+    "creep": creeps(1.0),
+    "inverse-creep": creeps(0.5)
+    .filter(lambda creep: creep.is_invertible())
+    .map(lambda creep: creep.inverse()),
     # A Coulomb force beyond every input of the contracts.
     "inverse-dahl": st.builds(Dahl, few, st.floats(1e3, 1e4), st.floats(1.0, 3.0)).map(
         lambda friction: friction.inverse()
     ),
+    "maxwell-slip": sliding_elements(),
+    "generalized-maxwell-slip": sliding_elements_by_rate(),
+    "lugre": lugres(),
     "two-envelope-prandtl-ishlinskii": two_envelopes(),
     "inverse-two-envelope-prandtl-ishlinskii": two_envelopes(0.25).map(
         lambda model: model.inverse()
     ),
+    "rate-shift": st.builds(
+        RateShift, numbers(0.0, 2.0), st.floats(0.1, 2.0), st.sampled_from((0.5, 1.0, 2.0))
+    ),
+    "preisach": relays(),
+    "inverse-preisach": relays(0.25).map(lambda model: model.inverse()),
+    "jiles-atherton": magnets(st.sampled_from(("M", "B"))),
+    "inverse-jiles-atherton": magnets(st.just("B")).map(lambda magnet: magnet.inverse()),
     "inverse": invertible.map(lambda operator: operator.inverse()),
 }
 

@@ -27,6 +27,10 @@ typedef double hyst_real;
 /* a or b; a macro, so that C compiles what stands there. */
 #define HYST_SELECT(condition, a, b) ((condition) ? (a) : (b))
 
+/* A number that rounding alone tells from the exact one: where numbers carry derivatives, it has those
+ * of the exact one. */
+#define HYST_ROUNDED(exact, rounded) (rounded)
+
 #endif
 
 #endif

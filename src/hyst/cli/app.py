@@ -13,6 +13,7 @@ import hyst
 from hyst._typed_command import carrying_out
 from hyst.cli.adapt import adapt
 from hyst.cli.columns import columns
+from hyst.cli.compare import compare
 from hyst.cli.compensate import compensate
 from hyst.cli.demo import demo
 from hyst.cli.diagnose import diagnose
@@ -41,6 +42,7 @@ VERBS = (
     columns,
     identify,
     fit,
+    compare,
     adapt,
     simulate,
     compensate,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -105,3 +106,11 @@ def require_same_unit(unit: str, model_unit: str, what: str) -> None:
             f"{what} is in {unit!r} but the model's in {model_unit!r}; hyst converts no units, so "
             "convert the column, or correct its header"
         )
+
+
+def refuse_inputs_as_outputs(outputs: Sequence[Path], inputs: Sequence[Path]) -> None:
+    """Refuse to write onto a file that is read."""
+    read = {each.resolve() for each in inputs}
+    for each in outputs:
+        if each.resolve() in read:
+            raise hyst.InputError(f"{each} is one of the files to read; write elsewhere")

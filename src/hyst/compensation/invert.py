@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from hyst.checks.numbers import as_positive, whole_number
 from hyst.compensation.exact import invert_exactly
 from hyst.compensation.expectation import beyond_the_records, error_to_expect
+from hyst.compensation.nearest_input import drive_to_nearest, turns
 from hyst.compensation.noncausal import invert_noncausally
 from hyst.compensation.rate_dependent.explicit import drive_explicitly
 from hyst.compensation.rate_dependent.limits_kept import judge_rate_limit
@@ -53,7 +54,8 @@ def invert_trajectory(
     ``sample-exact``: every sample solved exactly, causal; the drive may chatter.
     ``preview``: causal but for the next ``preview`` samples of the reference, planned anew at every
     sample, here for a whole record at once.
-    ``trajectory``: the whole reference known; the simulated error is minimised.
+    ``trajectory``: the whole reference known; the simulated error is minimised. For a butterfly,
+    whose output turns: sample by sample the nearest input that gives the wanted output.
 
     The predicted error is always that of the model driven by the command, thresholds from the
     command's own rate.
@@ -169,6 +171,12 @@ def _inverted(asked: _Task, method: str, options: _Options) -> Compensation:
         )
     if method == "noncausal":
         return invert_noncausally(
+            asked.model, asked.y_ref, asked.input_range, asked.clip, asked.history
+        )
+    if method == "trajectory" and isinstance(asked.model, Operator) and turns(asked.model):
+        if options.rate_limit is not None:
+            raise InputError("method 'trajectory' of a butterfly knows no rate limit; leave it out")
+        return drive_to_nearest(
             asked.model, asked.y_ref, asked.input_range, asked.clip, asked.history
         )
     task = prepare_task(asked.model, asked.y_ref, asked.input_range, asked.clip, asked.history)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from hyst.compensation.invert import METHODS
+from hyst.compensation.nearest_input import turns
 from hyst.compensation.noncausal import stages_around_dynamics
 from hyst.compensation.rate_dependent.task import stages_around_plays
 from hyst.errors import InputError, NotInvertibleError
@@ -63,7 +64,13 @@ def _require_inverses(*stages: Operator | None) -> None:
             each.inverse()
 
 
+def _require_a_trajectory(model: Operator) -> None:
+    if not turns(model):
+        _require_plays_with_inverse(model)
+
+
 _NEEDS: dict[str, Callable[[Operator], None]] = {
     "exact": _require_inverses,
     "noncausal": _require_dynamics_with_inverse,
+    "trajectory": _require_a_trajectory,
 }

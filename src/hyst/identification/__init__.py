@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from hyst.identification.comparison.compare_models import compare
+from hyst.identification.comparison.compared_model import ComparedModel
+from hyst.identification.comparison.comparison import Comparison
 from hyst.identification.families.registry import chosen_families, names_of, require_taken
 from hyst.identification.identify_records import identify
 from hyst.identification.record_use.part_of_a_sample import later
@@ -9,16 +12,25 @@ from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.identified import Candidate, Identified
 from hyst.identification.result.late_output import late_output
 from hyst.identification.result.record_errors import RecordErrors
+from hyst.identification.reversal_curve_fit import (
+    ReversalCurveFit,
+    identify_from_reversal_curves,
+)
 from hyst.identification.slopes import Slopes, identify_weights_from_slopes
 
 __all__ = [
     "Candidate",
+    "ComparedModel",
+    "Comparison",
     "Identified",
     "RecordErrors",
+    "ReversalCurveFit",
     "Slopes",
     "UsedSamples",
     "chosen_families",
+    "compare",
     "identify",
+    "identify_from_reversal_curves",
     "identify_weights_from_slopes",
     "late_output",
     "later",

@@ -9,7 +9,7 @@ from threadpoolctl import threadpool_limits
 
 from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
 from hyst.identification.families.family import Family
-from hyst.identification.families.registry import chosen_families
+from hyst.identification.families.registry import chosen_families, families_in_reserve
 from hyst.identification.options import Options, listed, silent
 from hyst.identification.record_use.cleaned import as_drift, cleaned
 from hyst.identification.record_use.overview import Overview
@@ -48,7 +48,8 @@ def identify(
     family
         A name; several with commas between them, which are compared by cross-validation, the
         simplest that it does not show to be worse than the best being taken; ``"auto"``: those that
-        suit most actuators; or a family with its options, as
+        suit most actuators, and, unless options are given, those of materials of other kinds where
+        the first leave more than noise; or a family with its options, as
         ``hyst.families.RateDependent(spacing="free")``.
     delay
         Samples by which the output lags the input, parts of one included and negative where it is
@@ -103,10 +104,11 @@ def identify(
     require_same_units((*given, *judged))
     wanted = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
     families, about_drift = chosen_families(family, options), as_drift(drift)
+    reserve = families_in_reserve(family, options)
     with threadpool_limits(1, user_api="blas"):
         diagnosis = diagnose_all_but_delay(given)
         # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
-        found = find(cleaned(given, diagnosis, about_drift), families, wanted)
+        found = find(cleaned(given, diagnosis, about_drift), families, wanted, reserve)
         for number, record in enumerate(judged, 1):
             found.fit.operator.require_sample_time(record.dt, f"validation record {number}")
         if found.delay is not None:

@@ -24,6 +24,7 @@ from hyst.identification.choice.selection import (
     best_of_starts,
     compare,
     contender_of,
+    in_reserve,
     not_compared,
     settled,
     simplest_good,
@@ -34,6 +35,7 @@ from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.option import AUTO
 from hyst.identification.fit.bounded_least_squares import CONVERGED
 from hyst.identification.fit.parametrization import Parametrization
+from hyst.identification.judgement.judge import leaves_only_noise
 from hyst.identification.options import Options, as_delay
 from hyst.identification.record_use.cleaned import Cleaned
 from hyst.identification.record_use.overview import Overview
@@ -93,7 +95,12 @@ class _Task:
         return self.family.searched(self.data)
 
 
-def find(records: Cleaned, families: Sequence[Family], options: Options) -> Found:
+def find(
+    records: Cleaned,
+    families: Sequence[Family],
+    options: Options,
+    reserve: Sequence[Family] = (),
+) -> Found:
     """Choose delay, family and size, and fit it.
 
     Long records are searched in thinned form; the last fit takes every sample. An automatic delay
@@ -108,6 +115,9 @@ def find(records: Cleaned, families: Sequence[Family], options: Options) -> Foun
         From the simplest to the richest.
     options
         What the user wants.
+    reserve
+        Families that are compared only where those leave more than noise; what they cannot serve
+        is no matter of the user's, who has not named them.
 
     Returns
     -------
@@ -126,14 +136,19 @@ def find(records: Cleaned, families: Sequence[Family], options: Options) -> Foun
         options.say("delay")
     tasks = _with_delay(tasks, options)
     _require_samples(tasks)
-    choice = _search(tasks, options)
+    more = _in_reserve(reserve, records, tasks[0], options)
+    choice = _search(tasks, options, more)
     fit, task = choice.fit, choice.task
-    if task.evidence is not None and fit.family.has_memory:
+    judges = fit.family.has_memory and fit.family.settles_delay
+    if task.evidence is not None and judges:
         delay = settled_by_family(task.data, fit, task.evidence)
         if delay != task.data.lag:
             options.say("delay, settled by the family")
-            shifted = [t if t.family.answers_late else t.delayed(delay, t.evidence) for t in tasks]
-            choice = _search(shifted, options)
+            tasks, more = (
+                [t if t.family.answers_late else t.delayed(delay, t.evidence) for t in each]
+                for each in (tasks, more)
+            )
+            choice = _search(tasks, options, more)
             fit, task = choice.fit, choice.task
     if task.searched() is not task.data:
         fit = _polished(fit, task, options)
@@ -176,6 +191,20 @@ def _task(family: Family, given: Data, left_out: tuple[str, ...]) -> _Task:
 def _power_of_two(span: float) -> float:
     """Give the power of two whose ratio to a range lies between 1 and 2."""
     return math.ldexp(1.0, math.frexp(span)[1] - 1)
+
+
+def _in_reserve(
+    reserve: Sequence[Family], records: Cleaned, beside: _Task, options: Options
+) -> list[_Task]:
+    """Prepare those families in reserve that use the same samples, with the delay found."""
+    if not reserve or beside.family.answers_late:
+        return []
+    try:
+        tasks, _ = _tasks(reserve, records, options)
+    except NotIdentifiableError:
+        return []
+    same = [each for each in tasks if each.data.starts == beside.data.starts]
+    return [each.delayed(beside.given.lag, beside.evidence) for each in same]
 
 
 def _require_samples(tasks: Sequence[_Task]) -> None:
@@ -230,25 +259,40 @@ class _Choice:
     rivals: tuple[Fit, ...]
 
 
-def _search(tasks: Sequence[_Task], options: Options) -> _Choice:
+def _search(tasks: Sequence[_Task], options: Options, reserve: Sequence[_Task]) -> _Choice:
     """Choose signs, family and size and fit it; the next best if that does not converge."""
-    ruling = ruled(_with_overviews(tasks, options))
+    with_overviews = _with_overviews([*tasks, *reserve], options)
+    ruling = ruled(with_overviews[: len(tasks)])
     if len(tasks) == 1 and len(tasks[0].family.sizes()) == 1:
         return _only(tasks[0], ruling, options)
     contenders, refusals = compare(ruling.families, options.say)
-    remaining = list(contenders)
-    while True:
-        chosen = simplest_good(remaining)
-        fit = _final_fit(chosen.family, chosen.overview, chosen.candidate.plays, options)
-        if fit.solution.status == CONVERGED or len(remaining) == 1:
-            break
-        remaining.remove(chosen)
-    task = _task_of(chosen.family, ruling, tasks)
+    chosen, fit = _best(contenders, options)
+    if reserve and not leaves_only_noise(chosen.overview.data, fit):
+        contenders += in_reserve(with_overviews[len(tasks) :], chosen, options.say)
+        chosen, fit = _best(contenders, options, (chosen, fit))
+    task = next(each for each in (*tasks, *reserve) if each.family.name == chosen.candidate.family)
     rivals = rivals_of(chosen, fit, contenders, other_signs(ruling, chosen))
     tied, scale = as_good_as_best(contenders), task.scales[1]
     told = tuple(_told(each, chosen, each in tied, scale) for each in contenders)
     notes = refusals + about_the_choice(chosen, contenders, rivals, scale)
     return _Choice(options.converged(fit), task, told, notes, rivals.fits)
+
+
+def _best(
+    contenders: Sequence[Contender],
+    options: Options,
+    known: tuple[Contender, Fit] | None = None,
+) -> tuple[Contender, Fit]:
+    """Give the simplest good contender whose fit converges, with that fit; one may be known."""
+    remaining = list(contenders)
+    while True:
+        chosen = simplest_good(remaining)
+        if known is not None and chosen is known[0]:
+            return known
+        fit = _final_fit(chosen.family, chosen.overview, chosen.candidate.plays, options)
+        if fit.solution.status == CONVERGED or len(remaining) == 1:
+            return chosen, fit
+        remaining.remove(chosen)
 
 
 def _only(task: _Task, ruling: Ruling, options: Options) -> _Choice:
@@ -261,12 +305,6 @@ def _only(task: _Task, ruling: Ruling, options: Options) -> _Choice:
     chosen = contender_of(family, overview, fit)
     rivals = rivals_of(chosen, fit, (chosen,), other_signs(ruling, chosen))
     return _Choice(fit, task, (), about_the_choice(chosen, (), rivals, task.scales[1]), rivals.fits)
-
-
-def _task_of(family: Family, ruling: Ruling, tasks: Sequence[_Task]) -> _Task:
-    """Give the task that a family is of, whatever rule it got."""
-    names = [each.name for each, _ in ruling.families]
-    return tasks[names.index(family.name)]
 
 
 def _outlying(task: _Task, options: Options) -> tuple[str, ...]:

@@ -121,8 +121,8 @@ class Chained(Operator):
     def in_units(self, input_scale: float, output_scale: float) -> Operator:
         """Give the same composition in other units.
 
-        Maps keep the unit of their signal; the first stage that is none turns the unit of the
-        input into that of the output.
+        Maps keep the unit of their signal, and so does what only shifts or delays it; the first
+        stage that is neither turns the unit of the input into that of the output.
         """
         shares = _scales_of_stages(self.parts, input_scale, output_scale)
         pairs = zip(self.parts, shares, strict=True)
@@ -250,7 +250,11 @@ def _scales_of_stages(
     stages: tuple[Operator, ...], input_scale: float, output_scale: float
 ) -> list[tuple[float, float]]:
     """Give input and output scale of every stage: one of them takes the change of the unit."""
-    turning = [not all(leaf.is_map for leaf in leaves_of(stage)) for stage in stages]
+    turning = [
+        not all(leaf.is_map or leaf.keeps_unit() for leaf in leaves_of(stage)) for stage in stages
+    ]
+    if not any(turning):
+        turning = [not all(leaf.is_map for leaf in leaves_of(stage)) for stage in stages]
     at = turning.index(True) if any(turning) else len(stages) - 1
     before, after = (input_scale, input_scale), (output_scale, output_scale)
     count = len(stages)

@@ -28,6 +28,9 @@ class Stage:
         Which curve or function, as "power-law", or "".
     dt
         Sample time the constants are made for, seconds; None if any will do.
+    inside
+        Stages inside this one, in the order the signal passes them; their constants come first
+        among those of this one.
     """
 
     kind: str
@@ -36,3 +39,4 @@ class Stage:
     choices: Mapping[str, int] = field(default_factory=dict)
     form: str = ""
     dt: float | None = None
+    inside: tuple[Stage, ...] = ()

@@ -1,6 +1,13 @@
 # The one list of what reports offer, for type checkers and for hyst/_lazy.py.
 
 from hyst.report.closed_loop_figure import draw_closed_loops as draw_closed_loops
+from hyst.report.comparison_figures import draw_compared_errors as draw_compared_errors
+from hyst.report.comparison_figures import draw_compared_loops as draw_compared_loops
+from hyst.report.comparison_report import COMPARISON_FILES as COMPARISON_FILES
+from hyst.report.comparison_report import compared_errors_table as compared_errors_table
+from hyst.report.comparison_report import compared_models_table as compared_models_table
+from hyst.report.comparison_report import not_invertible_sentences as not_invertible_sentences
+from hyst.report.comparison_report import write_comparison as write_comparison
 from hyst.report.delay_words import delay_sentence as delay_sentence
 from hyst.report.delay_words import delay_to_act_on as delay_to_act_on
 from hyst.report.description_tables import description_table as description_table
@@ -11,6 +18,7 @@ from hyst.report.drive_figure import draw_drive as draw_drive
 from hyst.report.drive_summary import drive_table as drive_table
 from hyst.report.dynamics_figures import dynamics_sections as dynamics_sections
 from hyst.report.estimation_figure import draw_estimates as draw_estimates
+from hyst.report.forc_figure import draw_forc_diagram as draw_forc_diagram
 from hyst.report.identification_report import Section as Section
 from hyst.report.identification_report import write_report as write_report
 from hyst.report.observer_answer import ObserverAnswer as ObserverAnswer

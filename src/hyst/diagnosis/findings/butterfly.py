@@ -41,9 +41,9 @@ def find(evidence: Evidence) -> Iterator[Finding]:
             f"{of_record(evidence, number)}the output falls while the input rises on "
             f"{percent(share)} of the loop and rises on the rest, as the strain of a material "
             "whose polarization is switched.",
-            "Every family here needs an output that goes one way with its input, so none "
-            f"describes this {record.output_name}, and a wanted output does not determine a "
-            "command. Stay on one wing: keep the input on one side of the turning point.",
+            f"Only family 'butterfly' describes such a {record.output_name}: every other one needs "
+            "an output that goes one way with its input. A wanted output does not determine a "
+            "command; for that stay on one wing: keep the input on one side of the turning point.",
             record=number,
             amounts={"share": share, "return": back},
         )

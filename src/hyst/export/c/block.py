@@ -111,11 +111,12 @@ def stepper_of(block: Block, precision: Precision) -> Callable[..., float]:
         return block.stepper()
     if block.single_stepper is not None:
         return block.single_stepper()
-    stages = [
-        (stage.kind, stage.form, dict(stage.numbers), dict(stage.tables), dict(stage.choices))
-        for stage in block.stages
-    ]
-    return _single.Stepper(stages, block.start)
+    return _single.Stepper([_told(stage) for stage in block.stages], block.start)
+
+
+def _told(stage: CoreStage) -> tuple[Any, ...]:
+    choices = {**stage.choices, **({"inside": stage.inside} if stage.inside else {})}
+    return stage.kind, stage.form, dict(stage.numbers), dict(stage.tables), choices
 
 
 def block_of(model: Model, precision: Precision) -> Block:

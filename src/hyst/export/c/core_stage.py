@@ -6,9 +6,9 @@ back from there; so an export has the engine's bits.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import final
+from typing import Any, final
 
 from hyst import _engine
 from hyst.operators.base import Operator
@@ -43,6 +43,8 @@ class CoreStage:
         C that makes the structure of constants, as ``engine/kinds/kind.hpp`` explains; or "".
     call
         C that takes one sample through the stage.
+    inside
+        How many of the stages before it are inside it: what they make of its input is its signal.
     """
 
     kind: str
@@ -56,10 +58,13 @@ class CoreStage:
     header: str
     structure: str
     call: str
+    inside: int = 0
 
 
 def core_stages(operator: Operator) -> tuple[CoreStage, ...]:
     """Give the stages of an operator in the order the signal passes them.
+
+    Stages inside another one stand before it.
 
     Parameters
     ----------
@@ -77,4 +82,13 @@ def core_stages(operator: Operator) -> tuple[CoreStage, ...]:
     ['play', 'affine']
     """
     chain = _engine.Chain(operator.stages())
-    return tuple(CoreStage(**chain.constants(i)) for i in range(len(chain)))
+    return tuple(stage for i in range(len(chain)) for stage in _with_inside(chain.constants(i)))
+
+
+def _with_inside(told: dict[str, Any]) -> Iterator[CoreStage]:
+    """Give the stages inside one, and the one around them with what memory is its own."""
+    inside = told["inside"]
+    for each in inside:
+        yield from _with_inside(each)
+    own = told["state_length"] - sum(each["state_length"] for each in inside)
+    yield CoreStage(**(told | {"inside": len(inside), "state_length": own}))

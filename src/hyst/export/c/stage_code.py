@@ -122,7 +122,12 @@ class StageCode:
         """
         lines: list[str] = []
         offset = 0
+        first = _first_inside(self.stages)
         for index, stage in enumerate(self.stages):
+            lines += [
+                f"const hyst_real {_input(self.stages[around], around)} = {signal};"
+                for around in first.get(index, ())
+            ]
             place = f"{memory} + {offset}" if offset else memory
             lines.append(f"if (hyst_is_finite({signal})) {{")
             lines += [f"    {line}" for line in self._call(stage, index, signal, place)]
@@ -155,6 +160,7 @@ class StageCode:
             "memory": place,
             "model": _name(stage, index),
             "form": stage.form,
+            "input": _input(stage, index),
             **{name: str(choice) for name, choice in stage.choices.items()},
         }
         reference = self._reference(stage, index)
@@ -193,6 +199,24 @@ _STATEMENT = re.compile(r"\S[^;]*;")
 def _stands_alone(stage: CoreStage) -> bool:
     """Tell whether the structure is one initialised declaration; a union takes statements."""
     return " $model = {" in stage.structure
+
+
+def _first_inside(stages: tuple[CoreStage, ...]) -> dict[int, list[int]]:
+    """Give, by the first stage inside, the stages around it that need its input, outer first."""
+    result: dict[int, list[int]] = {}
+    firsts: list[int] = []
+    for index, stage in enumerate(stages):
+        start = index
+        for _ in range(stage.inside):
+            start = firsts.pop()
+        firsts.append(start)
+        if "$input" in stage.call:
+            result.setdefault(start, []).insert(0, index)
+    return result
+
+
+def _input(stage: CoreStage, index: int) -> str:
+    return f"{_name(stage, index)}_input"
 
 
 def _in_lines(statement: str) -> list[str]:

@@ -28,6 +28,9 @@ less than the square of this share of the output's range."""
 ROUNDING = 1e-6
 """Scores below this share of the output range are equal: no sensor tells them apart."""
 
+NEAR = 1.2
+"""Times the rms of the best so far: what leaves more from its best guess is not scored."""
+
 SAME_COST = 0.01
 """Costs that differ by this share of the residual variance are equal."""
 
@@ -191,6 +194,39 @@ def compare(
             "cross-validation; give a longer record or the number of plays"
         )
     return tuple(contenders), not_compared(refusals)
+
+
+def in_reserve(
+    families: Sequence[tuple[Family, Overview]], chosen: Contender, progress: Callable[[str], None]
+) -> tuple[Contender, ...]:
+    """Score families that come near to what was chosen so far.
+
+    Parameters
+    ----------
+    families
+        Each with its records.
+    chosen
+        The best so far: what leaves far more of the records from its best guess is no candidate,
+        and is not scored.
+    progress
+        Told what is being fitted.
+
+    Returns
+    -------
+    tuple of Contender
+        From the simplest family to the richest; those that cannot be fitted are left out.
+    """
+    contenders: list[Contender] = []
+    for family, overview in families:
+        largest = family.sizes()[-1]
+        progress(family.named_size(largest))
+        try:
+            near = first_fit(family, overview, largest).solution.cost
+            if near <= NEAR**2 * chosen.fit.solution.cost:
+                contenders += _grow(family, overview, progress)
+        except NotIdentifiableError:
+            continue
+    return tuple(contenders)
 
 
 def not_compared(refusals: Mapping[str, NotIdentifiableError]) -> tuple[str, ...]:

@@ -68,14 +68,20 @@ class Family(ABC):
     """Of compensation, the one that suits best first."""
     compared: ClassVar[bool] = False
     """Whether ``family="auto"`` compares it."""
+    in_reserve: ClassVar[bool] = False
+    """Whether it does so only where what it compares first leaves more than noise."""
     has_memory: ClassVar[bool] = True
     """Whether its delay is worth judging by the family itself."""
+    settles_delay: ClassVar[bool] = True
+    """Whether it may choose among the delays left possible, by a fit for each of them."""
     answers_late: ClassVar[bool] = False
     """Whether the delay of the output is part of the model, so that none is looked for before."""
     depends_on_rate: ClassVar[bool] = False
     """Whether samples left out of a record would change the model."""
     explains: ClassVar[tuple[str, ...]] = ()
     """Findings that make no record doubtful of which it leaves nothing but noise."""
+    describes: ClassVar[tuple[str, ...]] = ()
+    """Findings that are what the family is for: they make no record of it doubtful."""
     wraps: ClassVar[str] = ""
     """The option that holds a family this one is made around; empty where there is none."""
 
@@ -136,13 +142,7 @@ class Family(ABC):
         return data if self.depends_on_rate else thinned(data)
 
     def fitted(self, data: Data) -> Data:
-        """Give what the last fit and its standard errors take: all samples, if memory allows.
-
-        Parameters
-        ----------
-        data
-            The records.
-        """
+        """Give what the last fit and its standard errors take: all samples, if memory allows."""
         return data
 
     def in_units(self, input_scale: float, output_scale: float) -> Self:

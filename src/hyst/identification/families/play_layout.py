@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.fit.parametrization import SMALLEST_SLOPE, Parametrization
-from hyst.identification.fit.weight_rules import NON_NEGATIVE, basis
-from hyst.models import PrandtlIshlinskii, TwoEnvelopePrandtlIshlinskii
+from hyst.identification.fit.weight_rules import INVERTIBLE, NON_NEGATIVE, SLIDING, basis
+from hyst.models import MaxwellSlip, PrandtlIshlinskii, TwoEnvelopePrandtlIshlinskii
 from hyst.operators import DeadZone, Operator
 from hyst.operators.composition import leaves_of
 from hyst.signals import reversals
@@ -42,7 +42,7 @@ class FirstGuess:
     mean_slope
         Output range over input range of the records.
     rule
-        What the weights may be: ``non-negative`` or ``invertible``.
+        What the weights may be; see ``weight_rules``.
     fixed_radii
         Whether the radii are to stay as they are.
     input_range
@@ -188,7 +188,8 @@ def bounds_of(guess: FirstGuess, size: int) -> tuple[Array, Array]:
     n = guess.p.size
     radii, slopes = slice(n + 1, 2 * n + 1), slice(2 * n + 1, size - 1)
     lower, upper = np.zeros(size), np.full(size, np.inf)
-    lower[: 1 if guess.rule == NON_NEGATIVE else n + 1] = SMALLEST_SLOPE * guess.mean_slope
+    steep = {NON_NEGATIVE: 1, INVERTIBLE: n + 1, SLIDING: 0}[guess.rule]
+    lower[:steep] = SMALLEST_SLOPE * guess.mean_slope
     lower[radii] = 1e-3 * guess.largest_radius
     lower[slopes] = SMALLEST_MAP_SLOPE
     lower[-1] = -np.inf
@@ -220,7 +221,7 @@ def half_swings(operator: Operator, u: Array) -> Array:
             up, down = leaf.rising(turns), leaf.falling(turns)
             swings = np.where(np.diff(turns) > 0.0, up[1:] - down[:-1], up[:-1] - down[1:])
             return np.abs(swings) / 2.0
-        if isinstance(leaf, PrandtlIshlinskii):
+        if isinstance(leaf, PrandtlIshlinskii | MaxwellSlip):
             break
         signal = leaf(signal)
     return np.abs(np.diff(signal[reversals(signal)])) / 2.0

@@ -82,8 +82,8 @@ WEIGHTS_OPTION = choice(
 
 
 @dataclass(frozen=True)
-class Plays(Family):
-    """What all models of rate-independent plays have in common.
+class PlayBank(Family):
+    """What all models have in common that are found as rate-independent plays.
 
     Parameters
     ----------
@@ -92,15 +92,10 @@ class Plays(Family):
         comes out zero are left out of the model.
     radii
         Shape (n,), input units: keep these radii instead of finding them.
-    weights
-        ``"non-negative"``; ``"invertible"``: single weights may be negative as long as the
-        cumulative ones are positive, for loops that flatten after a reversal, as friction's do; or
-        ``"auto"``: the latter where it is missed, which all families compared settle together.
     """
 
     plays: Any = option(AUTO, PLAYS_OPTION)
     radii: Any = option(None, radii_option())
-    weights: Any = option(AUTO, WEIGHTS_OPTION)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -164,7 +159,7 @@ class Plays(Family):
 
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
         """Start from radii of equal shares of the curvature, evenly spaced, and denser near 0."""
-        return [self._start_from(overview, r) for r in self._first_radii(overview, size)[:most]]
+        return [self._start_from(overview, r) for r in self.first_radii(overview, size)[:most]]
 
     @final
     def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
@@ -186,7 +181,6 @@ class Plays(Family):
             fit = self._refit(fit, overview, working, max_iterations)
         return fit
 
-    @final
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
         """Say how many plays came out idle."""
         kept = layout_of(fit).plays
@@ -197,7 +191,14 @@ class Plays(Family):
             "own; they were left out",
         )
 
-    def _first_radii(self, overview: Overview, size: int) -> list[Array]:
+    def first_radii(self, overview: Overview, size: int) -> list[Array]:
+        """Give the radii to start from, the best guess first.
+
+        Parameters
+        ----------
+        overview, size
+            As of ``starts``.
+        """
         if self.radii is not None:
             return [np.array(self.radii)]
         largest = overview.data.largest_radius
@@ -208,26 +209,15 @@ class Plays(Family):
         even = largest * np.arange(1, size + 1) / (size + 1)
         return [np.interp(levels, share, _fine_radii(overview)), even, even**2 / largest]
 
+    @abstractmethod
     def rule(self, overview: Overview) -> str:
-        """Give what the weights may be; alone, ``auto`` allows negative ones where they help a lot.
+        """Give what the weights may be.
 
         Parameters
         ----------
         overview
             The records.
         """
-        if self.weights != AUTO:
-            return str(self.weights)
-        return INVERTIBLE if negative_weights_pay(overview) else NON_NEGATIVE
-
-    def rules(self) -> tuple[str, ...]:
-        """Give what the weights may be, as long as the user does not say it."""
-        return RULES if self.weights == AUTO else ()
-
-    @final
-    def under(self, rule: str) -> Self:
-        """Give the family with a rule of its weights."""
-        return replace(self, weights=rule)
 
     def _start_from(self, overview: Overview, r: Array) -> Start:
         guess = self._guess(overview, r)
@@ -270,6 +260,44 @@ class Plays(Family):
         fit = replace(fit, parametrization=parametrization)
         solution = self.solve(fit.problem(overview.data, overview.kept), refitted, max_iterations)
         return replace(fit, solution=solution)
+
+
+@dataclass(frozen=True)
+class Plays(PlayBank):
+    """What all models of plays have in common whose weights may have rules.
+
+    Parameters
+    ----------
+    plays, radii
+        As of ``PlayBank``.
+    weights
+        ``"non-negative"``; ``"invertible"``: single weights may be negative as long as the
+        cumulative ones are positive, for loops that flatten after a reversal, as friction's do; or
+        ``"auto"``: the latter where it is missed, which all families compared settle together.
+    """
+
+    weights: Any = option(AUTO, WEIGHTS_OPTION)
+
+    def rule(self, overview: Overview) -> str:
+        """Give what the weights may be; alone, ``auto`` allows negative ones where they help a lot.
+
+        Parameters
+        ----------
+        overview
+            The records.
+        """
+        if self.weights != AUTO:
+            return str(self.weights)
+        return INVERTIBLE if negative_weights_pay(overview) else NON_NEGATIVE
+
+    def rules(self) -> tuple[str, ...]:
+        """Give what the weights may be, as long as the user does not say it."""
+        return RULES if self.weights == AUTO else ()
+
+    @final
+    def under(self, rule: str) -> Self:
+        """Give the family with a rule of its weights."""
+        return replace(self, weights=rule)
 
 
 def fine_weights(overview: Overview, rule: str) -> Weights:

@@ -89,6 +89,10 @@ class Families(Mapping[str, Family]):
         """Give the names that ``family="auto"`` compares."""
         return tuple(name for name, each in self._by_name.items() if each.compared)
 
+    def in_reserve(self) -> tuple[str, ...]:
+        """Give the names that ``"auto"`` compares too, where the first leave more than noise."""
+        return tuple(name for name, each in self._by_name.items() if each.in_reserve)
+
     def inner(self, name: str) -> tuple[str, ...]:
         """Give the names of the families that may be inside another one; none inside most.
 
@@ -249,6 +253,29 @@ def chosen_families(family: str | Family, options: Mapping[str, Any]) -> tuple[F
     for option in options:
         _require_used(option, made)
     return made
+
+
+def families_in_reserve(family: str | Family, options: Mapping[str, Any]) -> tuple[Family, ...]:
+    """Give the families that are compared only where those chosen leave more than noise.
+
+    Parameters
+    ----------
+    family
+        As of ``identify``.
+    options
+        Values by name: who gives some asks for the families that have them.
+
+    Returns
+    -------
+    tuple of Family
+        None unless ``"auto"`` is asked for.
+    """
+    if options or not isinstance(family, str):
+        return ()
+    asked = [each.strip() for each in family.split(",")]
+    if AUTO not in asked:
+        return ()
+    return tuple(families[name] for name in families.in_reserve() if name not in asked)
 
 
 def _require_used(option: str, made: tuple[Family, ...]) -> None:

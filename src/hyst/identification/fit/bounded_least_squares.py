@@ -14,6 +14,8 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
+from hyst.identification.fit.bounded_quadratic import least_within
+
 Array = NDArray[np.float64]
 Linearize = Callable[[Array], tuple[Array, Array]]
 """theta -> residual (N,), Jacobian (N, m)"""
@@ -66,6 +68,8 @@ class Problem:
         Gives an equivalent theta in the form ``linearize`` expects (sorted radii).
     negligible
         A sum of squared residuals that is nothing but rounding.
+    is_linear
+        Whether the residual is an affine function of theta.
     """
 
     linearize: Linearize
@@ -74,6 +78,7 @@ class Problem:
     upper: Array
     canonical: Callable[[Array], Array]
     negligible: float = 0.0
+    is_linear: bool = False
 
 
 def minimize(
@@ -106,6 +111,8 @@ def minimize(
     result is projected. Damping follows Nielsen.
     """
     theta = problem.canonical(np.clip(theta, problem.lower, problem.upper))
+    if problem.is_linear:
+        return _least(problem, theta)
     residual, jacobian = problem.linearize(theta)
     cost, damping, growth = float(residual @ residual), 1e-4, 2.0
     costs = [cost]
@@ -135,6 +142,22 @@ def minimize(
         if earlier - cost <= tolerance * cost / residual.size:
             return Solution(theta, cost, iteration, CONVERGED)
     return Solution(theta, cost, max_iterations, ITERATION_LIMIT)
+
+
+def _least(problem: Problem, theta: Array) -> Solution:
+    """Solve a linear problem: once, and once more for the digits that the normal matrix lost."""
+    residual, jacobian = problem.linearize(theta)
+    normal = jacobian.T @ jacobian
+    cost, refined = float(residual @ residual), theta
+    for _ in range(2):
+        moment = normal @ refined - jacobian.T @ residual
+        trial = least_within(normal, moment, problem.lower, problem.upper, refined)
+        trial_residual = residual + jacobian @ (trial - refined)
+        trial_cost = float(trial_residual @ trial_residual)
+        if not trial_cost < cost:
+            break
+        refined, residual, cost = trial, trial_residual, trial_cost
+    return Solution(refined, cost, 1, CONVERGED)
 
 
 def _projected_step(

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Self, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +49,11 @@ class Parametrization:
         How many there are, g.
     is_allowed
         Tells whether theta makes an operator at all, where bounds alone do not say it.
+    prior
+        Shape (q, m): what is small before any record is seen, over the norm of the centred output;
+        its square is added to the cost. None where nothing is known before.
+    is_linear
+        Whether the constants only weight what the operator answers, so that one step solves it.
     """
 
     template: Operator
@@ -60,6 +65,8 @@ class Parametrization:
     gauges: Callable[[Array], tuple[Array, Array]] | None = None
     gauge_count: int = 0
     is_allowed: Callable[[Array], bool] | None = None
+    prior: Array | None = None
+    is_linear: bool = False
 
     @property
     def size(self) -> int:
@@ -83,6 +90,11 @@ class Parametrization:
 
     def operator(self, theta: Array) -> Operator:
         """Give the operator for canonical theta."""
+        return self.as_template(theta)
+
+    @final
+    def as_template(self, theta: Array) -> Operator:
+        """Give the operator in the form of the template, which is what is fitted."""
         made: Operator = self.template.with_parameters(self.constants(theta))
         return made
 
@@ -101,7 +113,7 @@ class Parametrization:
         input_scale, output_scale
             By which the numbers of input and output grow.
         """
-        operator = self.operator(theta)
+        operator = self.as_template(theta)
         scales = operator.parameter_scales(input_scale, output_scale)
         return replace(
             self,

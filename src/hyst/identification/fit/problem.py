@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -194,24 +195,22 @@ def problem_of(
     target = y[rows]
     evaluation = Evaluation(data, parametrization)
     spread = float(np.linalg.norm(y - y.mean()))
-    gauges, is_allowed = parametrization.gauges, parametrization.is_allowed
+    is_allowed = parametrization.is_allowed
+    beside = _beside_the_records(parametrization, spread)
 
     def residual(theta: Array) -> Array:
+        more = [values for values, _ in beside(theta)]
         if is_allowed is not None and not is_allowed(theta):
-            return np.full(target.size + parametrization.gauge_count, NO_STEP_TO * spread)
+            return np.full(target.size + sum(each.size for each in more), NO_STEP_TO * spread)
         errors = evaluation.output(theta)[rows] - target
         errors = errors if root is None else root * errors
-        if gauges is None:
-            return errors
-        return np.concatenate([errors, HOLDS_A_GAUGE * spread * gauges(theta)[0]])
+        return np.concatenate([errors, *more]) if more else errors
 
     def linearize(theta: Array) -> tuple[Array, Array]:
         jacobian = evaluation.jacobian(theta)[rows]
         jacobian = jacobian if root is None else root[:, None] * jacobian
-        if gauges is not None:
-            held = HOLDS_A_GAUGE * spread * gauges(theta)[1]
-            jacobian = np.concatenate([jacobian, held])
-        return residual(theta), jacobian
+        more = [by_theta for _, by_theta in beside(theta)]
+        return residual(theta), np.concatenate([jacobian, *more]) if more else jacobian
 
     return Problem(
         linearize,
@@ -220,4 +219,24 @@ def problem_of(
         parametrization.upper,
         parametrization.canonical,
         negligible=float(target.size * (ROUNDING * np.ptp(y)) ** 2),
+        is_linear=parametrization.is_linear,
     )
+
+
+def _beside_the_records(
+    parametrization: Parametrization, spread: float
+) -> Callable[[Array], list[tuple[Array, Array]]]:
+    """Give what gives the residuals that no sample makes, with their derivative: gauges, prior."""
+    gauges = parametrization.gauges
+    prior = None if parametrization.prior is None else spread * parametrization.prior
+
+    def beside(theta: Array) -> list[tuple[Array, Array]]:
+        parts = []
+        if gauges is not None:
+            values, by_theta = gauges(theta)
+            parts.append((HOLDS_A_GAUGE * spread * values, HOLDS_A_GAUGE * spread * by_theta))
+        if prior is not None:
+            parts.append((prior @ theta, prior))
+        return parts
+
+    return beside

@@ -41,7 +41,8 @@ def found_before(
 
     A warning allows no better than ``fair``, unless it is of something that the model holds and
     describes until only noise is left: what its family explains, and a clockwise loop, which
-    is told all the same, for exchanged columns have such loops, too.
+    is told all the same, for exchanged columns have such loops, too. What the family is for is no
+    doubt at all.
 
     Parameters
     ----------
@@ -59,6 +60,8 @@ def found_before(
     for each in diagnosis.of("warning"):
         if each.name == RUN_DIRECTION and diagnosis.named(OUTPUT_AHEAD):
             continue  # the same thing, seen in another way
+        if each.name in family.describes:
+            continue
         if leaves_noise and each.name in family.explains and each.name != RUN_DIRECTION:
             continue
         if leaves_noise and each.name == RUN_DIRECTION:

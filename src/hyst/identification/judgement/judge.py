@@ -60,6 +60,24 @@ def judge(data: Data, fit: Fit, diagnosis: Diagnosis, metrics: Mapping[str, Metr
     return _capped(level, first, told, before, seen)
 
 
+def leaves_only_noise(data: Data, fit: Fit) -> bool:
+    """Tell whether a fit leaves its records' own noise, or less than is worth a word.
+
+    Parameters
+    ----------
+    data
+        The records.
+    fit
+        The fit, in their units.
+    """
+    span = max(float(np.ptp(each.y)) for each in data.records)
+    remainder = remainder_of(data, fit, span)
+    error = math.sqrt(float(np.mean(remainder.error**2)))
+    if error <= SMALLEST_PART * remainder.output_range:
+        return True
+    return _levelled(remainder, taken_apart(remainder), error)[0] == "good"
+
+
 def _exact(remainder: Remainder, error: float) -> tuple[Level, tuple[str, ...], Told]:
     first = (
         f"The model leaves {remainder.said(error)} rms: nothing worth a name, and no more than "

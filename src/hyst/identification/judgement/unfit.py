@@ -54,8 +54,9 @@ def reasons_unfit(remainder: Remainder, found: TakenApart) -> tuple[str, ...]:
     if against > AGAINST and beside_noise(found, found.undisturbed) > OFF * remainder.output_range:
         reason += (
             f" The output runs against its main direction on {100.0 * against:.0f} % of its way: "
-            "it falls where the input rises, as strain of a bipolar drive does (a butterfly), and "
-            "no family has such loops. Keep the drive on one side of where the output turns."
+            "it falls where the input rises, as strain of a bipolar drive does (a butterfly). Only "
+            "family 'butterfly' has such loops; or keep the drive on one side of where the output "
+            "turns."
         )
     return (f"No command should come from this model. {reason}",)
 

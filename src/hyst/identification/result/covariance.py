@@ -10,20 +10,26 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def robust_covariance(jacobian: Array, residual: Array, lengths: Sequence[int]) -> Array:
+def robust_covariance(
+    jacobian: Array, residual: Array, lengths: Sequence[int], prior: Array | None = None
+) -> Array:
     """Estimate the covariance of least squares estimates with autocorrelated residuals.
 
     ``(J'J)^-1 S (J'J)^-1 N / (N - m)`` with S the Bartlett-weighted sum of the autocovariances of
-    the scores ``J_k e_k``. White residuals give the usual covariance.
+    the scores ``J_k e_k``. White residuals give the usual covariance. With prior rows P, whose
+    square was added to the cost, ``A^-1 (S + s^2 P'P) A^-1``, A = J'J + P'P, s^2 the variance of
+    the residual: what the prior filled is as unsure as the prior is.
 
     Parameters
     ----------
     jacobian
-        Shape (N, m), full rank.
+        Shape (N, m), full rank but for the prior.
     residual
-        Shape (N,).
+        Shape (N,), of the records.
     lengths
         Samples of each record, in order; correlation does not reach across records.
+    prior
+        Shape (q, m).
 
     Returns
     -------
@@ -33,9 +39,11 @@ def robust_covariance(jacobian: Array, residual: Array, lengths: Sequence[int]) 
     Notes
     -----
     Newey and West, Econometrica 55 (1987), 703-708; bandwidth from a first-order autoregression of
-    the residual, Andrews, Econometrica 59 (1991), 817-858, eq. 6.2.
+    the residual, Andrews, Econometrica 59 (1991), 817-858, eq. 6.2. The prior's part: Wahba, J. R.
+    Stat. Soc. B 45 (1983), 133-150; such errors hold bias as well as scatter, on average.
     """
-    scale = np.linalg.norm(jacobian, axis=0)
+    rows = jacobian if prior is None else np.concatenate([jacobian, prior])
+    scale = np.linalg.norm(rows, axis=0)
     scaled = jacobian / scale
     bandwidth = _bandwidth(residual, lengths)
     middle = np.zeros((scale.size, scale.size))
@@ -44,8 +52,15 @@ def robust_covariance(jacobian: Array, residual: Array, lengths: Sequence[int]) 
         rows = slice(start, start + length)
         middle += _bartlett_sum(scaled[rows] * residual[rows, None], bandwidth)
         start += length
-    inverse = np.linalg.inv(scaled.T @ scaled)
-    correction = residual.size / max(residual.size - scale.size, 1)
+    gram = scaled.T @ scaled
+    if prior is None:
+        inverse, count = np.linalg.inv(gram), float(scale.size)
+    else:
+        held = (prior / scale).T @ (prior / scale)
+        inverse = np.linalg.inv(gram + held)
+        count = float(np.sum(inverse * gram))
+        middle += float(residual @ residual) / residual.size * held
+    correction = residual.size / max(residual.size - count, 1.0)
     covariance = inverse @ middle @ inverse * correction
     return np.asarray(covariance / np.outer(scale, scale))
 

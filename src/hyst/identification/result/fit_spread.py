@@ -10,7 +10,11 @@ from numpy.typing import NDArray
 from hyst.identification.families.family import Estimates, Fit
 from hyst.identification.fit.problem import Evaluation
 from hyst.identification.record_use.used_samples import Data
-from hyst.identification.result.standard_errors import Spread, spread_of_estimates
+from hyst.identification.result.standard_errors import (
+    Spread,
+    spread_of_estimates,
+    spread_under_prior,
+)
 
 Array = NDArray[np.float64]
 
@@ -27,11 +31,15 @@ class FitSpread:
         Shape (m,), which they are.
     noise_rms
         Of the residual, output units, the free parameters allowed for.
+    bounds_hold
+        Whether a parameter on its bound counts as known, as one of hundreds under a prior, and not
+        as the end of what can be said.
     """
 
     spread: Spread
     inside: NDArray[np.bool_]
     noise_rms: float
+    bounds_hold: bool = False
 
     def of(self, by_theta: Array) -> Array:
         """Give the standard errors of functions of theta.
@@ -49,7 +57,7 @@ class FitSpread:
         """
         errors = np.full(len(by_theta), np.nan)
         moves = by_theta[:, self.inside].any(axis=1)
-        known = moves & ~by_theta[:, ~self.inside].any(axis=1)
+        known = moves & (self.bounds_hold | ~by_theta[:, ~self.inside].any(axis=1))
         errors[known] = self.spread.of(by_theta[np.ix_(known, self.inside)])
         return errors
 
@@ -131,6 +139,13 @@ def spread_of_fit(data: Data, fit: Fit) -> FitSpread:
     root = fit.family.root_weights(data)
     if root is not None:
         jacobian, residual = root[:, None] * jacobian, root * residual
+    if parametrization.prior is not None:
+        y = data.measured()
+        held_by = float(np.linalg.norm(y - y.mean())) * parametrization.prior[:, inside]
+        under = spread_under_prior(jacobian, residual, data.lengths(), held_by)
+        freedom = max(residual.size - parametrization.free_count, 1)
+        rms = float(np.linalg.norm(residual) / np.sqrt(freedom))
+        return FitSpread(under, inside, rms, bounds_hold=True)
     gauges = parametrization.gauges
     held = np.empty((0, theta.size)) if gauges is None else gauges(theta)[1]
     spread = spread_of_estimates(jacobian, residual, data.lengths(), theta[inside], held[:, inside])

@@ -157,6 +157,30 @@ def spread_of_estimates(
     return Spread(unit, noise, inner, open_ones * (size / unit)[:, None])
 
 
+def spread_under_prior(
+    jacobian: Array, residual: Array, lengths: Sequence[int], prior: Array
+) -> Spread:
+    """Estimate how sure estimates are that a prior holds where the records do not.
+
+    Parameters
+    ----------
+    jacobian, residual, lengths
+        As of ``spread_of_estimates``.
+    prior
+        Shape (q, m): rows whose square was added to the cost.
+
+    Returns
+    -------
+    Spread
+        With no open direction.
+    """
+    size = np.linalg.norm(np.concatenate([jacobian, prior]), axis=0)
+    unit = np.where(size > 0.0, size, 1.0)
+    noise = float(np.ldexp(1.0, np.frexp(np.abs(residual).max(initial=0.0))[1]))
+    covariance = robust_covariance(jacobian / unit, residual / noise, lengths, prior / unit)
+    return Spread(unit, noise, covariance, np.empty((unit.size, 0)))
+
+
 def _within(gauges: Array | None, unit: Array) -> Array:
     """Give an orthonormal basis of the changes of scaled parameters that keep the gauges."""
     if gauges is None or len(gauges) == 0:

@@ -1,0 +1,2 @@
+// Branches of differential models: the file that holds a kind does not hold them.
+#include "branch.c"

@@ -1,0 +1,158 @@
+"""Butterflies: an output that is a polynomial of the input and of its saturating hysteresis."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.errors import NotIdentifiableError
+from hyst.identification.families.butterfly_layout import (
+    ButterflyParametrization,
+    parametrize_butterfly,
+)
+from hyst.identification.families.butterfly_starts import best_guesses, residual_of_a_curve
+from hyst.identification.families.family import Family, Fit, Start, Words
+from hyst.identification.families.option import (
+    AUTO,
+    option,
+    whole_number,
+    whole_number_or_auto,
+)
+from hyst.identification.families.turning_output import turning_share
+from hyst.identification.record_use.overview import Overview
+from hyst.identification.record_use.used_samples import Data
+from hyst.models.butterfly import MOST_DEGREE
+
+Array = NDArray[np.float64]
+
+SIZES = (1, 2, 4, 6)
+"""Numbers of plays that ``"auto"`` compares."""
+
+MOST_PLAYS, MOST_KNOTS = 20, 50
+
+LEAST_TURN = 0.08
+"""Share of the output's range by which it must go back on a branch of the loop."""
+
+HYSTERESIS_PAYS = 0.85
+"""Share of what a curve of the input alone leaves, that a guess with hysteresis must fall below."""
+
+_SMALLEST_WEIGHT = 1e-6
+_SMALLEST_GAP = 1e-4
+
+
+@final
+@dataclass(frozen=True)
+class Butterfly(Family):
+    """``y = sum_{i+j<=n} c_ij u^i z^j``, z plays behind a rising envelope of the input.
+
+    Parameters
+    ----------
+    plays
+        Number of plays, 1 to 20, or ``"auto"``: chosen by cross-validation.
+    knots
+        Number of knots of the envelope, 1 to 50, evenly spaced over the input.
+    degree
+        n, 2 to 6: of the polynomial of input and hysteresis.
+    """
+
+    name = "butterfly"
+    describes = ("butterfly", "run direction")  # one wing is run one way, the other the other way
+    methods = ("trajectory",)
+    words = Words(
+        full_name="butterfly model",
+        equations=(
+            "y(t) = \u03a3 c\u1d62\u2c7c u(t)\u2071 z(t)\u02b2,  i + j <= degree",
+            "z(t) = \u03a3 p\u1d62 F\u1d63\u1d62[\u03b3(u)](t)",
+        ),
+        explanations=(
+            "z is what the material remembers, as its polarization, between about -1 and 1: plays "
+            "F (backlash of half-width r) of \u03b3(u), a rising piecewise linear map of the input "
+            "that is steep where the material switches.",
+            "The output is a polynomial of input u and state z, as strain is: z\u00b2 stands for "
+            "electrostriction, u z for the piezoelectric effect, which turns with z. It falls and "
+            "rises with the input, so a wanted output alone does not determine a command.",
+        ),
+    )
+
+    plays: Any = option(AUTO, whole_number_or_auto(1, MOST_PLAYS, "Number of plays."))
+    knots: Any = option(
+        20, whole_number(1, MOST_KNOTS, "Knots of the map of the input before the plays.")
+    )
+    degree: Any = option(
+        2, whole_number(2, MOST_DEGREE, "Degree of the polynomial of input and hysteresis.")
+    )
+
+    def sizes(self) -> tuple[int, ...]:
+        """Give the numbers of plays to compare."""
+        return SIZES if self.plays == AUTO else (self.plays,)
+
+    def least_parameters(self, size: int) -> int:
+        """Give the number of slopes, weights, radii and coefficients, less two scales."""
+        coefficients = int(self.degree + 1) * int(self.degree + 2) // 2
+        return int(self.knots) - 1 + 2 * size + coefficients
+
+    def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
+        """Give the best of a grid over where and how steeply the material switches.
+
+        Raises
+        ------
+        NotIdentifiableError
+            If the output goes one way with the input, or turns but has no memory.
+        """
+        _require_a_butterfly(overview)
+        guesses = best_guesses(overview, size, self.knots, self.degree, max(most, 2))
+        left, curve = guesses[0].residual, residual_of_a_curve(overview)
+        if left > HYSTERESIS_PAYS * curve:
+            raise NotIdentifiableError(
+                "the output turns with the input but shows no hysteresis of a butterfly: a curve "
+                f"of the input alone leaves {100.0 * curve / overview.output_range:.3g} % of the "
+                f"range, and plays {100.0 * left / overview.output_range:.3g} %; stay on one side "
+                "of the turn and use family 'pi'"
+            )
+        return [parametrize_butterfly(each) for each in guesses]
+
+    def simplified(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Fit again without plays that came out idle, until none is."""
+        while True:
+            found = _layout(fit).hysteresis(fit.solution.theta)
+            working = found.p > _SMALLEST_WEIGHT * found.p.max()
+            working[working] = (
+                np.diff(found.r[working], prepend=-np.inf) > _SMALLEST_GAP * found.half
+            )
+            if working.all():
+                return fit
+            parametrization, theta = parametrize_butterfly(found.with_plays(working))
+            fit = replace(fit, parametrization=parametrization)
+            problem = fit.problem(overview.data, overview.kept)
+            fit = replace(fit, solution=self.solve(problem, theta, max_iterations))
+
+    def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
+        """Say how many plays came out idle, and that minor loops are those of plays."""
+        kept = _layout(fit).plays
+        idle = fit.size - kept
+        if idle <= 0:
+            return ()
+        return (
+            f"{idle} of {fit.size} plays came out with no weight or no radius of their own; they "
+            "were left out",
+        )
+
+
+def _layout(fit: Fit) -> ButterflyParametrization:
+    parametrization = fit.parametrization
+    assert isinstance(parametrization, ButterflyParametrization), "the family made it"
+    return parametrization
+
+
+def _require_a_butterfly(overview: Overview) -> None:
+    share = overview.once("turning share", lambda: turning_share(overview.data))
+    if share < LEAST_TURN:
+        raise NotIdentifiableError(
+            "the output never falls while the input rises, or never rises, but for "
+            f"{100.0 * share:.2g} % of its range; a butterfly turns on a branch of its loop: use "
+            "family 'pi', 'gpi' or 'mpi'"
+        )

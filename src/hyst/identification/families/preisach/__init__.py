@@ -1,0 +1,1 @@
+"""Preisach models: weights of the cells of a grid, under a prior of smoothness."""
