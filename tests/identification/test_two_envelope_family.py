@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 import hyst
-from hyst import InputError, Record
+from hyst import InputError, NotIdentifiableError, Record
 from hyst.identification.families.envelope_layout import EnvelopeLayout
 from reference.family_examples import decaying, family_example
 from reference.two_envelopes import off_centre_relays, saturating
@@ -82,6 +82,13 @@ def test_the_inverse_of_a_fit_tracks_the_actuator() -> None:
     error, without = (float(np.std(each - wanted) / np.ptp(wanted)) for each in (reached, by_line))
     assert error < 0.005
     assert without > 10.0 * error
+
+
+def test_friction_is_refused_with_the_reason() -> None:
+    friction = hyst.MasingOperator(hyst.models.ExponentialCurve(0.0, -3.0, 0.1))
+    u = decaying()
+    with pytest.raises(NotIdentifiableError, match="flattens after a turn, as friction's do"):
+        hyst.identify(Record(u, friction(u), 1e-3), family="two-envelope", delay=0, plays=3)
 
 
 def test_negative_weights_are_refused_by_name() -> None:

@@ -125,13 +125,19 @@ class Iwan(Family):
             for limit in _LIMITS
         ]
         guesses.sort(key=lambda each: each[0])
-        left, _, limit = guesses[0]
+        left, constants, limit = guesses[0]
+        # K_T of the best, over what a spring alone would have.
+        if not constants[1] > SMALLEST_SLOPE * overview.mean_slope:
+            raise NotIdentifiableError(
+                "the output does not soften after a turn, as sliding does; use family 'masing', "
+                "'pi' or 'linear'"
+            )
         y = overview.data.measured()
         line, target = overview.input - overview.input.mean(), y - y.mean()
         if saved_beside_a_line(line, target, left) < SMALLEST_GAIN:
             raise NotIdentifiableError(
-                "sliding describes the records no better than a straight line, but for noise; use "
-                "family 'linear'"
+                "sliding describes the records no better than a straight line: their slope does "
+                "not fall after a turn, but for noise; use family 'linear', 'masing' or 'pi'"
             )
         if limit >= 1.0:
             raise NotIdentifiableError(
@@ -139,11 +145,6 @@ class Iwan(Family):
                 "are they do not tell; drive further, or use family 'masing' or 'pi'"
             )
         guesses = [each for each in guesses if each[2] < 1.0 and each[1][1] > 0.0]
-        if not guesses:
-            raise NotIdentifiableError(
-                "the output does not soften after a turn, as sliding does; use family 'masing', "
-                "'pi' or 'linear'"
-            )
         return [self._parametrize(overview, each[1]) for each in guesses[: max(most, 2)]]
 
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:

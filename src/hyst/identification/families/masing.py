@@ -89,7 +89,7 @@ class Masing(Family):
         if saved_beside_a_line(line, target, left) < SMALLEST_GAIN:
             raise NotIdentifiableError(
                 "an exponential describes the records no better than a straight line, but for "
-                "noise; use family 'linear'"
+                "noise; use family 'linear' or 'pi'"
             )
         return [self._parametrize(overview, slopes, b, (low, LONGEST_WAY * unit))]
 
