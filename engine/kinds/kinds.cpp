@@ -3,12 +3,14 @@
 
 #define EACH_KIND(ROW)              \
     ROW(affine)                     \
+    ROW(bouc_wen)                   \
     ROW(coleman_hodgdon)            \
     ROW(creep)                      \
     ROW(dahl)                       \
     ROW(dead_zone)                  \
     ROW(direction_dead_zone)        \
     ROW(generalized_maxwell_slip)   \
+    ROW(jiles_atherton)             \
     ROW(lugre)                      \
     ROW(masing)                     \
     ROW(maxwell_slip)               \
