@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from embedded.rounding_bound import NoBoundError, controller_bound, single_precision_bound
-from hyst import ModifiedPrandtlIshlinskii, Operator, PrandtlIshlinskii
+from hyst import ModifiedPrandtlIshlinskii, Operator, PrandtlIshlinskii, Preisach
 from hyst.control import TrackingController
 from hyst.export.c.block import Block, block_of, stepper_of
 from hyst.export.c.estimator import estimator_block
@@ -95,6 +95,15 @@ def thirty_one_plays() -> Operator:
     return PrandtlIshlinskii(np.full(31, 0.05), 0.2 * np.arange(1.0, 32.0), p0=0.3)
 
 
+def forty_cells_a_side() -> Preisach:
+    """Give a smooth density of relays on 40 x 40 cells, as large as identification makes one."""
+    edges = np.linspace(-8.0, 8.0, 41)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    width, centre = middle[:, None] - middle, 0.5 * (middle[:, None] + middle)
+    weights = np.tril(np.exp(-(((width - 3.0) / 4.0) ** 2) - (centre / 3.0) ** 2))
+    return Preisach(8.0 * weights / weights.sum(), edges, p0=0.1)
+
+
 def controller(inverse: Operator | None) -> TrackingController:
     """Give a proportional-integral controller with an observer of slow disturbances."""
     slow = 20.0  # rad/s
@@ -118,6 +127,8 @@ def estimator() -> tuple[JointEstimator, Array]:
 def cases() -> Iterator[Case]:
     """Give every case, the ones with a goal first."""
     models = {HEADLINE: ten_plays(), "pi of 31 plays": thirty_one_plays(), **EXAMPLES}
+    relays = forty_cells_a_side()
+    models |= {"preisach 40 x 40": relays, "inverse preisach 40 x 40": relays.inverse()}
     for name, model in models.items():
         yield Case(name, model, drive().reshape(-1, 1))
     both = np.column_stack([drive(), drive(1)[::-1]])

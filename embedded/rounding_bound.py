@@ -13,6 +13,7 @@ operations lose and passes on the error e of its input:
 - a loading curve with reversals: the operator is a sum of plays with the slope's variation as
   weights; the rounding of one branch adds to that of the reversal it starts from, so it counts
   once for each reversal on the stack;
+- relays of the Preisach operator: the same, and thresholds that are off by their own rounding;
 - a memory element: the rounding of each step stays in its sum, carried along the trajectory.
 
 Terms of second order in u are covered by one per cent more. Magnitudes are those of the run in
@@ -29,6 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from embedded.curve_rounding import curve_bound, memory_element_bound
+from embedded.relay_rounding import relay_bound
 from hyst import _engine
 from hyst.control import TrackingController
 from hyst.operators import Operator
@@ -250,6 +252,12 @@ def _memory_element(passage: Passage) -> float:
     return memory_element_bound(passage)
 
 
+def _preisach(passage: Passage) -> float:
+    if passage.stage.choices["inverse"]:
+        raise NoBoundError("the inverse has no known bound of its slope over histories")
+    return relay_bound(passage)
+
+
 BOUNDS: dict[str, Callable[[Passage], float]] = {
     "affine": _affine,
     "play": _play,
@@ -262,4 +270,5 @@ BOUNDS: dict[str, Callable[[Passage], float]] = {
     "sections": _sections,
     "masing": _masing,
     "memory_element": _memory_element,
+    "preisach": _preisach,
 }

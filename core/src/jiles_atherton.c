@@ -90,26 +90,23 @@ hyst_real hyst_jiles_m(const hyst_jiles_stretch *on, hyst_real x)
     return hyst_langevin(x) - jiles_y(on, x);
 }
 
-hyst_real hyst_jiles_sought(const hyst_jiles_stretch *on, hyst_real x)
+hyst_real hyst_jiles_sought(const hyst_jiles_stretch *on, hyst_real x, hyst_real *slope)
 {
-    return on->by_x * x + on->by_m * hyst_jiles_m(on, x);
-}
-
-hyst_real hyst_jiles_slope(const hyst_jiles_stretch *on, hyst_real x)
-{
-    const hyst_real anhysteretic = hyst_langevin_slope(x);
+    const hyst_real value = hyst_langevin(x), anhysteretic = hyst_langevin_slope(x);
     if (on->rests != 0) {
-        return on->by_x + on->by_m * jiles_reversible(on->model) * anhysteretic;
+        const hyst_real reversible = jiles_reversible(on->model);
+        *slope = on->by_x + on->by_m * reversible * anhysteretic;
+        return on->by_x * x + on->by_m * (reversible * value + on->rest);
     }
-    const hyst_real change = jiles_change(on->model, x, jiles_y(on, x), on->sign);
-    return on->by_x + on->by_m * (anhysteretic - change);
+    const hyst_real y = jiles_y(on, x);
+    *slope = on->by_x + on->by_m * (anhysteretic - jiles_change(on->model, x, y, on->sign));
+    return on->by_x * x + on->by_m * (value - y);
 }
 
-/* Whether the target is not yet reached at the node. */
-static int jiles_is_before(const hyst_jiles_stretch *on, hyst_real target)
+/* What is sought, at the node. */
+static hyst_real jiles_at_node(const hyst_jiles_stretch *on)
 {
-    const hyst_real m = hyst_langevin(on->x_node) - on->y_node;
-    return on->sign * (target - (on->by_x * on->x_node + on->by_m * m)) < HYST_REAL(0.0);
+    return on->by_x * on->x_node + on->by_m * (hyst_langevin(on->x_node) - on->y_node);
 }
 
 /* The node after this one; 0 where there is none. */
@@ -126,25 +123,27 @@ static int jiles_next(const hyst_jiles_stretch *on, hyst_jiles_stretch *after)
     return 1;
 }
 
-/* Beyond the last node, an x where the target has been passed. */
-static hyst_real jiles_end(const hyst_jiles_stretch *on, hyst_real target)
+static hyst_real jiles_between(const hyst_jiles_stretch *on, hyst_real target, hyst_real from,
+                               hyst_real at_from, hyst_real to, hyst_real at_to)
+{
+    return on->sign < HYST_REAL(0.0) ? hyst_jiles_root(on, target, to, at_to, from, at_from)
+                                     : hyst_jiles_root(on, target, from, at_from, to, at_to);
+}
+
+/* Beyond the last node. */
+static hyst_real jiles_beyond(const hyst_jiles_stretch *on, hyst_real target)
 {
     hyst_real way = HYST_REAL(1.0);
+    hyst_real slope, x = on->x_node, at = jiles_at_node(on);
     for (size_t left = JILES_DOUBLINGS; left > 0u; --left) {
-        const hyst_real x = on->x_node + on->sign * way;
-        if (on->sign * (hyst_jiles_sought(on, x) - target) >= HYST_REAL(0.0)) {
+        x = on->x_node + on->sign * way;
+        at = hyst_jiles_sought(on, x, &slope);
+        if (on->sign * (at - target) >= HYST_REAL(0.0)) {
             break;
         }
         way = HYST_REAL(2.0) * way;
     }
-    return on->x_node + on->sign * way;
-}
-
-static hyst_real jiles_between(const hyst_jiles_stretch *on, hyst_real target, hyst_real from,
-                               hyst_real to)
-{
-    return on->sign < HYST_REAL(0.0) ? hyst_jiles_root(on, target, to, from)
-                                     : hyst_jiles_root(on, target, from, to);
+    return jiles_between(on, target, on->x_node, jiles_at_node(on), x, at);
 }
 
 /* A branch towards sign from where the last sample was. */
@@ -166,21 +165,33 @@ static void jiles_begin(const hyst_jiles_atherton *model, hyst_jiles_stretch *on
     }
 }
 
+/* x on the first stretch, which begins at the turn and ends at the node. */
+static hyst_real jiles_at_rest(hyst_jiles_stretch *on, hyst_real target, hyst_real x_turn)
+{
+    hyst_real slope;
+    on->rests = 1;
+    return jiles_between(on, target, x_turn, hyst_jiles_sought(on, x_turn, &slope), on->x_node,
+                         hyst_jiles_sought(on, on->x_node, &slope));
+}
+
 /* x where the branch comes to the target; the node goes on to the last one before. */
 static hyst_real jiles_solve(hyst_jiles_stretch *on, hyst_real x_turn, hyst_real target)
 {
     hyst_jiles_stretch after;
-    if (jiles_is_before(on, target) && on->sign * (on->x_node - x_turn) > HYST_REAL(0.0)) {
-        on->rests = 1;
-        return jiles_between(on, target, x_turn, on->x_node);
+    hyst_real at = jiles_at_node(on);
+    if (on->sign * (target - at) < HYST_REAL(0.0) &&
+        on->sign * (on->x_node - x_turn) > HYST_REAL(0.0)) {
+        return jiles_at_rest(on, target, x_turn);
     }
     while (jiles_next(on, &after)) {
-        if (jiles_is_before(&after, target)) {
-            return jiles_between(on, target, on->x_node, after.x_node);
+        const hyst_real at_after = jiles_at_node(&after);
+        if (on->sign * (target - at_after) < HYST_REAL(0.0)) {
+            return jiles_between(on, target, on->x_node, at, after.x_node, at_after);
         }
         *on = after;
+        at = at_after;
     }
-    return jiles_between(on, target, on->x_node, jiles_end(on, target));
+    return jiles_beyond(on, target);
 }
 
 hyst_real hyst_jiles_atherton_step(const hyst_jiles_atherton *model, hyst_real *state,

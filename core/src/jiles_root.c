@@ -14,25 +14,24 @@ static hyst_real jiles_size(hyst_real x)
 }
 
 hyst_real hyst_jiles_root(const hyst_jiles_stretch *on, hyst_real target, hyst_real low,
-                          hyst_real high)
+                          hyst_real at_low, hyst_real high, hyst_real at_high)
 {
-    const hyst_real at_low = hyst_jiles_sought(on, low) - target;
-    const hyst_real at_high = hyst_jiles_sought(on, high) - target;
-    if (!(at_low < HYST_REAL(0.0))) {
+    if (!(at_low < target)) {
         return low;
     }
-    if (!(at_high > HYST_REAL(0.0))) {
+    if (!(at_high > target)) {
         return high;
     }
-    hyst_real x = low + (high - low) * (at_low / (at_low - at_high));
+    hyst_real x = low + (high - low) * ((target - at_low) / (at_high - at_low));
     for (size_t left = HYST_JILES_LIMIT; left > 0u; --left) {
-        const hyst_real miss = hyst_jiles_sought(on, x) - target;
+        hyst_real slope;
+        const hyst_real miss = hyst_jiles_sought(on, x, &slope) - target;
         if (miss > HYST_REAL(0.0)) {
             high = x;
         } else {
             low = x;
         }
-        hyst_real next = x - miss / hyst_jiles_slope(on, x);
+        hyst_real next = x - miss / slope;
         if (!(next >= low && next <= high)) {
             next = low + HYST_REAL(0.5) * (high - low);
         }

@@ -20,7 +20,7 @@ from hyst.cli import main
 from hyst.io import write_columns
 
 HERE = Path(__file__).resolve().parent
-FAMILIES = sys.argv[1:] or ["linear", "pi", "gpi", "mpi"]
+FAMILIES = sys.argv[1:] or ["linear", "pi", "gpi", "mpi", "preisach"]
 COLUMNS = ["--input", "field", "--output", "flux", "--rate", "100"]
 
 

@@ -29,6 +29,13 @@ double core_falling(double n, double ratio, double share);
 double core_risen(double n, double join, double tilt, double from, double way);
 double core_fallen(double n, double ratio, double tilt, double from, double way);
 
+// The Langevin function and a root on a branch of Jiles and Atherton's in double.
+double core_langevin(double x);
+double core_langevin_slope(double x);
+double core_langevin_inverse(double v);
+double core_jiles_root(int variant, const double *constants, int rests, const double *stretch,
+                       double target, const double *ends);
+
 namespace HYST_KINDS {
 
 // What solves an equation by iteration is differentiated by the implicit function theorem instead:

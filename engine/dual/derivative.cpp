@@ -5,6 +5,8 @@
 
 #include "../simd/kernels.hpp"
 #include "hyst/bouc_wen_branch.h"
+#include "hyst/jiles_atherton.h"
+#include "hyst/langevin.h"
 #include "hyst/power.h"
 #include "hyst/root.h"
 
@@ -64,6 +66,22 @@ const Width &width_for(std::size_t columns) {
 
 double core_power(double x, double e) { return hyst_power(x, e); }
 double core_log2(double x) { return hyst_log2(x); }
+double core_langevin(double x) { return hyst_langevin(x); }
+double core_langevin_slope(double x) { return hyst_langevin_slope(x); }
+double core_langevin_inverse(double v) { return hyst_langevin_inverse(v); }
+double core_jiles_root(int variant, const double *constants, int rests, const double *stretch,
+                       double target, const double *ends) {
+    hyst_jiles_atherton of{};
+    of.variant = static_cast<hyst_jiles_variant>(variant);
+    of.eta = constants[0];
+    of.kappa = constants[1];
+    of.c = constants[2];
+    of.width = constants[3];
+    of.reach = constants[4];
+    const hyst_jiles_stretch on = {&of,        rests,      stretch[0], stretch[1],
+                                   stretch[2], stretch[3], stretch[4], stretch[5]};
+    return hyst_jiles_root(&on, target, ends[0], ends[1], ends[2], ends[3]);
+}
 double core_exp2(double v) { return hyst_exp2(v); }
 double core_root(double x) { return hyst_root(x); }
 

@@ -46,3 +46,12 @@ def test_a_row_leads_to_a_page_that_names_the_family(
     assert link is not None
     page = (repository / "docs" / link[1]).read_text(encoding="utf-8")
     assert name in page
+
+
+def test_every_family_is_on_measured_records(repository: Path) -> None:
+    """`python -m benchmarks families --write` writes it; a new family needs it once more."""
+    text = (repository / "docs" / "families.md").read_text(encoding="utf-8")
+    table = text.partition("<!-- table: ")[2].partition("<!-- end of table -->")[0]
+    summary = table.partition("\n| family |")[2].partition("\n\n")[0]
+    listed = {line.split("`")[1] for line in summary.splitlines() if line.startswith("| `")}
+    assert listed == {"auto", *hyst.families}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -83,6 +84,15 @@ def _map(knots: list[float]) -> hyst.DeadZone:
     return hyst.DeadZone([1.0, 0.2, -0.15], [0.0, *knots])
 
 
+def _two_envelopes(u: np.ndarray) -> hyst.TwoEnvelopePrandtlIshlinskii:
+    """Slopes 0.7, 1, 0.6 up and 1.2, 0.8, 0.9 down, between thirds of the input."""
+    low, high = _thirds(u)
+    ends = [float(u.min()), low, high, float(u.max())]
+    rising = hyst.DeadZone([1.0, -0.3, -0.4], [0.0, low, high])
+    falling = hyst.DeadZone([0.8, -0.5, 0.4, 0.1, -0.3], [0.0, *ends])
+    return hyst.TwoEnvelopePrandtlIshlinskii([0.5, 0.3], [0.2, 0.45], rising, falling, 1.0)
+
+
 def _rate_dependent() -> Operator:
     plays = hyst.RateDependentPrandtlIshlinskii([0.5, 0.3], [0.15, 0.3], 4e-3, DT, p0=1.0)
     return Affine(1.0, 0.3) @ plays
@@ -119,6 +129,31 @@ def _preisach() -> FamilyExample:
         Affine(1.0, 0.3) @ relays,
         (decaying(),),
         {"levels": 6},
+        told=_means(relays),
+        told_units=RELAY_UNITS,
+    )
+
+
+def resting(turns: list[float], samples: int) -> np.ndarray:
+    """Give straight strokes of so many samples a unit, each followed by three samples of rest."""
+    parts = [np.full(3, turns[0])]
+    for start, end in pairwise(turns):
+        steps = round(samples * abs(end - start))
+        parts.append(start + (end - start) * np.arange(1, steps + 1) / steps)
+        parts.append(np.full(3, end))
+    return np.concatenate(parts)
+
+
+def _rate_dependent_relays() -> FamilyExample:
+    """Rests at the ends show the relays the whole range, whatever their shift: the same cells."""
+    turns = [0.0, 1.0, -1.0, 0.6, -0.5, 0.3, -1.0, 1.0, -0.3, 0.4, -0.7, 1.0, 0.1, 0.8, -1.0]
+    drives = tuple(resting(turns, samples) for samples in (80, 20, 6))
+    relays = _relays(np.array([-1.0, 1.0]), levels=5)
+    return FamilyExample(
+        Affine(1.0, 0.3) @ relays @ hyst.RateShift(0.02, 0.4, DT),
+        drives,
+        {"levels": 5, "smoothness": 0},
+        unit_of_its_own=".c",  # the input's unit to the power 1 - m is in it
         told=_means(relays),
         told_units=RELAY_UNITS,
     )
@@ -163,6 +198,9 @@ _MAKE: dict[str, Callable[[], FamilyExample]] = {
     "linear": lambda: FamilyExample(Affine(-1.3, 0.4), (decaying(),)),
     "butterfly": _butterfly,
     "dahl": lambda: FamilyExample(Affine(-1.0, 0.3) @ hyst.Dahl(4.0, 1.5), (decaying(),)),
+    "bouc-wen": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.BoucWen(1.2, 0.6, 1.4, 0.5, h=-1.0), (decaying(),)
+    ),
     "lugre": lambda: FamilyExample(
         Affine(-1.0, 0.3) @ hyst.LuGre(30.0, 0.02, 0.03, 1.0, 1.6, 5.0, DT),
         (decaying(),),
@@ -173,10 +211,23 @@ _MAKE: dict[str, Callable[[], FamilyExample]] = {
         (decaying(),),
         {"plays": 2},
     ),
+    "coleman-hodgdon": lambda: FamilyExample(
+        Affine(1.0, 0.3) @ hyst.ColemanHodgdon(2.0, 1.5, 1.1), (decaying(),)
+    ),
+    "jiles-atherton": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.JilesAtherton(2.0, 0.25, 0.2, 0.3, 0.15), (decaying(600),)
+    ),
     "ramberg-osgood": lambda: FamilyExample(
         Affine(1.0, 0.3) @ hyst.RambergOsgood(1.0, 0.6, 0.8),
         (decaying(),),
         unit_of_its_own=".c2",  # the input's unit to the power c3 is in it
+    ),
+    "masing": lambda: FamilyExample(
+        Affine(1.0, 0.3) @ hyst.MasingOperator(hyst.models.ExponentialCurve(1.5, 1.0, 0.4)),
+        (decaying(),),
+    ),
+    "iwan": lambda: FamilyExample(
+        Affine(-1.0, 0.3) @ hyst.Iwan(1.0, 3.0, -0.3, 0.5, 0.4), (decaying(),)
     ),
     "pi": lambda: FamilyExample(Affine(-1.0, 0.3) @ _plays(), (decaying(),), {"plays": 2}),
     # Knots where the family puts them: evenly over the signal the map acts on.
@@ -190,10 +241,15 @@ _MAKE: dict[str, Callable[[], FamilyExample]] = {
     "mpi": lambda: FamilyExample(
         Affine(1.0, 0.3) @ _plays(), (decaying(),), {"plays": 2, "knots": 2}
     ),
+    # Knots where the family puts them, and at the ends of the input, beyond which both go on alike.
+    "two-envelope": lambda: FamilyExample(
+        Affine(1.0, 0.3) @ _two_envelopes(decaying()), (decaying(),), {"plays": 2, "knots": 2}
+    ),
     "rdpi": lambda: FamilyExample(
         _rate_dependent(), (sine(1.0, 1700), sine(20.0, 300), sine(60.0, 300)), {"plays": 2}
     ),
     "preisach": _preisach,
+    "rate-dependent-preisach": _rate_dependent_relays,
     "hammerstein": _hammerstein,
 }
 

@@ -76,14 +76,16 @@ typedef struct {
     hyst_real by_m;
 } hyst_jiles_stretch;
 
-/* m at x, and what is sought there, and the latter's slope. */
+/* m at x. */
 hyst_real hyst_jiles_m(const hyst_jiles_stretch *on, hyst_real x);
-hyst_real hyst_jiles_sought(const hyst_jiles_stretch *on, hyst_real x);
-hyst_real hyst_jiles_slope(const hyst_jiles_stretch *on, hyst_real x);
 
-/* The x between two where what is sought is the target; one of the two if it lies beyond. */
+/* What is sought, at x, and its slope there. */
+hyst_real hyst_jiles_sought(const hyst_jiles_stretch *on, hyst_real x, hyst_real *slope);
+
+/* The x between two, at which it is known, where what is sought is the target; one of the two if it lies
+ * beyond. */
 hyst_real hyst_jiles_root(const hyst_jiles_stretch *on, hyst_real target, hyst_real low,
-                          hyst_real high);
+                          hyst_real at_low, hyst_real high, hyst_real at_high);
 
 /* One sample. The inverse answers a magnetisation of Ms or more, which no field reaches, by what is not
  * finite, and keeps its state. */

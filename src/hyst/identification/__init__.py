@@ -12,6 +12,10 @@ from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.identified import Candidate, Identified
 from hyst.identification.result.late_output import late_output
 from hyst.identification.result.record_errors import RecordErrors
+from hyst.identification.reversal_curve_fit import (
+    ReversalCurveFit,
+    identify_from_reversal_curves,
+)
 from hyst.identification.slopes import Slopes, identify_weights_from_slopes
 
 __all__ = [
@@ -20,11 +24,13 @@ __all__ = [
     "Comparison",
     "Identified",
     "RecordErrors",
+    "ReversalCurveFit",
     "Slopes",
     "UsedSamples",
     "chosen_families",
     "compare",
     "identify",
+    "identify_from_reversal_curves",
     "identify_weights_from_slopes",
     "late_output",
     "later",

@@ -139,7 +139,8 @@ def find(
     more = _in_reserve(reserve, records, tasks[0], options)
     choice = _search(tasks, options, more)
     fit, task = choice.fit, choice.task
-    if task.evidence is not None and fit.family.has_memory:
+    judges = fit.family.has_memory and fit.family.settles_delay
+    if task.evidence is not None and judges:
         delay = settled_by_family(task.data, fit, task.evidence)
         if delay != task.data.lag:
             options.say("delay, settled by the family")

@@ -47,7 +47,7 @@ class ExponentialCurve(LoadingCurve):
 
     Notes
     -----
-    The cousin, with nested memory, of Dahl's friction of n = 1, whose branches are exponentials too.
+    The cousin, with nested memory, of Dahl's friction of n = 1, whose branches are exponentials.
 
     Examples
     --------
@@ -71,8 +71,8 @@ class ExponentialCurve(LoadingCurve):
             )
         if self.d > self.c:
             raise InputError(
-                f"d is {self.d:.6g}, more than c = {self.c:.6g}; the slope at 0, c - d, must not be "
-                "negative"
+                f"d is {self.d:.6g}, more than c = {self.c:.6g}; the slope at 0, c - d, must not "
+                "be negative"
             )
         if self.c == 0.0 and self.d == 0.0:
             raise InputError("c and d are 0, so the output would never move; give one of them")

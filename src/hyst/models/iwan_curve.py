@@ -1,4 +1,4 @@
-"""The loading curve of Jenkins elements in parallel: Iwan's model with Segalman's four parameters."""
+"""The loading curve of Jenkins elements in parallel: Iwan's, with Segalman's four parameters."""
 
 from __future__ import annotations
 

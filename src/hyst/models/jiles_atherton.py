@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Self, final
 
 import numpy as np
@@ -82,8 +82,8 @@ class _Magnet(Operator):
 
     def with_parameters(self, theta: Sequence[float] | Array) -> Self:
         """Give the model of other constants, of the same variant and output."""
-        constants = as_parameter_vector(theta, 5).tolist()
-        return type(self)(*constants, self.variant, self.output, self.mu0)
+        saturation, a, k, c, alpha = as_parameter_vector(theta, 5).tolist()
+        return replace(self, Ms=saturation, a=a, k=k, c=c, alpha=alpha)
 
     def lipschitz_constant(self) -> float:
         """Give infinity: many small ways magnetise as one large way does."""
@@ -227,7 +227,7 @@ class JilesAtherton(_Magnet):
         values = self.parameter_scales(input_scale, output_scale) * self.parameters().values
         is_flux = self.output == FLUX_DENSITY
         mu0 = self.mu0 * (output_scale / input_scale) if is_flux else self.mu0
-        return JilesAtherton(*values.tolist(), self.variant, self.output, mu0)
+        return replace(self.with_parameters(values), mu0=mu0)
 
     def _is_inverse(self) -> bool:
         return False

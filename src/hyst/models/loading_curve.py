@@ -104,6 +104,10 @@ class LoadingCurve(ABC):
         """Give the same kind of curve with other constants."""
 
     @abstractmethod
+    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
+        """Give the factors of the constants for signals with numbers larger by these factors."""
+
+    @abstractmethod
     def to_dict(self) -> dict[str, Any]:
         """Give a dictionary of plain numbers, lists and text."""
 
@@ -232,6 +236,10 @@ class InverseCurve(LoadingCurve):
     def with_parameters(self, theta: Sequence[float] | Array) -> InverseCurve:
         """Give the inverse of a curve with other constants."""
         return InverseCurve(self.curve.with_parameters(theta))
+
+    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
+        """Give the factors of the constants of the curve, whose input is this one's output."""
+        return self.curve.parameter_scales(output_scale, input_scale)
 
     def to_dict(self) -> dict[str, Any]:
         """Give kind and curve."""

@@ -128,8 +128,8 @@ class MasingOperator(Operator):
     Parameters
     ----------
     curve
-        The initial loading curve: ``PowerLaw``, ``PiecewiseLinear``, ``PolynomialCurve`` or the
-        ``InverseCurve`` of one.
+        The initial loading curve: ``PowerLaw``, ``PiecewiseLinear``, ``PolynomialCurve``,
+        ``ExponentialCurve``, ``IwanCurve`` or the ``InverseCurve`` of one.
     memory
         ``"masing"``: reversals are nested, and every loop closes. A piecewise linear curve then
         makes the Prandtl-Ishlinskii operator. ``"last-reversal"``: everything before the last
@@ -217,6 +217,17 @@ class MasingOperator(Operator):
         """Give the operator of another curve of the same kind."""
         curve = self.curve.with_parameters(theta)
         return MasingOperator(curve, self.memory, self.depth, self.dead_band)
+
+    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
+        """Give the factors of the constants of the curve."""
+        return self.curve.parameter_scales(input_scale, output_scale)
+
+    def in_units(self, input_scale: float, output_scale: float) -> MasingOperator:
+        """Give the operator in other units, its dead band too."""
+        scales = self.parameter_scales(input_scale, output_scale)
+        curve = self.curve.with_parameters(scales * self.parameters().values)
+        own = output_scale if isinstance(self.curve, InverseCurve) else input_scale
+        return MasingOperator(curve, self.memory, self.depth, self.dead_band * own)
 
     def portrait(self) -> Portrait:
         """Show the loading curve."""

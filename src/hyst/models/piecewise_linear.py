@@ -160,6 +160,11 @@ class PiecewiseLinear(LoadingCurve):
         vector = as_parameter_vector(theta, 1 + 2 * n)
         return PiecewiseLinear(vector[1 : n + 1], vector[n + 1 :], float(vector[0]))
 
+    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
+        """Give the factors of p0, p and r."""
+        n = self.p.size
+        return np.repeat([output_scale / input_scale, input_scale], [n + 1, n])
+
     def to_dict(self) -> dict[str, Any]:
         """Give kind, p0, p and r."""
         return {"kind": self.kind, "p0": self.p0, "p": self.p.tolist(), "r": self.r.tolist()}

@@ -101,6 +101,10 @@ class PolynomialCurve(LoadingCurve):
         """Give another polynomial of the same degree."""
         return PolynomialCurve(as_parameter_vector(theta, self.coefficients.size))
 
+    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
+        """Give the factors of the coefficients."""
+        return output_scale * input_scale ** -np.arange(1.0, self.coefficients.size + 1.0)
+
     def to_dict(self) -> dict[str, Any]:
         """Give kind and coefficients."""
         return {"kind": self.kind, "coefficients": self.coefficients.tolist()}

@@ -112,6 +112,11 @@ class PowerLaw(LoadingCurve):
         """Give another power law."""
         return PowerLaw(*as_parameter_vector(theta, 3).tolist())
 
+    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
+        """Give the factors of c1, c2 and c3; that of c2 depends on c3."""
+        ratio = output_scale / input_scale
+        return np.array([ratio, ratio * input_scale**-self.c3, 1.0])
+
     def to_dict(self) -> dict[str, Any]:
         """Give kind, c1, c2 and c3."""
         return {"kind": self.kind, "c1": self.c1, "c2": self.c2, "c3": self.c3}

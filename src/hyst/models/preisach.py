@@ -16,6 +16,7 @@ from hyst.models.masing import DEPTH
 from hyst.models.preisach_grid import as_edges, as_masses, lower_triangle, names_of_cells, triangle
 from hyst.operators.base import Operator
 from hyst.operators.parameters import Parameters, as_parameter_vector
+from hyst.operators.portrait import Portrait
 from hyst.operators.registry import entries, register
 from hyst.operators.stage import Stage
 from hyst.operators.traits import Degree, Traits
@@ -290,6 +291,13 @@ class Preisach(_Relays):
             self.density,
             self.depth,
         )
+
+    def portrait(self) -> Portrait:
+        """Show the density of the relays, and the loop."""
+        widths = np.diff(self.thresholds)
+        area = np.multiply.outer(widths, widths) * (1.0 - 0.5 * np.eye(widths.size))
+        density = np.where(np.tri(widths.size, dtype=bool), self.weights / area, np.nan)
+        return Portrait(("relays", "loop"), p0=self.p0, thresholds=self.thresholds, density=density)
 
     def lipschitz_constant(self) -> float:
         """Give a bound: p0, and twice the mass along the densest staircase, over its height.

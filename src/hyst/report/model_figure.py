@@ -23,6 +23,7 @@ from hyst.report.canvas import (
     ratio_unit,
     with_unit,
 )
+from hyst.report.forc_figure import draw_density
 
 Array = NDArray[np.float64]
 
@@ -236,9 +237,16 @@ def _draw_loop(axes: Axes, part: _Part) -> None:
     axes.set_ylabel(with_unit(part.labels.output_name, part.labels.output_unit))
 
 
+def _draw_relays(axes: Axes, part: _Part) -> None:
+    portrait = part.portrait
+    draw_density(axes, portrait.thresholds, portrait.density, part.labels.input_unit)
+    axes.set_title(f"Density of the relays (p0 = {portrait.p0:.3g})")
+
+
 _BRUSHES: dict[str, Callable[[Axes, _Part], None]] = {
     "weights": _draw_weights,
     "curve": _draw_curve,
     "map": _draw_map,
     "loop": _draw_loop,
+    "relays": _draw_relays,
 }

@@ -11,6 +11,12 @@ from hyst.signals.multisines import multisine
 from hyst.signals.noise import estimate_noise, suggest_dead_band
 from hyst.signals.record import Record
 from hyst.signals.rest import from_rest
+from hyst.signals.reversal_curves import (
+    ForcDensity,
+    ReversalCurve,
+    forc_density,
+    reversal_curves,
+)
 from hyst.signals.sequences import decaying_triangle, forc, prbs, staircase, triangle
 from hyst.signals.swept_sines import swept_sine
 from hyst.signals.turning_points import reversals
@@ -18,21 +24,25 @@ from hyst.signals.units import units_differ
 
 __all__ = [
     "Drive",
+    "ForcDensity",
     "Limits",
     "Metrics",
     "Persistence",
     "Record",
+    "ReversalCurve",
     "decaying_triangle",
     "design",
     "error_metrics",
     "estimate_noise",
     "forc",
+    "forc_density",
     "from_rest",
     "hysteresis_percent",
     "loop_area",
     "multisine",
     "persistence",
     "prbs",
+    "reversal_curves",
     "reversals",
     "staircase",
     "suggest_dead_band",

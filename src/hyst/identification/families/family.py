@@ -72,6 +72,8 @@ class Family(ABC):
     """Whether it does so only where what it compares first leaves more than noise."""
     has_memory: ClassVar[bool] = True
     """Whether its delay is worth judging by the family itself."""
+    settles_delay: ClassVar[bool] = True
+    """Whether it may choose among the delays left possible, by a fit for each of them."""
     answers_late: ClassVar[bool] = False
     """Whether the delay of the output is part of the model, so that none is looked for before."""
     depends_on_rate: ClassVar[bool] = False

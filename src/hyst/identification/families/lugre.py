@@ -72,7 +72,7 @@ class LuGre(Family):
         ``"auto"``: the first where the records slide at more than one velocity and it is missed.
     viscosity
         ``"linear"``, sigma2 v; ``"saturating"``, Fv tanh(v / vv) beside it; ``"none"``; or
-        ``"auto"``: the first where the records slide at more than one velocity, the second where
+        ``"auto"``: the first, or the second where the records slide at more than one velocity and
         it is missed.
     """
 
@@ -111,19 +111,22 @@ class LuGre(Family):
         spread = spread_of_speeds(data)
         if spread >= ONE_VELOCITY:
             return self, ()
-        for name, value in (("stribeck", self.stribeck), ("viscosity", self.viscosity)):
-            if value not in (AUTO, NONE):
+        for name, value, other in (
+            ("stribeck", self.stribeck, (AUTO, NONE)),
+            ("viscosity", self.viscosity, (AUTO, LINEAR, NONE)),
+        ):
+            if value not in other:
                 raise NotIdentifiableError(
                     f"the records slide at one velocity (fast and slow differ by a factor of "
-                    f"{spread:.2f}), which does not tell how the force depends on it; give "
-                    f"{name}={NONE!r}, or records at several velocities"
+                    f"{spread:.2f}), which does not tell how the force bends over it; give "
+                    f"{name}={other[1]!r}, or records at several velocities"
                 )
-        if self.stribeck == self.viscosity == NONE:
-            return self, ()
-        return replace(self, stribeck=NONE, viscosity=NONE), (
+        grows = LINEAR if self.viscosity == AUTO else self.viscosity
+        return replace(self, stribeck=NONE, viscosity=grows), (
             f"the records slide at one velocity (fast and slow differ by a factor of {spread:.2f}"
-            "): Fs, vs and viscosity were left out, so that the model holds at that velocity only; "
-            "add records at other velocities",
+            "): Fs and vs cannot be told and were left out, and viscosity rests on how the force "
+            "jumps at turns, so that the model holds at that velocity only; add records at other "
+            "velocities",
         )
 
     def in_units(self, input_scale: float, output_scale: float) -> Self:
@@ -155,7 +158,7 @@ class LuGre(Family):
             raise NotIdentifiableError(
                 f"the records reach {100.0 * share:.0f} % of the force of sliding only, so they "
                 "do not show friction in sliding; drive further, or use family 'dahl' or "
-                "'maxwell-slip'"
+                "'maxwell-slip', or 'pi' for what is no friction"
             )
         return [self._parametrize(overview, each) for each in found[: max(most, 2)]]
 

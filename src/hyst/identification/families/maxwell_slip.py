@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import final
 
@@ -9,14 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst import models
+from hyst.errors import NotIdentifiableError
 from hyst.identification.families.estimates import Estimates
-from hyst.identification.families.family import Fit, Words
+from hyst.identification.families.family import Fit, Start, Words
 from hyst.identification.families.play_layout import (
     FirstGuess,
     PlayParametrization,
     parametrize_plays,
 )
-from hyst.identification.families.plays import PlayBank
+from hyst.identification.families.plays import PlayBank, fine_weights
 from hyst.identification.fit.weight_rules import SLIDING
 from hyst.identification.fit.weights import Weights
 from hyst.identification.record_use.overview import Overview
@@ -25,13 +27,21 @@ from hyst.operators import Affine, Operator
 
 Array = NDArray[np.float64]
 
+SLIDES = 0.95
+"""Springs that slide must leave less than this share of what a straight line leaves."""
 SHORTEST = 0.01
 """Least way to sliding of first guesses, over the largest that the records show."""
 
 
 @dataclass(frozen=True, eq=False)
 class SlidingParametrization(PlayParametrization):
-    """Plays that are springs which slide: ``p0 = k0 + sum k``, ``p = -k``."""
+    """Plays that are springs which slide: ``p0 = k0 + sum k``, ``p = -k``.
+
+    Parameters
+    ----------
+    template, transform, fixed, lower, upper, canonical, gauges, gauge_count, is_allowed, layout
+        As of ``PlayParametrization``; the template is the plays, the operator the springs.
+    """
 
     def stiffnesses(self, theta: Array) -> Array:
         """Give k0, k_1 .. k_n, in the units of the template."""
@@ -84,6 +94,24 @@ class MaxwellSlip(PlayBank):
     def least_parameters(self, size: int) -> int:
         """Give the number of stiffnesses, forces and the offset."""
         return 2 * size + 2
+
+    def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
+        """Start from radii of equal shares of the curvature, in a geometric series, and others.
+
+        Raises
+        ------
+        NotIdentifiableError
+            If no spring slides within the records.
+        """
+        u, y = overview.input, overview.data.measured()
+        line = y - np.polyval(np.polyfit(u - u.mean(), y, 1), u - u.mean())
+        straight = float(np.sqrt(np.mean(line * line)))
+        if fine_weights(overview, SLIDING).rms > SLIDES * straight:
+            raise NotIdentifiableError(
+                "nothing slides within the records: springs that do leave as much of the output as "
+                "a straight line does; drive further, or use family 'pi' or 'linear'"
+            )
+        return super().starts(overview, size, most)
 
     def rule(self, overview: Overview) -> str:
         """Give that all stiffnesses are positive."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from hyst.identification.fit.parametrization import SMALLEST_SLOPE, Parametrization
 from hyst.identification.fit.weight_rules import INVERTIBLE, NON_NEGATIVE, SLIDING, basis
-from hyst.models import MaxwellSlip, PrandtlIshlinskii
+from hyst.models import MaxwellSlip, PrandtlIshlinskii, TwoEnvelopePrandtlIshlinskii
 from hyst.operators import DeadZone, Operator
 from hyst.operators.composition import leaves_of
 from hyst.signals import reversals
@@ -45,6 +45,8 @@ class FirstGuess:
         What the weights may be; see ``weight_rules``.
     fixed_radii
         Whether the radii are to stay as they are.
+    input_range
+        Smallest and largest input of the records, for maps that need the ends.
     """
 
     p0: float
@@ -57,6 +59,7 @@ class FirstGuess:
     mean_slope: float
     rule: str = NON_NEGATIVE
     fixed_radii: bool = False
+    input_range: tuple[float, float] = (0.0, 0.0)
 
     @property
     def plays(self) -> PrandtlIshlinskii:
@@ -158,11 +161,11 @@ def parametrize_plays(
     fixed[pi_at : pi_at + 2 * n + 1] = 0.0
     if map_at is not None:
         weights = slice(map_at + 1, map_at + 1 + knots.size)
-        transform[weights, 2 * n + 1 : -1], fixed[weights] = _slopes_to_weights(knots)
+        transform[weights, 2 * n + 1 : -1], fixed[weights] = slopes_to_weights(knots)
     transform[-1, -1], fixed[-1] = 1.0, 0.0
     free = np.linalg.solve(weights_of, np.concatenate([[guess.p0], guess.p]))
     theta = np.concatenate([free, guess.r, np.ones(knots.size), [guess.offset]])
-    lower, upper = _bounds(guess, size)
+    lower, upper = bounds_of(guess, size)
     layout = PlayLayout(weights_of, lower, upper)
     return (
         PlayParametrization(
@@ -172,7 +175,16 @@ def parametrize_plays(
     )
 
 
-def _bounds(guess: FirstGuess, size: int) -> tuple[Array, Array]:
+def bounds_of(guess: FirstGuess, size: int) -> tuple[Array, Array]:
+    """Give the bounds of theta: weights, radii, slopes of maps and the offset.
+
+    Parameters
+    ----------
+    guess
+        The first guess.
+    size
+        Entries of theta.
+    """
     n = guess.p.size
     radii, slopes = slice(n + 1, 2 * n + 1), slice(2 * n + 1, size - 1)
     lower, upper = np.zeros(size), np.full(size, np.inf)
@@ -204,14 +216,32 @@ def half_swings(operator: Operator, u: Array) -> Array:
     """
     signal = u
     for leaf in leaves_of(operator):
+        if isinstance(leaf, TwoEnvelopePrandtlIshlinskii):
+            turns = signal[reversals(signal)]
+            up, down = leaf.rising(turns), leaf.falling(turns)
+            swings = np.where(np.diff(turns) > 0.0, up[1:] - down[:-1], up[:-1] - down[1:])
+            return np.abs(swings) / 2.0
         if isinstance(leaf, PrandtlIshlinskii | MaxwellSlip):
             break
         signal = leaf(signal)
     return np.abs(np.diff(signal[reversals(signal)])) / 2.0
 
 
-def _slopes_to_weights(knots: Array) -> tuple[Array, Array]:
-    """Weights at the knots from the slopes beyond them, counted outwards from slope 1 around 0."""
+def slopes_to_weights(knots: Array) -> tuple[Array, Array]:
+    """Give weights at the knots from the slopes beyond them, outwards from slope 1 around 0.
+
+    Parameters
+    ----------
+    knots
+        Shape (k,), none of them 0.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (k, k), the weights' derivative by the slopes.
+    numpy.ndarray
+        Shape (k,), the weights for slopes of 0.
+    """
     count = knots.size
     transform, fixed = np.zeros((count, count)), np.zeros(count)
     for side in (1.0, -1.0):

@@ -12,11 +12,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.optimize
 from numpy.typing import NDArray
 
 from hyst.errors import NotIdentifiableError
-from hyst.identification.fit.non_negative import non_negative
+from hyst.identification.fit.shape_search import least_over, saved_beside_a_line, shares
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import MasingOperator, PowerLaw
 from hyst.models.masing import as_mode
@@ -27,8 +26,6 @@ Array = NDArray[np.float64]
 SMALLEST_POWER, LARGEST_POWER = 0.02, 30.0
 """Of c3: below, a line and c2 p^c3 are one; beyond, the curve is a line with a jump at its end.
 Coarse records tell even less; see ``largest_power``."""
-
-GRID = 48
 
 SMALLEST_SHARE = 1e-9
 """Of c2 p^c3 at the end of the largest branch in c1: below, there is no hysteresis but rounding."""
@@ -127,13 +124,13 @@ def fit_power_law(
     else:
         table = _output_table(data, regressor, sign)
     largest = largest_power(data)
-    c3, evaluations = _least(lambda power: _solve(*table(power))[1], largest)
-    (c1, c2), left = _solve(*table(c3))
+    c3, evaluations = least_over(lambda power: shares(*table(power))[1], SMALLEST_POWER, largest)
+    (c1, c2), left = shares(*table(c3))
     # In these units a full branch of the largest loop is p = 2.
-    if not (c1 > 0.0 and c2 * 2.0**c3 > SMALLEST_SHARE * c1):
+    if not c2 * 2.0**c3 > SMALLEST_SHARE * c1:
         raise NotIdentifiableError(
             "the slope of the loop does not grow with the way since a reversal, so that no power "
-            "law with c1, c2 > 0 fits; use family 'pi' or 'linear'"
+            "law with c2 > 0 fits; use family 'masing', 'pi' or 'linear'"
         )
     if regression == "output":
         _require_a_loop(*table(c3), left)
@@ -149,10 +146,7 @@ def _require_a_loop(matrix: Array, target: Array, left: float) -> None:
     Two constants more, and the best of many exponents, always save some multiples of the residual
     variance; of white noise less than ``SMALLEST_GAIN`` in all but one of some thousand records.
     """
-    line = matrix[:, 0]
-    by_line = float(target @ target) - float(line @ target) ** 2 / float(line @ line)
-    variance = left / max(target.size - 4, 1)
-    if by_line - left < SMALLEST_GAIN * variance:
+    if saved_beside_a_line(matrix[:, 0], target, left) < SMALLEST_GAIN:
         raise NotIdentifiableError(
             "a power law describes the records no better than a straight line, but for noise; use "
             "family 'linear'"
@@ -237,43 +231,6 @@ def _both_count(data: Data) -> NDArray[np.bool_]:
         for counts, w in counted
     ]
     return np.concatenate([counts[1:] & counts[:-1] for counts in each])
-
-
-def _solve(matrix: Array, target: Array) -> tuple[Array, float]:
-    """Give both coefficients, none negative, and the sum of squared residuals.
-
-    One column is scaled to the other; a pair of columns needs no more than its QR factors.
-    """
-    scale = np.linalg.norm(matrix, axis=0)
-    if not scale.all():
-        return np.zeros(2), float(target @ target)
-    q, r = np.linalg.qr(matrix / scale)
-    moment = q.T @ target
-    beyond = float(target @ target - moment @ moment)
-    coefficients, residual = non_negative(r, moment)
-    return coefficients / scale, max(beyond, 0.0) + residual**2
-
-
-def _least(cost: Callable[[float], float], largest: float) -> tuple[float, int]:
-    """Find the global minimum over c3: a grid over log c3, then Brent's method in every dip."""
-    grid = np.geomspace(SMALLEST_POWER, largest, GRID)
-    costs = np.array([cost(float(power)) for power in grid])
-    evaluations = GRID
-    best, least = float(grid[np.argmin(costs)]), float(costs.min())
-    padded = np.concatenate([[np.inf], costs, [np.inf]])
-    dips = np.flatnonzero((costs <= padded[:-2]) & (costs <= padded[2:]))
-    for dip in dips[np.argsort(costs[dips])][:4]:
-        low, high = grid[max(dip - 1, 0)], grid[min(dip + 1, GRID - 1)]
-        found = scipy.optimize.minimize_scalar(
-            lambda log_power: cost(float(np.exp(log_power))),
-            bounds=(float(np.log(low)), float(np.log(high))),
-            method="bounded",
-            options={"xatol": 1e-10},
-        )
-        evaluations += int(found.nfev)
-        if found.fun < least:
-            best, least = float(np.exp(found.x)), float(found.fun)
-    return best, evaluations
 
 
 def _dead_band(records: Sequence[Record], memory: str) -> float:

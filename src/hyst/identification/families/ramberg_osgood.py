@@ -113,17 +113,20 @@ class RambergOsgood(Family):
         mean_slope
             Of the records, output units per input unit.
         """
+        # A slope of less than that is none: the records show a curve that starts flat.
+        least = SMALLEST_SLOPE * mean_slope
+        c1 = found.c1 if found.c1 >= least else 0.0
         model = models.RambergOsgood(
-            found.c1, found.c2, found.c3, as_mode(self.memory), dead_band=found.dead_band
+            c1, found.c2, found.c3, as_mode(self.memory), dead_band=found.dead_band
         )
         parametrization = Parametrization(
             template=Affine(sign, found.offset) @ model,
             transform=selection(5, [0, 1, 2, 4]),
             fixed=np.array([0.0, 0.0, 0.0, sign, 0.0]),
-            lower=np.array([SMALLEST_SLOPE * mean_slope, 0.0, SMALLEST_POWER, -np.inf]),
+            lower=np.array([least if c1 > 0.0 else 0.0, 0.0, SMALLEST_POWER, -np.inf]),
             upper=np.array([np.inf, np.inf, found.largest_power, np.inf]),
         )
-        return parametrization, np.array([found.c1, found.c2, found.c3, found.offset])
+        return parametrization, np.array([c1, found.c2, found.c3, found.offset])
 
     def solve(
         self, problem: Problem, theta: Array, max_iterations: int, tolerance: float = 1e-3
@@ -135,8 +138,16 @@ class RambergOsgood(Family):
         return Solution(theta, float(residual @ residual), 0, CONVERGED)
 
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
-        """Say if the exponent ended at a limit, so that it is no estimate."""
-        return at_limit_of_power(fit.parametrization, fit.solution.theta)
+        """Say if the exponent ended at a limit, so that it is no estimate, or c1 at 0."""
+        found = at_limit_of_power(fit.parametrization, fit.solution.theta)
+        if fit.solution.theta[0] > 0.0:
+            return found
+        return (
+            *found,
+            "c1 came out at 0: right after a turn the output rests at first, so that the inverse "
+            "answers small changes there with large ones; a slope that grows less and less is "
+            "told better by family 'masing'",
+        )
 
     @property
     def estimates_noise(self) -> bool:

@@ -75,8 +75,11 @@ def _sliding_velocities(record: Record, half_range: float) -> Array:
     width = max(int(SMOOTHED * u.size / max(strokes.size - 1, 1)), 1)
     speed = np.zeros(u.size)
     speed[width:-width] = (u[2 * width :] - u[: -2 * width]) / (2 * width * record.dt)
-    began = u[strokes[np.searchsorted(strokes, np.arange(u.size), side="left") - 1]]
-    return np.asarray(speed[np.abs(u - began) > SLIDING * half_range])
+    stroke = np.clip(np.searchsorted(strokes, np.arange(u.size), side="right") - 1, 0, None)
+    ends = strokes[np.minimum(stroke + 1, strokes.size - 1)]
+    # Averages over a turn are of two directions.
+    clear = np.arange(u.size) < ends - width
+    return np.asarray(speed[clear & (np.abs(u - u[strokes[stroke]]) > SLIDING * half_range)])
 
 
 @dataclass(frozen=True)

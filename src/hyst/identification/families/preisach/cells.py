@@ -1,4 +1,4 @@
-"""Cells of the half plane of relays, in the order of the model's weights: row by row, alpha first."""
+"""Cells of the half plane of relays, in the order of the model's weights: row by row."""
 
 from __future__ import annotations
 

@@ -18,7 +18,6 @@ from hyst.identification.families.preisach.layout import (
     with_prior,
 )
 from hyst.identification.families.preisach.smoothness import (
-    LinearFit,
     chosen_strength,
     effective_count,
 )
@@ -125,7 +124,7 @@ def fitted_grid(
     under_prior = with_prior(parametrization, fit.prior, smoothness, effective)
     left = (fit.columns @ theta - fit.y)[rows]
     rms = float(np.sqrt(np.mean(np.square(left))))
-    return GridFit(under_prior, theta, smoothness, rms, _correlation(left))
+    return GridFit(under_prior, theta, smoothness, rms, correlation_beyond_noise(left))
 
 
 def best_grid(overview: Overview, coarse: GridFit, finer: Callable[[float], GridFit]) -> GridFit:
@@ -146,8 +145,14 @@ def best_grid(overview: Overview, coarse: GridFit, finer: Callable[[float], Grid
     return other if other.rms < WORTH_IT * coarse.rms else coarse
 
 
-def _correlation(left: Array) -> float:
-    """Give the correlation of neighbours over the largest that counts as noise."""
+def correlation_beyond_noise(left: Array) -> float:
+    """Give the correlation of neighbouring residuals over the largest that counts as noise.
+
+    Parameters
+    ----------
+    left
+        Shape (N,), residuals in order.
+    """
     power = float(left @ left)
     found = float(left[:-1] @ left[1:]) / power if power > 0.0 else 0.0
     return found / max(MISFIT, SURE / float(np.sqrt(left.size)))

@@ -1,4 +1,4 @@
-"""The free parameters of a Preisach model: what is where in theta, and what is held by the prior."""
+"""The free parameters of a Preisach model: what is where in theta, and what the prior holds."""
 
 from __future__ import annotations
 

@@ -42,7 +42,6 @@ from hyst.identification.families.preisach.grid_choice import (
 )
 from hyst.identification.families.preisach.layout import (
     CellParametrization,
-    cells_of,
     parametrized,
     weights_of,
 )
@@ -199,9 +198,8 @@ class Relays(Family):
         weights = weights_of(fit.operator)
         columns = evaluation.jacobian(fit.solution.theta)[:, 1 : 1 + weights.size]
         # Per weight in the units of the fit: the columns of the cells are shares of one number.
-        turned = crossed(
-            columns / np.abs(parametrization.transform).max(axis=0)[1 : 1 + weights.size]
-        )
+        size = np.abs(parametrization.transform).max(axis=0)[1 : 1 + weights.size]
+        turned = crossed(columns / size)
         one_size = not shows_minor_loops(stroke_lengths(data))
         return about_coverage(weights, turned, parametrization.effective, one_size=one_size)
 

@@ -67,19 +67,20 @@ class RateDependentPreisach(Relays):
     name = "rate-dependent-preisach"
     methods = ("trajectory",)
     depends_on_rate: ClassVar[bool] = True
+    settles_delay: ClassVar[bool] = False
     explains = ("rate dependence", "dynamics")  # its loops widen as the rate grows
     words = Words(
         full_name="rate-dependent Preisach model",
         equations=(
             "z(t) = play of half-width c |du/dt|\u1d50 of u",
-            "y(t) = {sign}P[z](t) + offset",
             "P[z](t) = p0 z(t) + \u03a3 w\u1d62\u2c7c R\u1d62\u2c7c[z](t),  R = \u00b11",
+            "y(t) = {sign}P[z](t) + offset",
         ),
         explanations=(
             RELAY_TEXT,
             ESTIMATES_TEXT,
-            "The faster the input moves, the later the relays switch: \u03b1 grows and \u03b2 falls "
-            "by c |du/dt|\u1d50.",
+            "The faster the input moves, the later the relays switch: \u03b1 grows and \u03b2 "
+            "falls by c |du/dt|\u1d50.",
         ),
     )
 
@@ -168,7 +169,7 @@ def _search(overview: Overview, fastest: float) -> tuple[float, float]:
         first,
         method="Nelder-Mead",
         bounds=bounds,
-        options={"xatol": 0.02, "fatol": 0.0, "maxfev": 40},
+        options={"xatol": 0.05, "fatol": 0.0, "maxfev": 24},
     )
     exponent = float(np.exp(found.x[1]))
     return float(np.exp(found.x[0])) * half / fastest**exponent, exponent

@@ -1,7 +1,7 @@
 """How smooth a density is: the strength of the prior, chosen on left-out parts of the records.
 
-The best one is taken of records that show minor loops. Blocks of one amplitude repeat each other and
-say nothing of what is inside: of those the largest strength is taken that does not predict worse.
+The best one is taken of records that show minor loops. Blocks of one amplitude repeat each other
+and say nothing of what is inside: of those the largest strength is taken that predicts no worse.
 """
 
 from __future__ import annotations
