@@ -165,7 +165,7 @@ def test_relays_inside_describe_minor_loops_of_any_shape() -> None:
 
 
 def test_relays_inside_do_not_depend_on_units() -> None:
-    options = {"family": "butterfly", "delay": 0, "inside": "relays", "levels": 8}
+    options = {"family": "butterfly", "delay": 0, "inside": "relays", "cells": 8}
     record = minor_loops()
     scaled = dataclasses.replace(record, u=record.u * 2.0**-30, y=record.y * 2.0**50)
     plain, other = (hyst.identify(each, **options) for each in (record, scaled))
@@ -176,5 +176,5 @@ def test_relays_inside_do_not_depend_on_units() -> None:
 def test_cells_that_no_sample_crossed_are_told() -> None:
     u = strokes(3.0, 0.0)
     record = noisy(u, strain_of_relays(u, 0.35, 0.12, 0.0))
-    found = hyst.identify(record, family="butterfly", delay=0, inside="relays", levels=12)
+    found = hyst.identify(record, family="butterfly", delay=0, inside="relays", cells=12)
     assert any("no minor loops" in each for each in found.undetermined)

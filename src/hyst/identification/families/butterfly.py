@@ -80,8 +80,8 @@ class Butterfly(Family):
     inside
         ``"plays"``: few constants, and minor loops of one shape; or ``"relays"``: a Preisach model,
         for minor loops of any shape, and records that show them.
-    levels
-        Of relays: cells of their grid along a side, 4 to 64.
+    cells
+        Of relays: how many their grid has along a side, 4 to 64.
     degree
         n, 2 to 6: of the polynomial of input and hysteresis.
     """
@@ -113,8 +113,8 @@ class Butterfly(Family):
         PLAYS,
         choice((PLAYS, RELAYS), "What makes the hysteresis of a butterfly: plays, or relays."),
     )
-    levels: Any = option(
-        24, whole_number(FEWEST_LEVELS, MOST_LEVELS, "Cells of the grid of relays along a side.")
+    cells: Any = option(
+        24, whole_number(FEWEST_LEVELS, MOST_LEVELS, "Cells along a side of the grid of relays.")
     )
     degree: Any = option(
         2, whole_number(2, MOST_DEGREE, "Degree of the polynomial of input and hysteresis.")
@@ -130,7 +130,7 @@ class Butterfly(Family):
         """Give the number of slopes, weights, radii and coefficients, less two scales."""
         coefficients = int(self.degree + 1) * int(self.degree + 2) // 2
         if self.inside == RELAYS:
-            return least_samples(int(self.levels)) + coefficients
+            return least_samples(int(self.cells)) + coefficients
         return int(self.knots) - 1 + 2 * size + coefficients
 
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
@@ -153,8 +153,8 @@ class Butterfly(Family):
                 "of the turn and use family 'pi'"
             )
         if self.inside == RELAYS:
-            key = ("relays", self.levels, self.degree)
-            return [overview.once(key, lambda: relay_start(overview, self.levels, self.degree))]
+            key = ("relays", self.cells, self.degree)
+            return [overview.once(key, lambda: relay_start(overview, self.cells, self.degree))]
         return [parametrize_butterfly(each) for each in guesses]
 
     def simplified(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
