@@ -46,6 +46,7 @@ class ColemanHodgdon(Family):
     """
 
     name = "coleman-hodgdon"
+    in_reserve = True
     words = Words(
         full_name="Coleman-Hodgdon model",
         equations=(
