@@ -73,6 +73,7 @@ class Iwan(Family):
     """
 
     name = "iwan"
+    in_reserve = True
     explains = ("run direction",)  # of a force over displacement it is right
     words = Words(
         full_name="Iwan model of joints",

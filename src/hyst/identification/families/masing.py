@@ -43,6 +43,7 @@ class Masing(Family):
     """
 
     name = "masing"
+    in_reserve = True
     explains = ("run direction",)  # where the slope falls it is right, as of friction
     words = Words(
         full_name="exponential model with Masing memory",

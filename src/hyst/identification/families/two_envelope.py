@@ -68,6 +68,7 @@ class TwoEnvelope(MappedPlays):
     """
 
     name = "two-envelope"
+    in_reserve = True
     words = Words(
         full_name="Prandtl-Ishlinskii model with two envelopes",
         equations=(
