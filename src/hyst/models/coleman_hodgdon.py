@@ -268,7 +268,10 @@ class ColemanHodgdon(_Relaxation):
         count = self.knots.size
         pieces = [*range(count, 0, -1), *range(count + 1)]
         distance, upper, most = float(excess[-1]) / self.alpha, np.inf, 0.0
-        slope, place = float(self.slopes_of_g[-1] - excess[-1]), float(self.knots[-1:].sum())
+        slope, place = (
+            float(self.slopes_of_g[-1]) - self.alpha * distance,
+            float(self.knots[-1:].sum()),
+        )
         for end, piece in zip(ends.tolist(), pieces, strict=True):
             rest = float(excess[piece]) / self.alpha
             if end <= at <= upper:

@@ -105,7 +105,7 @@ class RateShift(Operator):
         float
             Input units.
         """
-        return self.c * abs(as_number(rate, "rate")) ** self.m
+        return float(self.c * abs(as_number(rate, "rate")) ** self.m)
 
     def traits(self) -> Traits:
         """Give the traits; without a shift it is the input itself."""

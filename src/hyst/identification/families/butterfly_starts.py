@@ -16,6 +16,7 @@ from hyst.identification.families.butterfly_layout import Hysteresis
 from hyst.identification.fit.problem import model_output
 from hyst.identification.record_use.overview import Overview
 from hyst.models.butterfly import terms
+from hyst.operators import Operator
 
 Array = NDArray[np.float64]
 
@@ -127,15 +128,37 @@ def _slopes(first: Hysteresis, coercive: float, width: float, bias: float) -> Ar
 
 def _with_map(overview: Overview, guess: Hysteresis) -> Hysteresis:
     """Give the guess with the best coefficients of its map."""
-    z = model_output(overview.data, guess.model().hysteresis)
-    half = overview.data.half_range
-    x = overview.input / half
-    i, j = terms(guess.c.shape[0] - 1)
+    degree = guess.c.shape[0] - 1
+    c, residual = coefficients_of(overview, guess.model().hysteresis, degree)
+    return replace(guess, c=c, residual=residual)
+
+
+def coefficients_of(overview: Overview, hysteresis: Operator, degree: int) -> tuple[Array, float]:
+    """Give the best coefficients of a map of a hysteresis and the input, and what it leaves.
+
+    Parameters
+    ----------
+    overview
+        The records.
+    hysteresis
+        What makes the state.
+    degree
+        Of the map.
+
+    Returns
+    -------
+    c : numpy.ndarray
+        Shape (degree + 1, degree + 1).
+    residual : float
+        Root mean square.
+    """
+    z, half = model_output(overview.data, hysteresis), overview.data.half_range
+    x, (i, j) = overview.input / half, terms(degree)
     columns = np.column_stack([x**a * z**b for a, b in zip(i, j, strict=True)])
     coefficients, residual = _fitted(columns, overview.data.measured())
-    c = np.zeros_like(guess.c)
+    c = np.zeros((degree + 1, degree + 1))
     c[i, j] = coefficients
-    return replace(guess, c=c / half ** np.arange(c.shape[0])[:, None], residual=residual)
+    return c / half ** np.arange(degree + 1.0)[:, None], residual
 
 
 def _fitted(columns: Array, y: Array) -> tuple[Array, float]:

@@ -16,16 +16,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst import models
-from hyst.errors import InputError
+from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.selection import best_of_starts
 from hyst.identification.families.envelope_layout import EnvelopeLayout
-from hyst.identification.families.family import Start, Words
+from hyst.identification.families.family import Fit, Start, Words
 from hyst.identification.families.mapped_plays import (
     GeneralizedPrandtlIshlinskii,
     MappedPlays,
 )
 from hyst.identification.families.play_layout import FirstGuess, PlayParametrization
-from hyst.identification.families.plays import PLAY_TEXT, layout_of
+from hyst.identification.families.plays import (
+    PLAY_TEXT,
+    fine_weights,
+    layout_of,
+    negative_weights_pay,
+)
 from hyst.identification.fit.weight_rules import INVERTIBLE, NON_NEGATIVE
 from hyst.identification.fit.weights import Weights
 from hyst.identification.record_use.overview import Overview
@@ -34,6 +39,11 @@ from hyst.operators import Affine, DeadZone
 Array = NDArray[np.float64]
 
 _ITERATIONS = 30
+
+MUCH_WORSE = 2.0
+"""Residual of plays of weights of one sign over that of both signs: beyond, those are missed."""
+NOTHING_SAVED = 0.8
+"""Residual behind an envelope over that of a line: above, plays of one sign describe nothing."""
 
 
 @final
@@ -51,6 +61,7 @@ class TwoEnvelope(MappedPlays):
     """
 
     name = "two-envelope"
+    in_reserve = True
     words = Words(
         full_name="Prandtl-Ishlinskii model with two envelopes",
         equations=(
@@ -107,6 +118,7 @@ class TwoEnvelope(MappedPlays):
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
         """Start from plays behind one envelope, which becomes both."""
         fit = best_of_starts(self._one_envelope(), overview, size, most, _ITERATIONS)
+        _require_no_negative_weights(fit, overview)
         layout, theta = layout_of(fit), fit.solution.theta
         guess = self._guess(overview, layout.radii(theta))
         parametrization, started = self.parametrize(guess)
@@ -139,4 +151,20 @@ class TwoEnvelope(MappedPlays):
     def _one_envelope(self) -> GeneralizedPrandtlIshlinskii:
         return GeneralizedPrandtlIshlinskii(
             plays=self.plays, radii=self.radii, weights=NON_NEGATIVE, knots=self.knots
+        )
+
+
+def _require_no_negative_weights(fit: Fit, overview: Overview) -> None:
+    """Refuse records of which plays of one sign tell nothing, and of both signs a lot."""
+    if not negative_weights_pay(overview):
+        return
+    residual = fit.problem(overview.data, overview.kept).residual(fit.solution.theta)
+    rms = float(np.sqrt(np.mean(residual**2)))
+    y, u = overview.data.measured(), overview.input
+    line = float(np.std(y) * np.sqrt(max(1.0 - np.corrcoef(u, y)[0, 1] ** 2, 0.0)))
+    if rms > NOTHING_SAVED * line and rms > MUCH_WORSE * fine_weights(overview, INVERTIBLE).rms:
+        raise NotIdentifiableError(
+            "the loop flattens after a turn, as friction's do, which needs plays of negative "
+            "weight, and between two envelopes there are none; use family 'pi', 'gpi' or "
+            "'maxwell-slip'"
         )
