@@ -7,12 +7,12 @@
 #ifdef HYST_SINGLE
 #define BOUC_WEN_ENOUGH 1e-4f /* of a step of Newton's: its square is lost */
 #define BOUC_WEN_NOTHING 1e-9f
-#define BOUC_WEN_DEPTH 12u
+#define BOUC_WEN_COARSE 2u
 #define BOUC_WEN_LAST 18.0f /* exp(-this) is no part of 1 */
 #else
 #define BOUC_WEN_ENOUGH 1e-9
 #define BOUC_WEN_NOTHING 1e-18
-#define BOUC_WEN_DEPTH 24u
+#define BOUC_WEN_COARSE 1u
 #define BOUC_WEN_LAST 40.0
 #endif
 
@@ -29,18 +29,17 @@ static hyst_real bouc_wen_most(hyst_real a, hyst_real b)
     return HYST_SELECT(a > b, a, b);
 }
 
-/* 2F1(1, 1/n; 1 + 1/n; w) for w <= 3/4, from below 0 too. */
-static hyst_real bouc_wen_fraction(hyst_real n, hyst_real w)
+/* The continued fraction from its end, where what it is made of has no number. */
+static hyst_real bouc_wen_deep_fraction(hyst_real n, hyst_real w)
 {
     const hyst_real one = HYST_REAL(1.0);
-    size_t depth = w > HYST_REAL(0.5) ? BOUC_WEN_DEPTH + BOUC_WEN_DEPTH / 2u : BOUC_WEN_DEPTH;
-    hyst_real bound = HYST_REAL(-1.0);
-    while (w < bound && bound > -HYST_BOUC_WEN_RATIO) {
-        bound = HYST_REAL(4.0) * bound;
-        depth = 2u * depth;
+    size_t half = 74u / BOUC_WEN_COARSE;
+    for (hyst_real bound = HYST_REAL(-64.0); w < bound && bound > -HYST_BOUC_WEN_RATIO;
+         bound = HYST_REAL(4.0) * bound) {
+        half = 2u * half;
     }
     hyst_real tail = one;
-    for (size_t k = depth / 2u; k > 0u; --k) {
+    for (size_t k = half; k > 0u; --k) {
         const hyst_real whole = n * (hyst_real)k;
         const hyst_real twice = one + HYST_REAL(2.0) * whole;
         const hyst_real odd = one + whole;
@@ -48,6 +47,50 @@ static hyst_real bouc_wen_fraction(hyst_real n, hyst_real w)
         tail = one - w * (whole * whole) / ((twice - n) * twice * tail);
     }
     return one / (one - w / ((one + n) * tail));
+}
+
+/* Half the partial quotients that leave less than an epsilon, for -16 <= w <= 3/4. */
+static size_t bouc_wen_half_depth(hyst_real w)
+{
+    static const struct {
+        hyst_real least, most;
+        size_t half;
+    } row[] = {{HYST_REAL(-0.03125), HYST_REAL(0.03125), 4},
+               {HYST_REAL(-0.125), HYST_REAL(0.125), 6},
+               {HYST_REAL(-0.5), HYST_REAL(0.25), 8},
+               {HYST_REAL(-1.0), HYST_REAL(0.5), 12},
+               {HYST_REAL(-4.0), HYST_REAL(0.75), 19}};
+    for (size_t i = 0; i < sizeof row / sizeof row[0]; ++i) {
+        if (w >= row[i].least && w <= row[i].most) {
+            return row[i].half / BOUC_WEN_COARSE;
+        }
+    }
+    return 37u / BOUC_WEN_COARSE;
+}
+
+/* 2F1(1, 1/n; 1 + 1/n; w) for w <= 3/4, from below 0 too. */
+static hyst_real bouc_wen_fraction(hyst_real n, hyst_real w)
+{
+    const hyst_real one = HYST_REAL(1.0);
+    if (w < HYST_REAL(-16.0)) {
+        return bouc_wen_deep_fraction(n, w);
+    }
+    /* Forwards, numerators and denominators apart: no division waits for another. */
+    hyst_real below = one + (-w / (one + n)), below_last = one;
+    hyst_real above = one, above_last = one;
+    const size_t half = bouc_wen_half_depth(w);
+    for (size_t k = 1; k <= half; ++k) {
+        const hyst_real whole = n * (hyst_real)k;
+        const hyst_real twice = one + HYST_REAL(2.0) * whole;
+        const hyst_real odd = one + whole;
+        const hyst_real even_part = -w * (whole * whole / ((twice - n) * twice));
+        const hyst_real odd_part = -w * (odd * odd / (twice * (twice + n)));
+        below_last = below + even_part * below_last;
+        above_last = above + even_part * above_last;
+        below = below_last + odd_part * below;
+        above = above_last + odd_part * above;
+    }
+    return above / below;
 }
 
 /* (-ln q - sum_k c_k q^k / k) / n. */

@@ -16,7 +16,7 @@
  *
  * Back, from a way to a share, is Newton's method: in -ln(1 - share), in which the way of a rising
  * share is nearly straight, its slope between 1 and 1/n; and downwards from the left of a concave
- * function. At most HYST_BOUC_WEN_STEPS steps, some 5. `tilt`, > -1, adds tilt times the share to the
+ * function. At most HYST_BOUC_WEN_STEPS steps, some 3. `tilt`, > -1, adds tilt times the share to the
  * way: what the inverse solves. Its derivative is that of the equation (engine/dual/core.hpp). */
 #ifndef HYST_BOUC_WEN_BRANCH_H
 #define HYST_BOUC_WEN_BRANCH_H

@@ -105,7 +105,18 @@ class LoadingCurve(ABC):
 
     @abstractmethod
     def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
-        """Give the factors of the constants for signals with numbers larger by these factors."""
+        """Give the factors of the constants in units in which signals have larger numbers.
+
+        Parameters
+        ----------
+        input_scale, output_scale
+            By which the numbers of x and f grow.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (m,).
+        """
 
     @abstractmethod
     def to_dict(self) -> dict[str, Any]:

@@ -27,7 +27,7 @@ FREE, EQUAL = "free", "equal"
 LEAST_SHAPE, LARGEST_SHAPE = 0.3, 8.0
 """Of n, if it is free: beyond, loops of another n are the same to a percent."""
 
-_TRAVELS = np.geomspace(0.1, 6.0, 8)
+_TRAVELS = np.geomspace(0.1, 40.0, 11)
 """Way to the limit at the slope of z = 0, of first guesses, over half the input range."""
 _RATIOS = (0.0, 0.4, 1.5)
 """(beta - gamma) / (beta + gamma) of first guesses."""
@@ -64,6 +64,11 @@ class _Guess(NamedTuple):
     offset: float
 
 
+def _differ(one: _Guess, other: _Guess) -> bool:
+    away = max(one.rate, other.rate) > 5.0 * min(one.rate, other.rate)
+    return away or one.h != other.h or one.n != other.n
+
+
 @final
 @dataclass(frozen=True)
 class BoucWen(Family):
@@ -78,6 +83,8 @@ class BoucWen(Family):
     """
 
     name = "bouc-wen"
+    in_reserve = True
+    explains = ("run direction",)  # of a force over displacement it is right
     words = Words(
         full_name="Bouc-Wen model",
         equations=(
@@ -124,10 +131,11 @@ class BoucWen(Family):
                 "use family 'pi' or 'linear'"
             )
         self._require_a_loop(overview, best[0])
-        apart = [
-            best[0],
-            *(each for each in best[1:] if each.h != best[0].h or each.n != best[0].n),
-        ]
+        # Loops of a long way and little of it look like loops of a short one with a weak z.
+        apart: list[_Guess] = []
+        for each in best:
+            if all(_differ(each, other) for other in apart):
+                apart.append(each)
         return [self._parametrize(overview, each) for each in apart[: max(most, 2)]]
 
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:

@@ -227,6 +227,7 @@ class Preisach(Relays):
     """
 
     name = "preisach"
+    in_reserve = True
     words = Words(
         full_name="Preisach model",
         equations=(
