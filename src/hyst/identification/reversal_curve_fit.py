@@ -96,7 +96,7 @@ def identify_from_reversal_curves(
     records
         Driven as by ``hyst.signals.forc``; one or more.
     levels
-        Cells of the grid along a side, 4 to 64; ``"auto"``: 24, fewer for few samples,
+        Cells of the grid along a side, 4 to 48; ``"auto"``: 24, fewer for few samples,
         and 32 where 24 leave more than noise.
     smoothness
         Strength of the prior that densities of neighbouring cells are alike, from 0; ``"auto"``:

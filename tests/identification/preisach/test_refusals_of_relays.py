@@ -37,8 +37,8 @@ def test_cells_beyond_the_drive_are_told_and_filled() -> None:
 
 
 def test_more_levels_than_samples_are_refused() -> None:
-    with pytest.raises(NotIdentifiableError, match=r"64 levels need more than 130"):
-        hyst.identify(record([-1.0, 1.0, -1.0], 30), family="preisach", delay=0, levels=64)
+    with pytest.raises(NotIdentifiableError, match=r"48 levels need more than 98"):
+        hyst.identify(record([-1.0, 1.0, -1.0], 20), family="preisach", delay=0, levels=48)
 
 
 def test_few_samples_get_few_levels() -> None:
@@ -52,7 +52,7 @@ def test_few_samples_get_few_levels() -> None:
     ("option", "value", "message"),
     [
         ("levels", 3, "levels is 3"),
-        ("levels", 65, "levels is 65"),
+        ("levels", 49, "levels is 49"),
         ("levels", [0.0, 1.0], "levels are 2 thresholds"),
         ("smoothness", -1.0, "smoothness is -1"),
         ("smoothness", "much", "smoothness is 'much'"),

@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 LEVELS, FINER_LEVELS = 24, 32
 """What ``"auto"`` takes, and what it tries where the former leaves more than noise."""
 
-FEWEST_LEVELS, MOST_LEVELS = 4, 64
+FEWEST_LEVELS, MOST_LEVELS = 4, 48
 SAMPLES_A_LEVEL = 8
 
 MISFIT, SURE = 0.04, 3.0

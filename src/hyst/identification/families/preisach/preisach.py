@@ -126,7 +126,7 @@ class Relays(Family):
     Parameters
     ----------
     levels
-        Cells of the grid along a side, 4 to 64, evenly spaced over the range of the input; its
+        Cells of the grid along a side, 4 to 48, evenly spaced over the range of the input; its
         thresholds, input units; or ``"auto"``: 24, fewer for short records, and 32 where 24 leave
         more than noise.
     smoothness

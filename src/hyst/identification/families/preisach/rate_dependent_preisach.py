@@ -65,7 +65,7 @@ class RateDependentPreisach(Relays):
     """
 
     name = "rate-dependent-preisach"
-    methods = ("trajectory",)
+    methods = ("learning",)
     depends_on_rate: ClassVar[bool] = True
     settles_delay: ClassVar[bool] = False
     explains = ("rate dependence", "dynamics")  # its loops widen as the rate grows
