@@ -178,3 +178,13 @@ def test_cells_that_no_sample_crossed_are_told() -> None:
     record = noisy(u, strain_of_relays(u, 0.35, 0.12, 0.0))
     found = hyst.identify(record, family="butterfly", delay=0, inside="relays", cells=12)
     assert any("no minor loops" in each for each in found.undetermined)
+
+
+def test_no_delay_is_told_that_only_loops_of_another_kind_would_show() -> None:
+    """Loops that go one way with the input take this material for one that lags by 57 samples."""
+    u = strokes(3.0, 0.0)
+    record = noisy(u, strain_of_relays(u, 0.35, 0.12, 0.06))
+    found = hyst.identify(record, family="butterfly", plays=2, knots=8)
+    assert found.delay == 0
+    low, high = found.delay_interval
+    assert low <= 0.0 <= high

@@ -244,7 +244,8 @@ def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
         key = min(task.given.starts)
         if key not in found:
             found[key] = find_delay(task.data)
-        result.append(task.delayed(usable_delay(found[key], task.data), found[key]))
+        own = found[key] if task.family.loops_tell_delay else found[key].undecided()
+        result.append(task.delayed(usable_delay(own, task.data), own))
     return result
 
 

@@ -37,7 +37,7 @@ from hyst.identification.families.preisach.grid_choice import (
     least_samples,
 )
 from hyst.identification.families.turning_output import turning_share
-from hyst.identification.fit.problem import model_output
+from hyst.identification.fit.problem import ROUNDING, model_output
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.strokes import shows_minor_loops, stroke_lengths
 from hyst.identification.record_use.used_samples import Data
@@ -89,6 +89,7 @@ class Butterfly(Family):
     name = "butterfly"
     in_reserve = True
     describes = ("butterfly", "run direction")  # one wing is run one way, the other the other way
+    loops_tell_delay = False  # they go one way with the input, and a butterfly looks late to them
     methods = ("trajectory",)
     words = Words(
         full_name="butterfly model",
@@ -145,8 +146,9 @@ class Butterfly(Family):
         _require_a_butterfly(overview)
         plays = size or RELAYS_FROM_PLAYS
         guesses = best_guesses(overview, plays, self.knots, self.degree, max(most, 2))
-        left, curve = guesses[0].residual, residual_of_a_curve(overview)
-        if left > HYSTERESIS_PAYS * curve:
+        left = min(each.residual for each in guesses)
+        curve = residual_of_a_curve(overview)
+        if left > HYSTERESIS_PAYS * curve or curve < ROUNDING * overview.output_range:
             raise NotIdentifiableError(
                 "the output turns with the input but shows no hysteresis of a butterfly: a curve "
                 f"of the input alone leaves {100.0 * curve / overview.output_range:.3g} % of the "
@@ -212,7 +214,7 @@ def _about_relays(fit: Fit, parametrization: RelayParametrization, data: Data) -
     model = fit.operator
     assert isinstance(model, models.Butterfly), "the family made it"
     count = parametrization.cells.count
-    turned = crossed(turns_of_cells(Overview(data), model))
+    turned = crossed(turns_of_cells(Overview(data), model), data.lengths())
     weights = model.hysteresis.parameters().values[1 : 1 + count]
     one_size = not shows_minor_loops(stroke_lengths(data))
     return about_coverage(weights, turned, parametrization.effective, one_size=one_size)
