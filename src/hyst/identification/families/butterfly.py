@@ -214,7 +214,7 @@ def _about_relays(fit: Fit, parametrization: RelayParametrization, data: Data) -
     model = fit.operator
     assert isinstance(model, models.Butterfly), "the family made it"
     count = parametrization.cells.count
-    turned = crossed(turns_of_cells(Overview(data), model))
+    turned = crossed(turns_of_cells(Overview(data), model), data.lengths())
     weights = model.hysteresis.parameters().values[1 : 1 + count]
     one_size = not shows_minor_loops(stroke_lengths(data))
     return about_coverage(weights, turned, parametrization.effective, one_size=one_size)
