@@ -92,7 +92,10 @@ static hyst_preisach_point preisach_reversal(const hyst_preisach *model, const h
     hyst_preisach_point point = {input, output};
     if (model->inverse != 0) {
         point.u = output;
-        point.y = count > 0u ? input : HYST_ROUNDED(preisach_first_output(model, output), input);
+        point.y = input;
+        if (count == 0u) {
+            point.y = HYST_ROUNDED(preisach_first_output(model, output), input);
+        }
         return point;
     }
     if (count == 0u) {

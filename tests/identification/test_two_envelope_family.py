@@ -39,7 +39,7 @@ def percent_on_another_drive(family: str, plant: Callable[[Array], Array], seed:
 @pytest.mark.parametrize("name", PLANTS)
 @pytest.mark.parametrize("seed", range(2))
 def test_on_asymmetric_actuators_it_predicts_better_than_one_map(name: str, seed: int) -> None:
-    """Neither is in its class; measured 0.34 against 0.59 and 2.3 %, 2.0 against 3.5 and 2.9 %."""
+    """Neither is in its class; measured 0.34 against 0.59 and 2.3 %, 0.97 against 2.3 and 2.9 %."""
     ours, gpi, mpi = (
         percent_on_another_drive(family, PLANTS[name], seed)
         for family in ("two-envelope", "gpi", "mpi")

@@ -59,7 +59,7 @@ typedef struct {
 
 /* Places in the state; then come u and y of every reversal. A forward operator starts with all zero but
  * the input, which may be any the demagnetised state was left to; its inverse with y and u of it. */
-enum hyst_preisach_place {
+enum {
     HYST_PREISACH_INPUT,    /* last input */
     HYST_PREISACH_OUTPUT,   /* the output that belongs to it; of the forward operator once there is one */
     HYST_PREISACH_COUNT,    /* reversals on the stack */

@@ -160,10 +160,10 @@ class ColemanHodgdon(_Relaxation):
     Examples
     --------
     >>> piezo = ColemanHodgdon(alpha=1.0, a=2.0, b=1.5)
-    >>> piezo([1.0, 0.0]).round(6)
-    array([1.68394 , 0.199788])
-    >>> piezo.inverse()(piezo([1.0, 0.0])).round(12)
-    array([ 1., -0.])
+    >>> piezo([1.0, 0.5]).round(6)
+    array([1.68394 , 1.005034])
+    >>> piezo.inverse()(piezo([1.0, 0.5])).round(12)
+    array([1. , 0.5])
     """
 
     kind = "coleman-hodgdon"
@@ -309,8 +309,8 @@ class InverseColemanHodgdon(_Relaxation):
 
     Examples
     --------
-    >>> ColemanHodgdon(alpha=1.0, a=2.0, b=1.5).inverse()([1.68394, 0.199788]).round(5)
-    array([1., 0.])
+    >>> ColemanHodgdon(alpha=1.0, a=2.0, b=1.5).inverse()([1.68394, 1.005034]).round(5)
+    array([1. , 0.5])
     """
 
     kind = "inverse-coleman-hodgdon"
