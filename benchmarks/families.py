@@ -181,7 +181,8 @@ def _cells(entry: Entry) -> list[str]:
 
 
 def _cell(text: str) -> str:
-    return text.replace("|", "/")
+    """Give a text for a cell: what is wrong, without what to do about it."""
+    return text.partition("; ")[0].replace("|", "/")
 
 
 def as_markdown(rows: Sequence[tuple[Task, Sequence[Entry]]], notes: Sequence[str]) -> str:

@@ -43,7 +43,8 @@ def report(
     for precision in precisions:
         command = ["cppcheck", "--addon=misra", "--std=c99", "--quiet", "--inline-suppr"]
         command += ["--enable=warning,style,performance,portability", "--platform=unix32"]
-        command += ["--template={file}:{line}:{id}", precision, "-UHYST_POWER_HEADER"]
+        command += ["--template={file}:{line}:{id}", precision]
+        command += ["-UHYST_POWER_HEADER", "-UHYST_ROOT_HEADER"]
         # C++ is not what MISRA C speaks of.
         command += ["-UHYST_REAL_HEADER", "-UHYST_EXTERN_C", "-U__cplusplus"]
         command += [*(f"-I{each}" for each in includes), *map(str, sources)]

@@ -59,24 +59,26 @@ static hyst_real lost(hyst_real t)
     return HYST_REAL(1.0) - hyst_exp2(-CURVE_LOG2_E * t);
 }
 
-/* t - (1 - exp(-t)) for t >= 0, likewise: t^2 / 2 - t^3 / 6 + .. */
-static hyst_real gained(hyst_real t)
+/* x - way (1 - exp(-t)) with t = x / way, likewise: way (t^2 / 2 - t^3 / 6 + ..). */
+static hyst_real gained(hyst_real x, hyst_real way, hyst_real t)
 {
     if (t < HYST_REAL(0.5)) {
         hyst_real sum = HYST_REAL(1.0);
         for (size_t k = 15; k > 2u; --k) {
             sum = HYST_REAL(1.0) - sum * t / (hyst_real)k;
         }
-        return HYST_REAL(0.5) * t * t * sum;
+        return HYST_REAL(0.5) * t * x * sum;
     }
-    return t - lost(t);
+    return x - way * lost(t);
 }
 
-/* f(b t) / b, in the form in which no term takes away from another. */
-static hyst_real exponential(const hyst_exponential *f, hyst_real t)
+/* f(x) of another way b, in the form in which no term takes away from another. However small the way
+ * is, the result is finite. */
+static hyst_real exponential(const hyst_exponential *f, hyst_real x, hyst_real way)
 {
-    return f->change < HYST_REAL(0.0) ? f->last * t - f->change * lost(t)
-                                      : f->first * t + f->change * gained(t);
+    const hyst_real t = x / way;
+    return f->change < HYST_REAL(0.0) ? f->last * x - f->change * (way * lost(t))
+                                      : f->first * x + f->change * gained(x, way, t);
 }
 
 static hyst_real exponential_slope(const hyst_exponential *f, hyst_real t)
@@ -112,10 +114,8 @@ hyst_real hyst_loading(const hyst_loading_curve *curve, hyst_real x)
     }
     case HYST_POLYNOMIAL:
         return polynomial(&curve->as.polynomial, x);
-    case HYST_EXPONENTIAL: {
-        const hyst_exponential *f = &curve->as.exponential;
-        return f->way * exponential(f, x / f->way);
-    }
+    case HYST_EXPONENTIAL:
+        return exponential(&curve->as.exponential, x, curve->as.exponential.way);
     case HYST_IWAN:
         return iwan(&curve->as.iwan, x);
     case HYST_POWER_LAW:
@@ -236,7 +236,7 @@ static hyst_real inverse_polynomial(const hyst_polynomial *f, hyst_real w)
     return x;
 }
 
-/* The t > 0 with exponential(f, t) = w > 0 of a slope that grows from a to c = a + d.
+/* The t > 0 with f(b t) / b = w > 0 of a slope that grows from a to c = a + d.
  *
  * The left side is convex, so Newton's steps go down from any t that is too large: w / a; (w + d) / c,
  * since no more than d is lost; and the root of 3 w / d where that is below 1, since t - 1 + exp(-t)
@@ -253,7 +253,7 @@ static hyst_real solve_growing(const hyst_exponential *f, hyst_real w)
         t = w / f->first;
     }
     for (int i = 0; i < HYST_EXPONENTIAL_LIMIT; ++i) {
-        const hyst_real step = (exponential(f, t) - w) / exponential_slope(f, t);
+        const hyst_real step = (exponential(f, t, HYST_REAL(1.0)) - w) / exponential_slope(f, t);
         if (!(step > HYST_REAL(0.0))) {
             return t;
         }
@@ -294,7 +294,7 @@ static hyst_real solve_falling(const hyst_exponential *f, hyst_real w)
         t = (w - e) / f->last;
     }
     for (int i = 0; i < HYST_EXPONENTIAL_LIMIT; ++i) {
-        hyst_real step = (w - exponential(f, t)) / exponential_slope(f, t);
+        hyst_real step = (w - exponential(f, t, HYST_REAL(1.0))) / exponential_slope(f, t);
         const hyst_real rest = (e - w + f->last * t) / e;
         if (t > HYST_REAL(1.0) && rest > HYST_REAL(0.0)) {
             const hyst_real other = -(t + CURVE_LN2 * hyst_log2(rest)) * rest / (rest + f->last / e);

@@ -88,15 +88,18 @@ static hyst_preisach_point preisach_closing(const hyst_preisach *model, const hy
 static hyst_preisach_point preisach_reversal(const hyst_preisach *model, const hyst_real *state,
                                              size_t count)
 {
-    hyst_preisach_point point = {state[HYST_PREISACH_INPUT], state[HYST_PREISACH_OUTPUT]};
-    if (model->inverse) {
-        point.u = state[HYST_PREISACH_OUTPUT];
-        point.y = state[HYST_PREISACH_INPUT];
+    const hyst_real input = state[HYST_PREISACH_INPUT], output = state[HYST_PREISACH_OUTPUT];
+    hyst_preisach_point point = {input, output};
+    if (model->inverse != 0) {
+        point.u = output;
+        point.y = input;
         if (count == 0u) {
-            point.y = HYST_ROUNDED(preisach_first_output(model, point.u), point.y);
+            point.y = HYST_ROUNDED(preisach_first_output(model, output), input);
         }
-    } else if (count == 0u) {
-        point.y = preisach_first_output(model, point.u);
+        return point;
+    }
+    if (count == 0u) {
+        point.y = preisach_first_output(model, input);
     }
     return point;
 }
@@ -147,8 +150,8 @@ hyst_real hyst_preisach_step(const hyst_preisach *model, hyst_real *state, hyst_
     const int has_moved = last > start || last < start;
     const int has_risen = last > start;
     const int rests = !(input > last) && !(input < last);
-    const int rising = rests ? has_risen : input > last;
-    const int turns = has_moved && has_risen != rising;
+    const int rising = input > last || (rests && has_risen);
+    const int turns = has_moved && ((has_risen && !rising) || (rising && !has_risen));
     const int is_full = turns && before == model->depth;
     const int goes_back = is_full && !preisach_reached(rising, input, start);
     const size_t kept = turns && !is_full ? before + 1u : before;
@@ -172,7 +175,7 @@ hyst_real hyst_preisach_step(const hyst_preisach *model, hyst_real *state, hyst_
     state[HYST_PREISACH_INPUT] = input;
     state[HYST_PREISACH_OUTPUT] = output;
     state[HYST_PREISACH_COUNT] = (hyst_real)count;
-    if (is_full) {
+    if (is_full != 0) {
         state[HYST_PREISACH_OVERFLOW] = HYST_REAL(1.0);
     }
     return output;

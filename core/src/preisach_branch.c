@@ -40,11 +40,9 @@ static size_t preisach_cell_above(const hyst_preisach *model, hyst_real u)
     const hyst_real *t = model->threshold;
     const hyst_real place = (u - t[0]) * model->per_input;
     const size_t last = model->cells - 1u;
-    size_t i = 0;
-    if (place >= (hyst_real)last) {
-        i = last;
-    } else if (place > HYST_REAL(0.0)) {
-        i = (size_t)place;
+    size_t i = last;
+    if (!(place >= (hyst_real)last)) {
+        i = place > HYST_REAL(0.0) ? (size_t)place : 0u;
     }
     if ((i == 0u || t[i] <= u) && (i == last || u < t[i + 1u])) {
         return i;
@@ -202,7 +200,7 @@ static hyst_preisach_piece preisach_first_loading(const hyst_preisach *model, in
     piece.square = HYST_REAL(0.0);
     piece.rising = rising;
     piece.has_end = k + 1u < knots;
-    if (piece.has_end) {
+    if (piece.has_end != 0) {
         piece.to.u = rising ? row[4] : -row[4];
         piece.to.y = row[5] + model->p0 * piece.to.u;
         piece.width = piece.to.u - from;
@@ -244,10 +242,10 @@ hyst_preisach_piece hyst_preisach_to_input(const hyst_preisach *model, const hys
     const int rising = u > start->u;
     const preisach_branch branch = preisach_branch_of(model, start, rising);
     const hyst_real end = rising ? t[model->cells] : t[0];
-    if (!hyst_preisach_is_past(rising, u, branch.entry)) {
+    if (hyst_preisach_is_past(rising, u, branch.entry) == 0) {
         return preisach_outside(model, &branch, *start);
     }
-    if (hyst_preisach_is_past(rising, u, end)) {
+    if (hyst_preisach_is_past(rising, u, end) != 0) {
         const int crosses = hyst_preisach_is_past(rising, end, branch.entry);
         const hyst_real way = crosses ? preisach_way(model, &branch, rising ? model->cells : 0u) : zero;
         return preisach_outside(
@@ -256,7 +254,7 @@ hyst_preisach_piece hyst_preisach_to_input(const hyst_preisach *model, const hys
     }
     const size_t cell = rising ? preisach_cell_below(model, u) : preisach_cell_above(model, u);
     const hyst_preisach_piece whole = preisach_in_cell(model, &branch, cell);
-    if (!preisach_has_bend(model, &branch, cell)) {
+    if (preisach_has_bend(model, &branch, cell) == 0) {
         return whole;
     }
     const hyst_preisach_point bend = preisach_bend(model, &branch, cell, &whole);
@@ -275,7 +273,7 @@ static size_t preisach_cell_of_output(const hyst_preisach *model, const preisach
         const size_t k = branch->rising ? branch->cell + 1u + middle : branch->cell - middle;
         const hyst_preisach_point edge =
             preisach_point_at(model, branch, t[k], preisach_way(model, branch, k));
-        if (hyst_preisach_is_past(branch->rising, y, edge.y)) {
+        if (hyst_preisach_is_past(branch->rising, y, edge.y) != 0) {
             low = middle + 1u;
         } else {
             high = middle;
@@ -309,7 +307,7 @@ hyst_preisach_piece hyst_preisach_to_output(const hyst_preisach *model, const hy
         return preisach_outside(model, &branch, preisach_point_at(model, &branch, end, way));
     }
     const hyst_preisach_piece whole = preisach_in_cell(model, &branch, cell);
-    if (!preisach_has_bend(model, &branch, cell)) {
+    if (preisach_has_bend(model, &branch, cell) == 0) {
         return whole;
     }
     const hyst_preisach_point bend = preisach_bend(model, &branch, cell, &whole);

@@ -184,8 +184,92 @@ static void polynomial_by_hand(void)
     }
 }
 
+static hyst_loading_curve exponential_of(double c, double d, double b)
+{
+    hyst_loading_curve f;
+    f.kind = HYST_EXPONENTIAL;
+    f.as.exponential.first = (hyst_real)(c - d);
+    f.as.exponential.last = (hyst_real)c;
+    f.as.exponential.change = (hyst_real)d;
+    f.as.exponential.way = (hyst_real)b;
+    return f;
+}
+
+/* f(x) = c x - d b (1 - exp(-x / b)): 1/e at 1 for c = d = b = 1, and 1 - 1/e for c = 0, d = -1. */
+static void exponentials_by_hand(void)
+{
+    const hyst_loading_curve stiffens = exponential_of(1.0, 1.0, 1.0);
+    const hyst_loading_curve saturates = exponential_of(0.0, -1.0, 1.0);
+    const hyst_loading_curve line = exponential_of(2.0, 0.0, 1.0);
+    CHECK_NEAR((double)hyst_loading(&stiffens, R(1.0)), 0.36787944117144233, 8.0 * (double)REAL_EPSILON);
+    CHECK_NEAR((double)hyst_loading(&saturates, R(1.0)), 0.6321205588285577, 8.0 * (double)REAL_EPSILON);
+    CHECK_NEAR((double)hyst_loading_slope(&stiffens, R(1.0)), 0.6321205588285577,
+               8.0 * (double)REAL_EPSILON);
+    CHECK_NEAR((double)hyst_unloading(&stiffens, R(0.36787944117144233)), 1.0,
+               16.0 * (double)REAL_EPSILON);
+    CHECK_NEAR((double)hyst_unloading(&saturates, R(0.6321205588285577)), 1.0,
+               16.0 * (double)REAL_EPSILON);
+    CHECK_EQUAL(hyst_unloading(&line, R(3.0)), R(1.5));
+    CHECK_EQUAL(hyst_unloading(&stiffens, R(0.0)), R(0.0));
+    /* Nothing leads beyond saturation. */
+    CHECK(!hyst_is_finite(hyst_unloading(&saturates, R(1.0))));
+    CHECK(!hyst_is_finite(hyst_unloading(&saturates, R(2.0))));
+}
+
+/* Slopes and ways over decades, there and back: the stated number of steps is enough for all. */
+static void every_exponential_is_solved(void)
+{
+    for (double last = -6.0; last <= 3.0; last += 0.5) {
+        for (double first = -6.0; first <= 3.0; first += 0.5) {
+            const double c = pow(10.0, last), d = c - pow(10.0, first);
+            const hyst_loading_curve f = exponential_of(c, d, 1.0);
+            for (double size = -4.0; size <= 3.0; size += 0.23) {
+                const hyst_real w = hyst_loading(&f, (hyst_real)pow(10.0, size));
+                const hyst_real again = hyst_loading(&f, hyst_unloading(&f, w));
+                /* x f' is at most twice f: a few roundings of f, each twice. */
+                CHECK_NEAR((double)again / (double)w, 1.0, 20.0 * (double)REAL_EPSILON);
+            }
+        }
+    }
+}
+
+/* 2 x - x^2 up to 1, then 1 + x / 2 more: uniform sliders beside a spring of 1/2. */
+static void iwan_by_hand(void)
+{
+    hyst_loading_curve f;
+    f.kind = HYST_IWAN;
+    f.as.iwan.stiffness = R(2.5);
+    f.as.iwan.factor = R(1.0);
+    f.as.iwan.exponent = R(2.0);
+    f.as.iwan.limit = R(1.0);
+    f.as.iwan.force = R(1.0);
+    f.as.iwan.residual = R(0.5);
+    CHECK_NEAR((double)hyst_loading(&f, R(0.5)), 1.0, 8.0 * (double)REAL_EPSILON);
+    CHECK_EQUAL(hyst_loading(&f, R(1.0)), R(1.5));
+    CHECK_EQUAL(hyst_loading(&f, R(3.0)), R(2.5));
+    CHECK_NEAR((double)hyst_loading_slope(&f, R(0.5)), 1.5, 16.0 * (double)REAL_EPSILON);
+    CHECK_EQUAL(hyst_loading_slope(&f, R(3.0)), R(0.5));
+    CHECK_NEAR((double)hyst_unloading(&f, R(1.0)), 0.5, 16.0 * (double)REAL_EPSILON);
+    CHECK_EQUAL(hyst_unloading(&f, R(1.5)), R(1.0));
+    CHECK_EQUAL(hyst_unloading(&f, R(2.5)), R(3.0));
+    CHECK_EQUAL(hyst_unloading(&f, R(0.0)), R(0.0));
+    for (double x = 1e-4; x < 4.0; x *= 1.1) {
+        const hyst_real w = hyst_loading(&f, (hyst_real)x);
+        CHECK_NEAR((double)hyst_loading(&f, hyst_unloading(&f, w)) / (double)w, 1.0,
+                   20.0 * (double)REAL_EPSILON);
+    }
+    /* Without the spring macro-slip has no way. */
+    f.as.iwan.stiffness = R(2.0);
+    f.as.iwan.residual = R(0.0);
+    CHECK(!hyst_is_finite(hyst_unloading(&f, R(1.0))));
+    CHECK_NEAR((double)hyst_unloading(&f, R(0.75)), 0.5, 16.0 * (double)REAL_EPSILON);
+}
+
 int main(void)
 {
+    exponentials_by_hand();
+    every_exponential_is_solved();
+    iwan_by_hand();
     power_is_as_accurate_as_it_says();
     power_at_the_ends_of_its_range();
     quadratic_is_solved_as_by_its_formula();

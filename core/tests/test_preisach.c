@@ -29,6 +29,34 @@ static void a_closed_loop_leaves_no_trace(void)
     CHECK_EQUAL(plain[HYST_PREISACH_COUNT], R(0.0)); /* and 0.75 is the mirror image of -0.75 */
 }
 
+static void a_closed_loop_takes_two_reversals_with_it(void)
+{
+    const hyst_preisach model = two_by_two(R(0.25), 0);
+    const hyst_real u[] = {R(0.9), R(-0.5), R(0.5), R(-0.2)};
+    hyst_real plain[LENGTH] = {R(0.0)}, looped[LENGTH] = {R(0.0)};
+    for (size_t i = 0; i < COUNT(u); ++i) {
+        if (i < 3u) {
+            hyst_preisach_step(&model, plain, u[i]);
+        }
+        hyst_preisach_step(&model, looped, u[i]);
+    }
+    hyst_preisach_step(&model, looped, R(0.5));
+    CHECK_EQUAL(plain[HYST_PREISACH_COUNT], R(2.0));
+    CHECK_SAME_BITS(looped, plain, LENGTH);
+}
+
+/* Left at 1/2 by the first loading curve, y_v = 1; back to 1/4 a sixteenth of the triangle turns. */
+static void a_start_on_the_first_loading_curve_may_turn_at_once(void)
+{
+    const hyst_preisach model = two_by_two(R(0.0), 0), inverse = two_by_two(R(0.0), 1);
+    hyst_real there[LENGTH] = {R(0.0)}, home[LENGTH] = {R(0.0)};
+    there[HYST_PREISACH_INPUT] = R(0.5);
+    home[HYST_PREISACH_INPUT] = R(1.0);
+    home[HYST_PREISACH_OUTPUT] = R(0.5);
+    CHECK_EQUAL(hyst_preisach_step(&model, there, R(0.25)), R(0.875));
+    CHECK_EQUAL(hyst_preisach_step(&inverse, home, R(0.875)), R(0.25));
+}
+
 static void samples_in_between_and_rests_change_nothing(void)
 {
     const hyst_preisach model = two_by_two(R(0.25), 0);
@@ -111,6 +139,8 @@ int main(void)
 {
     a_loop_by_hand();
     a_closed_loop_leaves_no_trace();
+    a_closed_loop_takes_two_reversals_with_it();
+    a_start_on_the_first_loading_curve_may_turn_at_once();
     samples_in_between_and_rests_change_nothing();
     a_full_stack_still_closes_loops();
     the_inverse_undoes_it();

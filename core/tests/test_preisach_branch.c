@@ -54,18 +54,18 @@ static void beyond_the_grid_the_relays_rest(void)
     CHECK_EQUAL(hyst_preisach_output(&late, R(2.0)), R(5.0));
 }
 
-/* Ridges: the cell (1, 0) turns from as far in as the branch began in its own, here a half. */
+/* Ridges: the cell (1, 0) turns from as far in as the branch began in its own, here three quarters. */
 static void ridges_bend_where_the_branch_began(void)
 {
     hyst_preisach model = two_by_two(R(0.0), 0);
     model.ridges = 1;
-    const hyst_preisach_piece own = to(&model, R(-0.5), R(-1.0), R(0.0));
-    const hyst_preisach_piece first = to(&model, R(-0.5), R(-1.0), R(0.25));
-    const hyst_preisach_piece second = to(&model, R(-0.5), R(-1.0), R(0.75));
-    CHECK_EQUAL(hyst_preisach_output(&own, R(0.0)), R(0.0));
-    CHECK_EQUAL(hyst_preisach_output(&first, R(0.25)), R(0.5));
-    CHECK_EQUAL(hyst_preisach_output(&second, R(0.75)), R(2.5));
-    CHECK_EQUAL(second.to.y, R(4.0));
+    const hyst_preisach_piece own = to(&model, R(-0.25), R(-1.0), R(0.0));
+    const hyst_preisach_piece first = to(&model, R(-0.25), R(-1.0), R(0.5));
+    const hyst_preisach_piece second = to(&model, R(-0.25), R(-1.0), R(0.875));
+    CHECK_EQUAL(hyst_preisach_output(&own, R(0.0)), R(-0.5));
+    CHECK_EQUAL(hyst_preisach_output(&first, R(0.5)), R(0.5));
+    CHECK_EQUAL(hyst_preisach_output(&second, R(0.875)), R(1.75));
+    CHECK_EQUAL(second.to.y, R(2.5));
 }
 
 static void the_first_loading_curve_is_a_table(void)

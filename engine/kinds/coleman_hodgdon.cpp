@@ -7,12 +7,11 @@ namespace hyst {
 namespace HYST_KINDS {
 namespace {
 
-// alpha, a, b, u_s. That b <= a, and what the inverse needs, no single entry shows.
+// alpha, a, b, u_s. That b <= a, and what the inverse needs, no single entry shows: none is offered.
 void derive_coleman_hodgdon(const Given &given, Constants &made) {
     const std::size_t pieces = given.choices.at("pieces");
     given.require(pieces > 0 && given.constants.size() == 3 * pieces);
-    made.number("alpha", given.constants[0],
-                {Offer::threshold, "how fast a branch forgets, per input unit"});
+    made.number("alpha", given.constants[0], not_offered);
     made.table("a", given.part(1, pieces), not_offered);
     made.table("b", given.part(1 + pieces, pieces), not_offered);
     made.table("knot", given.part(1 + 2 * pieces, pieces - 1), not_offered);

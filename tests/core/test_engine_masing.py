@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hyst import InputError, MasingOperator, Operator, RambergOsgood, _engine
-from hyst.models import PiecewiseLinear, PolynomialCurve
+from hyst.models import ExponentialCurve, Iwan, PiecewiseLinear, PolynomialCurve
 
 LAW = (0.5, 0.3, 1.3)
 OPERATORS: dict[str, Operator] = {
@@ -16,7 +16,11 @@ OPERATORS: dict[str, Operator] = {
     "dead band": RambergOsgood(*LAW, memory="last-reversal", dead_band=0.1),
     "plays": MasingOperator(PiecewiseLinear([0.5, 0.2], [0.3, 0.7], p0=0.1)),
     "polynomial": MasingOperator(PolynomialCurve([1.0, 0.2])),
+    "exponential": MasingOperator(ExponentialCurve(1.0, 0.7, 0.8)),
+    "saturating": MasingOperator(ExponentialCurve(0.0, -1.0, 0.5)),
+    "flat in macro-slip": Iwan(1.0, 2.0, -0.3, 0.5),
     "inverse": RambergOsgood(*LAW).inverse(),
+    "inverse of an exponential": MasingOperator(ExponentialCurve(1.0, 0.7, 0.8)).inverse(),
 }
 
 

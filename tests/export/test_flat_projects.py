@@ -10,7 +10,7 @@ from c_builds import STRICT, compiled, compiler
 
 from hyst import PrandtlIshlinskii
 from hyst.export import c_project
-from hyst.models import Dahl
+from hyst.models import ColemanHodgdon, Dahl, JilesAtherton
 from hyst.operators import Affine
 
 PI = PrandtlIshlinskii(p=[0.5, 0.2], r=[0.1, 0.3], p0=1.0)
@@ -19,6 +19,8 @@ MODELS = {
     "inverse": PI.inverse(),
     "chain": Affine(-1.0, 2.0) @ PI,
     "dahl": Dahl(sigma=2.0, Fc=1.0),
+    "coleman-hodgdon": ColemanHodgdon(1.0, [2.0, 1.0], [1.5, 0.75], [1.0]).inverse(),
+    "jiles-atherton": JilesAtherton(2.0, 1.0, 0.5, 0.25, 0.75, "jiles-thoelke-devine-1992"),
 }
 
 

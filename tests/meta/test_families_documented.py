@@ -52,9 +52,13 @@ def test_an_option_is_in_docs_and_help(
 
 
 def test_the_families_that_auto_compares_are_said(repository: Path, help_of_identify: str) -> None:
-    compared = hyst.families.compared()
-    assert f"auto (compares {', '.join(compared)})" in help_of_identify
+    compared, reserve = hyst.families.compared(), hyst.families.in_reserve()
+    assert f"auto (compares {', '.join(compared)}, and where" in help_of_identify
+    assert f"is given, also {', '.join(reserve)})," in help_of_identify
     text = (repository / "docs" / "identification.md").read_text(encoding="utf-8")
     said = re.search(r"`auto` compares ([^.]*)\.", text)
     assert said is not None
     assert tuple(NAME.findall(said[1])) == compared
+    also = re.search(r"it also compares ([^.]*)\.", text)
+    assert also is not None
+    assert tuple(NAME.findall(also[1])) == reserve

@@ -167,7 +167,7 @@ def test_relays_alone_are_inverted_within_saturation(density: str) -> None:
 def test_what_no_input_reaches_is_named() -> None:
     inverse = Preisach([[1.0, 0.0], [2.0, 1.0]], [-1.0, 0.0, 1.0]).inverse()
     assert inverse([4.0, -4.0]).tolist() == [1.0, -1.0]
-    with pytest.raises(InputError, match=r"u\[1\] = 4\.5 "):
+    with pytest.raises(InputError, match=r"u\[1\] = 4\.5 .* outputs that its model can give"):
         inverse([3.0, 4.5, 1.0])
     step, quiet = inverse.stepper(), inverse.stepper()
     held = step(3.0)

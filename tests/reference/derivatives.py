@@ -21,7 +21,6 @@ WITHOUT_OWN = {
     "masing",
     "maxwell_slip",
     "memory_element",
-    "preisach",
     "rate_shift",
     "state_map",
     "two_envelope",

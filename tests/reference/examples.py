@@ -204,6 +204,7 @@ OTHERS: dict[str, Operator] = {
     "butterfly of friction": Butterfly(
         Dahl(1.5, 200.0), [[0.0, 0.1, 0.01], [0.2, 0, 0], [0, 0, 0]]
     ),
+    "butterfly of relays": Butterfly(RELAYS, [[0.0, 0.1, 0.4], [0.2, 0.3, 0.0], [0.0, 0.0, 0.0]]),
     "butterfly in a chain": Affine(-2.0, 1.0) @ Butterfly(PI, [[0.0, 1.0], [0.5, 0.0]]),
 }
 

@@ -314,8 +314,9 @@ def refuse_sample(array: Array, bad: int, name: str) -> NoReturn:
     where = f"{name}[{index[0] if len(index) == 1 else index}]" if index else name
     if np.isfinite(array[index]):
         raise InputError(
-            f"at {where} = {array[index]:.6g} the operator overflows; choose units in "
-            "which signals and constants are of moderate size"
+            f"at {where} = {array[index]:.6g} the operator overflows; choose units in which "
+            "signals and constants are of moderate size, and for an inverse outputs that its model "
+            "can give"
         )
     raise InputError(f"{where} is {array[index]}; every number must be finite")
 

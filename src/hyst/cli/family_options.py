@@ -71,7 +71,11 @@ def _as_typed(name: str) -> str:
 def _families_in_words() -> str:
     listed = ", ".join(f"{name} ({each.words.full_name})" for name, each in hyst.families.items())
     compared = ", ".join(hyst.families.compared())
-    return f"auto (compares {compared}), one, or several with commas between them: {listed}."
+    reserve = ", ".join(hyst.families.in_reserve())
+    return (
+        f"auto (compares {compared}, and where these leave more than noise and no option of a "
+        f"family is given, also {reserve}), one, or several with commas between them: {listed}."
+    )
 
 
 @functools.cache

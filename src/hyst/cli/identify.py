@@ -72,6 +72,7 @@ def identify(
     require_folder(folder)
     options = options_given(context, family)
     chosen = hyst.identification.chosen_families(family, options)
+    chosen += hyst.identification.families_in_reserve(family, options)
     lag, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(how, others, (input_label, output_label))

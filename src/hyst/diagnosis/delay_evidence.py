@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,6 +84,11 @@ class DelayEvidence:
     excludes_zero: bool
     one_amplitude: bool
     rate_or_lag: bool = False
+
+    def undecided(self) -> DelayEvidence:
+        """Give the same where general loops have no say: 0, and an interval that holds it."""
+        low, high = min(self.low, 0.0), max(self.high, 0.0)
+        return replace(self, delay=0.0, low=low, high=high, excludes_zero=False)
 
     @property
     def wide(self) -> bool:

@@ -5,7 +5,12 @@ from __future__ import annotations
 from hyst.identification.comparison.compare_models import compare
 from hyst.identification.comparison.compared_model import ComparedModel
 from hyst.identification.comparison.comparison import Comparison
-from hyst.identification.families.registry import chosen_families, names_of, require_taken
+from hyst.identification.families.registry import (
+    chosen_families,
+    families_in_reserve,
+    names_of,
+    require_taken,
+)
 from hyst.identification.identify_records import identify
 from hyst.identification.record_use.part_of_a_sample import later
 from hyst.identification.record_use.used_samples import UsedSamples
@@ -29,6 +34,7 @@ __all__ = [
     "UsedSamples",
     "chosen_families",
     "compare",
+    "families_in_reserve",
     "identify",
     "identify_from_reversal_curves",
     "identify_weights_from_slopes",

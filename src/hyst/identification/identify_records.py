@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from threadpoolctl import threadpool_limits
 
+from hyst.diagnosis import Diagnosis
 from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
 from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families, families_in_reserve
@@ -108,6 +109,7 @@ def identify(
     with threadpool_limits(1, user_api="blas"):
         diagnosis = diagnose_all_but_delay(given)
         # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
+        reserve = tuple(each for each in reserve if _is_called_for(each, diagnosis))
         found = find(cleaned(given, diagnosis, about_drift), families, wanted, reserve)
         for number, record in enumerate(judged, 1):
             found.fit.operator.require_sample_time(record.dt, f"validation record {number}")
@@ -126,3 +128,8 @@ def identify(
         )
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
     return traced(told, given, asked)
+
+
+def _is_called_for(family: Family, diagnosis: Diagnosis) -> bool:
+    """Tell whether a family is for any records, or for such as these were found to be."""
+    return not family.describes or any(diagnosis.named(each) for each in family.describes)

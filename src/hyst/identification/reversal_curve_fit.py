@@ -1,11 +1,12 @@
-"""A Preisach model directly from first-order reversal curves, by what each of them rises.
+"""A Preisach model directly from first-order reversal curves, by what lies between thresholds.
 
-From its reversal at beta a curve rises by twice the mass of relays between, and the linear part,
+On the way down from the top T to a reversal at beta, and on the rise from there, the output is
 
-    y(alpha) - y(beta) = 2 E(alpha, beta) + p0 (alpha - beta),   E = sum_ij w_ij <share of cell ij>,
+    y(u) = c - 2 E(T, u) + p0 u,    y(u) = c - 2 E(T, beta) + 2 E(u, beta) + p0 u,
 
-whatever was before, with an offset of its own for each curve. No memory is followed, so that slow
-drift from curve to curve does no harm; what a record says beside its curves is not used.
+E(alpha, beta) = sum_ij w_ij <share of cell ij between them>, with a level c of its own for each
+curve. No memory is followed, so that drift from curve to curve does no harm; what a record says
+beside its curves is not used.
 """
 
 from __future__ import annotations
@@ -47,8 +48,8 @@ Array = NDArray[np.float64]
 
 AUTO = "auto"
 MOST_BLOCKS = 8
-SAMPLES_A_CURVE = 400
-"""At most: of longer curves so many are taken, evenly spaced."""
+SAMPLES_A_STROKE = 400
+"""At most: of longer ones so many are taken, evenly spaced."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +96,7 @@ def identify_from_reversal_curves(
     records
         Driven as by ``hyst.signals.forc``; one or more.
     levels
-        Cells of the grid along a side, 4 to 64; ``"auto"``: 24, fewer for few samples,
+        Cells of the grid along a side, 4 to 48; ``"auto"``: 24, fewer for few samples,
         and 32 where 24 leave more than noise.
     smoothness
         Strength of the prior that densities of neighbouring cells are alike, from 0; ``"auto"``:
@@ -180,14 +181,11 @@ def _fitted(
 ) -> tuple[ReversalCurveFit, bool]:
     """Give the fit on a grid, and whether it leaves nothing but noise."""
     sign, span, output_range = scales
-    of_curve = np.repeat(np.arange(len(curves)), [each.u.size for each in curves])
-    u, beta = (
-        np.concatenate([each.u for each in curves]),
-        np.array([c.beta for c in curves])[of_curve],
-    )
-    y = sign * np.concatenate([each.y for each in curves])
-    between = 2.0 * everett_shares(cells, u, beta)
-    columns = np.column_stack([u - beta, between])
+    counts = [each.u_down.size + each.u.size for each in curves]
+    of_curve = np.repeat(np.arange(len(curves)), counts)
+    u = np.concatenate([part for each in curves for part in (each.u_down, each.u)])
+    y = sign * np.concatenate([part for each in curves for part in (each.y_down, each.y)])
+    columns = np.column_stack([u, 2.0 * np.concatenate([_moved(cells, each) for each in curves])])
     fit = _without_offsets(columns, y, of_curve, cells, SMALLEST_SLOPE * output_range / span)
     chosen = strength
     if chosen is None:
@@ -200,11 +198,8 @@ def _fitted(
     weights = np.zeros((cells.levels, cells.levels))
     weights[cells.places] = theta[1:]
     relays = Preisach(weights, cells.thresholds, float(theta[0]))
-    # On a curve from the top all relays are up but those between the top and the reversal, of
-    # which those up to alpha have come back.
-    top = 2.0 * everett_shares(cells, np.full(beta.size, cells.thresholds[-1]), beta)
-    modelled = theta[1:].sum() + theta[0] * u - (top - between) @ theta[1:]
-    offset = sign * float(np.mean(y - modelled))
+    # At the top all relays are up.
+    offset = sign * float(np.mean(y - columns @ theta) - theta[1:].sum())
     rms = float(np.sqrt(np.mean(np.square(left))))
     determined = effective_count(normal, held, theta > fit.lower)
     model = Affine(sign, offset) @ relays
@@ -213,6 +208,15 @@ def _fitted(
     )
     small = rms <= ROUNDING * output_range
     return found, small or correlation_beyond_noise(left) <= 1.0
+
+
+def _moved(cells: Cells, curve: ReversalCurve) -> Array:
+    """Give the share of every cell that has turned since the top, shape (M + N, cells), <= 0."""
+    top = cells.thresholds[-1]
+    down = -everett_shares(cells, np.full(curve.u_down.size, top), curve.u_down)
+    lowest = -everett_shares(cells, np.array([top]), np.array([curve.beta]))
+    up = lowest + everett_shares(cells, curve.u, np.full(curve.u.size, curve.beta))
+    return np.concatenate([down, up])
 
 
 def _without_offsets(
@@ -238,10 +242,15 @@ def _blocks(of_curve: NDArray[np.intp]) -> list[Block]:
 
 
 def _thinned(curve: ReversalCurve) -> ReversalCurve:
-    if curve.u.size <= SAMPLES_A_CURVE:
-        return curve
-    places = np.round(np.linspace(0, curve.u.size - 1, SAMPLES_A_CURVE)).astype(np.intp)
-    return ReversalCurve(curve.beta, curve.u[places], curve.y[places])
+    up, down = (_places(size) for size in (curve.u.size, curve.u_down.size))
+    return ReversalCurve(
+        curve.beta, curve.u[up], curve.y[up], curve.u_down[down], curve.y_down[down]
+    )
+
+
+def _places(size: int) -> NDArray[np.intp]:
+    count = min(size, SAMPLES_A_STROKE)
+    return np.round(np.linspace(0, max(size - 1, 0), count)).astype(np.intp)
 
 
 def _as_strength(value: Any) -> float:

@@ -244,7 +244,8 @@ def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
         key = min(task.given.starts)
         if key not in found:
             found[key] = find_delay(task.data)
-        result.append(task.delayed(usable_delay(found[key], task.data), found[key]))
+        own = found[key] if task.family.loops_tell_delay else found[key].undecided()
+        result.append(task.delayed(usable_delay(own, task.data), own))
     return result
 
 
@@ -269,13 +270,23 @@ def _search(tasks: Sequence[_Task], options: Options, reserve: Sequence[_Task]) 
     chosen, fit = _best(contenders, options)
     if reserve and not leaves_only_noise(chosen.overview.data, fit):
         contenders += in_reserve(with_overviews[len(tasks) :], chosen, options.say)
-        chosen, fit = _best(contenders, options, (chosen, fit))
+        chosen, fit = _best(_preferred(contenders), options, (chosen, fit))
     task = next(each for each in (*tasks, *reserve) if each.family.name == chosen.candidate.family)
     rivals = rivals_of(chosen, fit, contenders, other_signs(ruling, chosen))
     tied, scale = as_good_as_best(contenders), task.scales[1]
     told = tuple(_told(each, chosen, each in tied, scale) for each in contenders)
     notes = refusals + about_the_choice(chosen, contenders, rivals, scale)
     return _Choice(options.converged(fit), task, told, notes, rivals.fits)
+
+
+def _preferred(contenders: Sequence[Contender]) -> Sequence[Contender]:
+    """Give those of a tie that leave only noise, if there are any; else all."""
+    quiet = [
+        each
+        for each in as_good_as_best(contenders)
+        if leaves_only_noise(each.overview.data, each.fit)
+    ]
+    return quiet or contenders
 
 
 def _best(

@@ -160,10 +160,10 @@ class ColemanHodgdon(_Relaxation):
     Examples
     --------
     >>> piezo = ColemanHodgdon(alpha=1.0, a=2.0, b=1.5)
-    >>> piezo([1.0, 0.0]).round(6)
-    array([1.68394 , 0.199788])
-    >>> piezo.inverse()(piezo([1.0, 0.0])).round(12)
-    array([ 1., -0.])
+    >>> piezo([1.0, 0.5]).round(6)
+    array([1.68394 , 1.005034])
+    >>> piezo.inverse()(piezo([1.0, 0.5])).round(12)
+    array([1. , 0.5])
     """
 
     kind = "coleman-hodgdon"
@@ -268,7 +268,10 @@ class ColemanHodgdon(_Relaxation):
         count = self.knots.size
         pieces = [*range(count, 0, -1), *range(count + 1)]
         distance, upper, most = float(excess[-1]) / self.alpha, np.inf, 0.0
-        slope, place = float(self.slopes_of_g[-1] - excess[-1]), float(self.knots[-1:].sum())
+        slope, place = (
+            float(self.slopes_of_g[-1]) - self.alpha * distance,
+            float(self.knots[-1:].sum()),
+        )
         for end, piece in zip(ends.tolist(), pieces, strict=True):
             rest = float(excess[piece]) / self.alpha
             if end <= at <= upper:
@@ -306,8 +309,8 @@ class InverseColemanHodgdon(_Relaxation):
 
     Examples
     --------
-    >>> ColemanHodgdon(alpha=1.0, a=2.0, b=1.5).inverse()([1.68394, 0.199788]).round(5)
-    array([1., 0.])
+    >>> ColemanHodgdon(alpha=1.0, a=2.0, b=1.5).inverse()([1.68394, 1.005034]).round(5)
+    array([1. , 0.5])
     """
 
     kind = "inverse-coleman-hodgdon"

@@ -110,6 +110,10 @@ class ExponentialCurve(LoadingCurve):
         """Give another exponential."""
         return ExponentialCurve(*as_parameter_vector(theta, 3).tolist())
 
+    def nearest_parameters(self, theta: Array) -> Array:
+        """Give the constants with d at most c."""
+        return np.array([theta[0], min(theta[1], theta[0]), theta[2]])
+
     def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
         """Give the factors of c, d and b."""
         ratio = output_scale / input_scale

@@ -62,8 +62,8 @@ class Iwan(Operator):
     --------
     >>> joint = Iwan(F_S=1.0, K_T=2.0, K_inf=0.5)  # 2 x - x^2 + x / 2
     >>> joint([0.0, 1.0, 0.0, -1.0])
-    array([ 0. ,  1.5,  0. , -1.5])
-    >>> joint.inverse()([0.0, 1.5, 0.0, -1.5]).round(12)
+    array([ 0. ,  1.5, -0.5, -1.5])
+    >>> joint.inverse()([0.0, 1.5, -0.5, -1.5]).round(12)
     array([ 0.,  1.,  0., -1.])
     """
 
@@ -129,7 +129,8 @@ class Iwan(Operator):
 
     def with_parameters(self, theta: Sequence[float] | Array) -> Iwan:
         """Give the model of other constants with the same memory."""
-        return Iwan(*as_parameter_vector(theta, 5).tolist(), self.depth)
+        force, stiffness, chi, beta, residual = as_parameter_vector(theta, 5).tolist()
+        return Iwan(force, stiffness, chi, beta, residual, self.depth)
 
     def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
         """Give the factors of the constants."""

@@ -176,10 +176,10 @@ class JilesAtherton(_Magnet):
     Examples
     --------
     >>> magnet = JilesAtherton(Ms=1.0, a=1.0, k=0.5, c=0.2, alpha=1.0)
-    >>> magnet([2.0, 0.0]).round(6)
-    array([0.552766, 0.176872])
-    >>> magnet.inverse()(magnet([2.0, 0.0])).round(12)
-    array([2., 0.])
+    >>> magnet([2.0, 0.5]).round(6)
+    array([0.552766, 0.365048])
+    >>> magnet.inverse()(magnet([2.0, 0.5])).round(12)
+    array([2. , 0.5])
     """
 
     kind = "jiles-atherton"
@@ -251,8 +251,8 @@ class InverseJilesAtherton(_Magnet):
 
     Examples
     --------
-    >>> JilesAtherton(1.0, 1.0, 0.5, 0.2, 1.0).inverse()([0.552766, 0.176872]).round(5)
-    array([2., 0.])
+    >>> JilesAtherton(1.0, 1.0, 0.5, 0.2, 1.0).inverse()([0.552766, 0.365048]).round(5)
+    array([2. , 0.5])
     """
 
     kind = "inverse-jiles-atherton"

@@ -103,9 +103,35 @@ class LoadingCurve(ABC):
     def with_parameters(self, theta: Sequence[float] | Array) -> LoadingCurve:
         """Give the same kind of curve with other constants."""
 
+    def nearest_parameters(self, theta: Array) -> Array:
+        """Give the nearest constants that keep an order the constructor demands.
+
+        Parameters
+        ----------
+        theta
+            Shape (m,), within the bounds of ``parameters()``.
+
+        Returns
+        -------
+        numpy.ndarray
+            ``theta`` itself where there is none.
+        """
+        return theta
+
     @abstractmethod
     def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
-        """Give the factors of the constants for signals with numbers larger by these factors."""
+        """Give the factors of the constants in units in which signals have larger numbers.
+
+        Parameters
+        ----------
+        input_scale, output_scale
+            By which the numbers of x and f grow.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (m,).
+        """
 
     @abstractmethod
     def to_dict(self) -> dict[str, Any]:
@@ -236,6 +262,10 @@ class InverseCurve(LoadingCurve):
     def with_parameters(self, theta: Sequence[float] | Array) -> InverseCurve:
         """Give the inverse of a curve with other constants."""
         return InverseCurve(self.curve.with_parameters(theta))
+
+    def nearest_parameters(self, theta: Array) -> Array:
+        """Give those of the curve whose inverse this is."""
+        return self.curve.nearest_parameters(theta)
 
     def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
         """Give the factors of the constants of the curve, whose input is this one's output."""

@@ -218,6 +218,10 @@ class MasingOperator(Operator):
         curve = self.curve.with_parameters(theta)
         return MasingOperator(curve, self.memory, self.depth, self.dead_band)
 
+    def nearest_parameters(self, theta: Array) -> Array:
+        """Give the nearest constants of the curve."""
+        return self.curve.nearest_parameters(theta)
+
     def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
         """Give the factors of the constants of the curve."""
         return self.curve.parameter_scales(input_scale, output_scale)

@@ -105,7 +105,7 @@ class RateShift(Operator):
         float
             Input units.
         """
-        return self.c * abs(as_number(rate, "rate")) ** self.m
+        return float(self.c * abs(as_number(rate, "rate")) ** self.m)
 
     def traits(self) -> Traits:
         """Give the traits; without a shift it is the input itself."""
@@ -135,9 +135,8 @@ class RateShift(Operator):
         if self.c != 0.0:
             raise NotInvertibleError(
                 f"c is {self.c:.6g}: the thresholds follow the rate of the drive, which an inverse "
-                "does not know before it has found the drive; use "
-                "hyst.compensation.invert_trajectory, or the inverse of the model without the "
-                "shift and simulate what it leaves"
+                "does not know before it has found the drive; invert the model behind the shift, "
+                "and simulate what the shift leaves"
             )
         return Affine(1.0, 0.0)
 

@@ -40,8 +40,8 @@ def draw_forc_diagram(
     Examples
     --------
     >>> picture = draw_forc_diagram([("a model", Preisach([[1.0]], [-1.0, 1.0]))])
-    >>> picture[:4]
-    b'\\x89PNG'
+    >>> picture[1:4]
+    b'PNG'
     """
     figure, axes = blank(len(sources), 1, 5.2 * len(sources), 4.2)
     maps = [(heading, *_edges_and_density(each)) for heading, each in sources]

@@ -5,18 +5,18 @@ from __future__ import annotations
 from hyst.signals.drive import Drive, Limits
 from hyst.signals.drive_design import design
 from hyst.signals.excitation_order import Persistence, persistence
+from hyst.signals.first_order_curves import (
+    ForcDensity,
+    ReversalCurve,
+    forc_density,
+    reversal_curves,
+)
 from hyst.signals.loop_metrics import hysteresis_percent, loop_area
 from hyst.signals.metrics import Metrics, error_metrics
 from hyst.signals.multisines import multisine
 from hyst.signals.noise import estimate_noise, suggest_dead_band
 from hyst.signals.record import Record
 from hyst.signals.rest import from_rest
-from hyst.signals.reversal_curves import (
-    ForcDensity,
-    ReversalCurve,
-    forc_density,
-    reversal_curves,
-)
 from hyst.signals.sequences import decaying_triangle, forc, prbs, staircase, triangle
 from hyst.signals.swept_sines import swept_sine
 from hyst.signals.turning_points import reversals

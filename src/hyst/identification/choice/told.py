@@ -69,7 +69,8 @@ def _apart(chosen: Contender, rivals: Rivals) -> list[str]:
     error = chosen.score.rms / chosen.overview.output_range
     if rivals.apart <= max(NOTABLE, BEYOND_ERROR * error):
         return []
-    kinds = " and ".join(dict.fromkeys(kind_of(each.family) for each in rivals.fits))
+    *most, last = dict.fromkeys(kind_of(each.family) for each in rivals.fits)
+    kinds = f"{', '.join(most)} and {last}" if most else last
     shown = (
         "these records do not settle it"
         if chosen.overview.shows_minor_loops

@@ -48,7 +48,7 @@ def _no_tests(found: Comparison) -> Iterator[str]:
         which = _numbers("record", seen, len(found.records))
         names = [each.name for each in found.models if each.seen == seen]
         yield (
-            f"Warning: {_listed(names)} {_was(names)} identified from {which}, so an error there "
+            f"Warning: {_called(names, found)} identified from {which}, so an error there "
             "is no test; compare on a record that no model has seen."
         )
     if found.zero_is_off:
@@ -176,7 +176,7 @@ def _outside(found: Comparison) -> Iterator[str]:
             continue
         names = [name for name, its in ranges.items() if its == span]
         share = found[names[0]].extrapolated
-        said = f"{_listed(names)} {_was(names)} identified from {span[0]:.6g} to {span[1]:.6g}"
+        said = f"{_called(names, found)} identified from {span[0]:.6g} to {span[1]:.6g}"
         beyond = max(high - span[1], span[0] - low)
         if share and beyond > HARDLY_OUTSIDE * (span[1] - span[0]):
             yield (
@@ -215,8 +215,10 @@ def _listed(names: list[str]) -> str:
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
-def _was(names: list[str]) -> str:
-    return "was" if len(names) == 1 else "were"
+def _called(names: list[str], found: Comparison) -> str:
+    if 2 < len(names) == len(found):
+        return "every model was"
+    return f"{names[0]} was" if len(names) == 1 else f"{_listed(names)} were"
 
 
 def _is(names: list[str]) -> str:

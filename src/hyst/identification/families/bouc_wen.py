@@ -83,6 +83,7 @@ class BoucWen(Family):
     """
 
     name = "bouc-wen"
+    in_reserve = True
     explains = ("run direction",)  # of a force over displacement it is right
     words = Words(
         full_name="Bouc-Wen model",

@@ -12,16 +12,18 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.families.butterfly_layout import Hysteresis
-from hyst.identification.fit.problem import model_output
+from hyst.identification.families.butterfly_layout import Hysteresis, parametrize_butterfly
+from hyst.identification.fit.bounded_least_squares import minimize
+from hyst.identification.fit.problem import model_output, problem_of
 from hyst.identification.record_use.overview import Overview
 from hyst.models.butterfly import terms
+from hyst.operators import Operator
 
 Array = NDArray[np.float64]
 
 _COERCIVE = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
-_WIDTHS = (0.05, 0.15, 0.3, 0.6)
-_BIASES = (-0.1, 0.0, 0.1)
+_WIDTHS = (0.05, 0.15, 0.4)
+_BIASES = (-0.4, -0.15, 0.0, 0.15, 0.4)
 """Of the envelope, over half the input range."""
 
 _RADII = ((0.25, 0.75), (0.02, 0.4))
@@ -29,6 +31,7 @@ _RADII = ((0.25, 0.75), (0.02, 0.4))
 of either step is passed; narrow ones go along with the envelope, as in what hardly remembers."""
 
 _PLAYS_OF_A_GRID = 2
+_TRIED, _STEPS_TRIED = 4, 40
 _CURVE_DEGREE = 12
 
 
@@ -58,8 +61,7 @@ def best_guesses(
         ("butterfly", knots, degree), lambda: _places_of_switching(overview, knots, degree)
     )
     first = _first(overview, knots, degree)
-    guesses = [_guess(overview, first, each, plays) for each in places[:most]]
-    return sorted(guesses, key=lambda each: each.residual)
+    return [_guess(overview, first, each, plays) for each in places[:most]]
 
 
 def residual_of_a_curve(overview: Overview) -> float:
@@ -95,7 +97,18 @@ def _places_of_switching(overview: Overview, knots: int, degree: int) -> list[_P
         left = [_guess(overview, first, each, _PLAYS_OF_A_GRID).residual for each in here]
         at = int(np.argmin(left))
         best.append((left[at], here[at]))
-    return [place for _, place in sorted(best)]
+    places = [place for _, place in sorted(best)]
+    # What is nearest at first may end in a minimum of its own: the best few are gone on with.
+    tried = [(_cost(overview, first, each), each) for each in places[:_TRIED]]
+    return [place for _, place in sorted(tried)] + places[_TRIED:]
+
+
+def _cost(overview: Overview, first: Hysteresis, place: _Place) -> float:
+    """Give what a guess with few plays leaves after a few steps."""
+    guess = _guess(overview, first, place, _PLAYS_OF_A_GRID)
+    parametrization, theta = parametrize_butterfly(guess)
+    problem = problem_of(overview.data, parametrization, overview.kept)
+    return minimize(problem, theta, _STEPS_TRIED).cost
 
 
 def _first(overview: Overview, knots: int, degree: int) -> Hysteresis:
@@ -127,15 +140,37 @@ def _slopes(first: Hysteresis, coercive: float, width: float, bias: float) -> Ar
 
 def _with_map(overview: Overview, guess: Hysteresis) -> Hysteresis:
     """Give the guess with the best coefficients of its map."""
-    z = model_output(overview.data, guess.model().hysteresis)
-    half = overview.data.half_range
-    x = overview.input / half
-    i, j = terms(guess.c.shape[0] - 1)
+    degree = guess.c.shape[0] - 1
+    c, residual = coefficients_of(overview, guess.model().hysteresis, degree)
+    return replace(guess, c=c, residual=residual)
+
+
+def coefficients_of(overview: Overview, hysteresis: Operator, degree: int) -> tuple[Array, float]:
+    """Give the best coefficients of a map of a hysteresis and the input, and what it leaves.
+
+    Parameters
+    ----------
+    overview
+        The records.
+    hysteresis
+        What makes the state.
+    degree
+        Of the map.
+
+    Returns
+    -------
+    c : numpy.ndarray
+        Shape (degree + 1, degree + 1).
+    residual : float
+        Root mean square.
+    """
+    z, half = model_output(overview.data, hysteresis), overview.data.half_range
+    x, (i, j) = overview.input / half, terms(degree)
     columns = np.column_stack([x**a * z**b for a, b in zip(i, j, strict=True)])
     coefficients, residual = _fitted(columns, overview.data.measured())
-    c = np.zeros_like(guess.c)
+    c = np.zeros((degree + 1, degree + 1))
     c[i, j] = coefficients
-    return replace(guess, c=c / half ** np.arange(c.shape[0])[:, None], residual=residual)
+    return c / half ** np.arange(degree + 1.0)[:, None], residual
 
 
 def _fitted(columns: Array, y: Array) -> tuple[Array, float]:

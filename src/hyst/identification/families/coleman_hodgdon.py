@@ -26,6 +26,9 @@ MOST_PIECES = 12
 
 _WAYS = np.geomspace(0.03, 3.0, 13)
 """1 / alpha of first guesses, over half the input range."""
+_CLEAR = 10.0
+"""By how many variances of the noise a constant of the loop lowers the squared error at least."""
+_ROUNDING = 1e-9
 _LEAST_LOOP = 1e-3
 """Share of the slopes that a loop is at least made of."""
 
@@ -43,6 +46,7 @@ class ColemanHodgdon(Family):
     """
 
     name = "coleman-hodgdon"
+    in_reserve = True
     words = Words(
         full_name="Coleman-Hodgdon model",
         equations=(
@@ -70,7 +74,7 @@ class ColemanHodgdon(Family):
             self._guess(overview, 1.0 / (float(way) * overview.data.half_range)) for way in _WAYS
         ]
         guesses.sort(key=lambda each: each[0])
-        if not any(guess[3].any() for _, guess in guesses[:3]):
+        if not self._shows_a_loop(overview, guesses[0][0]):
             raise NotIdentifiableError(
                 "the output shows no loop that lags the input, as a Coleman-Hodgdon model does; "
                 "use family 'linear', or 'dahl' for friction"
@@ -92,6 +96,19 @@ class ColemanHodgdon(Family):
                 "the record: alpha, a and b are extrapolations, of which it shows products only"
             )
         return tuple(told)
+
+    def _shows_a_loop(self, overview: Overview, residual: float) -> bool:
+        """Tell whether a loop explains more than a curve without one, noise and rounding aside."""
+        y, knots = overview.data.measured(), self._knots(overview)
+        columns = [
+            model_output(overview.data, models.ColemanHodgdon(1.0, each, each, knots))
+            for each in np.eye(int(self.pieces))
+        ]
+        matrix = overview.sign * np.column_stack(columns)
+        _, without = nnls(matrix - matrix.mean(axis=0), y - y.mean())
+        noise = _CLEAR * (int(self.pieces) + 1) / y.size
+        is_rounding = without <= _ROUNDING * overview.output_range * np.sqrt(y.size)
+        return bool(not is_rounding and residual**2 * (1.0 + noise) < without**2)
 
     def _knots(self, overview: Overview) -> Array:
         count = int(self.pieces)

@@ -55,6 +55,7 @@ class Dahl(Family):
     """
 
     name = "dahl"
+    in_reserve = True
     explains = ("run direction",)  # of a force over displacement it is right
     words = Words(
         full_name="Dahl friction model",

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.families.play_layout import (
+    SMALLEST_MAP_SLOPE,
     FirstGuess,
     PlayLayout,
     PlayParametrization,
@@ -75,6 +76,20 @@ class EnvelopeLayout:
         transform, fixed = self._rising_over(0.5 * (self.ends[1:] + self.ends[:-1]))
         return np.asarray(transform @ slopes + fixed)
 
+    def of_pieces(self, slopes: Array) -> tuple[Array, float]:
+        """Give the slopes of rising beyond each knot, and that around 0, of slopes by pieces.
+
+        Parameters
+        ----------
+        slopes
+            Shape (pieces,).
+        """
+        transform, fixed = self._rising_over(0.5 * (self.ends[1:] + self.ends[:-1]))
+        around = slopes[fixed > 0.0]
+        unit = float(around.mean()) if around.size else 1.0
+        seen = transform.any(axis=0)
+        return np.where(seen, transform.T @ slopes, unit), unit
+
     def parametrize(
         self, template: Operator, guess: FirstGuess
     ) -> tuple[PlayParametrization, Array]:
@@ -107,6 +122,9 @@ class EnvelopeLayout:
         free = np.linalg.solve(weights_of, np.concatenate([[guess.p0], guess.p]))
         theta = np.concatenate([free, guess.r, np.ones(k + m), [guess.offset]])
         lower, upper = bounds_of(guess, size)
+        if not guess.fixed_radii:
+            # In units of an envelope whose slope around 0 may be the smallest of all.
+            upper[n + 1 : 2 * n + 1] /= SMALLEST_MAP_SLOPE
         plays = PlayLayout(weights_of, lower, upper)
 
         def canonical(theta: Array) -> Array:

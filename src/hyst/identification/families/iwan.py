@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst import models
-from hyst.checks.numbers import as_number
+from hyst.checks.numbers import as_number, said
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.families.family import Family, Fit, Start, Words
 from hyst.identification.families.option import Option, choice, option, read_number
@@ -39,9 +39,12 @@ def _number_or_free(low: float, high: float) -> Any:
     def check(value: Any, name: str) -> str | float:
         if isinstance(value, str) and value == FREE:
             return FREE
-        number = as_number(value, name, f"a number or {FREE!r}")
+        try:
+            number = as_number(value, name)
+        except InputError:
+            number = np.nan
         if not low <= number <= high:
-            raise InputError(f"{name} is {number:.6g}; give {low:g} to {high:g}, or {FREE!r}")
+            raise InputError(f"{name} is {said(value)}; give {low:g} to {high:g}, or {FREE!r}")
         return number
 
     return check
@@ -70,6 +73,7 @@ class Iwan(Family):
     """
 
     name = "iwan"
+    in_reserve = True
     explains = ("run direction",)  # of a force over displacement it is right
     words = Words(
         full_name="Iwan model of joints",
@@ -110,7 +114,7 @@ class Iwan(Family):
 
     def least_parameters(self, size: int) -> int:
         """Give 3, F_S, K_T and the offset, and one for chi, beta and K_inf where they are free."""
-        return 3 + sum(each == FREE for each in (self.chi, self.beta, self.spring))
+        return 3 + [self.chi, self.beta, self.spring].count(FREE)
 
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
         """Give the best points of a grid over chi and phi_max, the rest by least squares."""
@@ -122,13 +126,19 @@ class Iwan(Family):
             for limit in _LIMITS
         ]
         guesses.sort(key=lambda each: each[0])
-        left, _, limit = guesses[0]
+        left, constants, limit = guesses[0]
+        # K_T of the best, over what a spring alone would have.
+        if not constants[1] > SMALLEST_SLOPE * overview.mean_slope:
+            raise NotIdentifiableError(
+                "the output does not soften after a turn, as sliding does; use family 'masing', "
+                "'pi' or 'linear'"
+            )
         y = overview.data.measured()
         line, target = overview.input - overview.input.mean(), y - y.mean()
         if saved_beside_a_line(line, target, left) < SMALLEST_GAIN:
             raise NotIdentifiableError(
-                "sliding describes the records no better than a straight line, but for noise; use "
-                "family 'linear'"
+                "sliding describes the records no better than a straight line: their slope does "
+                "not fall after a turn, but for noise; use family 'linear', 'masing' or 'pi'"
             )
         if limit >= 1.0:
             raise NotIdentifiableError(
@@ -136,11 +146,6 @@ class Iwan(Family):
                 "are they do not tell; drive further, or use family 'masing' or 'pi'"
             )
         guesses = [each for each in guesses if each[2] < 1.0 and each[1][1] > 0.0]
-        if not guesses:
-            raise NotIdentifiableError(
-                "the output does not soften after a turn, as sliding does; use family 'masing', "
-                "'pi' or 'linear'"
-            )
         return [self._parametrize(overview, each[1]) for each in guesses[: max(most, 2)]]
 
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
@@ -154,14 +159,15 @@ class Iwan(Family):
                 f"{data.half_range:.4g}: F_S and beta are extrapolations; drive the actuator "
                 "further"
             )
-        lower, upper = fit.parametrization.lower, fit.parametrization.upper
-        places = self._places()
+        # theta is in the units of the fit, as its bounds are.
+        theta, shape, places = fit.solution.theta, fit.parametrization, self._places()
         for name, place in (("chi", 2), ("beta", 3)):
-            if place in places:
-                i, value = places.index(place), float(values[place])
-                if value >= upper[i] or (value <= lower[i] and value != 0.0):
-                    said.append(f"{name} came out at its limit {value:.4g}, so it is no estimate")
-        if 4 in places and values[4] <= lower[places.index(4)]:
+            at = places.index(place) if place in places else None
+            if at is not None and (
+                theta[at] >= shape.upper[at] or theta[at] <= shape.lower[at] < 0.0
+            ):
+                said.append(f"{name} came out at its limit {theta[at]:.4g}, so it is no estimate")
+        if 4 in places and theta[places.index(4)] <= shape.lower[places.index(4)]:
             said.append(
                 "K_inf came out at its lower bound, a thousandth of the mean slope: the output "
                 "hardly moves in macro-slip; the option spring 'none' has none"

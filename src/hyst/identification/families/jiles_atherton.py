@@ -51,6 +51,7 @@ class JilesAtherton(Family):
     """
 
     name = "jiles-atherton"
+    in_reserve = True
     words = Words(
         full_name="Jiles-Atherton model",
         equations=(

@@ -43,6 +43,7 @@ class Masing(Family):
     """
 
     name = "masing"
+    in_reserve = True
     explains = ("run direction",)  # where the slope falls it is right, as of friction
     words = Words(
         full_name="exponential model with Masing memory",
@@ -89,14 +90,15 @@ class Masing(Family):
         if saved_beside_a_line(line, target, left) < SMALLEST_GAIN:
             raise NotIdentifiableError(
                 "an exponential describes the records no better than a straight line, but for "
-                "noise; use family 'linear'"
+                "noise; use family 'linear' or 'pi'"
             )
         return [self._parametrize(overview, slopes, b, (low, LONGEST_WAY * unit))]
 
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
         """Say which constants are on a bound, or an extrapolation."""
+        # theta is in the units of the fit, as its bounds are; the operator is in the user's.
         theta, shape = fit.solution.theta, fit.parametrization
-        b = theta[-2]
+        b = float(fit.operator.parameters().values[2])
         said = []
         if self.curve == EXPONENTIAL and theta[0] <= shape.lower[0]:
             said.append(
@@ -109,12 +111,12 @@ class Masing(Family):
                 "the slope far from a turn, c, came out at its lower bound, a thousandth of the "
                 "mean slope: the output saturates; the option curve 'saturating' has c = 0"
             )
-        if not shape.lower[-2] * (1.0 + 1e-3) < b < shape.upper[-2] * (1.0 - 1e-3):
-            which = "upper" if b >= shape.upper[-2] * (1.0 - 1e-3) else "lower"
+        on_upper = theta[-2] >= shape.upper[-2] * (1.0 - 1e-3)
+        if on_upper or theta[-2] <= shape.lower[-2] * (1.0 + 1e-3):
             said.append(
-                f"b came out at its {which} limit {b:.4g}: the slope changes over another way than "
-                "this record can tell, so c, d and b are no estimates; compare family "
-                "'ramberg-osgood' or 'pi'"
+                f"b came out at its {'upper' if on_upper else 'lower'} limit {b:.4g}: the slope "
+                "changes over another way than this record can tell, so c, d and b are no "
+                "estimates; compare family 'ramberg-osgood' or 'pi'"
             )
         elif data.half_range < b:
             share = 100.0 * (1.0 - np.exp(-data.half_range / b))

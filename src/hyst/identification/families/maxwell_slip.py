@@ -76,6 +76,7 @@ class MaxwellSlip(PlayBank):
     """
 
     name = "maxwell-slip"
+    in_reserve = True
     explains = ("run direction",)  # of a force over displacement it is right
     words = Words(
         full_name="Maxwell-slip friction model",

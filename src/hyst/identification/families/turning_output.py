@@ -17,7 +17,9 @@ EXPLAINED = 0.3
 
 
 def turning_share(data: Data) -> float:
-    """Give by how much of its range the output goes back on a branch of the mean loop.
+    """Give by how much of its range the output goes back on a branch and in the middle of the loop.
+
+    A lag makes branches turn back, too, but leaves the middle of the loop as it is.
 
     Parameters
     ----------
@@ -38,16 +40,23 @@ def turning_share(data: Data) -> float:
     span, spread = float(np.ptp(y)), float(np.sum((y - y.mean()) ** 2))
     if span == 0.0:
         return 0.0
-    back, explained = 0.0, 0.0
+    place = np.minimum((u - u.min()) / np.ptp(u) * BINS, BINS - 1).astype(np.intp)
+    branches, explained = [], 0.0
     for here in (way > 0.0, way < 0.0):
-        place = np.minimum((u[here] - u.min()) / np.ptp(u) * BINS, BINS - 1).astype(np.intp)
-        count = np.bincount(place, minlength=BINS)
-        seen = count > 0
-        mean = np.bincount(place, y[here], minlength=BINS)[seen] / count[seen]
-        explained += float(np.sum(count[seen] * (mean - y.mean()) ** 2))
-        if mean.size:
-            back = max(back, min(_way_up(mean), _way_up(-mean)))
-    return back / span if explained >= EXPLAINED * spread else 0.0
+        count = np.bincount(place[here], minlength=BINS)
+        mean = np.bincount(place[here], y[here], minlength=BINS) / np.maximum(count, 1)
+        explained += float(np.sum(count * (mean - y.mean()) ** 2))
+        branches.append(np.where(count > 0, mean, np.nan))
+    if explained < EXPLAINED * spread:
+        return 0.0
+    middle = 0.5 * (branches[0] + branches[1])
+    return min(max(_goes_back(each) for each in branches), _goes_back(middle)) / span
+
+
+def _goes_back(curve: Array) -> float:
+    """How far a curve goes there and back, without the places that are not known."""
+    known = curve[np.isfinite(curve)]
+    return min(_way_up(known), _way_up(-known)) if known.size else 0.0
 
 
 def _way_up(values: Array) -> float:

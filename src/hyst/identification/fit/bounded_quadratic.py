@@ -65,9 +65,11 @@ def least_within(normal: Array, moment: Array, lower: Array, upper: Array, first
     fewest, patience = side.size + 1, PATIENCE
     for _ in range(MOST_EXCHANGES * (side.size + 1)):
         x, wrong = _exchange(a, b, low, high, side)
-        count = np.count_nonzero(wrong != side)
+        count = int(np.count_nonzero(wrong != side))
         if count == 0:
-            return np.clip(x / scale, lower, upper)
+            # What is held lies on its bound to the last bit: others ask by comparing.
+            free = np.clip(x / scale, lower, upper)
+            return np.where(side < 0, lower, np.where(side > 0, upper, free))
         patience = PATIENCE if count < fewest else patience - 1
         fewest = min(fewest, count)
         if patience >= 0:

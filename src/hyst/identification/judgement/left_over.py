@@ -131,7 +131,7 @@ def _without_name(remainder: Remainder, found: TakenApart) -> list[tuple[str, st
             (
                 "Something without a name repeats with the drive: "
                 f"{remainder.said(found.repeats)} rms.",
-                "Try other families (--family auto), or dynamics (--family hammerstein).",
+                "Try families that were not compared yet, or dynamics (--family hammerstein).",
             )
         ]
     smallest = SMALLEST_PART * remainder.output_range

@@ -42,8 +42,8 @@ def robust_covariance(
     the residual, Andrews, Econometrica 59 (1991), 817-858, eq. 6.2. The prior's part: Wahba, J. R.
     Stat. Soc. B 45 (1983), 133-150; such errors hold bias as well as scatter, on average.
     """
-    rows = jacobian if prior is None else np.concatenate([jacobian, prior])
-    scale = np.linalg.norm(rows, axis=0)
+    every = jacobian if prior is None else np.concatenate([jacobian, prior])
+    scale = np.linalg.norm(every, axis=0)
     scaled = jacobian / scale
     bandwidth = _bandwidth(residual, lengths)
     middle = np.zeros((scale.size, scale.size))

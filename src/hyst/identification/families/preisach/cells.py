@@ -44,7 +44,7 @@ class Cells:
         """Give the area of every cell, over the square of the range."""
         rows, columns = self.places
         sides = np.diff(self.thresholds) / (self.thresholds[-1] - self.thresholds[0])
-        return np.where(rows == columns, 0.5, 1.0) * sides[rows] * sides[columns]
+        return np.asarray(np.where(rows == columns, 0.5, 1.0) * sides[rows] * sides[columns])
 
     def centres(self) -> tuple[Array, Array]:
         """Give alpha and beta in the middle of the mass of every cell, input units."""

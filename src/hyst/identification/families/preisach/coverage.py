@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,15 +28,19 @@ ADVICE = (
 )
 
 
-def crossed(columns: Array) -> Rows:
-    """Tell which cells have relays that turn.
+def crossed(columns: Array, lengths: Sequence[int]) -> Rows:
+    """Tell which cells have relays that turn within a record.
 
     Parameters
     ----------
     columns
         Shape (N, cells): what the output gains by the weight of each cell, -1 to 1.
+    lengths
+        Samples of each record, in order.
     """
-    return np.asarray(np.ptp(columns, axis=0) > 2.0 * CROSSED)
+    parts = np.split(columns, np.cumsum(lengths)[:-1])
+    moved = [np.ptp(each, axis=0) for each in parts if len(each)]
+    return np.asarray(np.max(moved, axis=0) > 2.0 * CROSSED)
 
 
 def require_crossed(cells: Cells, turned: Rows) -> None:

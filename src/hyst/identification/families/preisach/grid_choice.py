@@ -28,10 +28,10 @@ Array = NDArray[np.float64]
 LEVELS, FINER_LEVELS = 24, 32
 """What ``"auto"`` takes, and what it tries where the former leaves more than noise."""
 
-FEWEST_LEVELS, MOST_LEVELS = 4, 64
+FEWEST_LEVELS, MOST_LEVELS = 4, 48
 SAMPLES_A_LEVEL = 8
 
-MISFIT, SURE = 0.1, 3.0
+MISFIT, SURE = 0.04, 3.0
 """Correlation of neighbouring residuals from which on a finer grid is tried, at least so many of
 its standard deviations."""
 
@@ -110,7 +110,8 @@ def fitted_grid(
         If the records cross less than half of the grid.
     """
     fit = linear_fit(overview, parametrization, cells)
-    require_crossed(cells, crossed(fit.columns[:, 1 : 1 + cells.count]))
+    of_cells = fit.columns[:, 1 : 1 + cells.count]
+    require_crossed(cells, crossed(of_cells, overview.data.lengths()))
     kept = overview.kept
     if smoothness is None:
         blocks = overview.once("blocks", lambda: blocks_of(overview))

@@ -126,7 +126,7 @@ class Relays(Family):
     Parameters
     ----------
     levels
-        Cells of the grid along a side, 4 to 64, evenly spaced over the range of the input; its
+        Cells of the grid along a side, 4 to 48, evenly spaced over the range of the input; its
         thresholds, input units; or ``"auto"``: 24, fewer for short records, and 32 where 24 leave
         more than noise.
     smoothness
@@ -194,12 +194,13 @@ class Relays(Family):
         """Say how many cells the records never crossed, and how much the prior decides."""
         parametrization = fit.parametrization
         assert isinstance(parametrization, CellParametrization), "a family of relays made it"
-        evaluation = Evaluation(self.fitted(data), parametrization)
+        used = self.fitted(data)
+        evaluation = Evaluation(used, parametrization)
         weights = weights_of(fit.operator)
         columns = evaluation.jacobian(fit.solution.theta)[:, 1 : 1 + weights.size]
         # Per weight in the units of the fit: the columns of the cells are shares of one number.
         size = np.abs(parametrization.transform).max(axis=0)[1 : 1 + weights.size]
-        turned = crossed(columns / size)
+        turned = crossed(columns / size, used.lengths())
         one_size = not shows_minor_loops(stroke_lengths(data))
         return about_coverage(weights, turned, parametrization.effective, one_size=one_size)
 
@@ -226,6 +227,7 @@ class Preisach(Relays):
     """
 
     name = "preisach"
+    in_reserve = True
     words = Words(
         full_name="Preisach model",
         equations=(

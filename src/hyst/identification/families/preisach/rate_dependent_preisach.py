@@ -65,7 +65,7 @@ class RateDependentPreisach(Relays):
     """
 
     name = "rate-dependent-preisach"
-    methods = ("trajectory",)
+    methods = ("learning",)
     depends_on_rate: ClassVar[bool] = True
     settles_delay: ClassVar[bool] = False
     explains = ("rate dependence", "dynamics")  # its loops widen as the rate grows
@@ -104,7 +104,7 @@ class RateDependentPreisach(Relays):
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
         """Say if the exponent ended at a limit, and what else the prior decides."""
         exponent = float(shift_of(fit).m)
-        said = ()
+        said: tuple[str, ...] = ()
         if not LEAST_EXPONENT * 1.01 < exponent < LARGEST_EXPONENT * 0.99:
             said = (
                 f"the exponent m ended at its limit {exponent:.3g}, so it is no estimate; record "

@@ -57,17 +57,37 @@ class LinearFit:
         return float(np.linalg.norm(self.y - self.y.mean()))
 
     def held(self, strength: float) -> Array:
-        """Give what the prior adds to the normal matrix."""
+        """Give what the prior adds to the normal matrix.
+
+        Parameters
+        ----------
+        strength
+            Of the prior.
+        """
         rows = (strength * self.spread) * self.prior
         return np.asarray(rows.T @ rows)
 
     def gram(self, rows: Rows) -> tuple[Array, Array]:
-        """Give normal matrix and moment of some samples."""
+        """Give normal matrix and moment of some samples.
+
+        Parameters
+        ----------
+        rows
+            Shape (N,), which.
+        """
         part = self.columns[rows]
         return part.T @ part, part.T @ self.y[rows]
 
     def solve(self, normal: Array, moment: Array, first: Array) -> Array:
-        """Solve for the weights from a normal matrix, the prior's part included."""
+        """Solve for the weights.
+
+        Parameters
+        ----------
+        normal, moment
+            Of samples, the prior's part included.
+        first
+            Shape (m,): what lies on a bound there is held at first.
+        """
         return least_within(normal, moment, self.lower, self.upper, first)
 
 

@@ -36,11 +36,15 @@ class ReversalCurve:
         Input at the reversal, input units.
     u, y
         Shape (N,), input and output from there on, input ascending.
+    u_down, y_down
+        Shape (M,), on the way from the top to the reversal, input ascending.
     """
 
     beta: float
     u: Array
     y: Array
+    u_down: Array
+    y_down: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,10 +115,16 @@ def _curves_of(record: Record, high: float, span: float) -> list[ReversalCurve]:
     for top, low, end in zip(ends, ends[1:], ends[2:], strict=False):
         falls = u[top] - u[low] > 0.0 and u[end] > u[low]
         if falls and u[top] >= high - NEAR_TOP * span and end - low >= FEWEST_SAMPLES:
-            rise = slice(low, end + 1)
-            order = np.argsort(u[rise], kind="stable")
-            found.append(ReversalCurve(float(u[low]), u[rise][order], y[rise][order]))
+            rise, descent = (
+                _ascending(u[at], y[at]) for at in (slice(low, end + 1), slice(top, low))
+            )
+            found.append(ReversalCurve(float(u[low]), *rise, *descent))
     return found
+
+
+def _ascending(u: Array, y: Array) -> tuple[Array, Array]:
+    order = np.argsort(u, kind="stable")
+    return u[order], y[order]
 
 
 def forc_density(
@@ -125,8 +135,8 @@ def forc_density(
         rho(alpha, beta) = -1/2 d^2 y / (d alpha d beta)
 
     At every point of a grid a polynomial of second order is fitted to the samples within
-    ``smoothing`` spacings of reversals and of the grid; its mixed term is the density. What does not
-    change from curve to curve, as a linear part or a drift from one to the next, has none.
+    ``smoothing`` spacings of reversals and of the grid; its mixed term is the density. What does
+    not change from curve to curve, as a linear part or a drift from one to the next, has none.
 
     Parameters
     ----------
