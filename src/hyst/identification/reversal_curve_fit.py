@@ -23,11 +23,10 @@ from hyst.checks.numbers import as_number
 from hyst.checks.numbers import whole_number as as_whole_number
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.blocks import Block
-from hyst.identification.families.preisach.cells import Cells, even_cells
+from hyst.identification.families.preisach.cells import Cells, adapted_cells, even_cells
 from hyst.identification.families.preisach.grid_choice import (
+    ADAPTED_LEVELS,
     FEWEST_LEVELS,
-    FINER_LEVELS,
-    LEVELS,
     MOST_LEVELS,
     ROUNDING,
     WORTH_IT,
@@ -97,7 +96,7 @@ def identify_from_reversal_curves(
         Driven as by ``hyst.signals.forc``; one or more.
     levels
         Cells of the grid along a side, 4 to 48; ``"auto"``: 24, fewer for few samples,
-        and 32 where 24 leave more than noise.
+        and 32 that are narrower where relays switch if those leave more than noise.
     smoothness
         Strength of the prior that densities of neighbouring cells are alike, from 0; ``"auto"``:
         what predicts left-out curves best.
@@ -141,10 +140,12 @@ def identify_from_reversal_curves(
     sign = 1.0 if float((u - u.mean()) @ y) >= 0.0 else -1.0
     with threadpool_limits(1, user_api="blas"):
         found, like_noise = _fitted(curves, cells, strength, (sign, span, output_range))
-        if levels != AUTO or like_noise or u.size < FINER_LEVELS * LEVELS:
+        if levels != AUTO or like_noise:
             return found
-        finer = even_cells(float(u.min()), float(u.max()), FINER_LEVELS)
-        other, _ = _fitted(curves, finer, found.smoothness, (sign, span, output_range))
+        narrow = adapted_cells(
+            cells, found.relays.parameters().values[1:], levels_for(u.size, ADAPTED_LEVELS)
+        )
+        other, _ = _fitted(curves, narrow, found.smoothness, (sign, span, output_range))
         return other if other.rms < WORTH_IT * found.rms else found
 
 

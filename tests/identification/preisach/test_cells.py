@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import hyst
-from hyst.identification.families.preisach.cells import Cells, even_cells
+from hyst.identification.families.preisach.cells import Cells, adapted_cells, even_cells
 from hyst.identification.fit.bounded_quadratic import least_within
 from hyst.identification.reversal_curve_fit import everett_shares
 
@@ -48,6 +48,17 @@ def test_slopes_do_not_depend_on_the_grid(levels: int) -> None:
     squares = np.sum(np.square(cells.differences() @ (2.0 * (1.0 + alpha) * cells.areas())))
     # Triangles whose middles are off the grid and the rim count for a share of 1 / levels.
     assert squares == pytest.approx(0.5, rel=3.0 / levels)
+
+
+def test_adapted_cells_are_narrow_where_the_mass_is() -> None:
+    """All mass in cell (3, 0) of 4: half of 8 levels even, one a unit, half in the outer two."""
+    cells = even_cells(0.0, 4.0, 4)
+    weights = np.zeros(cells.count)
+    weights[6] = 2.0  # row 3 begins with entry 6
+    found = adapted_cells(cells, weights, 8).thresholds
+    # Shares of the four units: 1/8 + 1/4, 1/8, 1/8, 1/8 + 1/4, in steps of 1/8.
+    expected = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0, 2.0, 3.0, 10.0 / 3.0, 11.0 / 3.0, 4.0]
+    np.testing.assert_allclose(found, expected, atol=1e-14)
 
 
 def test_shares_between_thresholds_are_what_the_model_moves_by() -> None:

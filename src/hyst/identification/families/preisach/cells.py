@@ -103,3 +103,30 @@ def even_cells(low: float, high: float, levels: int) -> Cells:
         Number of cells along a side.
     """
     return Cells(low + (high - low) * (np.arange(levels + 1) / levels))
+
+
+EVEN_SHARE = 0.5
+"""Of the levels that are spread evenly where the others follow the mass."""
+
+
+def adapted_cells(cells: Cells, weights: Array, levels: int) -> Cells:
+    """Give cells that are narrower where relays switch: half even, half by their mass.
+
+    Parameters
+    ----------
+    cells
+        A grid.
+    weights
+        Shape (cells,), found on it.
+    levels
+        Number of the new cells along a side.
+    """
+    rows, columns = cells.places
+    mass = np.bincount(rows, weights, cells.levels) + np.bincount(columns, weights, cells.levels)
+    sides = np.diff(cells.thresholds) / (cells.thresholds[-1] - cells.thresholds[0])
+    total = float(mass.sum())
+    shares = EVEN_SHARE * sides + (1.0 - EVEN_SHARE) * (mass / total if total > 0.0 else sides)
+    up_to = np.concatenate([[0.0], np.cumsum(shares)]) / float(shares.sum())
+    wanted = np.arange(1, levels) / levels
+    inner = np.interp(wanted, up_to, cells.thresholds)
+    return Cells(np.concatenate([cells.thresholds[:1], inner, cells.thresholds[-1:]]))

@@ -25,18 +25,18 @@ from hyst.identification.record_use.overview import Overview
 
 Array = NDArray[np.float64]
 
-LEVELS, FINER_LEVELS = 24, 32
-"""What ``"auto"`` takes, and what it tries where the former leaves more than noise."""
+LEVELS, ADAPTED_LEVELS = 24, 32
+"""What ``"auto"`` takes, and at most where it adapts the grid."""
 
 FEWEST_LEVELS, MOST_LEVELS = 4, 48
 SAMPLES_A_LEVEL = 8
 
 MISFIT, SURE = 0.04, 3.0
-"""Correlation of neighbouring residuals from which on a finer grid is tried, at least so many of
+"""Correlation of neighbouring residuals from which on an adapted grid is tried, at least so many of
 its standard deviations."""
 
 WORTH_IT = 0.97
-"""Residual of a finer grid, over that of the other, up to which it is taken."""
+"""Residual of an adapted grid, over that of the even one, up to which it is taken."""
 
 ROUNDING = 1e-4
 """Of the output's range: a residual so small is none to improve."""
@@ -65,15 +65,17 @@ class GridFit:
     correlation: float
 
 
-def levels_for(samples: int) -> int:
-    """Give the levels that a number of samples is enough for, at most ``LEVELS``.
+def levels_for(samples: int, most: int = LEVELS) -> int:
+    """Give the levels that a number of samples is enough for.
 
     Parameters
     ----------
     samples
         Of all records.
+    most
+        Levels.
     """
-    return max(FEWEST_LEVELS, min(LEVELS, samples // SAMPLES_A_LEVEL))
+    return max(FEWEST_LEVELS, min(most, samples // SAMPLES_A_LEVEL))
 
 
 def least_samples(levels: int) -> int:
@@ -128,22 +130,23 @@ def fitted_grid(
     return GridFit(under_prior, theta, smoothness, rms, correlation_beyond_noise(left))
 
 
-def best_grid(overview: Overview, coarse: GridFit, finer: Callable[[float], GridFit]) -> GridFit:
-    """Take a finer grid where the coarse one leaves more than noise and the finer one less.
+def best_grid(overview: Overview, even: GridFit, adapted: Callable[[GridFit], GridFit]) -> GridFit:
+    """Take an adapted grid where the even one leaves more than noise and the adapted one less.
 
     Parameters
     ----------
     overview
         The records.
-    coarse
+    even
         Fitted.
-    finer
-        Fits a finer one with a prior of a strength, which means the same on every grid.
+    adapted
+        Fits cells that are narrower where those of a fit have their mass, under a prior of the
+        same strength, which means the same on every grid.
     """
-    if coarse.rms <= ROUNDING * overview.output_range or coarse.correlation <= 1.0:
-        return coarse
-    other = finer(coarse.strength)
-    return other if other.rms < WORTH_IT * coarse.rms else coarse
+    if even.rms <= ROUNDING * overview.output_range or even.correlation <= 1.0:
+        return even
+    other = adapted(even)
+    return other if other.rms < WORTH_IT * even.rms else even
 
 
 def correlation_beyond_noise(left: Array) -> float:

@@ -27,12 +27,11 @@ from hyst.identification.families.option import (
     read_number,
     read_numbers,
 )
-from hyst.identification.families.preisach.cells import Cells, even_cells
+from hyst.identification.families.preisach.cells import Cells, adapted_cells, even_cells
 from hyst.identification.families.preisach.coverage import about_coverage, crossed
 from hyst.identification.families.preisach.grid_choice import (
+    ADAPTED_LEVELS,
     FEWEST_LEVELS,
-    FINER_LEVELS,
-    LEVELS,
     MOST_LEVELS,
     GridFit,
     best_grid,
@@ -127,8 +126,8 @@ class Relays(Family):
     ----------
     levels
         Cells of the grid along a side, 4 to 48, evenly spaced over the range of the input; its
-        thresholds, input units; or ``"auto"``: 24, fewer for short records, and 32 where 24 leave
-        more than noise.
+        thresholds, input units; or ``"auto"``: 24, fewer for short records, and 32 that are
+        narrower where relays switch if those leave more than noise.
     smoothness
         Strength of the prior that densities of neighbouring cells are alike, from 0; ``"auto"``:
         what predicts left-out blocks best; of records without minor loops the largest that does
@@ -167,8 +166,8 @@ class Relays(Family):
         """Give what one loop determines: a mass a level and branch, the linear part, the offset."""
         return least_samples(self._side)
 
-    def cells(self, low: float, high: float, samples: int, *, finer: bool = False) -> Cells:
-        """Give the grid over a range.
+    def cells(self, low: float, high: float, samples: int) -> Cells:
+        """Give the grid over a range, evenly spaced unless its thresholds are given.
 
         Parameters
         ----------
@@ -176,14 +175,10 @@ class Relays(Family):
             Ends of what the relays see, input units.
         samples
             Of all records.
-        finer
-            Whether the finer grid of ``"auto"``.
         """
         if isinstance(self.levels, tuple):
             return Cells(np.array(self.levels))
-        if self.levels != AUTO:
-            return even_cells(low, high, self.levels)
-        return even_cells(low, high, FINER_LEVELS if finer else levels_for(samples))
+        return even_cells(low, high, levels_for(samples) if self.levels == AUTO else self.levels)
 
     @property
     def strength(self) -> float | None:
@@ -243,15 +238,16 @@ class Preisach(Relays):
         return [(found.parametrization, found.theta)]
 
     def _found(self, overview: Overview) -> GridFit:
-        coarse = self._fitted(overview, self.strength, finer=False)
-        if self.levels != AUTO or overview.input.size < FINER_LEVELS * LEVELS:
-            return coarse
-        return best_grid(
-            overview, coarse, lambda strength: self._fitted(overview, strength, finer=True)
-        )
-
-    def _fitted(self, overview: Overview, strength: float | None, *, finer: bool) -> GridFit:
         low = min(float(each.u.min()) for each in overview.data.records)
         high = max(float(each.u.max()) for each in overview.data.records)
-        cells = self.cells(low, high, overview.input.size, finer=finer)
-        return fitted_grid(overview, cells, parametrized(overview, cells), strength)
+        cells = self.cells(low, high, overview.input.size)
+        even = fitted_grid(overview, cells, parametrized(overview, cells), self.strength)
+        if self.levels != AUTO:
+            return even
+
+        def adapted(found: GridFit) -> GridFit:
+            levels = levels_for(overview.input.size, ADAPTED_LEVELS)
+            narrow = adapted_cells(cells, found.theta[1 : 1 + cells.count], levels)
+            return fitted_grid(overview, narrow, parametrized(overview, narrow), found.strength)
+
+        return best_grid(overview, even, adapted)

@@ -115,12 +115,7 @@ class RateDependentPreisach(Relays):
     def _found(self, overview: Overview) -> tuple[GridFit, float, float]:
         fastest = _require_rates(overview.data)
         shift, exponent = _search(overview, fastest)
-        if self.levels == "auto":
-            levels = levels_for(overview.input.size)
-            low, high = _seen(overview.data, shift, exponent)
-            cells = even_cells(low, high, levels)
-        else:
-            cells = self.cells(*_seen(overview.data, shift, exponent), overview.input.size)
+        cells = self.cells(*_seen(overview.data, shift, exponent), overview.input.size)
         front = (models.RateShift(shift, exponent, overview.data.records[0].dt),)
         grid = fitted_grid(overview, cells, parametrized(overview, cells, front), self.strength)
         return grid, shift, exponent
