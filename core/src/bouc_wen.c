@@ -102,7 +102,7 @@ hyst_real hyst_bouc_wen_step(const hyst_bouc_wen *model, hyst_real *state, hyst_
     bouc_wen_point from;
     from.u = state[HYST_BRANCH_U_TURN];
     from.z = state[HYST_BRANCH_Z_TURN];
-    if (hyst_branch_turns(turn, state[last], input)) {
+    if (hyst_branch_turns(turn, state[last], input) != 0) {
         from.u = state[HYST_BRANCH_U];
         from.z = state[HYST_BRANCH_Z];
         turn = state[last];

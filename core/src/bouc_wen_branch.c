@@ -49,13 +49,15 @@ static hyst_real bouc_wen_deep_fraction(hyst_real n, hyst_real w)
     return one / (one - w / ((one + n) * tail));
 }
 
+typedef struct {
+    hyst_real least, most;
+    size_t half;
+} bouc_wen_depth;
+
 /* Half the partial quotients that leave less than an epsilon, for -16 <= w <= 3/4. */
 static size_t bouc_wen_half_depth(hyst_real w)
 {
-    static const struct {
-        hyst_real least, most;
-        size_t half;
-    } row[] = {{HYST_REAL(-0.03125), HYST_REAL(0.03125), 4},
+    static const bouc_wen_depth row[] = {{HYST_REAL(-0.03125), HYST_REAL(0.03125), 4},
                {HYST_REAL(-0.125), HYST_REAL(0.125), 6},
                {HYST_REAL(-0.5), HYST_REAL(0.25), 8},
                {HYST_REAL(-1.0), HYST_REAL(0.5), 12},

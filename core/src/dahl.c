@@ -46,7 +46,7 @@ hyst_real hyst_dahl_step(const hyst_dahl *model, hyst_real *state, hyst_real inp
     const hyst_real began = model->inverse ? state[HYST_BRANCH_Z_TURN] : state[HYST_BRANCH_U_TURN];
     hyst_real u_turn = state[HYST_BRANCH_U_TURN];
     hyst_real z_turn = state[HYST_BRANCH_Z_TURN];
-    if (hyst_branch_turns(began, last, value)) {
+    if (hyst_branch_turns(began, last, value) != 0) {
         u_turn = state[HYST_BRANCH_U];
         z_turn = state[HYST_BRANCH_Z];
     }

@@ -131,5 +131,6 @@ def identify(
 
 
 def _is_called_for(family: Family, diagnosis: Diagnosis) -> bool:
-    """Tell whether a family is for any records, or for such as these were found to be."""
-    return not family.describes or any(diagnosis.named(each) for each in family.describes)
+    """Tell whether a family in reserve is for any records, or for such as these are found to be."""
+    asked = family.in_reserve
+    return not isinstance(asked, str) or bool(diagnosis.named(asked))

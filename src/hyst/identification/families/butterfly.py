@@ -87,7 +87,7 @@ class Butterfly(Family):
     """
 
     name = "butterfly"
-    in_reserve = True
+    in_reserve = "butterfly"
     describes = ("butterfly", "run direction")  # one wing is run one way, the other the other way
     loops_tell_delay = False  # they go one way with the input, and a butterfly looks late to them
     methods = ("trajectory",)

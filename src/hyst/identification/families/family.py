@@ -68,8 +68,8 @@ class Family(ABC):
     """Of compensation, the one that suits best first."""
     compared: ClassVar[bool] = False
     """Whether ``family="auto"`` compares it."""
-    in_reserve: ClassVar[bool] = False
-    """Whether it does so only where what it compares first leaves more than noise."""
+    in_reserve: ClassVar[bool | str] = False
+    """Whether it does so where the first leave more than noise; or a finding it then asks for."""
     has_memory: ClassVar[bool] = True
     """Whether its delay is worth judging by the family itself."""
     settles_delay: ClassVar[bool] = True

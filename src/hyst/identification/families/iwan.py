@@ -73,7 +73,7 @@ class Iwan(Family):
     """
 
     name = "iwan"
-    in_reserve = True
+    in_reserve = "run direction"
     explains = ("run direction",)  # of a force over displacement it is right
     words = Words(
         full_name="Iwan model of joints",

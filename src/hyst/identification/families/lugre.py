@@ -77,6 +77,7 @@ class LuGre(Family):
     """
 
     name = "lugre"
+    in_reserve = "run direction"
     words = Words(
         full_name="LuGre friction model",
         equations=(

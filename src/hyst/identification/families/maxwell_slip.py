@@ -76,7 +76,7 @@ class MaxwellSlip(PlayBank):
     """
 
     name = "maxwell-slip"
-    in_reserve = True
+    in_reserve = "run direction"
     explains = ("run direction",)  # of a force over displacement it is right
     words = Words(
         full_name="Maxwell-slip friction model",
