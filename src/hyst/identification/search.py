@@ -35,7 +35,7 @@ from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.option import AUTO
 from hyst.identification.fit.bounded_least_squares import CONVERGED
 from hyst.identification.fit.parametrization import Parametrization
-from hyst.identification.judgement.judge import leaves_only_noise
+from hyst.identification.judgement.judge import level_of
 from hyst.identification.options import Options, as_delay
 from hyst.identification.record_use.cleaned import Cleaned
 from hyst.identification.record_use.overview import Overview
@@ -268,9 +268,12 @@ def _search(tasks: Sequence[_Task], options: Options, reserve: Sequence[_Task]) 
         return _only(tasks[0], ruling, options)
     contenders, refusals = compare(ruling.families, options.say)
     chosen, fit = _best(contenders, options)
-    if reserve and not leaves_only_noise(chosen.overview.data, fit):
-        contenders += in_reserve(with_overviews[len(tasks) :], chosen, options.say)
-        chosen, fit = _best(_preferred(contenders), options, (chosen, fit))
+    level = level_of(chosen.overview.data, fit) if reserve else "good"
+    if level != "good":
+        more = in_reserve(with_overviews[len(tasks) :], chosen, options.say)
+        may_win = _may_win(more, chosen, describes=level == "fair")
+        chosen, fit = _best(_preferred((*contenders, *may_win)), options, (chosen, fit))
+        contenders += more
     task = next(each for each in (*tasks, *reserve) if each.family.name == chosen.candidate.family)
     rivals = rivals_of(chosen, fit, contenders, other_signs(ruling, chosen))
     tied, scale = as_good_as_best(contenders), task.scales[1]
@@ -279,14 +282,25 @@ def _search(tasks: Sequence[_Task], options: Options, reserve: Sequence[_Task]) 
     return _Choice(options.converged(fit), task, told, notes, rivals.fits)
 
 
+def _may_win(more: Sequence[Contender], chosen: Contender, describes: bool) -> Sequence[Contender]:
+    """Give those of a reserve that a record can prefer to what describes it.
+
+    Strokes of one amplitude say nothing of the loops inside, so closeness alone prefers none: only
+    what leaves nothing but noise with no more constants.
+    """
+    if chosen.overview.shows_minor_loops or not describes:
+        return more
+    most = chosen.candidate.parameters
+    return [each for each in more if each.candidate.parameters <= most and _leaves_noise(each)]
+
+
 def _preferred(contenders: Sequence[Contender]) -> Sequence[Contender]:
     """Give those of a tie that leave only noise, if there are any; else all."""
-    quiet = [
-        each
-        for each in as_good_as_best(contenders)
-        if leaves_only_noise(each.overview.data, each.fit)
-    ]
-    return quiet or contenders
+    return [each for each in as_good_as_best(contenders) if _leaves_noise(each)] or contenders
+
+
+def _leaves_noise(contender: Contender) -> bool:
+    return level_of(contender.overview.data, contender.fit) == "good"
 
 
 def _best(
