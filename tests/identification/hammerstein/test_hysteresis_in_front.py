@@ -76,9 +76,13 @@ def test_options_reach_the_hysteresis() -> None:
 
 def test_what_the_hysteresis_does_not_take_is_refused() -> None:
     record = record_of(PI, 0.01)
-    with pytest.raises(InputError, match="knots is for hysteresis gpi or mpi, not for pi; leave"):
+    with pytest.raises(
+        InputError, match=r"knots is for hysteresis gpi, mpi, .*, not for pi; leave"
+    ):
         identified(record, hysteresis="pi", knots=3)
-    with pytest.raises(InputError, match=r"plays is for hysteresis pi, .*, not for ramberg-osgood"):
+    with pytest.raises(
+        InputError, match=r"plays is for hysteresis .*pi, .*, not for ramberg-osgood"
+    ):
         identified(record, hysteresis="ramberg-osgood", plays=3)
     with pytest.raises(InputError, match="memory is given beside a family object"):
         identified(record, hysteresis=hyst.families.RambergOsgood(), memory="masing")
@@ -92,7 +96,7 @@ def test_an_option_that_another_family_takes_is_used_there() -> None:
     assert {each.family for each in found.candidates} == {"mpi", "hammerstein"}
 
 
-@pytest.mark.parametrize("name", ["preisach", "hammerstein"])
+@pytest.mark.parametrize("name", ["duhem", "hammerstein"])
 def test_what_cannot_be_in_front_is_answered_with_all_that_can(name: str) -> None:
     with pytest.raises(InputError, match=f"hysteresis is '{name}'; choose one of ") as said:
         identified(record_of(PI, 0.01), hysteresis=name)
