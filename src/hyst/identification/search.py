@@ -16,7 +16,7 @@ import numpy as np
 from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.cross_validation import fewest_left
-from hyst.identification.choice.delay import find_delay, settled_by_family, usable_delay
+from hyst.identification.choice.delay import OWN, find_delay, told_by_family, usable_delay
 from hyst.identification.choice.rivals import other_signs, rivals_of
 from hyst.identification.choice.selection import (
     Contender,
@@ -44,6 +44,9 @@ from hyst.identification.result.identified import Candidate
 
 MOST_STARTS = 3
 """Of the final fit."""
+
+MOST_DELAYS = 3
+"""Times that a family may change the delay: its grid is made for the one before."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,17 +142,22 @@ def find(
     more = _in_reserve(reserve, records, tasks[0], options)
     choice = _search(tasks, options, more)
     fit, task = choice.fit, choice.task
-    judges = fit.family.has_memory and fit.family.settles_delay
-    if task.evidence is not None and judges:
-        delay = settled_by_family(task.data, fit, task.evidence)
-        if delay != task.data.lag:
-            options.say("delay, settled by the family")
-            tasks, more = (
-                [t if t.family.answers_late else t.delayed(delay, t.evidence) for t in each]
-                for each in (tasks, more)
-            )
-            choice = _search(tasks, options, more)
-            fit, task = choice.fit, choice.task
+    for _ in range(MOST_DELAYS):
+        judges = fit.family.has_memory and fit.family.settles_delay
+        if task.evidence is None or not judges:
+            break
+        delay, told = told_by_family(task.data, fit, task.evidence)
+        if delay == task.data.lag:
+            break
+        options.say("delay, settled by the family")
+        tasks, more = (
+            [t if t.family.answers_late else t.delayed(delay, told) for t in each]
+            for each in (tasks, more)
+        )
+        choice = _search(tasks, options, more)
+        fit, task = choice.fit, choice.task
+        if fit.family.loops_tell_delay != OWN:
+            break
     if task.searched() is not task.data:
         fit = _polished(fit, task, options)
     fit, *rivals = (
@@ -244,7 +252,7 @@ def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
         key = min(task.given.starts)
         if key not in found:
             found[key] = find_delay(task.data)
-        own = found[key] if task.family.loops_tell_delay else found[key].undecided()
+        own = found[key] if task.family.loops_tell_delay is True else found[key].undecided()
         result.append(task.delayed(usable_delay(own, task.data), own))
     return result
 
