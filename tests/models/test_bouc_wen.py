@@ -102,6 +102,17 @@ def test_slow_motion_keeps_z_in_single_precision() -> None:
     assert z[-1] == pytest.approx(1.0 - np.exp(-0.5), abs=1.3e-7)
 
 
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_z_rests_at_its_limit_however_long_the_way(precision: str) -> None:
+    # By hand: z = 1 - exp(-u) for n = 1 and A = beta + gamma = 1, also where z rounds to 1.
+    model = BoucWen(0.0, 1.0, 0.5, 0.5)
+    u = np.linspace(0.5, 60.0, 1191)
+    step = stepper_of(block_of(model, precision), precision)
+    # Way, exponential and difference round once each, of numbers up to 1.
+    rounding = 4.0 * float(np.finfo(np.float32 if precision == "single" else np.float64).eps)
+    assert np.array([step(float(each)) for each in u]) == pytest.approx(-np.expm1(-u), abs=rounding)
+
+
 def test_an_asymmetric_loop_ends_at_its_two_limits() -> None:
     # (A / (beta + gamma +- 2 phi))^(1/n) with 8 / (1 + 1) and 8 / (1 - 1/2), n = 2: 2 and -4.
     model = BoucWen(0.0, 8.0, 0.75, 0.5, 2.0, phi=0.375)
