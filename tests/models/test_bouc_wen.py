@@ -151,3 +151,10 @@ def test_an_output_that_falls_in_places_has_no_inverse() -> None:
     piezo = BoucWen(1.43, 1.0, 0.5, 0.2, h=-1.0)
     y = piezo(drive(3, 500, 30.0))
     assert np.isfinite(piezo.inverse()(y)).all()  # 1.43 is just above 1.428571
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e9])
+def test_units_in_which_beta_has_no_number_are_refused(scale: float) -> None:
+    # 1e-9 to the power -49 is 1e441.
+    with pytest.raises(InputError, match=r"n is 50: .* give an output of moderate size"):
+        BoucWen(0.5, 1.0, 0.5, 0.3, 50.0).in_units(scale, scale)
