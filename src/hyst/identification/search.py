@@ -93,6 +93,16 @@ class _Task:
         given, data = self.given.delayed(delay), self.data.delayed(delay)
         return replace(self, given=given, data=data, evidence=evidence)
 
+    def delay_is_unsure(self) -> bool:
+        """Tell whether the records would also bear no delay."""
+        return self.evidence is not None and self.data.lag != 0 and self.evidence.stated[0] <= 0.0
+
+    def without_unsure_delay(self) -> _Task:
+        """Give the same task with no delay where the records would bear none."""
+        if self.evidence is None or not self.delay_is_unsure():
+            return self
+        return self.delayed(0, self.evidence.undecided())
+
     def searched(self) -> Data:
         """Give what the search fits to."""
         return self.family.searched(self.data)
@@ -140,7 +150,14 @@ def find(
     tasks = _with_delay(tasks, options)
     _require_samples(tasks)
     more = _in_reserve(reserve, records, tasks[0], options)
-    choice = _search(tasks, options, more)
+    try:
+        choice = _search(tasks, options, more)
+    except NotIdentifiableError:
+        if not any(each.delay_is_unsure() for each in tasks):
+            raise
+        # What is taken for a delay may be the very loop that the families look for.
+        tasks, more = ([each.without_unsure_delay() for each in all_] for all_ in (tasks, more))
+        choice = _search(tasks, options, more)
     fit, task = choice.fit, choice.task
     for _ in range(MOST_DELAYS):
         judges = fit.family.has_memory and fit.family.settles_delay
