@@ -8,7 +8,7 @@ import hyst
 
 @pytest.mark.parametrize(("noise", "within"), [(0.0, 0.05), (0.002, 1.0)])
 def test_a_density_that_jumps_at_the_diagonal_keeps_its_linear_part(noise, within):
-    """Triangles twice as dense as squares: a strong prior took the jump for a linear part of 1.8."""
+    """Triangles twice as dense as squares: a strong prior made the jump a linear part of 1.8."""
     material = hyst.Preisach(np.tril(np.ones((6, 6))), np.linspace(-1.0, 1.0, 7), p0=0.1)
     u = hyst.signals.forc(dt=0.02, low=-1.0, high=1.0, rate=1.0, curves=12).u
     y = material(u)
