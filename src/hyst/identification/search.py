@@ -129,23 +129,8 @@ def find(
         # What is taken for a delay may be the very loop that the families look for.
         tasks, more = ([each.without_unsure_delay() for each in all_] for all_ in (tasks, more))
         choice = _search(tasks, options, more)
+    choice = _with_settled_delay(choice, tasks, more, options)
     fit, task = choice.fit, choice.task
-    for _ in range(MOST_DELAYS):
-        judges = fit.family.has_memory and fit.family.settles_delay
-        if task.evidence is None or not judges:
-            break
-        delay, told = told_by_family(task.data, fit, task.evidence)
-        if delay == task.data.lag:
-            break
-        options.say("delay, settled by the family")
-        tasks, more = (
-            [t if t.family.answers_late else t.delayed(delay, told) for t in each]
-            for each in (tasks, more)
-        )
-        choice = _search(tasks, options, more)
-        fit, task = choice.fit, choice.task
-        if fit.family.loops_tell_delay != OWN:
-            break
     if task.searched() is not task.data:
         fit = _polished(fit, task, options)
     fit, *rivals = (
@@ -288,6 +273,28 @@ def _may_win(more: Sequence[Contender], chosen: Contender, describes: bool) -> S
         return more
     most = chosen.candidate.parameters
     return [each for each in more if each.candidate.parameters <= most and _leaves_noise(each)]
+
+
+def _with_settled_delay(
+    choice: _Choice, tasks: list[Task], more: list[Task], options: Options
+) -> _Choice:
+    """Let the chosen family settle the delay, and choose again with it."""
+    for _ in range(MOST_DELAYS):
+        fit, task = choice.fit, choice.task
+        if task.evidence is None or not (fit.family.has_memory and fit.family.settles_delay):
+            break
+        delay, told = told_by_family(task.data, fit, task.evidence)
+        if delay == task.data.lag:
+            break
+        options.say("delay, settled by the family")
+        tasks, more = (
+            [t if t.family.answers_late else t.delayed(delay, told) for t in each]
+            for each in (tasks, more)
+        )
+        choice = _search(tasks, options, more)
+        if choice.fit.family.loops_tell_delay != OWN:
+            break
+    return choice
 
 
 def _preferred(contenders: Sequence[Contender]) -> Sequence[Contender]:
