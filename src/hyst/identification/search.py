@@ -30,6 +30,7 @@ from hyst.identification.choice.selection import (
     simplest_good,
 )
 from hyst.identification.choice.sign_of_weights import Ruling, ruled
+from hyst.identification.choice.task import Task
 from hyst.identification.choice.told import about_the_choice
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.option import AUTO
@@ -76,36 +77,6 @@ class Found:
     notes: tuple[str, ...]
     rivals: tuple[Fit, ...]
     delay: DelayEvidence | None
-
-
-@dataclass(frozen=True, eq=False)
-class _Task:
-    """A family, the records it uses, in powers of two of the user's units, and their scales."""
-
-    family: Family
-    given: Data
-    data: Data
-    scales: tuple[float, float]
-    notes: tuple[str, ...]
-    evidence: DelayEvidence | None = None
-
-    def delayed(self, delay: float, evidence: DelayEvidence | None) -> _Task:
-        given, data = self.given.delayed(delay), self.data.delayed(delay)
-        return replace(self, given=given, data=data, evidence=evidence)
-
-    def delay_is_unsure(self) -> bool:
-        """Tell whether the records would also bear no delay."""
-        return self.evidence is not None and self.data.lag != 0 and self.evidence.stated[0] <= 0.0
-
-    def without_unsure_delay(self) -> _Task:
-        """Give the same task with no delay where the records would bear none."""
-        if self.evidence is None or not self.delay_is_unsure():
-            return self
-        return self.delayed(0, self.evidence.undecided())
-
-    def searched(self) -> Data:
-        """Give what the search fits to."""
-        return self.family.searched(self.data)
 
 
 def find(
@@ -158,23 +129,8 @@ def find(
         # What is taken for a delay may be the very loop that the families look for.
         tasks, more = ([each.without_unsure_delay() for each in all_] for all_ in (tasks, more))
         choice = _search(tasks, options, more)
+    choice = _with_settled_delay(choice, tasks, more, options)
     fit, task = choice.fit, choice.task
-    for _ in range(MOST_DELAYS):
-        judges = fit.family.has_memory and fit.family.settles_delay
-        if task.evidence is None or not judges:
-            break
-        delay, told = told_by_family(task.data, fit, task.evidence)
-        if delay == task.data.lag:
-            break
-        options.say("delay, settled by the family")
-        tasks, more = (
-            [t if t.family.answers_late else t.delayed(delay, told) for t in each]
-            for each in (tasks, more)
-        )
-        choice = _search(tasks, options, more)
-        fit, task = choice.fit, choice.task
-        if fit.family.loops_tell_delay != OWN:
-            break
     if task.searched() is not task.data:
         fit = _polished(fit, task, options)
     fit, *rivals = (
@@ -186,7 +142,7 @@ def find(
 
 def _tasks(
     families: Sequence[Family], records: Cleaned, options: Options
-) -> tuple[list[_Task], tuple[str, ...]]:
+) -> tuple[list[Task], tuple[str, ...]]:
     """Prepare the families that the records can serve, and say why others are not compared."""
     used = dict[Family, tuple[Data, tuple[str, ...]]]()
     refusals = dict[str, NotIdentifiableError]()
@@ -201,14 +157,14 @@ def _tasks(
     return [_task(family, *each) for family, each in used.items()], not_compared(refusals)
 
 
-def _task(family: Family, given: Data, left_out: tuple[str, ...]) -> _Task:
+def _task(family: Family, given: Data, left_out: tuple[str, ...]) -> Task:
     suited, notes = family.suited(given)
     scales = (
         _power_of_two(2.0 * given.half_range),
         _power_of_two(max(float(np.ptp(each.y)) for each in given.records)),
     )
     data = given.in_units(1.0 / scales[0], 1.0 / scales[1])
-    return _Task(
+    return Task(
         suited.in_units(1.0 / scales[0], 1.0 / scales[1]), given, data, scales, left_out + notes
     )
 
@@ -219,8 +175,8 @@ def _power_of_two(span: float) -> float:
 
 
 def _in_reserve(
-    reserve: Sequence[Family], records: Cleaned, beside: _Task, options: Options
-) -> list[_Task]:
+    reserve: Sequence[Family], records: Cleaned, beside: Task, options: Options
+) -> list[Task]:
     """Prepare those families in reserve that use the same samples, with the delay found."""
     if not reserve or beside.family.answers_late:
         return []
@@ -232,7 +188,7 @@ def _in_reserve(
     return [each.delayed(beside.given.lag, beside.evidence) for each in same]
 
 
-def _require_samples(tasks: Sequence[_Task]) -> None:
+def _require_samples(tasks: Sequence[Task]) -> None:
     """Refuse records with no more samples than the smallest model has parameters."""
     needed = min(each.family.least_parameters(each.family.sizes()[0]) for each in tasks)
     samples = tasks[0].data.measured().size
@@ -243,7 +199,7 @@ def _require_samples(tasks: Sequence[_Task]) -> None:
         )
 
 
-def _require_same_records(tasks: Sequence[_Task]) -> None:
+def _require_same_records(tasks: Sequence[Task]) -> None:
     """Refuse to compare what was judged by other records, as by averages of periods."""
     first = tasks[0]
     for task in tasks[1:]:
@@ -255,7 +211,7 @@ def _require_same_records(tasks: Sequence[_Task]) -> None:
             )
 
 
-def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
+def _with_delay(tasks: Sequence[Task], options: Options) -> list[Task]:
     """Give every task its delay; a family that answers late by itself takes it as an option."""
     found: dict[int, DelayEvidence] = {}
     result = []
@@ -279,13 +235,13 @@ class _Choice:
     """A final fit in the units of its task, what it was chosen from and what else may be right."""
 
     fit: Fit
-    task: _Task
+    task: Task
     candidates: tuple[Candidate, ...]
     notes: tuple[str, ...]
     rivals: tuple[Fit, ...]
 
 
-def _search(tasks: Sequence[_Task], options: Options, reserve: Sequence[_Task]) -> _Choice:
+def _search(tasks: Sequence[Task], options: Options, reserve: Sequence[Task]) -> _Choice:
     """Choose signs, family and size and fit it; the next best if that does not converge."""
     with_overviews = _with_overviews([*tasks, *reserve], options)
     ruling = ruled(with_overviews[: len(tasks)])
@@ -319,6 +275,28 @@ def _may_win(more: Sequence[Contender], chosen: Contender, describes: bool) -> S
     return [each for each in more if each.candidate.parameters <= most and _leaves_noise(each)]
 
 
+def _with_settled_delay(
+    choice: _Choice, tasks: list[Task], more: list[Task], options: Options
+) -> _Choice:
+    """Let the chosen family settle the delay, and choose again with it."""
+    for _ in range(MOST_DELAYS):
+        fit, task = choice.fit, choice.task
+        if task.evidence is None or not (fit.family.has_memory and fit.family.settles_delay):
+            break
+        delay, told = told_by_family(task.data, fit, task.evidence)
+        if delay == task.data.lag:
+            break
+        options.say("delay, settled by the family")
+        tasks, more = (
+            [t if t.family.answers_late else t.delayed(delay, told) for t in each]
+            for each in (tasks, more)
+        )
+        choice = _search(tasks, options, more)
+        if choice.fit.family.loops_tell_delay != OWN:
+            break
+    return choice
+
+
 def _preferred(contenders: Sequence[Contender]) -> Sequence[Contender]:
     """Give those of a tie that leave only noise, if there are any; else all."""
     return [each for each in as_good_as_best(contenders) if _leaves_noise(each)] or contenders
@@ -345,7 +323,7 @@ def _best(
         remaining.remove(chosen)
 
 
-def _only(task: _Task, ruling: Ruling, options: Options) -> _Choice:
+def _only(task: Task, ruling: Ruling, options: Options) -> _Choice:
     """Fit the only family and size there is; the other signs of its weights may be a rival."""
     family, overview = ruling.families[0]
     fit = options.converged(_final_fit(family, overview, family.sizes()[0], options))
@@ -357,7 +335,7 @@ def _only(task: _Task, ruling: Ruling, options: Options) -> _Choice:
     return _Choice(fit, task, (), about_the_choice(chosen, (), rivals, task.scales[1]), rivals.fits)
 
 
-def _outlying(task: _Task, options: Options) -> tuple[str, ...]:
+def _outlying(task: Task, options: Options) -> tuple[str, ...]:
     """Say which samples were left out of the fit for being far from every model."""
     if task.family.depends_on_rate:
         return ()
@@ -370,7 +348,7 @@ def _outlying(task: _Task, options: Options) -> tuple[str, ...]:
     )
 
 
-def _with_overviews(tasks: Sequence[_Task], options: Options) -> list[tuple[Family, Overview]]:
+def _with_overviews(tasks: Sequence[Task], options: Options) -> list[tuple[Family, Overview]]:
     """Give every family its records; those that use the same share what is found out."""
     shared: dict[tuple[bool, tuple[int, ...], int], Overview] = {}
     result = []
@@ -405,7 +383,7 @@ def _final_fit(family: Family, overview: Overview, size: int, options: Options) 
     return settled(family.simplified(fit, overview, most), overview, most)
 
 
-def _polished(fit: Fit, task: _Task, options: Options) -> Fit:
+def _polished(fit: Fit, task: Task, options: Options) -> Fit:
     """Go on with all samples."""
     options.say("final fit: all samples")
     overview = Overview(
@@ -417,5 +395,5 @@ def _polished(fit: Fit, task: _Task, options: Options) -> Fit:
     return options.converged(fit.family.simplified(polished, overview, options.max_iterations))
 
 
-def _in_given_units(fit: Fit, task: _Task) -> Parametrization:
+def _in_given_units(fit: Fit, task: Task) -> Parametrization:
     return fit.parametrization.in_units(fit.solution.theta, *task.scales)

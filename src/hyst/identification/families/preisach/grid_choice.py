@@ -18,6 +18,7 @@ from hyst.identification.families.preisach.layout import (
     with_prior,
 )
 from hyst.identification.families.preisach.smoothness import (
+    borne_strength,
     chosen_strength,
     effective_count,
 )
@@ -40,6 +41,9 @@ WORTH_IT = 0.97
 
 ROUNDING = 1e-4
 """Of the output's range: a residual so small is none to improve."""
+
+NOTHING = 1e-6
+"""The same, up to which the strength of a prior is not doubted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,10 +119,13 @@ def fitted_grid(
     of_cells = fit.columns[:, 1 : 1 + cells.count]
     require_crossed(cells, crossed(of_cells, overview.data.lengths()))
     kept = overview.kept
+    rows = np.ones(fit.y.size, dtype=bool) if kept is None else kept
     if smoothness is None:
         blocks = overview.once("blocks", lambda: blocks_of(overview))
         smoothness = chosen_strength(fit, blocks, kept, smoothest=not overview.shows_minor_loops)
-    rows = np.ones(fit.y.size, dtype=bool) if kept is None else kept
+        if overview.shows_minor_loops:
+            least = NOTHING * overview.output_range
+            smoothness = borne_strength(fit, rows, smoothness, start_of(parametrization), least)
     normal, moment = fit.gram(rows)
     held = fit.held(smoothness)
     theta = fit.solve(normal + held, moment, start_of(parametrization) + 1.0)

@@ -25,6 +25,10 @@ STEP = float(np.sqrt(10.0))
 MOST_STEPS = 10
 """Steps either way from the middle: from 1e-9 to 10."""
 
+BORNE = 1.1
+"""Residual under a prior over that under a weak one, each allowed for its constants, up to which
+the samples bear it."""
+
 IDLE = 2
 """Steps in a row that predict worse, until no other is tried."""
 
@@ -136,6 +140,43 @@ def chosen_strength(
     while smoothest and step < MOST_STEPS and not scores.of(step + 1).seems_worse(scores.of(best)):
         step += 1
     return _strength(step)
+
+
+def borne_strength(
+    fit: LinearFit, rows: Rows, strength: float, start: Array, least: float
+) -> float:
+    """Lower a strength until it leaves no more of the samples than a weak prior does.
+
+    What left-out parts choose may be a valley among several: a prior that bends the fit away from
+    what was measured would give its constants far outside their errors.
+
+    Parameters
+    ----------
+    fit
+        Columns and measured output.
+    rows
+        Shape (N,), which samples are fitted.
+    strength
+        As chosen.
+    start
+        Shape (m,), within its bounds.
+    least
+        A residual that is none, output units.
+    """
+    normal, moment = fit.gram(rows)
+
+    def left(tried: float) -> float:
+        held = fit.held(tried)
+        theta = fit.solve(normal + held, moment, start + 1.0)
+        free = (theta > fit.lower) & (theta < fit.upper)
+        residual = (fit.columns @ theta - fit.y)[rows]
+        freedom = max(residual.size - effective_count(normal, held, free), 1.0)
+        return float(np.sqrt(residual @ residual / freedom))
+
+    most = max(BORNE * left(_strength(-MOST_STEPS)), least)
+    while strength > _strength(-MOST_STEPS) and left(strength) > most:
+        strength /= STEP
+    return strength
 
 
 def _strength(step: int) -> float:
