@@ -16,7 +16,7 @@ import numpy as np
 from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.cross_validation import fewest_left
-from hyst.identification.choice.delay import find_delay, settled_by_family, usable_delay
+from hyst.identification.choice.delay import OWN, find_delay, told_by_family, usable_delay
 from hyst.identification.choice.rivals import other_signs, rivals_of
 from hyst.identification.choice.selection import (
     Contender,
@@ -35,7 +35,7 @@ from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.option import AUTO
 from hyst.identification.fit.bounded_least_squares import CONVERGED
 from hyst.identification.fit.parametrization import Parametrization
-from hyst.identification.judgement.judge import leaves_only_noise
+from hyst.identification.judgement.judge import level_of
 from hyst.identification.options import Options, as_delay
 from hyst.identification.record_use.cleaned import Cleaned
 from hyst.identification.record_use.overview import Overview
@@ -44,6 +44,9 @@ from hyst.identification.result.identified import Candidate
 
 MOST_STARTS = 3
 """Of the final fit."""
+
+MOST_DELAYS = 3
+"""Times that a family may change the delay: its grid is made for the one before."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +92,16 @@ class _Task:
     def delayed(self, delay: float, evidence: DelayEvidence | None) -> _Task:
         given, data = self.given.delayed(delay), self.data.delayed(delay)
         return replace(self, given=given, data=data, evidence=evidence)
+
+    def delay_is_unsure(self) -> bool:
+        """Tell whether the records would also bear no delay."""
+        return self.evidence is not None and self.data.lag != 0 and self.evidence.stated[0] <= 0.0
+
+    def without_unsure_delay(self) -> _Task:
+        """Give the same task with no delay where the records would bear none."""
+        if self.evidence is None or not self.delay_is_unsure():
+            return self
+        return self.delayed(0, self.evidence.undecided())
 
     def searched(self) -> Data:
         """Give what the search fits to."""
@@ -137,19 +150,31 @@ def find(
     tasks = _with_delay(tasks, options)
     _require_samples(tasks)
     more = _in_reserve(reserve, records, tasks[0], options)
-    choice = _search(tasks, options, more)
+    try:
+        choice = _search(tasks, options, more)
+    except NotIdentifiableError:
+        if not any(each.delay_is_unsure() for each in tasks):
+            raise
+        # What is taken for a delay may be the very loop that the families look for.
+        tasks, more = ([each.without_unsure_delay() for each in all_] for all_ in (tasks, more))
+        choice = _search(tasks, options, more)
     fit, task = choice.fit, choice.task
-    judges = fit.family.has_memory and fit.family.settles_delay
-    if task.evidence is not None and judges:
-        delay = settled_by_family(task.data, fit, task.evidence)
-        if delay != task.data.lag:
-            options.say("delay, settled by the family")
-            tasks, more = (
-                [t if t.family.answers_late else t.delayed(delay, t.evidence) for t in each]
-                for each in (tasks, more)
-            )
-            choice = _search(tasks, options, more)
-            fit, task = choice.fit, choice.task
+    for _ in range(MOST_DELAYS):
+        judges = fit.family.has_memory and fit.family.settles_delay
+        if task.evidence is None or not judges:
+            break
+        delay, told = told_by_family(task.data, fit, task.evidence)
+        if delay == task.data.lag:
+            break
+        options.say("delay, settled by the family")
+        tasks, more = (
+            [t if t.family.answers_late else t.delayed(delay, told) for t in each]
+            for each in (tasks, more)
+        )
+        choice = _search(tasks, options, more)
+        fit, task = choice.fit, choice.task
+        if fit.family.loops_tell_delay != OWN:
+            break
     if task.searched() is not task.data:
         fit = _polished(fit, task, options)
     fit, *rivals = (
@@ -244,7 +269,7 @@ def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
         key = min(task.given.starts)
         if key not in found:
             found[key] = find_delay(task.data)
-        own = found[key] if task.family.loops_tell_delay else found[key].undecided()
+        own = found[key] if task.family.loops_tell_delay is True else found[key].undecided()
         result.append(task.delayed(usable_delay(own, task.data), own))
     return result
 
@@ -268,9 +293,12 @@ def _search(tasks: Sequence[_Task], options: Options, reserve: Sequence[_Task]) 
         return _only(tasks[0], ruling, options)
     contenders, refusals = compare(ruling.families, options.say)
     chosen, fit = _best(contenders, options)
-    if reserve and not leaves_only_noise(chosen.overview.data, fit):
-        contenders += in_reserve(with_overviews[len(tasks) :], chosen, options.say)
-        chosen, fit = _best(_preferred(contenders), options, (chosen, fit))
+    level = level_of(chosen.overview.data, fit) if reserve else "good"
+    if level != "good":
+        more = in_reserve(with_overviews[len(tasks) :], chosen, options.say)
+        may_win = _may_win(more, chosen, describes=level == "fair")
+        chosen, fit = _best(_preferred((*contenders, *may_win)), options, (chosen, fit))
+        contenders += more
     task = next(each for each in (*tasks, *reserve) if each.family.name == chosen.candidate.family)
     rivals = rivals_of(chosen, fit, contenders, other_signs(ruling, chosen))
     tied, scale = as_good_as_best(contenders), task.scales[1]
@@ -279,14 +307,25 @@ def _search(tasks: Sequence[_Task], options: Options, reserve: Sequence[_Task]) 
     return _Choice(options.converged(fit), task, told, notes, rivals.fits)
 
 
+def _may_win(more: Sequence[Contender], chosen: Contender, describes: bool) -> Sequence[Contender]:
+    """Give those of a reserve that a record can prefer to what describes it.
+
+    Strokes of one amplitude say nothing of the loops inside, so closeness alone prefers none: only
+    what leaves nothing but noise with no more constants.
+    """
+    if chosen.overview.shows_minor_loops or not describes:
+        return more
+    most = chosen.candidate.parameters
+    return [each for each in more if each.candidate.parameters <= most and _leaves_noise(each)]
+
+
 def _preferred(contenders: Sequence[Contender]) -> Sequence[Contender]:
     """Give those of a tie that leave only noise, if there are any; else all."""
-    quiet = [
-        each
-        for each in as_good_as_best(contenders)
-        if leaves_only_noise(each.overview.data, each.fit)
-    ]
-    return quiet or contenders
+    return [each for each in as_good_as_best(contenders) if _leaves_noise(each)] or contenders
+
+
+def _leaves_noise(contender: Contender) -> bool:
+    return level_of(contender.overview.data, contender.fit) == "good"
 
 
 def _best(

@@ -82,5 +82,9 @@ def test_records_of_a_material_whose_loops_widen_with_the_rate(cases) -> None:  
     assert found.delay == 0
     # What the case asks for; plays leave 10 %.
     assert all(each.metrics.rms_percent < 1.0 for each in found.per_record)
+    # Three widths of one loop: shift, exponent and coercive field trade off, and none has an error.
+    errors = dict(zip(found.parameter_names, found.standard_errors, strict=True))
+    assert np.isnan([errors[f"rate_shift.{each}"] for each in "cm"]).all()
+    assert any("trade off" in each for each in found.undetermined)
     with pytest.raises(hyst.NotInvertibleError, match="follow the rate"):
         found.model.inverse()

@@ -20,8 +20,9 @@ from hyst.identification.families.hammerstein.first_dynamics import (
     shortened,
     signal_behind,
 )
-from hyst.identification.families.hammerstein.joint import dynamics_of, joint
+from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
 from hyst.identification.families.hammerstein.markov import choose_markov
+from hyst.identification.families.linear import Linear
 from hyst.identification.fit.bounded_least_squares import Solution, minimize
 from hyst.identification.fit.problem import problem_of
 from hyst.identification.record_use.overview import Overview
@@ -35,6 +36,7 @@ _WARM_UP = 8_000  # samples of each record for the trial of an order
 _TRIAL_ITERATIONS = 30
 _COARSELY = 1.0  # of the residual variance
 _WORTH_A_STATE = 0.8  # to what share of the squared error a further state must lower it
+_WORTH_A_LOOP = 0.9  # to what share of a line's the hysteresis must lower it
 _ROUNDING = 1e-16  # share of the output's power: nothing is left to explain
 
 
@@ -48,10 +50,13 @@ class FirstDynamics:
         Of gain 1 at rest.
     behind
         The input, and the signal behind the hysteresis.
+    trial
+        The coarse fit of hysteresis and dynamics that chose them.
     """
 
     dynamics: LinearDynamics
     behind: Overview
+    trial: Fit
 
 
 def first_dynamics(
@@ -80,37 +85,95 @@ def first_dynamics(
     delay = delay_of(markov, overview.delay)
     sizes = front.sizes()
     middle = sizes[len(sizes) // 2]
-    best: LinearDynamics | None = None
+    best: Fit | None = None
     least, power = np.inf, float(data.measured() @ data.measured())
-    refusal = NotIdentifiableError("no order can be realized; raise fir_order")
+    refusal: NotIdentifiableError | None = None
     for order in orders_to_try(markov, delay, dt, orders[1]):
         base = realized(markov, delay, dt, order).dynamics
         try:
             found = _trial(family, front, data, base, middle)
         except NotIdentifiableError as why:  # wrong dynamics may leave no hysteresis to see
             refusal = why
-            continue
+            if best is None:
+                continue
+            found = _solved(family, data, _front_of(best), base, middle)  # nor may amplified noise
         cost = found.solution.cost
         if best is None or cost < _WORTH_A_STATE * least:
-            best, least = dynamics_of(found), cost
+            best, least = found, cost
             if cost <= _ROUNDING * power:
                 break
         elif order > 1 and cost > _WORTH_A_STATE * least:
             break
     if best is None:
+        raise refusal or NotIdentifiableError("no order can be realized; raise fir_order")
+    if refusal is not None and not _beats_a_line(family, best, data):
         raise refusal
-    best = of_gain_one(best)
-    return FirstDynamics(best, Overview(signal_behind(data, best), rates_matter=True))
+    dynamics = of_gain_one(dynamics_of(best))
+    behind = Overview(signal_behind(data, dynamics), rates_matter=True)
+    return FirstDynamics(dynamics, behind, best)
 
 
 def _trial(family: Family, front: Family, data: Data, base: LinearDynamics, size: int) -> Fit:
     """Fit hysteresis and dynamics coarsely to the beginning of the records."""
-    start = joint(
-        first_fronts(front, Overview(signal_behind(data, base), rates_matter=True), size)[0], base
-    )
+    behind = Overview(signal_behind(data, base), rates_matter=True)
+    return _solved(family, data, first_fronts(front, behind, size)[0], base, size)
+
+
+def _solved(family: Family, data: Data, front: Start, base: LinearDynamics, size: int) -> Fit:
+    """Fit coarsely from a hysteresis and dynamics."""
+    start = joint(front, base)
     fit = Fit(family, size, start[0], Solution(start[1], np.inf, 0, ""))
     problem = fit.problem(shortened(data, _WARM_UP))
     return replace(fit, solution=minimize(problem, start[1], _TRIAL_ITERATIONS, _COARSELY))
+
+
+def _front_of(trial: Fit) -> Start:
+    """Give the hysteresis of a trial."""
+    parametrization = joint_of(trial).front
+    return parametrization, trial.solution.theta[: parametrization.size]
+
+
+def _beats_a_line(family: Family, trial: Fit, data: Data) -> bool:
+    """Tell whether the output shows hysteresis, and not the signal behind wrong dynamics alone."""
+    line = _trial(family, Linear(), data, of_gain_one(dynamics_of(trial)), 0)
+    return trial.solution.cost < _WORTH_A_LOOP * line.solution.cost
+
+
+def fronts_of(
+    family: Family, front: Family, first: FirstDynamics, data: Data, size: int
+) -> list[Start]:
+    """Fit the hysteresis to the signal behind it, or take it from the trial of the dynamics.
+
+    Going back through the dynamics amplifies noise, where a zero is near -1 hundreds of times. A
+    hysteresis may drown in it that the output shows well.
+
+    Parameters
+    ----------
+    family
+        Hysteresis and dynamics.
+    front
+        The hysteresis.
+    first
+        Dynamics and signal behind the hysteresis.
+    data
+        The records.
+    size
+        One of the sizes of the hysteresis.
+
+    Raises
+    ------
+    NotIdentifiableError
+        If that signal does not show the hysteresis, and neither does the output.
+    """
+    try:
+        return first_fronts(front, first.behind, size)
+    except NotIdentifiableError:
+        trial = first.trial
+        if size != trial.size:
+            trial = _trial(family, front, data, joint_of(trial).base, size)
+        if not _beats_a_line(family, trial, data):
+            raise
+        return [_front_of(trial)]
 
 
 def first_fronts(front: Family, behind: Overview, size: int) -> list[Start]:

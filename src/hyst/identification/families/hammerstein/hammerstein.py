@@ -21,7 +21,7 @@ from hyst.identification.families.hammerstein.first_dynamics import shortened, s
 from hyst.identification.families.hammerstein.first_guess import (
     FirstDynamics,
     first_dynamics,
-    first_fronts,
+    fronts_of,
 )
 from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
@@ -197,7 +197,8 @@ class Hammerstein(Family):
         """Start from the dynamics found once, and the hysteresis before them of this size."""
         first = self._first_dynamics(overview)
         fronts = overview.once(
-            ("fronts", self, size), lambda: first_fronts(self.front, first.behind, size)
+            ("fronts", self, size),
+            lambda: fronts_of(self, self.front, first, overview.data, size),
         )
         return [joint(each, first.dynamics) for each in fronts[:most]]
 
@@ -244,7 +245,8 @@ class Hammerstein(Family):
         if simpler is before:
             return fit
         parametrization, theta = joint((simpler.parametrization, simpler.solution.theta), dynamics)
-        left = replace(fit, parametrization=parametrization)
+        family = replace(self, hysteresis=simpler.family)  # which may have fewer terms, too
+        left = replace(fit, family=family, parametrization=parametrization)
         problem = left.problem(overview.data)
         solution = self.solve(problem, theta, max_iterations)
         # Where the signal behind it is hardly seen, a new fit may end elsewhere, and worse.

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar, final
+from typing import TYPE_CHECKING, ClassVar, final
 
 import numpy as np
 import scipy.optimize
@@ -31,9 +31,13 @@ from hyst.identification.families.preisach.layout import (
 )
 from hyst.identification.families.preisach.preisach import ESTIMATES_TEXT, RELAY_TEXT, Relays
 from hyst.identification.record_use.overview import Overview
+from hyst.identification.record_use.strokes import shows_minor_loops, stroke_lengths
 from hyst.identification.record_use.used_samples import Data
 from hyst.operators.composition import leaves_of
 from hyst.signals import reversals
+
+if TYPE_CHECKING:
+    from hyst.identification.result.identified import Identified
 
 Array = NDArray[np.float64]
 
@@ -49,8 +53,8 @@ LARGEST_SHIFT = 0.8
 FEWEST_RATES = 1.2
 """Ratio of the slowest to the fastest half swing, up to which all belong to one frequency."""
 
-TOO_SMALL = 0.003
-"""Of half the input's range, between the slowest and the fastest: no shift that a record shows."""
+TRADE_OFF = ("rate_shift.c", "rate_shift.m", "preisach.coercive")
+"""Constants that loops of one size hardly tell apart: all of them widen the loop."""
 
 
 @final
@@ -68,6 +72,7 @@ class RateDependentPreisach(Relays):
     methods = ("learning",)
     depends_on_rate: ClassVar[bool] = True
     settles_delay: ClassVar[bool] = False
+    loops_tell_delay = False
     explains = ("rate dependence", "dynamics")  # its loops widen as the rate grows
     words = Words(
         full_name="rate-dependent Preisach model",
@@ -110,7 +115,21 @@ class RateDependentPreisach(Relays):
                 f"the exponent m ended at its limit {exponent:.3g}, so it is no estimate; record "
                 "at frequencies further apart",
             )
+        if not shows_minor_loops(stroke_lengths(data)):
+            said += (
+                "without minor loops the records tell how far thresholds move from one of their "
+                "rates to another, and hardly what they are at rest: c, m and the coercive mean "
+                "trade off against each other, so none of them is an estimate",
+            )
         return said + super().notes(fit, data)
+
+    def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
+        """Give no errors of constants that trade off where the records show no minor loops."""
+        if overview.shows_minor_loops:
+            return identified
+        open_ones = [name in TRADE_OFF for name in identified.parameter_names]
+        errors = np.where(open_ones, np.nan, identified.standard_errors)
+        return replace(identified, standard_errors=errors)
 
     def _found(self, overview: Overview) -> tuple[GridFit, float, float]:
         fastest = _require_rates(overview.data)
