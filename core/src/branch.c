@@ -17,9 +17,7 @@ hyst_real hyst_branch_advance(const hyst_branch_equation *of, hyst_real u, hyst_
     const hyst_real du = sign * h;
     const hyst_real k1 = of->slope(of->model, u, z, sign);
     const hyst_real k2 = of->slope(
-        of->model, u + HYST_REAL(0.5) * du,
-        z + du * (HYST_REAL(0.5) * k1),
-        sign);
+        of->model, u + HYST_REAL(0.5) * du, z + du * (HYST_REAL(0.5) * k1), sign);
     const hyst_real k3 = of->slope(
         of->model, u + HYST_REAL(0.5) * du,
         z + du * (HYST_REAL(0.25) * k1 + HYST_REAL(0.25) * k2),

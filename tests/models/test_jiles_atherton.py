@@ -190,6 +190,8 @@ def test_it_saturates_far_out_and_comes_back_from_there() -> None:
         ({"c": 1.0}, "c is 1; it is the reversible share"),
         ({"c": -0.1}, r"c is -0\.1"),
         ({"k": 0.0}, "k is 0"),
+        ({"k": 1e4}, r"k / a is \d+; .* give 1/1000 to 1000"),
+        ({"k": 1e-5}, r"k / a is .*e-05; .* give 1/1000 to 1000"),
         ({"a": -1.0}, "a is -1"),
         ({"Ms": float("inf")}, "Ms is inf"),
         ({"alpha": 1.5}, r"alpha Ms / \(3 a\) is 1; from 1 on the magnetisation jumps"),

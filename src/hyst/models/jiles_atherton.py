@@ -20,6 +20,8 @@ from hyst.operators.traits import Degree, Traits
 
 Array = NDArray[np.float64]
 
+MOST_UNEQUAL = 1000.0
+"""Of k / a, or its reciprocal: a sample takes up to 2400 times as many sub-steps."""
 VARIANTS = ("effective-field", "jiles-thoelke-devine-1992", "jiles-atherton-1986")
 MAGNETISATION, FLUX_DENSITY = "M", "B"
 MAGNETIC_CONSTANT = 4e-7 * np.pi
@@ -56,6 +58,11 @@ class _Magnet(Operator):
                 raise InputError(
                     f"{name} is {getattr(self, name)!r}; choose one of {', '.join(choices)}"
                 )
+        if not 1.0 / MOST_UNEQUAL <= self.k / self.a <= MOST_UNEQUAL:
+            raise InputError(
+                f"k / a is {self.k / self.a:.6g}; a sample would take millions of sub-steps, so "
+                f"give 1/{MOST_UNEQUAL:g} to {MOST_UNEQUAL:g}"
+            )
         if self.coupling >= 1.0:
             raise InputError(
                 f"alpha Ms / (3 a) is {self.coupling:.6g}; from 1 on the magnetisation jumps, for "
@@ -162,7 +169,8 @@ class JilesAtherton(_Magnet):
     Raises
     ------
     InputError
-        If a constant is out of its range, or ``alpha Ms / (3 a)`` is 1 or more.
+        If a constant is out of its range, ``k / a`` is beyond 1/1000 to 1000, or
+        ``alpha Ms / (3 a)`` is 1 or more.
 
     Notes
     -----

@@ -19,7 +19,7 @@ from hyst.identification.fit.parametrization import Parametrization, selection
 from hyst.identification.fit.problem import model_output
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data
-from hyst.models.jiles_atherton import VARIANTS
+from hyst.models.jiles_atherton import MOST_UNEQUAL, VARIANTS
 from hyst.operators import Affine
 
 Array = NDArray[np.float64]
@@ -156,9 +156,20 @@ class JilesAtherton(Family):
         # A hundred times the range reached is a straight line to a part in ten thousand.
         upper = [100.0 * span, 100.0 * half, 100.0 * half, MOST_REVERSIBLE, np.inf, np.inf]
         parametrization = Parametrization(
-            template, selection(7, places), fixed, np.array(lower), np.array(upper)
+            template,
+            selection(7, places),
+            fixed,
+            np.array(lower),
+            np.array(upper),
+            is_allowed=_can_be_computed,
         )
         return parametrization, theta
+
+
+def _can_be_computed(theta: Array) -> bool:
+    """Tell whether k / a is within what the model takes, with room for a change of units."""
+    ratio = float(theta[2] / theta[1])
+    return MOST_UNEQUAL * ratio > 1.0 + 1e-9 and ratio < MOST_UNEQUAL * (1.0 - 1e-9)
 
 
 def _coupled(theta: Array) -> Array:
