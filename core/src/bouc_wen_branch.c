@@ -149,6 +149,10 @@ static hyst_real bouc_wen_rise_quickly(hyst_real n, hyst_real join, hyst_real sh
 {
     if (n == HYST_REAL(1.0)) {
         *q = left;
+        /* Next to the limit the share is 1, which has no logarithm of what is left. */
+        if (left < HYST_REAL(0.5)) {
+            return -HYST_NATURAL_OF_2 * hyst_log2(left);
+        }
         return -hyst_small_logarithm(n, -share);
     }
     return bouc_wen_rise(n, join, share, left, q);

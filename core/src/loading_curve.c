@@ -74,7 +74,7 @@ static hyst_real gained(hyst_real x, hyst_real way, hyst_real t)
 
 /* f(x) of another way b, in the form in which no term takes away from another. However small the way
  * is, the result is finite. */
-static hyst_real exponential(const hyst_exponential *f, hyst_real x, hyst_real way)
+static hyst_real exponential_loading(const hyst_exponential *f, hyst_real x, hyst_real way)
 {
     const hyst_real t = x / way;
     return f->change < HYST_REAL(0.0) ? f->last * x - f->change * (way * lost(t))
@@ -115,7 +115,7 @@ hyst_real hyst_loading(const hyst_loading_curve *curve, hyst_real x)
     case HYST_POLYNOMIAL:
         return polynomial(&curve->as.polynomial, x);
     case HYST_EXPONENTIAL:
-        return exponential(&curve->as.exponential, x, curve->as.exponential.way);
+        return exponential_loading(&curve->as.exponential, x, curve->as.exponential.way);
     case HYST_IWAN:
         return iwan(&curve->as.iwan, x);
     case HYST_POWER_LAW:
@@ -253,7 +253,7 @@ static hyst_real solve_growing(const hyst_exponential *f, hyst_real w)
         t = w / f->first;
     }
     for (int i = 0; i < HYST_EXPONENTIAL_LIMIT; ++i) {
-        const hyst_real step = (exponential(f, t, HYST_REAL(1.0)) - w) / exponential_slope(f, t);
+        const hyst_real step = (exponential_loading(f, t, HYST_REAL(1.0)) - w) / exponential_slope(f, t);
         if (!(step > HYST_REAL(0.0))) {
             return t;
         }
@@ -294,7 +294,7 @@ static hyst_real solve_falling(const hyst_exponential *f, hyst_real w)
         t = (w - e) / f->last;
     }
     for (int i = 0; i < HYST_EXPONENTIAL_LIMIT; ++i) {
-        hyst_real step = (w - exponential(f, t, HYST_REAL(1.0))) / exponential_slope(f, t);
+        hyst_real step = (w - exponential_loading(f, t, HYST_REAL(1.0))) / exponential_slope(f, t);
         const hyst_real rest = (e - w + f->last * t) / e;
         if (t > HYST_REAL(1.0) && rest > HYST_REAL(0.0)) {
             const hyst_real other = -(t + CURVE_LN2 * hyst_log2(rest)) * rest / (rest + f->last / e);

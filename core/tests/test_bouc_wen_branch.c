@@ -87,10 +87,25 @@ static void ends(void)
     CHECK_NEAR((double)hyst_bouc_wen_join(R(1.0)), 0.0, CLOSE);
 }
 
+/* Ways over which what is left of 1 gets lost in the digits of the share: n = 1, where it is exp(-way),
+ * and n = 2, where the share is tanh(way). */
+static void next_to_the_limit(void)
+{
+    const hyst_real join = hyst_bouc_wen_join(R(2.0));
+    for (int i = 0; i < 800; ++i) {
+        const hyst_real way = R(0.0625) * (hyst_real)i;
+        CHECK_NEAR((double)hyst_bouc_wen_risen(R(1.0), R(0.0), R(0.0), R(0.0), way),
+                   -expm1(-(double)way), CLOSE);
+        CHECK_NEAR((double)hyst_bouc_wen_risen(R(2.0), join, R(0.0), R(0.0), way),
+                   tanh((double)way), CLOSE);
+    }
+}
+
 int main(void)
 {
     ways_of_closed_forms();
     shares_are_found_again();
     ends();
+    next_to_the_limit();
     return check_result();
 }

@@ -108,6 +108,13 @@ static void saturation_is_the_end_without_a_linear_part(void)
     const hyst_real answer = hyst_preisach_input(&beyond, R(4.5));
     CHECK_EQUAL(hyst_preisach_input(&at, R(4.0)), R(1.0));
     CHECK(!(answer - answer <= R(0.0)));
+    /* Rounding of the sums before it is none: two epsilon of 4 are, 32 are not. */
+    const hyst_real near = R(4.0) + R(8.0) * (hyst_real)REAL_EPSILON;
+    const hyst_real off = R(4.0) + R(128.0) * (hyst_real)REAL_EPSILON;
+    const hyst_preisach_piece full = hyst_preisach_to_output(&model, &start, near);
+    const hyst_real too_far = hyst_preisach_input(&full, off);
+    CHECK_EQUAL(hyst_preisach_input(&full, near), R(1.0));
+    CHECK(!(too_far - too_far <= R(0.0)));
 }
 
 static void roots_are_right_to_an_epsilon(void)

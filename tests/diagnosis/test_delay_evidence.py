@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.io
+import scipy.signal
+import scipy.special
 from delayed_records import (
     RATE,
     SETTLED,
@@ -205,3 +207,28 @@ def test_a_delay_that_misfit_bought_does_not_exclude_none(width: float, unit: fl
     told = [each.sentence for each in hyst.diagnose(record).named("delay or radius")]
     assert len(told) == 1
     assert "nothing certain can be said of a delay" in told[0]
+
+
+@pytest.mark.parametrize(("coercive", "width"), [(0.35, 0.23), (0.3, 0.28), (0.2, 0.2)])
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_saturated_major_loop_is_neither_early_nor_late(
+    coercive: float, width: float, seed: int
+) -> None:
+    """Its output rests where the input turns, so that a delay would only stand in for its shape."""
+    u = scipy.signal.sawtooth(2.0 * np.pi * np.arange(800) / 400.0, 0.5)
+    way = np.sign(np.diff(u, append=u[-1] - 1.0))
+    y = scipy.special.ndtr((u - way * coercive) / width)
+    y = y + 0.002 * np.random.default_rng(seed).normal(size=y.size)
+    found = evidence_of_delay([hyst.Record(u, y, 0.01)], [0])
+    assert found.delay == 0.0
+    assert found.low <= 0.0 <= found.high
+
+
+def test_a_lead_of_one_amplitude_is_still_told() -> None:
+    """The output of plays, written down 6 samples early: it goes back before its input turns."""
+    u = np.sin(2.0 * np.pi * np.arange(1200) / 200.0)
+    y = hyst.PrandtlIshlinskii([0.5, 0.3], [0.1, 0.3], p0=1.0)(u)
+    y = np.roll(y, -6) + 1e-3 * np.random.default_rng(2).normal(size=y.size)
+    found = evidence_of_delay([hyst.Record(u[400:1100], y[400:1100], 0.01)], [0])
+    assert found.low - 0.5 <= -6.0 <= found.high + 0.5
+    assert found.delay < -2.0

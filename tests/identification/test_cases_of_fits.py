@@ -174,7 +174,7 @@ def test_units_and_sign_change_nothing(scale: float) -> None:
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.15])
-def test_a_butterfly_is_unfit(shift: float) -> None:
+def test_a_butterfly_is_unfit_for_plays_and_has_a_family(shift: float) -> None:
     u = strokes([0, 1, -1, 1, -1, 1, -1, 1], 200)
     z = 0.0
     held = np.empty(u.size)
@@ -182,9 +182,14 @@ def test_a_butterfly_is_unfit(shift: float) -> None:
         z = max(sample - 0.25, min(sample + 0.25, z))
         held[k] = z
     y = (held + shift) ** 2 + 0.003 * np.random.default_rng(1).standard_normal(u.size)
+    plays = hyst.identify(hyst.Record(u, y, DT), family="linear,pi,gpi,mpi")
+    assert plays.verdict.level == "unfit"
+    assert any("butterfly" in sentence for sentence in plays.verdict.sentences)
     found = hyst.identify(hyst.Record(u, y, DT))
-    assert found.verdict.level == "unfit"
-    assert any("butterfly" in sentence for sentence in found.verdict.sentences)
+    assert found.family == "butterfly"
+    assert not found.model.is_invertible()
+    # The noise, and half as much again for knots that are not where the truth bends.
+    assert found.metrics["training"].rms < 1.5 * 0.003
 
 
 def test_pure_noise_is_refused_and_a_pure_line_good() -> None:
@@ -233,8 +238,18 @@ def test_the_given_cases(cases: Path) -> None:
         assert found.delay_interval[0] <= 0.0 <= found.delay_interval[1]
 
 
-def test_materials_that_no_family_describes(cases: Path) -> None:
-    friction = hyst.identify(case(cases, "bouc-wen"))
+PLAYS = "linear,pi,gpi,mpi"
+
+
+def test_materials_that_plays_do_not_describe(cases: Path) -> None:
+    piezo = hyst.identify(case(cases, "bouc-wen"))
+    assert (piezo.family, piezo.delay, piezo.verdict.level) == ("bouc-wen", 0.0, "good")
+    truth = (0.6, 0.35, 0.012, 0.006)
+    for value, error, true in zip(
+        piezo.parameter_values, piezo.standard_errors, truth, strict=False
+    ):
+        assert abs(value - true) < 4.0 * error
+    friction = hyst.identify(case(cases, "bouc-wen"), family=PLAYS)
     assert friction.delay == 0.0
     assert friction.verdict.level == "fair"
     assert any("do not close or bend" in sentence for sentence in friction.verdict.sentences)
@@ -242,7 +257,12 @@ def test_materials_that_no_family_describes(cases: Path) -> None:
         (cases / "butterfly" / "loop.csv", {"input": 1, "output": 2, "time": 0}),
         (cases / "butterfly-of-switching" / "loop.csv", {"input": "u", "output": "y", "rate": 100}),
     ):
-        assert hyst.identify(hyst.read_record(path, **columns)).verdict.level == "unfit"
+        given = hyst.read_record(path, **columns)
+        assert hyst.identify(given, family=PLAYS).verdict.level == "unfit"
+        found = hyst.identify(given)
+        assert found.family == "butterfly"
+        assert not found.model.is_invertible()
+        assert found.metrics["training"].rms_percent < 1.0
     rates = [
         hyst.read_record(cases / "switching-with-rate" / f"f{f}Hz.csv", "u", "y", time="t")
         for f in ("1", "0.2", "0.05")

@@ -74,6 +74,15 @@ def test_terms_that_are_there_are_found_and_others_left_out(
     assert float(np.std(left)) < 1e-3 * float(np.ptp(model(slow)))
 
 
+def test_no_term_is_kept_for_the_rounding_it_describes() -> None:
+    friction = LuGre(30.0, 0.02, 0.03, 1.0, 1.6, 5.0, DT)
+    t = np.arange(1500) * 1e-3
+    u = np.exp(-t) * np.sin(8.0 * np.pi * t)
+    found = hyst.identify(Record(u, friction(u), DT), family="lugre", delay=0)
+    assert "lugre.vs" in found.parameter_names
+    assert "lugre.vv" not in found.parameter_names
+
+
 def test_one_velocity_tells_no_curve_over_it() -> None:
     record = record_of(LuGre(30.0, 0.0, 0.01, 1.0, 1.5, 5.0, DT), triangle())
     found = hyst.identify(record, family="lugre")

@@ -50,7 +50,7 @@ def test_auto_takes_the_family_the_record_came_from(true: hyst.Operator, family:
     found = hyst.identify(record(true, noise=0.02))
     assert found.family == family
     families = {each.family for each in found.candidates}
-    assert families == {"linear", "pi", "gpi", "mpi"}
+    assert families >= {"linear", "pi", "gpi", "mpi"}
     assert sum(each.chosen for each in found.candidates) == 1
 
 

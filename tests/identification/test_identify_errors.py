@@ -18,7 +18,7 @@ GIVEN = record(TRUE_PI)
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ({"family": "preisach"}, "preisach"),
+        ({"family": "duhem"}, "duhem"),
         ({"plays": 0}, "plays is 0"),
         ({"plays": 201}, "plays is 201"),
         ({"plays": 2.5}, "plays is 2.5"),

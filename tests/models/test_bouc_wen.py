@@ -102,6 +102,17 @@ def test_slow_motion_keeps_z_in_single_precision() -> None:
     assert z[-1] == pytest.approx(1.0 - np.exp(-0.5), abs=1.3e-7)
 
 
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_z_rests_at_its_limit_however_long_the_way(precision: str) -> None:
+    # By hand: z = 1 - exp(-u) for n = 1 and A = beta + gamma = 1, also where z rounds to 1.
+    model = BoucWen(0.0, 1.0, 0.5, 0.5)
+    u = np.linspace(0.5, 60.0, 1191)
+    step = stepper_of(block_of(model, precision), precision)
+    # Way, exponential and difference round once each, of numbers up to 1.
+    rounding = 4.0 * float(np.finfo(np.float32 if precision == "single" else np.float64).eps)
+    assert np.array([step(float(each)) for each in u]) == pytest.approx(-np.expm1(-u), abs=rounding)
+
+
 def test_an_asymmetric_loop_ends_at_its_two_limits() -> None:
     # (A / (beta + gamma +- 2 phi))^(1/n) with 8 / (1 + 1) and 8 / (1 - 1/2), n = 2: 2 and -4.
     model = BoucWen(0.0, 8.0, 0.75, 0.5, 2.0, phi=0.375)
@@ -140,3 +151,10 @@ def test_an_output_that_falls_in_places_has_no_inverse() -> None:
     piezo = BoucWen(1.43, 1.0, 0.5, 0.2, h=-1.0)
     y = piezo(drive(3, 500, 30.0))
     assert np.isfinite(piezo.inverse()(y)).all()  # 1.43 is just above 1.428571
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e9])
+def test_units_in_which_beta_has_no_number_are_refused(scale: float) -> None:
+    # 1e-9 to the power -49 is 1e441.
+    with pytest.raises(InputError, match=r"n is 50: .* give an output of moderate size"):
+        BoucWen(0.5, 1.0, 0.5, 0.3, 50.0).in_units(scale, scale)

@@ -164,6 +164,21 @@ def test_relays_alone_are_inverted_within_saturation(density: str) -> None:
     assert edges[0] <= full.min() <= full.max() <= edges[-1]
 
 
+def test_saturation_as_the_model_rounds_it_is_within_reach() -> None:
+    """Thresholds off centre: saturation comes along a branch, whose sums round otherwise."""
+    rng = np.random.default_rng(0)
+    for _ in range(300):
+        cells = int(rng.integers(1, 8))
+        edges = np.sort(rng.standard_normal(cells + 1))
+        weights = np.tril(rng.random((cells, cells)))
+        model = Preisach(weights, edges, 0.0, float(edges[-1]))
+        u = np.clip(2.0 * rng.standard_normal(60), edges[0], edges[-1])
+        inverse, y = model.inverse(), model(u)
+        assert np.abs(model(inverse(y)) - y).max() <= 100.0 * EPS * weights.sum()
+        with pytest.raises(InputError, match=r"u\[1\]"):
+            inverse([0.0, weights.sum() * (1.0 + 1e-13)])
+
+
 def test_what_no_input_reaches_is_named() -> None:
     inverse = Preisach([[1.0, 0.0], [2.0, 1.0]], [-1.0, 0.0, 1.0]).inverse()
     assert inverse([4.0, -4.0]).tolist() == [1.0, -1.0]

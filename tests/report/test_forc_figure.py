@@ -6,6 +6,7 @@ import io
 
 import matplotlib.image
 import numpy as np
+import pytest
 
 import hyst
 from hyst.report import draw_forc_diagram
@@ -40,3 +41,13 @@ def test_a_measured_density_and_a_model_are_drawn_alike() -> None:
     measured = ForcDensity(middles, middles, model.portrait().density)
     # The same densities on the same cells; what rounding moves is less than a shade in 255.
     np.testing.assert_allclose(picture(model), picture(measured), atol=0.02)
+
+
+def test_what_has_no_density_is_refused_or_left_white() -> None:
+    with pytest.raises(hyst.InputError, match="no density to draw"):
+        draw_forc_diagram([])
+    with pytest.raises(hyst.InputError, match="Composition has no density"):
+        draw_forc_diagram([("fit", hyst.Affine(1.0, 0.0) @ hyst.Preisach([[1.0]], [-1.0, 1.0]))])  # type: ignore[list-item]
+    grid = np.linspace(-1.0, 1.0, 4)
+    white = picture(ForcDensity(grid, grid, np.full((4, 4), np.nan)))
+    assert redness(white[:, : white.shape[1] // 2]).max() <= 1e-6

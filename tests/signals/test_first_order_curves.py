@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import hyst
-from hyst import NotIdentifiableError, Record
+from hyst import InputError, NotIdentifiableError, Record
 from hyst.signals import forc, forc_density, reversal_curves
 from reference.switching_material import gaussian, switched
 
@@ -39,6 +39,34 @@ def test_a_record_with_too_few_curves_is_refused() -> None:
     u = np.sin(np.linspace(0.0, 6.0, 500))
     with pytest.raises(NotIdentifiableError, match=r"1 first-order reversal curves.*forc"):
         reversal_curves(Record(u, u, 0.01))
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-3])
+def test_one_loop_driven_again_is_one_curve(noise: float) -> None:
+    turns = [0.0, 1.0] + 6 * [-1.0, 1.0]
+    u = np.concatenate([np.linspace(a, b, 50) for a, b in pairwise(turns)])
+    u = u + noise * np.random.default_rng(1).normal(size=u.size)
+    with pytest.raises(NotIdentifiableError, match=r"6 first-order.* 1 different input, .*forc"):
+        reversal_curves(Record(u, u, 0.01))
+
+
+def test_curves_driven_twice_show_the_density_as_driven_once() -> None:
+    drive = forc(0.02, -1.0, 1.0, 1.0, curves=20)
+    even = hyst.Preisach([[1.0]], [-1.0, 1.0])
+    record = Record(drive.u, even(drive.u), 0.02)
+    shifted = Record(drive.u + 1e-4, even(drive.u), 0.02)
+    found = forc_density(reversal_curves([record, shifted]), points=20)
+    # A mass of 1 over an area of 2; the shift of 1e-4 moves it by as much at most.
+    assert np.nanmedian(found.density) == pytest.approx(0.5, abs=1e-3)
+    assert np.isfinite(found.density[np.tril_indices(20, -1)]).mean() > 0.9
+
+
+@pytest.mark.parametrize("given", [[], [1.0], ["u"]])
+def test_what_is_no_record_or_curve_is_refused(given: list[object]) -> None:
+    with pytest.raises(InputError, match="record"):
+        reversal_curves(given)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="curves"):
+        forc_density(given)  # type: ignore[arg-type]
 
 
 def test_the_density_is_that_of_the_material() -> None:

@@ -125,13 +125,20 @@ static inline hyst_real hyst_preisach_part(hyst_real l, hyst_real s, hyst_real d
     return HYST_REAL(2.0) * d / (l + hyst_root(l * l + HYST_REAL(4.0) * s * d));
 }
 
+/* Whether an output lies beyond a rest: an eighth of the way shows, more than sums of another order leave. */
+static inline int hyst_preisach_is_beyond(hyst_real rest, hyst_real way)
+{
+    const hyst_real moved = rest + HYST_REAL(0.125) * way;
+    return way > HYST_REAL(0.0) && (moved > rest || moved < rest);
+}
+
 /* u on a piece at y; an infinity, 2 to the power 1e6, where no input reaches that output. */
 static inline hyst_real hyst_preisach_input(const hyst_preisach_piece *piece, hyst_real y)
 {
     const hyst_real way = piece->rising ? y - piece->from.y : piece->from.y - y;
     const hyst_real rise = piece->line + piece->square;
     if (!(rise > HYST_REAL(0.0))) {
-        return way > HYST_REAL(0.0) ? hyst_exp2(HYST_REAL(1e6)) : piece->from.u;
+        return hyst_preisach_is_beyond(piece->from.y, way) ? hyst_exp2(HYST_REAL(1e6)) : piece->from.u;
     }
     const hyst_real e = hyst_preisach_part(piece->line / rise, piece->square / rise, way / rise);
     const hyst_real u = piece->from.u + e * piece->width;

@@ -41,6 +41,9 @@ _LEAST_LEAD, _LEAST_LAG, _LEAST_OF_ONE_AMPLITUDE = 0.5, 0.2, 0.5
 """Samples: what is steep between two samples looks like less than that, and more so where all
 strokes are sampled at the same levels."""
 
+_SURELY = 3.0
+"""Standard deviations of noise by which an output must have moved between the turns."""
+
 _WHOLE = 0.15
 """Samples, or as a part of a wider interval: an estimate so near a whole number is taken for it."""
 
@@ -218,6 +221,9 @@ def evidence_of_delay(
         costs = CostsByRecord(tuple(costs_of(slice(i, i + 1)) for i in range(len(records))))
         found = compatible_delays(costs, longest, noise / unit)
     delay, low, high = _judged(costs, found, longest, one)
+    bought = one and (delay < 0.0 or (delay > 0.0 and not found.describes))
+    if bought and not _turns_apart(records, outputs, turns, delay, noise):
+        delay, low, high = 0.0, min(low, 0.0), max(high, 0.0)
     rate_or_lag = delay > 0.0 and _rates_differ(records)
     if rate_or_lag:
         delay, low = 0.0, 0.0
@@ -255,6 +261,29 @@ def _judged(
     whole = float(round(delay))
     close = abs(delay - whole) <= _WHOLE * max(1.0, high - low) and low <= whole <= high
     return (whole if close else delay), low, high
+
+
+def _turns_apart(
+    records: Sequence[Record],
+    outputs: Sequence[NDArray[np.float64]],
+    turns: Sequence[Indices],
+    delay: float,
+    noise: float,
+) -> bool:
+    """Tell whether outputs are seen to turn after their inputs, or before them, by a delay.
+
+    Late ones go on after the input has turned, early ones go back before it does. Strokes of one
+    amplitude that end where a material is saturated show neither; a delay then only stands in for
+    the shape of a loop.
+    """
+    moved = []
+    for record, y, places in zip(records, outputs, turns, strict=True):
+        off = round(delay * records[0].dt / record.dt)
+        seen = places[(places >= -off) & (places + off < y.size)]
+        way = np.sign(y[seen] - y[np.maximum(seen - 4 * abs(off), 0)])
+        moved += (way * (y[seen + off] - y[seen])).tolist()
+    sure = _SURELY * noise * math.sqrt(2.0 / max(len(moved), 1))
+    return len(moved) > 0 and float(np.mean(moved)) > sure
 
 
 def _noise_of_all(

@@ -33,6 +33,7 @@ from hyst.identification.families.preisach.grid_choice import (
     correlation_beyond_noise,
     levels_for,
 )
+from hyst.identification.families.preisach.preisach import LARGEST_SMOOTHNESS
 from hyst.identification.families.preisach.smoothness import (
     LinearFit,
     chosen_strength,
@@ -98,7 +99,7 @@ def identify_from_reversal_curves(
         Cells of the grid along a side, 4 to 48; ``"auto"``: 24, fewer for few samples,
         and 32 that are narrower where relays switch if those leave more than noise.
     smoothness
-        Strength of the prior that densities of neighbouring cells are alike, from 0; ``"auto"``:
+        Strength of the prior that densities of neighbouring cells are alike, 0 to 100; ``"auto"``:
         what predicts left-out curves best.
 
     Returns
@@ -110,7 +111,7 @@ def identify_from_reversal_curves(
     InputError
         If an argument is out of range.
     NotIdentifiableError
-        If there are fewer than four curves, or the output rests.
+        If there are fewer than four curves with different reversals, or the output rests.
 
     Notes
     -----
@@ -256,6 +257,8 @@ def _places(size: int) -> NDArray[np.intp]:
 
 def _as_strength(value: Any) -> float:
     number = as_number(value, "smoothness")
-    if number < 0.0:
-        raise InputError(f"smoothness is {number}; give 'auto' or a number from 0 on")
+    if not 0.0 <= number <= LARGEST_SMOOTHNESS:
+        raise InputError(
+            f"smoothness is {number}; give {AUTO!r} or a number from 0 to {LARGEST_SMOOTHNESS:g}"
+        )
     return number

@@ -16,7 +16,7 @@ import numpy as np
 from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.cross_validation import fewest_left
-from hyst.identification.choice.delay import find_delay, settled_by_family, usable_delay
+from hyst.identification.choice.delay import OWN, find_delay, told_by_family, usable_delay
 from hyst.identification.choice.rivals import other_signs, rivals_of
 from hyst.identification.choice.selection import (
     Contender,
@@ -35,16 +35,18 @@ from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.option import AUTO
 from hyst.identification.fit.bounded_least_squares import CONVERGED
 from hyst.identification.fit.parametrization import Parametrization
-from hyst.identification.judgement.judge import leaves_only_noise
+from hyst.identification.judgement.judge import level_of
 from hyst.identification.options import Options, as_delay
 from hyst.identification.record_use.cleaned import Cleaned
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.identified import Candidate
-from hyst.identification.search_task import SearchTask, rms_left
 
 MOST_STARTS = 3
 """Of the final fit."""
+
+MOST_DELAYS = 3
+"""Times that a family may change the delay: its grid is made for the one before."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +76,36 @@ class Found:
     notes: tuple[str, ...]
     rivals: tuple[Fit, ...]
     delay: DelayEvidence | None
+
+
+@dataclass(frozen=True, eq=False)
+class _Task:
+    """A family, the records it uses, in powers of two of the user's units, and their scales."""
+
+    family: Family
+    given: Data
+    data: Data
+    scales: tuple[float, float]
+    notes: tuple[str, ...]
+    evidence: DelayEvidence | None = None
+
+    def delayed(self, delay: float, evidence: DelayEvidence | None) -> _Task:
+        given, data = self.given.delayed(delay), self.data.delayed(delay)
+        return replace(self, given=given, data=data, evidence=evidence)
+
+    def delay_is_unsure(self) -> bool:
+        """Tell whether the records would also bear no delay."""
+        return self.evidence is not None and self.data.lag != 0 and self.evidence.stated[0] <= 0.0
+
+    def without_unsure_delay(self) -> _Task:
+        """Give the same task with no delay where the records would bear none."""
+        if self.evidence is None or not self.delay_is_unsure():
+            return self
+        return self.delayed(0, self.evidence.undecided())
+
+    def searched(self) -> Data:
+        """Give what the search fits to."""
+        return self.family.searched(self.data)
 
 
 def find(
@@ -118,19 +150,31 @@ def find(
     tasks = _with_delay(tasks, options)
     _require_samples(tasks)
     more = _in_reserve(reserve, records, tasks[0], options)
-    choice, tasks, more = _search_without_unsure_delay(tasks, options, more)
+    try:
+        choice = _search(tasks, options, more)
+    except NotIdentifiableError:
+        if not any(each.delay_is_unsure() for each in tasks):
+            raise
+        # What is taken for a delay may be the very loop that the families look for.
+        tasks, more = ([each.without_unsure_delay() for each in all_] for all_ in (tasks, more))
+        choice = _search(tasks, options, more)
     fit, task = choice.fit, choice.task
-    judges = fit.family.has_memory and fit.family.settles_delay
-    if task.evidence is not None and judges:
-        delay = settled_by_family(task.data, fit, task.evidence)
-        if delay != task.data.lag:
-            options.say("delay, settled by the family")
-            tasks, more = (
-                [t if t.family.answers_late else t.delayed(delay, t.evidence) for t in each]
-                for each in (tasks, more)
-            )
-            choice = _search(tasks, options, more)
-            fit, task = choice.fit, choice.task
+    for _ in range(MOST_DELAYS):
+        judges = fit.family.has_memory and fit.family.settles_delay
+        if task.evidence is None or not judges:
+            break
+        delay, told = told_by_family(task.data, fit, task.evidence)
+        if delay == task.data.lag:
+            break
+        options.say("delay, settled by the family")
+        tasks, more = (
+            [t if t.family.answers_late else t.delayed(delay, told) for t in each]
+            for each in (tasks, more)
+        )
+        choice = _search(tasks, options, more)
+        fit, task = choice.fit, choice.task
+        if fit.family.loops_tell_delay != OWN:
+            break
     if task.searched() is not task.data:
         fit = _polished(fit, task, options)
     fit, *rivals = (
@@ -142,7 +186,7 @@ def find(
 
 def _tasks(
     families: Sequence[Family], records: Cleaned, options: Options
-) -> tuple[list[SearchTask], tuple[str, ...]]:
+) -> tuple[list[_Task], tuple[str, ...]]:
     """Prepare the families that the records can serve, and say why others are not compared."""
     used = dict[Family, tuple[Data, tuple[str, ...]]]()
     refusals = dict[str, NotIdentifiableError]()
@@ -157,14 +201,14 @@ def _tasks(
     return [_task(family, *each) for family, each in used.items()], not_compared(refusals)
 
 
-def _task(family: Family, given: Data, left_out: tuple[str, ...]) -> SearchTask:
+def _task(family: Family, given: Data, left_out: tuple[str, ...]) -> _Task:
     suited, notes = family.suited(given)
     scales = (
         _power_of_two(2.0 * given.half_range),
         _power_of_two(max(float(np.ptp(each.y)) for each in given.records)),
     )
     data = given.in_units(1.0 / scales[0], 1.0 / scales[1])
-    return SearchTask(
+    return _Task(
         suited.in_units(1.0 / scales[0], 1.0 / scales[1]), given, data, scales, left_out + notes
     )
 
@@ -175,8 +219,8 @@ def _power_of_two(span: float) -> float:
 
 
 def _in_reserve(
-    reserve: Sequence[Family], records: Cleaned, beside: SearchTask, options: Options
-) -> list[SearchTask]:
+    reserve: Sequence[Family], records: Cleaned, beside: _Task, options: Options
+) -> list[_Task]:
     """Prepare those families in reserve that use the same samples, with the delay found."""
     if not reserve or beside.family.answers_late:
         return []
@@ -188,7 +232,7 @@ def _in_reserve(
     return [each.delayed(beside.given.lag, beside.evidence) for each in same]
 
 
-def _require_samples(tasks: Sequence[SearchTask]) -> None:
+def _require_samples(tasks: Sequence[_Task]) -> None:
     """Refuse records with no more samples than the smallest model has parameters."""
     needed = min(each.family.least_parameters(each.family.sizes()[0]) for each in tasks)
     samples = tasks[0].data.measured().size
@@ -199,7 +243,7 @@ def _require_samples(tasks: Sequence[SearchTask]) -> None:
         )
 
 
-def _require_same_records(tasks: Sequence[SearchTask]) -> None:
+def _require_same_records(tasks: Sequence[_Task]) -> None:
     """Refuse to compare what was judged by other records, as by averages of periods."""
     first = tasks[0]
     for task in tasks[1:]:
@@ -211,7 +255,7 @@ def _require_same_records(tasks: Sequence[SearchTask]) -> None:
             )
 
 
-def _with_delay(tasks: Sequence[SearchTask], options: Options) -> list[SearchTask]:
+def _with_delay(tasks: Sequence[_Task], options: Options) -> list[_Task]:
     """Give every task its delay; a family that answers late by itself takes it as an option."""
     found: dict[int, DelayEvidence] = {}
     result = []
@@ -225,7 +269,7 @@ def _with_delay(tasks: Sequence[SearchTask], options: Options) -> list[SearchTas
         key = min(task.given.starts)
         if key not in found:
             found[key] = find_delay(task.data)
-        own = found[key] if task.family.loops_tell_delay else found[key].undecided()
+        own = found[key] if task.family.loops_tell_delay is True else found[key].undecided()
         result.append(task.delayed(usable_delay(own, task.data), own))
     return result
 
@@ -235,15 +279,13 @@ class _Choice:
     """A final fit in the units of its task, what it was chosen from and what else may be right."""
 
     fit: Fit
-    task: SearchTask
+    task: _Task
     candidates: tuple[Candidate, ...]
     notes: tuple[str, ...]
     rivals: tuple[Fit, ...]
 
 
-def _search(
-    tasks: Sequence[SearchTask], options: Options, reserve: Sequence[SearchTask]
-) -> _Choice:
+def _search(tasks: Sequence[_Task], options: Options, reserve: Sequence[_Task]) -> _Choice:
     """Choose signs, family and size and fit it; the next best if that does not converge."""
     with_overviews = _with_overviews([*tasks, *reserve], options)
     ruling = ruled(with_overviews[: len(tasks)])
@@ -251,9 +293,12 @@ def _search(
         return _only(tasks[0], ruling, options)
     contenders, refusals = compare(ruling.families, options.say)
     chosen, fit = _best(contenders, options)
-    if reserve and not leaves_only_noise(chosen.overview.data, fit):
-        contenders += in_reserve(with_overviews[len(tasks) :], chosen, options.say)
-        chosen, fit = _best(_preferred(contenders), options, (chosen, fit))
+    level = level_of(chosen.overview.data, fit) if reserve else "good"
+    if level != "good":
+        more = in_reserve(with_overviews[len(tasks) :], chosen, options.say)
+        may_win = _may_win(more, chosen, describes=level == "fair")
+        chosen, fit = _best(_preferred((*contenders, *may_win)), options, (chosen, fit))
+        contenders += more
     task = next(each for each in (*tasks, *reserve) if each.family.name == chosen.candidate.family)
     rivals = rivals_of(chosen, fit, contenders, other_signs(ruling, chosen))
     tied, scale = as_good_as_best(contenders), task.scales[1]
@@ -262,43 +307,25 @@ def _search(
     return _Choice(options.converged(fit), task, told, notes, rivals.fits)
 
 
-def _search_without_unsure_delay(
-    tasks: list[SearchTask], options: Options, reserve: list[SearchTask]
-) -> tuple[_Choice, list[SearchTask], list[SearchTask]]:
-    """Search, and once more without a delay that may be none if something is left.
+def _may_win(more: Sequence[Contender], chosen: Contender, describes: bool) -> Sequence[Contender]:
+    """Give those of a reserve that a record can prefer to what describes it.
 
-    What loops of one amplitude pass off as a delay may be the very loop that a family looks for.
+    Strokes of one amplitude say nothing of the loops inside, so closeness alone prefers none: only
+    what leaves nothing but noise with no more constants.
     """
-    unsure = any(each.delay_is_unsure() for each in tasks)
-    late: _Choice | None = None
-    try:
-        late = _search(tasks, options, reserve)
-    except NotIdentifiableError:
-        if not unsure:
-            raise
-    if late is not None and (not unsure or leaves_only_noise(late.task.data, late.fit)):
-        return late, tasks, reserve
-    options.say("without a delay")
-    prompt = [[each.without_unsure_delay() for each in all_] for all_ in (tasks, reserve)]
-    try:
-        found = _search(prompt[0], options, prompt[1])
-    except NotIdentifiableError:
-        if late is None:
-            raise
-        return late, tasks, reserve
-    if late is None or rms_left(found.task.data, found.fit) < rms_left(late.task.data, late.fit):
-        return found, prompt[0], prompt[1]
-    return late, tasks, reserve
+    if chosen.overview.shows_minor_loops or not describes:
+        return more
+    most = chosen.candidate.parameters
+    return [each for each in more if each.candidate.parameters <= most and _leaves_noise(each)]
 
 
 def _preferred(contenders: Sequence[Contender]) -> Sequence[Contender]:
     """Give those of a tie that leave only noise, if there are any; else all."""
-    quiet = [
-        each
-        for each in as_good_as_best(contenders)
-        if leaves_only_noise(each.overview.data, each.fit)
-    ]
-    return quiet or contenders
+    return [each for each in as_good_as_best(contenders) if _leaves_noise(each)] or contenders
+
+
+def _leaves_noise(contender: Contender) -> bool:
+    return level_of(contender.overview.data, contender.fit) == "good"
 
 
 def _best(
@@ -318,7 +345,7 @@ def _best(
         remaining.remove(chosen)
 
 
-def _only(task: SearchTask, ruling: Ruling, options: Options) -> _Choice:
+def _only(task: _Task, ruling: Ruling, options: Options) -> _Choice:
     """Fit the only family and size there is; the other signs of its weights may be a rival."""
     family, overview = ruling.families[0]
     fit = options.converged(_final_fit(family, overview, family.sizes()[0], options))
@@ -330,7 +357,7 @@ def _only(task: SearchTask, ruling: Ruling, options: Options) -> _Choice:
     return _Choice(fit, task, (), about_the_choice(chosen, (), rivals, task.scales[1]), rivals.fits)
 
 
-def _outlying(task: SearchTask, options: Options) -> tuple[str, ...]:
+def _outlying(task: _Task, options: Options) -> tuple[str, ...]:
     """Say which samples were left out of the fit for being far from every model."""
     if task.family.depends_on_rate:
         return ()
@@ -343,7 +370,7 @@ def _outlying(task: SearchTask, options: Options) -> tuple[str, ...]:
     )
 
 
-def _with_overviews(tasks: Sequence[SearchTask], options: Options) -> list[tuple[Family, Overview]]:
+def _with_overviews(tasks: Sequence[_Task], options: Options) -> list[tuple[Family, Overview]]:
     """Give every family its records; those that use the same share what is found out."""
     shared: dict[tuple[bool, tuple[int, ...], int], Overview] = {}
     result = []
@@ -378,7 +405,7 @@ def _final_fit(family: Family, overview: Overview, size: int, options: Options) 
     return settled(family.simplified(fit, overview, most), overview, most)
 
 
-def _polished(fit: Fit, task: SearchTask, options: Options) -> Fit:
+def _polished(fit: Fit, task: _Task, options: Options) -> Fit:
     """Go on with all samples."""
     options.say("final fit: all samples")
     overview = Overview(
@@ -390,5 +417,5 @@ def _polished(fit: Fit, task: SearchTask, options: Options) -> Fit:
     return options.converged(fit.family.simplified(polished, overview, options.max_iterations))
 
 
-def _in_given_units(fit: Fit, task: SearchTask) -> Parametrization:
+def _in_given_units(fit: Fit, task: _Task) -> Parametrization:
     return fit.parametrization.in_units(fit.solution.theta, *task.scales)

@@ -25,6 +25,7 @@ STEEPEST = 1000.0
 """Of ``dz/du`` in unloading over that at z = 0; further, the kernel's continued fraction is cut."""
 
 _SMALLEST = float(np.nextafter(0.0, 1.0))
+_LEAST_NORMAL = float(np.finfo(np.float64).tiny)
 _NAMES = ("k", "A", "beta", "gamma", "n", "phi")
 
 
@@ -247,9 +248,21 @@ class BoucWen(_BoucWen):
         return InverseBoucWen(*self._all())
 
     def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
-        """Give the factors of k, A, beta, gamma, n and phi."""
+        """Give the factors of k, A, beta, gamma, n and phi.
+
+        Raises
+        ------
+        InputError
+            If beta would be beyond the range of numbers, as for a large n and a small output.
+        """
         slope = output_scale / input_scale
-        hold = output_scale ** (1.0 - self.n) / input_scale
+        hold = _power(output_scale, 1.0 - self.n) / input_scale
+        if not _LEAST_NORMAL <= self.beta * hold < np.inf:
+            raise InputError(
+                f"n is {self.n:g}: beta and gamma go with the power {1.0 - self.n:g} of the "
+                f"output's unit, and times {output_scale:g} they leave the range of numbers; give "
+                "an output of moderate size or a smaller n"
+            )
         return np.array([slope, slope, hold, hold, 1.0, hold])
 
     def in_units(self, input_scale: float, output_scale: float) -> BoucWen:
@@ -318,3 +331,11 @@ class InverseBoucWen(_BoucWen):
 
     def _is_inverse(self) -> bool:
         return True
+
+
+def _power(base: float, exponent: float) -> float:
+    """Give a power, infinity where it has no number."""
+    try:
+        return float(base**exponent)
+    except OverflowError:
+        return float("inf")

@@ -10,6 +10,7 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from hyst.errors import InputError
 from hyst.models import Preisach
 from hyst.report.canvas import blank, drawn, with_unit
 from hyst.signals import ForcDensity
@@ -37,15 +38,23 @@ def draw_forc_diagram(
     bytes
         PNG.
 
+    Raises
+    ------
+    InputError
+        If there is nothing to draw, or something else than relays or their density.
+
     Examples
     --------
     >>> picture = draw_forc_diagram([("a model", Preisach([[1.0]], [-1.0, 1.0]))])
     >>> picture[1:4]
     b'PNG'
     """
+    if not sources:
+        raise InputError("there is no density to draw; give (heading, model or density) pairs")
     figure, axes = blank(len(sources), 1, 5.2 * len(sources), 4.2)
     maps = [(heading, *_edges_and_density(each)) for heading, each in sources]
-    largest = max(float(np.nanquantile(np.abs(density), 0.998)) for _, _, density in maps)
+    known = [np.abs(density[np.isfinite(density)]) for _, _, density in maps]
+    largest = max(float(np.quantile(each, 0.998)) if each.size else 0.0 for each in known)
     for free, (heading, edges, density) in zip(axes, maps, strict=True):
         draw_density(free, edges, density, input_unit, largest)
         free.set_title(heading)
@@ -98,5 +107,10 @@ def _edges_and_density(source: Preisach | ForcDensity) -> tuple[Array, Array]:
     if isinstance(source, Preisach):
         portrait = source.portrait()
         return portrait.thresholds, portrait.density
+    if not isinstance(source, ForcDensity):
+        raise InputError(
+            f"a {type(source).__name__} has no density of relays; give a hyst.Preisach, as the "
+            "relays of a fit are, or what hyst.signals.forc_density gives"
+        )
     step = np.diff(source.alpha)[0]
     return np.append(source.alpha - 0.5 * step, source.alpha[-1] + 0.5 * step), source.density

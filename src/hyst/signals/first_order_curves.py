@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import whole_number
-from hyst.errors import NotIdentifiableError
+from hyst.errors import InputError, NotIdentifiableError
 from hyst.signals.noise import suggest_dead_band
 from hyst.signals.record import Record
 from hyst.signals.turning_points import reversals
@@ -18,6 +18,12 @@ Array = NDArray[np.float64]
 
 NEAR_TOP = 0.05
 """Of the input's range: a descent that begins so near the highest input begins in saturation."""
+
+APART = 0.01
+"""Of the input's range: curves whose reversals lie nearer are one curve, driven again."""
+
+AGAIN = 0.1
+"""Of the mean spacing of reversals: nearer ones are no spacing."""
 
 FEWEST_CURVES = 4
 FEWEST_SAMPLES = 4
@@ -83,8 +89,10 @@ def reversal_curves(records: Record | Sequence[Record]) -> tuple[ReversalCurve, 
 
     Raises
     ------
+    InputError
+        If there is no record, or something else than records.
     NotIdentifiableError
-        If there are fewer than four.
+        If there are fewer than four, or fewer than four places where they begin.
 
     Examples
     --------
@@ -95,6 +103,11 @@ def reversal_curves(records: Record | Sequence[Record]) -> tuple[ReversalCurve, 
     [-1.0, -0.6, -0.2, 0.2, 0.6]
     """
     given = (records,) if isinstance(records, Record) else tuple(records)
+    for number, each in enumerate(given, 1):
+        if not isinstance(each, Record):
+            raise InputError(f"record {number} is {type(each).__name__}; give a hyst.Record")
+    if not given:
+        raise InputError("there is no record; give one or more")
     high = max(float(each.u.max()) for each in given)
     span = high - min(float(each.u.min()) for each in given)
     found = [curve for record in given for curve in _curves_of(record, high, span)]
@@ -104,7 +117,25 @@ def reversal_curves(records: Record | Sequence[Record]) -> tuple[ReversalCurve, 
             f"that the input came to from the top of its range); {FEWEST_CURVES} are needed, so "
             "drive them with hyst.signals.forc or hyst excite --kind forc"
         )
-    return tuple(sorted(found, key=lambda each: each.beta))
+    curves = tuple(sorted(found, key=lambda each: each.beta))
+    places = _places_of_reversal(curves, APART * span)
+    if places < FEWEST_CURVES:
+        raise NotIdentifiableError(
+            f"the {len(curves)} first-order reversal curves of the records begin at {places} "
+            f"different input{'s' if places > 1 else ''}, the lowest at {curves[0].beta:.6g}; "
+            f"{FEWEST_CURVES} are needed, so drive them with hyst.signals.forc or hyst excite "
+            "--kind forc"
+        )
+    return curves
+
+
+def _places_of_reversal(curves: Sequence[ReversalCurve], apart: float) -> int:
+    """Count the reversals of curves in order, those nearer than so to one counted left out."""
+    count, last = 0, -np.inf
+    for each in curves:
+        if each.beta - last >= apart:
+            count, last = count + 1, each.beta
+    return count
 
 
 def _curves_of(record: Record, high: float, span: float) -> list[ReversalCurve]:
@@ -155,7 +186,7 @@ def forc_density(
     Raises
     ------
     InputError
-        If a count is out of range.
+        If a count is out of range, or all curves begin at one input.
 
     Notes
     -----
@@ -173,13 +204,14 @@ def forc_density(
     """
     count = whole_number(points, "points", 10, 400)
     width = whole_number(smoothing, "smoothing", 1, 20)
+    spacing = _spacing(curves)
     betas = np.array([each.beta for each in curves])
     alpha_of = np.concatenate([each.u for each in curves])
     beta_of = np.repeat(betas, [each.u.size for each in curves])
     y = np.concatenate([each.y for each in curves])
     low, high = float(betas.min()), float(alpha_of.max())
     grid = np.linspace(low, high, count)
-    reach = width * max(float(np.median(np.diff(np.unique(betas)))), (high - low) / count)
+    reach = width * max(spacing, (high - low) / count)
     density = np.full((count, count), np.nan)
     for j, beta in enumerate(grid):
         near = np.abs(beta_of - beta) <= reach
@@ -187,6 +219,21 @@ def forc_density(
             rows = near & (np.abs(alpha_of - grid[i]) <= reach)
             density[i, j] = _mixed(alpha_of[rows] - grid[i], beta_of[rows] - beta, y[rows], reach)
     return ForcDensity(grid, grid, density)
+
+
+def _spacing(curves: Sequence[ReversalCurve]) -> float:
+    """Give the usual distance between neighbouring reversals."""
+    if not isinstance(curves, Sequence) or not all(isinstance(c, ReversalCurve) for c in curves):
+        raise InputError("these are no curves; give what hyst.signals.reversal_curves gives")
+    betas = np.sort([each.beta for each in curves])
+    steps = np.diff(betas)
+    steps = steps[steps > AGAIN * (betas[-1] - betas[0]) / betas.size] if betas.size else steps
+    if not steps.size:
+        raise InputError(
+            f"{len(curves)} curves begin at one input, so none shows how they change with it; give "
+            "those of several reversals"
+        )
+    return float(np.median(steps))
 
 
 def _mixed(a: Array, b: Array, y: Array, reach: float) -> float:

@@ -148,8 +148,8 @@ def test_bad_records_are_refused() -> None:
     for order in ("many", 2.5, True, 0):
         with pytest.raises(InputError, match=f"state_order is {order!r}"):
             identified(record_of(PI, 0.0), hysteresis="linear", state_order=order)
-    with pytest.raises(InputError, match="hysteresis is 'preisach'"):
-        identified(record_of(PI, 0.0), hysteresis="preisach")
+    with pytest.raises(InputError, match="hysteresis is 'duhem'"):
+        identified(record_of(PI, 0.0), hysteresis="duhem")
     with pytest.raises(InputError, match="fir_order"):
         identified(Record(U[:80], U[:80], DT), fir_order=64)
     tone = np.sin(0.1 * np.arange(4000))

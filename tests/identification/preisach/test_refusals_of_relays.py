@@ -68,6 +68,13 @@ def test_too_few_reversal_curves_are_refused() -> None:
         identify_from_reversal_curves(record([-1.0, 1.0, 0.0, 1.0, -0.5, 1.0, -1.0, 1.0]))
 
 
+@pytest.mark.parametrize("smoothness", [-1.0, 101.0, 1e300])
+def test_a_strength_out_of_range_is_refused(smoothness: float) -> None:
+    drive = hyst.signals.forc(0.01, -1.0, 1.0, 1.0, curves=6)
+    with pytest.raises(InputError, match="from 0 to 100"):
+        identify_from_reversal_curves(hyst.Record(drive.u, drive.u, 0.01), smoothness=smoothness)
+
+
 def test_curves_of_an_output_that_rests_are_refused() -> None:
     drive = hyst.signals.forc(0.01, -1.0, 1.0, 1.0, curves=6)
     with pytest.raises(NotIdentifiableError, match="rests"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import scipy.optimize
@@ -27,6 +28,13 @@ NARROW = 0.1
 """Samples: an interval no wider has nothing to settle."""
 
 LAGS_TRIED = 7
+
+OWN = "own"
+"""Where the loops of the family itself tell the delay."""
+
+OWN_LAGS_TRIED, OWN_STEP, OWN_ALIKE = 11, 4, 0.9
+"""Of such loops: lags tried at first, how far about one that was found, and the residual, over that
+without a lag, up to which one is taken; they may change with the lag as well."""
 
 FAR = 20.0
 """Variance ratio of one constant: noise reaches it once in a hundred thousand times."""
@@ -57,6 +65,70 @@ def usable_delay(evidence: DelayEvidence, data: Data) -> float:
     half = min(len(r) - s for r, s in zip(data.records, data.starts, strict=True)) // 2
     delay = max(-half, min(evidence.delay, half))
     return math.trunc(delay) if float(delay).is_integer() else delay
+
+
+def told_by_family(data: Data, fit: Fit, evidence: DelayEvidence) -> tuple[float, DelayEvidence]:
+    """Let a family that describes the records choose the delay, and say what is known of it then.
+
+    Parameters
+    ----------
+    data, fit, evidence
+        As of ``settled_by_family``.
+    """
+    if fit.family.loops_tell_delay != OWN:
+        return settled_by_family(data, fit, evidence), evidence
+    known = _told_by_own_loops(data, fit, evidence)
+    return (data.lag, evidence) if known is None else (known.delay, known)
+
+
+def _told_by_own_loops(data: Data, fit: Fit, evidence: DelayEvidence) -> DelayEvidence | None:
+    """Find the lag at which the family leaves least, where it leaves more than noise without.
+
+    Of strokes of one amplitude none is taken: a loop of any width is as good there.
+    """
+    now, noise = data.delay, evidence.noise_rms or 0.0
+    limit = math.floor(evidence.limit)
+    costs = {now: _rms_of_searched(data, fit, now)}
+    if limit < 1 or costs[now] <= NOISE_ALIKE * noise:
+        return None
+    if evidence.one_amplitude:
+        return evidence.undecided() if now else None
+    step = math.ceil(2 * limit / (OWN_LAGS_TRIED - 1))
+    first = np.linspace(-limit, limit, OWN_LAGS_TRIED).tolist()
+    if now:  # found before, on a grid that was made for another lag
+        step, first = OWN_STEP, [0, now - OWN_STEP, now + OWN_STEP]
+    for lag in {round(each) for each in first if abs(each) <= limit} - {now}:
+        costs[lag] = _rms_of_searched(data, fit, lag)
+    while step > 1:
+        step = (step + 1) // 2
+        best = min(costs, key=costs.__getitem__)
+        for lag in (best - step, best + step):
+            if abs(lag) <= limit and lag not in costs:
+                costs[lag] = _rms_of_searched(data, fit, lag)
+    best = min(costs, key=costs.__getitem__)
+    least = costs[best]
+    without = costs.get(0, math.inf)
+    if best == now:
+        return None
+    if least > OWN_ALIKE * without or not _far_better(least, without, data):
+        return evidence.undecided() if now else None
+    worse = [lag for lag, cost in costs.items() if _far_better(least, cost, data)]
+    return replace(
+        evidence,
+        delay=float(best),
+        low=float(max((lag for lag in worse if lag < best), default=-limit)),
+        high=float(min((lag for lag in worse if lag > best), default=limit)),
+        excludes_zero=True,
+        rate_or_lag=False,
+    )
+
+
+def _rms_of_searched(data: Data, fit: Fit, lag: int) -> float:
+    searched = fit.family.searched(data.delayed(lag))
+    problem = fit.problem(searched)
+    theta = fit.family.solve(problem, fit.solution.theta, REFIT_ITERATIONS).theta
+    residual = problem.residual(theta)[: searched.measured().size]
+    return math.sqrt(float(residual @ residual) / residual.size)
 
 
 def settled_by_family(data: Data, fit: Fit, evidence: DelayEvidence) -> float:

@@ -23,6 +23,7 @@ from hyst.identification.families.butterfly_relays import (
 from hyst.identification.families.butterfly_starts import best_guesses, residual_of_a_curve
 from hyst.identification.families.estimates import Estimates
 from hyst.identification.families.family import Family, Fit, Start, Words
+from hyst.identification.families.mapped_plays import KNOTS_OPTION
 from hyst.identification.families.option import (
     AUTO,
     choice,
@@ -109,7 +110,8 @@ class Butterfly(Family):
 
     plays: Any = option(AUTO, whole_number_or_auto(1, MOST_PLAYS, "Number of plays."))
     knots: Any = option(
-        20, whole_number(1, MOST_KNOTS, "Knots of the map of the input before the plays.")
+        20,
+        replace(whole_number(1, MOST_KNOTS, KNOTS_OPTION.help), metavar=KNOTS_OPTION.metavar),
     )
     inside: Any = option(
         PLAYS,

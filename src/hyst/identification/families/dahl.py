@@ -72,7 +72,7 @@ class Dahl(Family):
 
     exponent: Any = option(
         1.0,
-        Option(_as_exponent, "Shape n of the rise to sliding, or free.", _read_exponent, "N|free"),
+        Option(_as_exponent, "Shape n of the rise to a limit, or free.", _read_exponent, "N|free"),
     )
 
     def least_parameters(self, size: int) -> int:

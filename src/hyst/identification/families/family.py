@@ -74,8 +74,8 @@ class Family(ABC):
     """Whether its delay is worth judging by the family itself."""
     settles_delay: ClassVar[bool] = True
     """Whether it may choose among the delays left possible, by a fit for each of them."""
-    loops_tell_delay: ClassVar[bool] = True
-    """Whether a delay that loops of a general kind show is taken; else it is 0 unless given."""
+    loops_tell_delay: ClassVar[bool | str] = True
+    """Whether a delay that loops of a general kind show is taken, or its ``"own"``; else 0."""
     answers_late: ClassVar[bool] = False
     """Whether the delay of the output is part of the model, so that none is looked for before."""
     depends_on_rate: ClassVar[bool] = False

@@ -175,7 +175,8 @@ class LuGre(Family):
         fits = [each._refitted(fit, overview, max_iterations) for each in simpler]
         plainest = fits[0]
         bounded = [each for each in fits[1:] if not _ends_on_a_bound(each)]
-        return min((plainest, *bounded), key=_price)
+        rounding = fit.problem(overview.data, overview.kept).negligible
+        return min((plainest, *bounded), key=lambda each: _price(each, rounding))
 
     def _refitted(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
         """Fit these terms from what a richer fit found, and from the best guess."""
@@ -290,9 +291,9 @@ def _ends_on_a_bound(fit: Fit) -> bool:
     return any(place in (_FC, _FS, _VS, _FV, _VV) for place in _on_bounds(fit))
 
 
-def _price(fit: Fit) -> float:
-    """Give the cost of a fit with what its terms must be worth."""
-    return fit.solution.cost * math.pow(WORTH, 0.5 * fit.parametrization.size)
+def _price(fit: Fit, rounding: float) -> float:
+    """Give the cost of a fit with what its terms must be worth; rounding is worth none."""
+    return max(fit.solution.cost, rounding) * math.pow(WORTH, 0.5 * fit.parametrization.size)
 
 
 _ON_BOUND = {

@@ -69,7 +69,7 @@ def _read_knots(text: str, name: str) -> Any:
 
 KNOTS_OPTION = Option(
     _as_knots,
-    "Knots of the map; of one before the plays also their places, as -5,4.",
+    "Knots of the map; of an envelope of any shape also their places, as -5,4.",
     _read_knots,
     "N|K1,K2,..",
 )

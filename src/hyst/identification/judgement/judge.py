@@ -60,8 +60,8 @@ def judge(data: Data, fit: Fit, diagnosis: Diagnosis, metrics: Mapping[str, Metr
     return _capped(level, first, told, before, seen)
 
 
-def leaves_only_noise(data: Data, fit: Fit) -> bool:
-    """Tell whether a fit leaves its records' own noise, or less than is worth a word.
+def level_of(data: Data, fit: Fit) -> Level:
+    """Judge a fit by what it leaves alone: ``good`` if that is noise or not worth a word.
 
     Parameters
     ----------
@@ -74,8 +74,8 @@ def leaves_only_noise(data: Data, fit: Fit) -> bool:
     remainder = remainder_of(data, fit, span)
     error = math.sqrt(float(np.mean(remainder.error**2)))
     if error <= SMALLEST_PART * remainder.output_range:
-        return True
-    return _levelled(remainder, taken_apart(remainder), error)[0] == "good"
+        return "good"
+    return _levelled(remainder, taken_apart(remainder), error)[0]
 
 
 def _exact(remainder: Remainder, error: float) -> tuple[Level, tuple[str, ...], Told]:

@@ -223,6 +223,8 @@ class Preisach(Relays):
 
     name = "preisach"
     in_reserve = True
+    loops_tell_delay = "own"  # general ones do not saturate, and narrow a loop by a wrong delay
+    explains = ("output ahead of input",)  # so its loops look to them
     words = Words(
         full_name="Preisach model",
         equations=(

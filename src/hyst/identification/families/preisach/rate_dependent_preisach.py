@@ -72,6 +72,7 @@ class RateDependentPreisach(Relays):
     methods = ("learning",)
     depends_on_rate: ClassVar[bool] = True
     settles_delay: ClassVar[bool] = False
+    loops_tell_delay = False
     explains = ("rate dependence", "dynamics")  # its loops widen as the rate grows
     words = Words(
         full_name="rate-dependent Preisach model",
