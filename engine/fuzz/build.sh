@@ -46,6 +46,7 @@ grep -l '^const hyst_kind hyst_' core/src/*.c | sed 's|core/src/\(.*\)|#include 
     > "$to/core_kinds.inc"
 echo "#define HYST_ALL_KINDS $(cat "$to/all_kinds")" >> "$to/core_kinds.inc"
 ls engine/kinds/*.cpp | sed 's|engine/\(.*\)|#include "\1"|' > "$to/kinds.inc"
+ls engine/dual/rules/*.hpp | sed 's|engine/\(.*\)|#include "\1"|' > "$to/rules.inc"
 tangents() {
     source=$1 count=$2 name=tangents_$3
     shift 3
