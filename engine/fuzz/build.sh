@@ -40,7 +40,8 @@ for source in engine/simd/kernels.cpp engine/*.cpp engine/records/*.cpp engine/t
     engine/kinds/*.cpp engine/kinds/fast/*.cpp engine/dual/derivative.cpp; do
     $cxx $strict -c "$source" -o "$to/$(echo "$source" | tr / _).o"
 done
-# The kernel's own derivative, as engine/dual/CMakeLists.txt has it.
+# The kernel's own derivative, as engine/dual/CMakeLists.txt has it; to follow every tangent for a
+# debugger would take the compiler minutes a file.
 sed -n 's/^const hyst_kind \(hyst_[a-z_]*\) = .*/\&\1,/p' core/src/*.c | tr '\n' ' ' > "$to/all_kinds"
 grep -l '^const hyst_kind hyst_' core/src/*.c | sed 's|core/src/\(.*\)|#include "\1"|' \
     > "$to/core_kinds.inc"
@@ -50,7 +51,7 @@ ls engine/dual/rules/*.hpp | sed 's|engine/\(.*\)|#include "\1"|' > "$to/rules.i
 tangents() {
     source=$1 count=$2 name=tangents_$3
     shift 3
-    $cxx $strict -Wno-psabi -Icore/src -Iengine -I"$to" -DHYST_TANGENTS="$count" \
+    $cxx $strict -g0 -Wno-psabi -Icore/src -Iengine -I"$to" -DHYST_TANGENTS="$count" \
         -DHYST_KINDS="$name" "$@" -c "engine/dual/$source.cpp" -o "$to/$name.o"
 }
 for count in 4 8 16; do
