@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.io
+from benchmarks.measured_tasks import tasks
 from numpy.typing import NDArray
 
 import hyst
@@ -84,3 +85,11 @@ def test_results_do_not_depend_on_the_units_of_the_magnet(measured_data: Path) -
     # standard errors and whose loop tells a, c and alpha apart badly; their outputs agree better.
     oersted = constants(4e-3 * np.pi, 1e4)
     np.testing.assert_allclose(oersted[0], plain[0], rtol=0.02)
+
+
+@pytest.mark.usefixtures("measured_data")
+def test_auto_ends_on_two_loops_that_determine_few_relays() -> None:
+    """Relays of a grid that the record hardly turns: exchanges of their bounds went round."""
+    task = next(each for each in tasks() if each.name == "MnZn_ferrite 2 loops")
+    found = hyst.identify(list(task.training), **task.options)
+    assert found.metrics["training"].rms_percent < 2.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy.optimize
 
 import hyst
 from hyst.identification.families.preisach.cells import Cells, adapted_cells, even_cells
@@ -89,3 +90,19 @@ def test_the_bounded_quadratic_meets_its_conditions(seed: int) -> None:
     assert (x >= lower).all()
     assert (x <= upper).all()
     assert 0 < inside.sum() < 40
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_matrix_that_determines_little_still_ends_at_the_least(seed: int) -> None:
+    """Columns that repeat others to rounding: many solutions, one least residual."""
+    rng = np.random.default_rng(seed)
+    few = np.abs(rng.normal(size=(60, 25)))
+    columns = few @ np.abs(rng.normal(size=(25, 150)))
+    columns = np.hstack([columns, columns * (1.0 + 1e-13 * rng.normal(size=columns.shape))])
+    y = columns @ np.maximum(rng.normal(size=300), 0.0) + rng.normal(size=60)
+    lower, upper = np.zeros(300), np.full(300, np.inf)
+    x = least_within(columns.T @ columns, columns.T @ y, lower, upper, lower)
+    least = scipy.optimize.nnls(columns, y)[1]
+    # Both are residuals of matrices known to 1e-13 whose condition is beyond 1e12.
+    assert np.linalg.norm(columns @ x - y) <= least * (1.0 + 1e-4)
+    assert (x >= 0.0).all()

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hyst.errors import NotIdentifiableError
+from hyst.errors import NotIdentifiableError, SolverError
 from hyst.identification.choice.cross_validation import Score, cross_validate, fewest_left
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.fit.bounded_least_squares import CONVERGED, Solution
@@ -224,7 +224,7 @@ def in_reserve(
             near = first_fit(family, overview, largest).solution.cost
             if near <= NEAR**2 * chosen.fit.solution.cost:
                 contenders += _grow(family, overview, progress)
-        except NotIdentifiableError:
+        except (NotIdentifiableError, SolverError):
             continue
     return tuple(contenders)
 

@@ -21,10 +21,14 @@ PATIENCE = 3
 """Exchanges of all at once that may fail to lower the number of wrong unknowns."""
 
 ROUNDING = 1e-11
-"""Of an unknown beside the largest one, or of a gradient beside its parts: nothing but rounding."""
+"""Of an unknown beside the largest one, or of a gradient beside its parts: at first no more."""
 
 RIDGE = 1e-12
 """Of the scaled matrix: it keeps what the data do not determine numerically definite."""
+
+LOOSER, LOOSEST = 10.0, 1e-6
+"""By how much rounding may be more after as many exchanges as there are unknowns, and the most: of
+a matrix that determines little, exchanges within its rounding would go round for ever."""
 
 MOST_EXCHANGES = 20
 """Times the number of unknowns."""
@@ -63,8 +67,9 @@ def least_within(normal: Array, moment: Array, lower: Array, upper: Array, first
     b, low, high = moment / scale, lower * scale, upper * scale
     side = np.where(first <= lower, -1, np.where(first >= upper, 1, 0))
     fewest, patience = side.size + 1, PATIENCE
-    for _ in range(MOST_EXCHANGES * (side.size + 1)):
-        x, wrong = _exchange(a, b, low, high, side)
+    for number in range(MOST_EXCHANGES * (side.size + 1)):
+        rounding = min(ROUNDING * LOOSER ** (number // (side.size + 1)), LOOSEST)
+        x, wrong = _exchange(a, b, low, high, side, rounding)
         count = int(np.count_nonzero(wrong != side))
         if count == 0:
             # What is held lies on its bound to the last bit: others ask by comparing.
@@ -83,7 +88,7 @@ def least_within(normal: Array, moment: Array, lower: Array, upper: Array, first
 
 
 def _exchange(
-    a: Array, b: Array, low: Array, high: Array, side: NDArray[np.int_]
+    a: Array, b: Array, low: Array, high: Array, side: NDArray[np.int_], rounding: float
 ) -> tuple[Array, NDArray[np.int_]]:
     """Solve for the free unknowns, and say on which side each of all should be: -1, 0 or 1."""
     free = side == 0
@@ -93,12 +98,12 @@ def _exchange(
     if free.any():
         factor = scipy.linalg.cho_factor(a[np.ix_(free, free)], check_finite=False)
         x[free] = scipy.linalg.cho_solve(factor, right, check_finite=False)
-    slack = ROUNDING * float(np.abs(x).max(initial=0.0))
+    slack = rounding * float(np.abs(x).max(initial=0.0))
     should = np.zeros_like(side)
     should[free & (x < low - slack)] = -1
     should[free & (x > high + slack)] = 1
     gradient, parts = a @ x - b, np.abs(b) + np.abs(a) @ np.abs(x)
-    pushed = np.abs(gradient) > ROUNDING * parts
+    pushed = np.abs(gradient) > rounding * parts
     should[(side < 0) & ~(pushed & (gradient < 0.0))] = -1
     should[(side > 0) & ~(pushed & (gradient > 0.0))] = 1
     return x, should
