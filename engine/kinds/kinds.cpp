@@ -8,6 +8,7 @@
     ROW(creep)                      \
     ROW(dahl)                       \
     ROW(dead_zone)                  \
+    ROW(degrading_bouc_wen)         \
     ROW(direction_dead_zone)        \
     ROW(generalized_maxwell_slip)   \
     ROW(jiles_atherton)             \

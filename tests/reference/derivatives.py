@@ -15,6 +15,7 @@ WITHOUT_OWN = {
     "coleman_hodgdon",
     "creep",
     "dahl",
+    "degrading_bouc_wen",
     "generalized_maxwell_slip",
     "jiles_atherton",
     "lugre",

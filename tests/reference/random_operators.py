@@ -32,6 +32,7 @@ from hyst.models import (
     ColemanHodgdon,
     Creep,
     Dahl,
+    DegradingBoucWen,
     ExponentialCurve,
     GeneralizedMaxwellSlip,
     Iwan,
@@ -247,6 +248,20 @@ bouc_wens = st.builds(
     st.floats(-0.5, 0.5),
     st.just(0.0),
 )
+degrading_bouc_wens = st.builds(
+    lambda k, a, beta, share, n, nu, eta, zeta, p: DegradingBoucWen(
+        k, a, beta, share * beta, n, nu, eta, zeta, p, 0.1, 0.5, 0.02, 0.5
+    ),
+    few,
+    few,
+    few,
+    st.floats(-0.75, 1.0),
+    st.sampled_from((1.0, 2.0)) | st.floats(1.0, 4.0),
+    st.floats(0.0, 0.02),
+    st.floats(0.0, 0.1),
+    st.floats(0.0, 0.49),
+    st.floats(0.0, 1.0),
+)
 # Poles and zeros inside the unit circle.
 lags = st.builds(
     lambda zero, poles, gain, delay: LinearDynamics.from_zeros_poles_gain(
@@ -343,6 +358,10 @@ RANDOM: dict[str, Operators] = {
     "inverse-bouc-wen": bouc_wens.filter(lambda model: model.traits().invertible).map(
         lambda model: model.inverse()
     ),
+    "degrading-bouc-wen": degrading_bouc_wens,
+    "inverse-degrading-bouc-wen": degrading_bouc_wens.filter(
+        lambda model: model.traits().invertible
+    ).map(lambda model: model.inverse()),
     "dahl": st.builds(Dahl, few, few, st.floats(0.3, 3.0), numbers(-1.0, 1.0)),
     "creep": creeps(1.0),
     "inverse-creep": creeps(0.5)
