@@ -32,10 +32,12 @@ from hyst.models import (
     ColemanHodgdon,
     Creep,
     Dahl,
+    Delay,
     ExponentialCurve,
     GeneralizedMaxwellSlip,
     Iwan,
     JilesAtherton,
+    Lag,
     LinearDynamics,
     LuGre,
     MasingOperator,
@@ -313,6 +315,10 @@ def magnets(draw: st.DrawFn, outputs: st.SearchStrategy[str]) -> JilesAtherton:
     return JilesAtherton(saturation, shape, pinning, reversible, coupling, variant, output, 0.5)
 
 
+first_order = st.builds(
+    Lag, st.floats(1e-5, 0.2), st.just(0.01), st.sampled_from(("first", "zero"))
+)
+
 RANDOM: dict[str, Operators] = {
     "affine": affines,
     "play": st.builds(Play, numbers(0.0, 5.0), numbers(-4.0, 4.0)),
@@ -348,6 +354,12 @@ RANDOM: dict[str, Operators] = {
     "inverse-creep": creeps(0.5)
     .filter(lambda creep: creep.is_invertible())
     .map(lambda creep: creep.inverse()),
+    "delay": st.builds(Delay, numbers(0.0, 5.0), st.sampled_from((0.01, 1.0))),
+    "inverse-delay": st.builds(Delay, st.floats(0.0, 0.24), st.just(0.01)).map(
+        lambda delay: delay.inverse()
+    ),
+    "lag": first_order,
+    "inverse-lag": first_order.map(lambda lag: lag.inverse()),
     # A Coulomb force beyond every input of the contracts.
     "inverse-dahl": st.builds(Dahl, few, st.floats(1e3, 1e4), st.floats(1.0, 3.0)).map(
         lambda friction: friction.inverse()
