@@ -196,7 +196,7 @@ class Delay(_Late):
         """Give 1: the output is a mean of two inputs."""
         return 1.0
 
-    def inverse(self) -> InverseDelay:
+    def exact_inverse(self) -> InverseDelay:
         """Give the exact inverse of a delay of less than half a sample.
 
         Raises
@@ -265,7 +265,7 @@ class InverseDelay(_Late):
         """Give ``1 / (1 - 2 f)``, the sum of the absolute impulse response."""
         return 1.0 / (1.0 - 2.0 * self.samples)
 
-    def inverse(self) -> Delay:
+    def exact_inverse(self) -> Delay:
         """Give the delay."""
         return Delay(self.samples, self.dt)
 

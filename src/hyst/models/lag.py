@@ -190,7 +190,7 @@ class Lag(_FirstOrder):
         """Give 1: the output is a mean of what the input was."""
         return 1.0
 
-    def inverse(self) -> InverseLag:
+    def exact_inverse(self) -> InverseLag:
         """Give the exact inverse; its only zero, ``-b_1 / b_0``, lies inside the unit circle.
 
         What is measured of y is made larger by up to ``InverseLag.lipschitz_constant()``: the
@@ -238,7 +238,7 @@ class InverseLag(_FirstOrder):
         sum_of_both = 1.0 + math.exp(-x)
         return sum_of_both / _damping(x, self.hold) * (1.0 + 1e-9)
 
-    def inverse(self) -> Lag:
+    def exact_inverse(self) -> Lag:
         """Give the lag."""
         return Lag(self.time_constant, self.dt, self.hold)
 
