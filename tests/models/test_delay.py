@@ -58,7 +58,9 @@ def test_at_another_sample_time_it_keeps_its_time() -> None:
     delay = hyst.Delay(2.5, DT)
     assert delay.at_sample_time(2e-3) == hyst.Delay(1.25, 2e-3)
     assert delay.at_sample_time(DT) is delay
-    assert delay.seconds == 2.5e-3
+    counted = hyst.Delay(2.5)
+    assert counted.dt is None
+    assert counted.at_sample_time(2e-3) is counted
 
 
 def test_a_fit_may_move_it_within_its_whole_sample() -> None:

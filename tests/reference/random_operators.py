@@ -30,14 +30,11 @@ from hyst.models import (
     BoucWen,
     Butterfly,
     ColemanHodgdon,
-    Creep,
     Dahl,
-    Delay,
     ExponentialCurve,
     GeneralizedMaxwellSlip,
     Iwan,
     JilesAtherton,
-    Lag,
     LinearDynamics,
     LuGre,
     MasingOperator,
@@ -55,25 +52,15 @@ from hyst.models import (
 )
 from hyst.models.jiles_atherton import VARIANTS
 from reference.examples import EXAMPLES
+from reference.random_numbers import numbers
+from reference.random_time import WITH_TIME
 
 Array = NDArray[np.float64]
 Operators = st.SearchStrategy[Operator]
 
 
-def numbers(low: float, high: float) -> st.SearchStrategy[float]:
-    lattice = st.integers(int(4 * low), int(4 * high)).map(lambda quarters: quarters / 4.0)
-    return lattice | st.floats(low, high)
-
-
 def signals(low: float = -8.0, high: float = 8.0, most: int = 16) -> st.SearchStrategy[Array]:
     return st.lists(numbers(low, high), min_size=1, max_size=most).map(np.array)
-
-
-@st.composite
-def creeps(draw: st.DrawFn, most: float) -> Creep:
-    times = draw(st.lists(st.floats(1e-3, 1e3), max_size=4))
-    weights = [draw(numbers(-0.5, most)) for _ in times]
-    return Creep(weights, times, 0.01, rest=draw(numbers(-2.0, 2.0)))
 
 
 @st.composite
@@ -315,10 +302,6 @@ def magnets(draw: st.DrawFn, outputs: st.SearchStrategy[str]) -> JilesAtherton:
     return JilesAtherton(saturation, shape, pinning, reversible, coupling, variant, output, 0.5)
 
 
-first_order = st.builds(
-    Lag, st.floats(1e-5, 0.2), st.just(0.01), st.sampled_from(("first", "zero"))
-)
-
 RANDOM: dict[str, Operators] = {
     "affine": affines,
     "play": st.builds(Play, numbers(0.0, 5.0), numbers(-4.0, 4.0)),
@@ -350,16 +333,7 @@ RANDOM: dict[str, Operators] = {
         lambda model: model.inverse()
     ),
     "dahl": st.builds(Dahl, few, few, st.floats(0.3, 3.0), numbers(-1.0, 1.0)),
-    "creep": creeps(1.0),
-    "inverse-creep": creeps(0.5)
-    .filter(lambda creep: creep.is_invertible())
-    .map(lambda creep: creep.inverse()),
-    "delay": st.builds(Delay, numbers(0.0, 5.0), st.sampled_from((0.01, 1.0))),
-    "inverse-delay": st.builds(Delay, st.floats(0.0, 0.24), st.just(0.01)).map(
-        lambda delay: delay.inverse()
-    ),
-    "lag": first_order,
-    "inverse-lag": first_order.map(lambda lag: lag.inverse()),
+    **WITH_TIME,
     # A Coulomb force beyond every input of the contracts.
     "inverse-dahl": st.builds(Dahl, few, st.floats(1e3, 1e4), st.floats(1.0, 3.0)).map(
         lambda friction: friction.inverse()

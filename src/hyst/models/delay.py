@@ -30,14 +30,15 @@ class _Late(Operator):
     """What a delay and its inverse have in common: all constants."""
 
     samples: float
-    sample_time: float
+    sample_time: float | None
 
-    def __init__(self, samples: float, dt: float) -> None:
+    def __init__(self, samples: float, dt: float | None = None) -> None:
         late = as_not_negative(samples, "samples", "by how many samples it is late")
         if not self._allows(late):
             raise InputError(self._refusal(late))
         object.__setattr__(self, "samples", late)
-        object.__setattr__(self, "sample_time", as_sample_time(dt))
+        step = None if dt is None else as_sample_time(dt)
+        object.__setattr__(self, "sample_time", step)
 
     @abstractmethod
     def _allows(self, samples: float) -> bool:
@@ -48,8 +49,8 @@ class _Late(Operator):
         """Say why there is none."""
 
     @property
-    def dt(self) -> float:
-        """The sample time, seconds."""
+    def dt(self) -> float | None:
+        """The sample time, seconds; None if any will do."""
         return self.sample_time
 
     @property
@@ -57,18 +58,17 @@ class _Late(Operator):
         """The whole samples of the delay."""
         return int(self.samples)
 
-    @property
-    def seconds(self) -> float:
-        """The delay, seconds."""
-        return self.samples * self.dt
-
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({self.samples!r}, dt={self.dt!r})"
+        of = "" if self.dt is None else f", dt={self.dt!r}"
+        return f"{type(self).__name__}({self.samples!r}{of})"
 
     def at_sample_time(self, dt: float) -> Self:
-        """Give the same time of delay for records of another sample time."""
-        step = as_sample_time(dt)
-        return self if step == self.dt else type(self)(self.seconds / step, step)
+        """Give the same time of delay for records of another sample time.
+
+        Without a sample time of its own the delay is so many samples of any record.
+        """
+        step, own = as_sample_time(dt), self.dt
+        return self if own is None or step == own else type(self)(self.samples * own / step, step)
 
     def initial_state(self) -> Array:
         """Give the place of the next sample, none held, and the memory of them, shape (n + 3,)."""
@@ -114,8 +114,9 @@ class _Late(Operator):
         return NOTHING
 
     def to_dict(self) -> dict[str, Any]:
-        """Give kind, delay and sample time."""
-        return {"kind": self.kind, "samples": self.samples, "dt": self.dt}
+        """Give kind, delay and, where there is one, the sample time."""
+        more = {} if self.dt is None else {"dt": self.dt}
+        return {"kind": self.kind, "samples": self.samples, **more}
 
     @classmethod
     def from_dict(cls, data: dict[str, Any]) -> Self:
@@ -126,7 +127,7 @@ class _Late(Operator):
         InputError
             If an entry is missing, unknown or not allowed.
         """
-        return cls(**entries(data, ("samples", "dt")))
+        return cls(**entries(data, ("samples",), ("dt",)))
 
     @abstractmethod
     def _is_inverse(self) -> bool:
@@ -151,7 +152,8 @@ class Delay(_Late):
     samples
         n + f, from 0 to 100,000.
     dt
-        Sample time, s. At another one (``at_sample_time``) the delay keeps its time.
+        Sample time, s; None for a delay of so many samples, whatever they last. At another one
+        (``at_sample_time``) the delay keeps its time.
 
     Raises
     ------
