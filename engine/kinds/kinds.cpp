@@ -3,11 +3,13 @@
 
 #define EACH_KIND(ROW)              \
     ROW(affine)                     \
+    ROW(affine_solved)              \
     ROW(bouc_wen)                   \
     ROW(coleman_hodgdon)            \
     ROW(creep)                      \
     ROW(dahl)                       \
     ROW(dead_zone)                  \
+    ROW(dead_zone_solved)           \
     ROW(direction_dead_zone)        \
     ROW(generalized_maxwell_slip)   \
     ROW(jiles_atherton)             \
@@ -16,6 +18,7 @@
     ROW(maxwell_slip)               \
     ROW(memory_element)             \
     ROW(pi)                         \
+    ROW(pi_solved)                  \
     ROW(play)                       \
     ROW(preisach)                   \
     ROW(rate_dependent_pi)          \
