@@ -14,6 +14,7 @@ from threadpoolctl import threadpool_limits
 from hyst.diagnosis import Diagnosis
 from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
 from hyst.errors import HystError
+from hyst.identification.choice.selection import settled
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.registry import chosen_families
 from hyst.identification.fit.bounded_least_squares import CONVERGED
@@ -192,7 +193,10 @@ def _refitted(value: _Value, layout: Found, options: Options) -> _Fitted:
     overview = Overview(data, layout.data.lag, rates_matter=family.depends_on_rate)
     problem = layout.fit.problem(overview.data, overview.kept)
     solution = family.solve(problem, layout.fit.solution.theta, options.max_iterations)
-    fit = options.converged(replace(layout.fit, solution=solution))
+    near = family.finish(replace(layout.fit, solution=solution), overview, options.max_iterations)
+    if near.parametrization is not layout.fit.parametrization:  # another layout
+        near = replace(layout.fit, solution=solution)
+    fit = options.converged(settled(near, overview, options.max_iterations))
     return _Fitted(value, overview.data, fit)
 
 
