@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hyst.errors import NotInvertibleError
 from hyst.models.creep import Creep
+from hyst.models.maxwell_slip import MaxwellSlip
 from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii
 from hyst.models.schedule_run import ScheduledSystem
 from hyst.models.schedule_stages import moving_places, with_kind
@@ -134,7 +135,9 @@ def _solved_stage(leaves: Sequence[Operator], scheduled: Scheduled) -> list[_Sol
     if isinstance(first, DeadZone):
         _require_monotone_map(leaves, scheduled)
         return [_Solved(leaf, "dead_zone_solved") for leaf in leaves]
-    if isinstance(first, PrandtlIshlinskii):
+    if isinstance(first, MaxwellSlip):
+        leaves = [leaf.as_plays() for leaf in leaves if isinstance(leaf, MaxwellSlip)]
+    if isinstance(leaves[0], PrandtlIshlinskii):
         _require_monotone_plays(leaves, scheduled)
         return [_Solved(leaf, "pi_solved") for leaf in leaves]
     if isinstance(first, Creep) and not any(

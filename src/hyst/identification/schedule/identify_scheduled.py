@@ -17,7 +17,8 @@ from hyst.errors import HystError
 from hyst.identification.choice.selection import settled
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.registry import chosen_families
-from hyst.identification.fit.bounded_least_squares import CONVERGED
+from hyst.identification.fit.bounded_least_squares import Problem
+from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.fit.problem import model_output
 from hyst.identification.options import Options, silent
 from hyst.identification.record_use.cleaned import Cleaned, as_drift, cleaned
@@ -33,7 +34,7 @@ from hyst.identification.schedule.identified_schedule import (
     ScheduledConstant,
 )
 from hyst.identification.schedule.joint_fit import fit_jointly
-from hyst.identification.schedule.shared import Estimate, Sharing, sharing_of
+from hyst.identification.schedule.shared import Estimate, Sharing, nothing_shared, sharing_of
 from hyst.identification.schedule.values_of_records import AtValue, by_value, require_several
 from hyst.identification.schedule.words import notes_of, verdict_of
 from hyst.identification.search import Found, find
@@ -43,6 +44,15 @@ from hyst.operators.provenance import options_asked
 from hyst.signals import Record, error_metrics
 
 Array = NDArray[np.float64]
+
+AS_GOOD = 0.02
+"""Share of its error by which a simpler layout may miss more than a richer one."""
+
+ROUNDING = 1e-12
+"""Of the output's range: an error of that size is none."""
+
+MOST_ORDERS = 3
+"""How often neighbours that would pass each other are shared, before nothing is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,9 +92,9 @@ def identify_scheduled(
 ) -> IdentifiedSchedule:
     """Identify one model at several values of a second signal, and join them by straight lines.
 
-    Family and size are chosen at each value; the richest of them is the layout of all. Its
-    constants are fitted at each value, those that differ no more than scatter explains are shared,
-    and all are fitted once more together.
+    Family and size are chosen at each value; the simplest of these layouts that describes all
+    values as well as any is that of the model. Its constants are fitted at each value, those that
+    differ no more than scatter explains are shared, and all are fitted once more together.
 
     Parameters
     ----------
@@ -134,10 +144,9 @@ def identify_scheduled(
     families, about_drift = chosen_families(family, options), as_drift(drift)
     with threadpool_limits(1, user_api="blas"):
         values = [_value(each, name, about_drift) for each in groups]
-        layout = _layout([_found(each, families, wanted, name) for each in values])
-        free = [_refitted(each, layout, wanted) for each in values]
-        sharing = sharing_of([_estimate(each) for each in free])
-        fitted = _together(free, sharing, wanted)
+        found = [_found(each, families, wanted, name) for each in values]
+        layout, free = _layout(found, values, wanted)
+        fitted, sharing = _together(free, wanted)
         results = tuple(
             _result(each, sharing, k, asked, judged, layout) for k, each in enumerate(fitted)
         )
@@ -147,7 +156,7 @@ def identify_scheduled(
     left_out = _left_out(model, fitted, results)
     held_out = tuple(_held_out(model, each, results, fitted[0].data) for each in judged)
     verdict = verdict_of(model, results, left_out, held_out)
-    notes = notes_of(model, results, constants, left_out, held_out)
+    notes = notes_of(model, results, constants, left_out, held_out, sharing.gave_up)
     about = replace(model.description, verdict=verdict)
     return IdentifiedSchedule(
         model.with_description(about),
@@ -175,14 +184,35 @@ def _found(value: _Value, families: Sequence[Family], options: Options, name: st
         return find(value.clean, families, replace(options, say=say))
 
 
-def _layout(found: Sequence[Found]) -> Found:
-    """Choose the layout of all: of the family that most values take, the richest."""
+def _layout(
+    found: Sequence[Found], values: Sequence[_Value], options: Options
+) -> tuple[Found, list[_Fitted]]:
+    """Choose the layout of all, and fit it at every value.
+
+    Of the family that most values take: the simplest that describes all values as well as any.
+    """
     names = [each.fit.family.name for each in found]
     most = max(names.count(each) for each in names)
-    rich = [each for each, name in zip(found, names, strict=True) if names.count(name) == most]
-    counts = [each.fit.parametrization.free_count for each in rich]
-    best = [each for each, count in zip(rich, counts, strict=True) if count == max(counts)]
-    return best[len(best) // 2]
+    rivals = {
+        each.fit.parametrization.free_count: each
+        for each, name in zip(found, names, strict=True)
+        if names.count(name) == most
+    }
+    tried = [
+        (each, [_refitted(value, each, options) for value in values])
+        for _, each in sorted(rivals.items())
+    ]
+    missed = [float(np.mean([np.log(_noise(each)) for each in fits])) for _, fits in tried]
+    good = [
+        one for one, misses in zip(tried, missed, strict=True) if misses <= min(missed) + AS_GOOD
+    ]
+    return good[0]
+
+
+def _noise(fitted: _Fitted) -> float:
+    """Give the rms that a fit leaves, or what of it rounding cannot tell from nothing."""
+    rms = float(np.sqrt(fitted.fit.solution.cost / fitted.data.measured().size))
+    return max(rms, ROUNDING * float(np.ptp(fitted.data.measured())))
 
 
 def _refitted(value: _Value, layout: Found, options: Options) -> _Fitted:
@@ -211,22 +241,49 @@ def _estimate(fitted: _Fitted) -> Estimate:
     return Estimate(fitted.fit.solution.theta, covariance, inside)
 
 
-def _together(free: Sequence[_Fitted], sharing: Sharing, options: Options) -> list[_Fitted]:
+def _together(free: Sequence[_Fitted], options: Options) -> tuple[list[_Fitted], Sharing]:
     """Fit all values once more, with what they share."""
     options.say("fit at all values")
+    estimates = [_estimate(each) for each in free]
     problems = [each.fit.problem(each.data) for each in free]
-    noises = [float(np.sqrt(each.fit.solution.cost / each.data.measured().size)) for each in free]
-    thetas, solution = fit_jointly(
-        problems, noises, sharing.shared, sharing.thetas, options.max_iterations
-    )
-    result = []
-    for each, problem, theta in zip(free, problems, thetas, strict=True):
-        errors = problem.residual(theta)
-        own = replace(each.fit.solution, theta=theta, cost=float(errors @ errors))
-        status = CONVERGED if solution.status == CONVERGED else own.status
-        result.append(replace(each, fit=replace(each.fit, solution=replace(own, status=status))))
-    options.converged(replace(free[0].fit, solution=solution))
-    return result
+    noises = [_noise(each) for each in free]
+    parametrization, held = free[0].fit.parametrization, np.zeros(0, dtype=np.bool_)
+    for _ in range(MOST_ORDERS):
+        sharing = sharing_of(estimates, held if held.size else None)
+        thetas, solution = fit_jointly(
+            problems, noises, sharing.shared, sharing.thetas, options.max_iterations
+        )
+        wrong = _out_of_order(parametrization, thetas)
+        if not wrong.any():
+            options.converged(replace(free[0].fit, solution=solution))
+            status = solution.status
+            fitted = [
+                _with_theta(*each, status) for each in zip(free, problems, thetas, strict=True)
+            ]
+            return fitted, sharing
+        held = wrong if not held.size else held | wrong
+    return list(free), nothing_shared(estimates, sharing)
+
+
+def _out_of_order(parametrization: Parametrization, thetas: Array) -> NDArray[np.bool_]:
+    """Tell which parameters make constants that stand in another order than they must.
+
+    Of two neighbours of which one is shared and one moves, the one may pass the other; shared both,
+    they do not.
+    """
+    wrong = np.zeros(len(parametrization.transform), dtype=np.bool_)
+    for theta in thetas:
+        constants = parametrization.constants(theta)
+        moved = parametrization.template.nearest_parameters(constants) != constants
+        wrong |= moved
+        wrong[:-1] |= moved[1:]
+    return np.asarray(parametrization.transform[wrong].any(axis=0))
+
+
+def _with_theta(fitted: _Fitted, problem: Problem, theta: Array, status: str) -> _Fitted:
+    errors, fit = problem.residual(theta), fitted.fit
+    solution = replace(fit.solution, theta=theta, cost=float(errors @ errors), status=status)
+    return replace(fitted, fit=replace(fit, solution=solution))
 
 
 def _result(

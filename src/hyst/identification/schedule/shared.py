@@ -66,21 +66,26 @@ class Sharing:
         those before it shared; NaN where that cannot be asked.
     thetas, covariances
         Shapes (values, m) and (values, m, m), the estimates that agree in what is shared.
+    gave_up
+        Whether nothing is shared because constants then would stand in another order.
     """
 
     shared: Mask
     chance: Array
     thetas: Array
     covariances: Array
+    gave_up: bool = False
 
 
-def sharing_of(estimates: Sequence[Estimate]) -> Sharing:
+def sharing_of(estimates: Sequence[Estimate], held: Mask | None = None) -> Sharing:
     """Find what does not move with the signal.
 
     Parameters
     ----------
     estimates
         At each value.
+    held
+        Shape (m,), what is shared without being asked; nothing if left out.
 
     Returns
     -------
@@ -91,7 +96,9 @@ def sharing_of(estimates: Sequence[Estimate]) -> Sharing:
     free = np.logical_and.reduce([each.inside for each in estimates]) & ~same
     # A variance of zero says that nothing is known of it, or that all is.
     free &= np.all([np.diag(each.covariance) > 0.0 for each in estimates], axis=0)
-    shared, chance, missed = np.zeros(free.size, dtype=np.bool_), np.full(free.size, np.nan), 0.0
+    shared = np.zeros(free.size, dtype=np.bool_) if held is None else held & free
+    chance = np.full(free.size, np.nan)
+    missed = _missed(estimates, shared) if shared.any() else 0.0
     limit = CHANCE / max(int(free.sum()), 1)
     while (free & ~shared).any():
         trials = np.flatnonzero(free & ~shared)
@@ -105,6 +112,22 @@ def sharing_of(estimates: Sequence[Estimate]) -> Sharing:
         shared[trials[best]] = True
         missed = costs[best]
     return _agreeing(estimates, shared, same, chance)
+
+
+def nothing_shared(estimates: Sequence[Estimate], found: Sharing) -> Sharing:
+    """Give the free estimates as they are.
+
+    Parameters
+    ----------
+    estimates
+        At each value.
+    found
+        What was found otherwise.
+    """
+    thetas = np.array([each.theta for each in estimates])
+    covariances = np.array([each.covariance for each in estimates])
+    same = (thetas == thetas[0]).all(axis=0)
+    return Sharing(same, found.chance, thetas, covariances, gave_up=True)
 
 
 def _with(shared: Mask, place: int) -> Mask:

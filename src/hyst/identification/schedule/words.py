@@ -62,6 +62,7 @@ def notes_of(
     constants: Sequence[ScheduledConstant],
     left_out: Sequence[Checked],
     held_out: Sequence[Checked],
+    gave_up: bool,
 ) -> tuple[str, ...]:
     """Say what was shared, how straight the lines are, and what the model cannot do.
 
@@ -69,8 +70,15 @@ def notes_of(
     ----------
     model, results, constants, left_out, held_out
         As of ``IdentifiedSchedule``.
+    gave_up
+        Whether nothing could be shared.
     """
     notes = [_about_sharing(model, constants)]
+    if gave_up:
+        notes = [
+            "radii of neighbouring plays would pass each other if what does not change were shared, "
+            "so every value has constants of its own; give fewer plays"
+        ]
     if not left_out:
         notes.append(
             f"{model.values.size} values of {model.name} do not show whether constants follow "
