@@ -3,11 +3,13 @@
 
 #define EACH_KIND(ROW)              \
     ROW(affine)                     \
+    ROW(affine_solved)              \
     ROW(bouc_wen)                   \
     ROW(coleman_hodgdon)            \
     ROW(creep)                      \
     ROW(dahl)                       \
     ROW(dead_zone)                  \
+    ROW(dead_zone_solved)           \
     ROW(delay)                      \
     ROW(direction_dead_zone)        \
     ROW(generalized_maxwell_slip)   \
@@ -18,6 +20,7 @@
     ROW(maxwell_slip)               \
     ROW(memory_element)             \
     ROW(pi)                         \
+    ROW(pi_solved)                  \
     ROW(play)                       \
     ROW(preisach)                   \
     ROW(rate_dependent_pi)          \

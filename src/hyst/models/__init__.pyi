@@ -40,6 +40,7 @@ from hyst.models.rate_dependent import (
     RateDependentPrandtlIshlinskii as RateDependentPrandtlIshlinskii,
 )
 from hyst.models.rate_shift import RateShift as RateShift
+from hyst.models.scheduled import Scheduled as Scheduled
 from hyst.models.second_order_sections import SecondOrderSections as SecondOrderSections
 from hyst.models.stable_inverse import StableInverse as StableInverse
 from hyst.models.two_envelope import InverseTwoEnvelope as InverseTwoEnvelope
