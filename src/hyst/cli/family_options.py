@@ -65,7 +65,10 @@ def options_given(context: typer.Context, family: str) -> dict[str, Any]:
 
 
 def _as_typed(name: str) -> str:
-    return f"--{name.replace('_', '-')}"
+    """Give an option as it is typed: by its own name, unless that means something else there."""
+    option = hyst.families.option(hyst.families.takers(name)[0], name)
+    typed = option.typed if option is not None else ""
+    return f"--{typed or name.replace('_', '-')}"
 
 
 def _families_in_words() -> str:
