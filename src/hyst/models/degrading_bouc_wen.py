@@ -244,7 +244,7 @@ class DegradingBoucWen(_Degrading):
             invertible=self.least_slope() > 0.0,
         )
 
-    def inverse(self) -> InverseDegradingBoucWen:
+    def exact_inverse(self) -> InverseDegradingBoucWen:
         """Give the exact inverse, from y to u, sample by sample.
 
         Raises
@@ -333,7 +333,7 @@ class InverseDegradingBoucWen(_Degrading):
             invertible=True,
         )
 
-    def inverse(self) -> DegradingBoucWen:
+    def exact_inverse(self) -> DegradingBoucWen:
         """Give the model."""
         return DegradingBoucWen(*self._constants())
 
