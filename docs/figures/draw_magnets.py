@@ -65,9 +65,7 @@ def losses() -> Figure:
         sheet = hyst.DynamicJilesAtherton(magnet, k_cl=0.05, k_ex=1.5, dt=dt)
         h = 800.0 * np.sin(phase)
         axes.plot(h[1000:], sheet(h)[1000:], label=f"{frequency:.0f} Hz")
-    axes.set(
-        xlabel="H, A/m", ylabel="B, T", title="k_cl = 0.05 A/m s/T, k_ex = 1.5 A/m (s/T)^(1/2)"
-    )
+    axes.set(xlabel="H, A/m", ylabel="B, T", title="k_cl = 0.05, k_ex = 1.5 in A/m and T/s")
     axes.legend()
     return figure
 

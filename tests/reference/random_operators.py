@@ -51,8 +51,8 @@ from hyst.models import (
     TwoEnvelopePrandtlIshlinskii,
 )
 from reference.examples import EXAMPLES
-from reference.random_numbers import numbers
 from reference.random_magnets import MAGNETS
+from reference.random_numbers import numbers
 from reference.random_time import WITH_TIME
 
 Array = NDArray[np.float64]
