@@ -11,13 +11,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Self, final
+from typing import TYPE_CHECKING, Any, Self, final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
-from hyst.identification.families.family import Family, Start, Words
+from hyst.identification.families.estimates import Estimates
+from hyst.identification.families.family import Family, Fit, Start, Words
+from hyst.identification.families.mapped_plays import KNOTS_OPTION
 from hyst.identification.families.option import (
     AUTO,
     Option,
@@ -28,18 +30,51 @@ from hyst.identification.families.option import (
     whole_number_or_auto,
 )
 from hyst.identification.families.plays import PLAY_TEXT, SIZES, radii_option
+from hyst.identification.families.rate_dependent_layout import (
+    DEAD_ZONE,
+    ENVELOPE,
+    EVEN,
+    FREE,
+    GIVEN,
+    NO_MAP,
+    RateDependentLayout,
+)
+from hyst.identification.families.rate_law import (
+    LAWS,
+    LINEAR,
+    MOST_PIECES,
+    PIECEWISE,
+    SATURATING,
+    RateLaw,
+    bends_to_try,
+    first_constants,
+    forms_of,
+    law_for,
+)
+from hyst.identification.families.rate_law_choice import (
+    layout_of,
+    simplest_law,
+    solved,
+    with_law,
+)
+from hyst.identification.families.rate_law_told import (
+    law_that_does_not_fit,
+    notes_of_law,
+    with_constants_of_law,
+)
+from hyst.identification.fit.bounded_least_squares import Solution
 from hyst.identification.fit.non_negative import non_negative
-from hyst.identification.fit.parametrization import SMALLEST_SLOPE, Parametrization, unchanged
 from hyst.identification.fit.problem import model_jacobian
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import RateDependentPrandtlIshlinskii
-from hyst.operators import Affine, Composition
 from hyst.signals import hysteresis_percent, reversals
+
+if TYPE_CHECKING:
+    from hyst.identification.result.identified import Identified
 
 Array = NDArray[np.float64]
 
-EVEN, FREE, GIVEN = "even", "free", "given"
 EQUAL, HYSTERESIS = "equal", "hysteresis"
 MOST_PLAYS = 50
 
@@ -48,6 +83,11 @@ _SPANS = (0.3, 0.5, 0.7, 0.9)
 
 _WIDENINGS = (0.0, 0.1, 0.25, 0.5, 0.9)
 """Widening at the fastest sample of first guesses, over the largest radius."""
+
+_PLAYS_FOR_THE_LAW = 6
+"""Evenly spaced, with which a law is chosen before their number is known."""
+
+_ITERATIONS_FOR_THE_LAW = 40
 
 _STARTS = 3
 
@@ -86,6 +126,17 @@ class RateDependent(Family):
     record_weights
         A_p: ``"equal"``, which is best for noise of equal size; ``"hysteresis"``: the hysteresis
         percent of the record over that of the first one; or a number for each record.
+    rate
+        How the radii grow with the rate x: ``"linear"``: ``beta x``; ``"sqrt"``: ``c sqrt(x)``;
+        ``"saturating"``: ``a x / (1 + x / b)`` or ``a b (1 - exp(-x / b))``, whichever fits better;
+        ``"piecewise"``: straight between rates that the records hold; or ``"auto"``: the simplest
+        of these that is not worse.
+    map
+        ``"none"``; ``"dead-zone"``: a piecewise linear map after the plays (S4 sec. III-D);
+        ``"envelope"``: one before them, of whose output the rate is taken.
+    knots
+        Number of knots of the map, 1 to 50, evenly spaced over the signal it acts on; of an
+        envelope also their places, input units.
     """
 
     name = "rdpi"
@@ -119,12 +170,25 @@ class RateDependent(Family):
             "WEIGHTS",
         ),
     )
+    rate: Any = option(
+        LINEAR, choice((*LAWS, AUTO), "How radii grow with the rate.", typed="rate-law")
+    )
+    map: Any = option(
+        NO_MAP,
+        choice((NO_MAP, DEAD_ZONE, ENVELOPE), "A map after the plays, before them, or none."),
+    )
+    knots: Any = option(6, KNOTS_OPTION)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.radii is not None and self.plays not in (AUTO, len(self.radii)):
             raise InputError(
                 f"plays is {self.plays} but {len(self.radii)} radii are given; leave out plays"
+            )
+        if self.map != ENVELOPE and not isinstance(self.knots, int):
+            raise InputError(
+                f"knots are {list(self.knots)}; give their number, for only the places of an "
+                "envelope's knots are known before the fit"
             )
 
     def suited(self, data: Data) -> tuple[Self, tuple[str, ...]]:
@@ -145,10 +209,13 @@ class RateDependent(Family):
         return self, _frequency_note(data)
 
     def in_units(self, input_scale: float, output_scale: float) -> Self:
-        """Give the family with scaled radii."""
-        if self.radii is None:
-            return self
-        return replace(self, radii=[r * input_scale for r in self.radii])
+        """Give the family with scaled radii and knots."""
+        given: dict[str, Any] = {}
+        if self.radii is not None:
+            given["radii"] = [r * input_scale for r in self.radii]
+        if not isinstance(self.knots, int):
+            given["knots"] = [each * input_scale for each in self.knots]
+        return replace(self, **given) if given else self
 
     def sizes(self) -> tuple[int, ...]:
         """Give the numbers of plays to compare."""
@@ -157,8 +224,9 @@ class RateDependent(Family):
         return SIZES if self.plays == AUTO else (self.plays,)
 
     def least_parameters(self, size: int) -> int:
-        """Give the number of weights, radii, beta and the offset."""
-        return size + self._radius_count(size) + 3
+        """Give the number of weights, radii, constants of law and map, and the offset."""
+        of_law = {SATURATING: 2, PIECEWISE: MOST_PIECES}.get(self.rate, 1)
+        return size + self._radius_count(size) + of_law + self._knot_count + 2
 
     def root_weights(self, data: Data) -> Array | None:
         """Give sqrt(A_p) at the samples of record p (S4 eq. 44)."""
@@ -178,22 +246,76 @@ class RateDependent(Family):
         return np.repeat(np.sqrt(np.asarray(weights)), data.lengths())
 
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
-        """Give the best points of a grid over radii and beta, weights by least squares."""
-        data = overview.data
-        fastest = max(float(np.abs(np.diff(each.u)).max()) / each.dt for each in data.records)
-        has_rate = not _frequency_note(data)
-        parametrization = self._parametrize(overview, size, has_rate)
-        guesses = [
-            self._guess(overview, parametrization, radii, widening, fastest)
-            for radii in self._radius_guesses(size, data.largest_radius)
-            for widening in (_WIDENINGS if has_rate else (0.0,))
+        """Give the best points of a grid over radii and widening, weights by least squares."""
+        if not self._shows_rate(overview.data):
+            laws = [law_for(LINEAR, "", overview.data)]
+        elif self.rate == AUTO:
+            key = ("rate law", self)
+            name, form = overview.once(key, lambda: self._first_choice(overview))
+            laws = [law_for(name, form, overview.data)]
+        else:
+            laws = self._laws(overview.data)
+        guesses = [each for law in laws for each in self._guesses(overview, size, law)]
+        guesses.sort(key=lambda each: each.miss)
+        return [self._start_from(overview, each) for each in guesses[:_STARTS]]
+
+    def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Renew the tangent of the law; choose the law once more where it is open."""
+        layout = layout_of(fit)
+        if not layout.has_rate or layout.size != fit.solution.theta.size:  # dynamics come after
+            return fit
+        fit = solved(fit, overview, fit.solution.theta, max_iterations)
+        own = layout_of(fit).law
+        fits = [
+            fit
+            if (law.name, law.form) == (own.name, own.form)
+            else with_law(fit, law, overview, max_iterations)
+            for law in self._laws(overview.data)
         ]
-        guesses.sort(key=lambda each: each[0])
-        return [(parametrization, theta) for _, theta in guesses[:_STARTS]]
+        return simplest_law(fits, overview) if len(fits) > 1 else fit
+
+    def estimates(self, fit: Fit) -> Estimates:
+        """Give the constants that are free; of a law its own and not those of its table."""
+        return with_constants_of_law(super().estimates(fit), fit)
+
+    def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
+        """Say what a law is worth, and where it does not fit."""
+        return notes_of_law(fit)
+
+    def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
+        """Say where the law does not fit."""
+        told = law_that_does_not_fit(fit, overview.data, self.root_weights(overview.data))
+        return replace(identified, undetermined=(*identified.undetermined, *told))
+
+    def _shows_rate(self, data: Data) -> bool:
+        return not _frequency_note(data)
+
+    def _laws(self, data: Data) -> list[RateLaw]:
+        """Give the laws that the option allows, from the simplest to the richest."""
+        names = LAWS if self.rate == AUTO else (self.rate,)
+        return [law_for(name, form, data) for name in names for form in forms_of(name)]
+
+    def _first_choice(self, overview: Overview) -> tuple[str, str]:
+        """Choose a law with a fixed number of plays, evenly spaced."""
+        size = self.sizes()[0] if len(self.sizes()) == 1 else _PLAYS_FOR_THE_LAW
+        fits = []
+        for law in self._laws(overview.data):
+            guess = min(self._guesses(overview, size, law), key=lambda each: each.miss)
+            parametrization, theta = self._start_from(overview, guess)
+            unsolved = Fit(self, size, parametrization, Solution(theta, np.inf, 0, ""))
+            fits.append(solved(unsolved, overview, theta, _ITERATIONS_FOR_THE_LAW))
+        law = layout_of(simplest_law(fits, overview)).law
+        return law.name, law.form
 
     def _radius_count(self, size: int) -> int:
         """How many parameters say where the radii are."""
         return {EVEN: min(size, 1), FREE: size, GIVEN: 0}[self._spacing]
+
+    @property
+    def _knot_count(self) -> int:
+        if self.map == NO_MAP:
+            return 0
+        return self.knots if isinstance(self.knots, int) else len(self.knots)
 
     @property
     def _spacing(self) -> str:
@@ -207,72 +329,75 @@ class RateDependent(Family):
             return even
         return even + [each**2 / each[-1] for each in even if size > 1]
 
-    def _parametrize(self, overview: Overview, n: int, has_rate: bool) -> Parametrization:
-        """Lay out theta = (p0, p_1 .. p_n, spacing or radii or nothing, beta, offset)."""
-        m, largest = self._radius_count(n), overview.data.largest_radius
-        radii = np.array(self.radii) if self.radii is not None else np.arange(1.0, n + 1.0)
-        plays = RateDependentPrandtlIshlinskii(
-            np.zeros(n), radii, 0.0, overview.data.records[0].dt, overview.mean_slope
-        )
-        spread = np.arange(1.0, n + 1.0)[:, None] if self._spacing == EVEN else np.eye(n)
-        transform = np.zeros((2 * n + 4, n + m + 3))
-        transform[: n + 1, : n + 1] = np.eye(n + 1)
-        transform[n + 1 : 2 * n + 1, n + 1 : n + 1 + m] = spread[:, :m]
-        transform[2 * n + 1, n + m + 1] = transform[-1, -1] = 1.0
-        fixed = np.zeros(2 * n + 4)
-        fixed[-2] = overview.sign
-        if self._spacing == GIVEN:
-            fixed[n + 1 : 2 * n + 1] = radii
-        lower, upper = np.zeros(n + m + 3), np.full(n + m + 3, np.inf)
-        lower[0] = SMALLEST_SLOPE * overview.mean_slope
-        lower[n + 1 : n + 1 + m] = 1e-3 * largest
-        lower[-1] = -np.inf
-        upper[n + 1 : n + 1 + m] = largest / n if self._spacing == EVEN else largest
-        upper[n + m + 1] = np.inf if has_rate else 0.0
-        return Parametrization(
-            Composition((plays, Affine(overview.sign, 0.0))),
-            transform,
-            fixed,
-            lower,
-            upper,
-            _sorted_plays(n) if self._spacing == FREE else unchanged,
-        )
+    def _guesses(self, overview: Overview, size: int, law: RateLaw) -> list[_Guess]:
+        has_rate = self._shows_rate(overview.data)
+        widenings = _WIDENINGS if has_rate else (0.0,)
+        return [
+            self._guess(overview, radii, law, share, bend)
+            for radii in self._radius_guesses(size, overview.data.largest_radius)
+            for share in widenings
+            for bend in (bends_to_try(law) if share > 0.0 else bends_to_try(law)[:1])
+        ]
 
     def _guess(
-        self,
-        overview: Overview,
-        parametrization: Parametrization,
-        radii: Array,
-        widening: float,
-        fastest: float,
-    ) -> tuple[float, Array]:
-        """Residual norm and theta for given radii, and widening at the fastest sample."""
+        self, overview: Overview, radii: Array, law: RateLaw, share: float, bend: float
+    ) -> _Guess:
+        """Fit the weights for given radii and widening at the fastest sample."""
         data, n = overview.data, radii.size
-        beta = widening * data.largest_radius / fastest
+        constants = first_constants(law, share * data.largest_radius, bend)
+        law = law.renewed(constants) if law.renewed is not None else law
         root = self.root_weights(data)
         root = np.ones(data.measured().size) if root is None else root
-        bank = RateDependentPrandtlIshlinskii(np.zeros(n), radii, beta, data.records[0].dt)
+        curve, dt = law.at(constants), data.records[0].dt
+        bank = RateDependentPrandtlIshlinskii(np.zeros(n), radii, curve, dt)
         # The derivative by p0 and p is the input and the play outputs.
         columns = overview.sign * model_jacobian(data, bank)[:, : n + 1] * root[:, None]
         matrix = np.column_stack([columns, root, -root])
         weights, miss = non_negative(matrix, root * data.measured())
         # A weight that starts on its bound would give its radius no derivative.
         slopes = np.maximum(weights[: n + 1], 0.01 * overview.mean_slope)
-        places = radii[: self._radius_count(n)]
-        return miss, np.concatenate([slopes, places, [beta, float(weights[-2] - weights[-1])]])
+        return _Guess(miss, slopes, radii, law, constants, float(weights[-2] - weights[-1]))
+
+    def _start_from(self, overview: Overview, guess: _Guess) -> Start:
+        layout = RateDependentLayout(
+            guess.radii,
+            self._spacing,
+            guess.law,
+            self.map,
+            self._knots_over(overview, guess.offset),
+            self._shows_rate(overview.data),
+        )
+        theta = layout.theta(guess.weights, guess.radii, guess.constants, guess.offset)
+        return layout.parametrization(overview), theta
+
+    def _knots_over(self, overview: Overview, offset: float) -> Array:
+        """Spread the knots evenly over the signal that the map acts on, none at 0."""
+        if self.map == NO_MAP:
+            return np.empty(0)
+        if not isinstance(self.knots, int):
+            places = np.array(self.knots)
+            return places[np.abs(places) > 1e-6 * 2.0 * overview.data.half_range]
+        if self.map == ENVELOPE:
+            records = overview.data.records
+            low = min(float(each.u.min()) for each in records)
+            high = max(float(each.u.max()) for each in records)
+        else:
+            signal = overview.sign * (overview.data.measured() - offset)
+            low, high = float(signal.min()), float(signal.max())
+        knots = np.linspace(low, high, self.knots + 2)[1:-1]
+        return np.asarray(knots[np.abs(knots) > 1e-6 * (high - low)])
 
 
-def _sorted_plays(n: int) -> Any:
-    """Give what sorts the plays by radius, each with its weight: their order means nothing."""
+@dataclass(frozen=True, eq=False)
+class _Guess:
+    """Residual norm, weights with p0 first, radii, law with its constants, and offset."""
 
-    def canonical(theta: Array) -> Array:
-        order = np.argsort(theta[n + 1 : 2 * n + 1], kind="stable")
-        result = theta.copy()
-        result[1 : n + 1] = theta[1 : n + 1][order]
-        result[n + 1 : 2 * n + 1] = theta[n + 1 : 2 * n + 1][order]
-        return result
-
-    return canonical
+    miss: float
+    weights: Array
+    radii: Array
+    law: RateLaw
+    constants: Array
+    offset: float
 
 
 def _frequency_note(data: Data) -> tuple[str, ...]:
