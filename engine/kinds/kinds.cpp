@@ -25,6 +25,7 @@
     ROW(play)                       \
     ROW(preisach)                   \
     ROW(rate_dependent_pi)          \
+    ROW(rate_preview)               \
     ROW(rate_shift)                 \
     ROW(sections)                   \
     ROW(state_map)                  \
