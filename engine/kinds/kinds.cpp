@@ -9,6 +9,7 @@
     ROW(dahl)                       \
     ROW(dead_zone)                  \
     ROW(delay)                      \
+    ROW(delay_preview)              \
     ROW(direction_dead_zone)        \
     ROW(generalized_maxwell_slip)   \
     ROW(jiles_atherton)             \

@@ -16,6 +16,7 @@ WITHOUT_OWN = {
     "creep",
     "dahl",
     "delay",
+    "delay_preview",
     "generalized_maxwell_slip",
     "jiles_atherton",
     "lag",
