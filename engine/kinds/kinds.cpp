@@ -12,6 +12,7 @@
     ROW(degrading_bouc_wen)         \
     ROW(dead_zone_solved)           \
     ROW(delay)                      \
+    ROW(delay_preview)              \
     ROW(direction_dead_zone)        \
     ROW(generalized_maxwell_slip)   \
     ROW(jiles_atherton)             \
