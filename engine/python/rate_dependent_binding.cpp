@@ -2,8 +2,11 @@
 
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
 
+#include <cstdint>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "../chain.hpp"
@@ -68,12 +71,12 @@ double tracked(const Chain &chain, Signal state, Signal target, Signal u,
     return tracking_gradient(goal, u.data(), gradient.data());
 }
 
-std::pair<double, double> polish(const Chain &chain, Signal state, Signal target, Vector u,
-                                 const TrackingTerms &terms, const Polish &how) {
+std::tuple<double, double, std::size_t> polish(const Chain &chain, Signal state, Signal target, Vector u,
+                                               const TrackingTerms &terms, const Polish &how) {
     const TrackingGoal goal = goal_of(chain, state, target, u.shape(0), terms);
     const nb::gil_scoped_release released;
     const Polished done = trajectory_polish(goal, how, u.data());
-    return {done.before, done.after};
+    return {done.before, done.after, done.cut_off};
 }
 
 std::pair<std::size_t, std::size_t> exact(const Chain &chain, Vector state, Signal target,

@@ -1,5 +1,9 @@
-// Limited-memory BFGS with a weak Wolfe search along the line: it needs a derivative nearly
-// everywhere only, and goes down to where corners meet (Lewis and Overton, 2013).
+// A limited-memory quasi-Newton descent for a function with corners.
+//
+// Directions of limited-memory BFGS, steps that fulfil the weak Wolfe conditions, found by halving
+// and doubling: together they need a derivative nearly everywhere only, and go on down to where
+// corners meet. Source: A. S. Lewis and M. L. Overton, Nonsmooth optimization via quasi-Newton
+// methods, Mathematical Programming 141, 2013, secs. 3 and 5.
 #pragma once
 
 #include <algorithm>
@@ -12,107 +16,125 @@ namespace hyst {
 
 class QuasiNewton {
 public:
-    QuasiNewton(std::size_t size, std::size_t memory)
-        : n_(size), memory_(memory), s_(memory * size), y_(memory * size), rho_(memory),
-          alpha_(memory), g_(size), d_(size), x_(size), trial_(size), trial_g_(size) {}
+    struct Found {
+        double value;
+        bool settled;  // nothing was left to gain; false if the steps ran out
+    };
 
-    // From x down: reach is the size of the first step. Stops where `patience` steps together gain
-    // less than `least`, or after `steps`. Returns the value; x is where it is.
+    QuasiNewton(std::size_t size, std::size_t memory)
+        : n_(size), memory_(memory), moved_(memory * size), turned_(memory * size), rho_(memory),
+          alpha_(memory), gradient_(size), direction_(size), x_(size), trial_(size),
+          trial_gradient_(size) {}
+
+    // From x down, which is where it ends; `reach` is the largest entry of the first step. Settled
+    // where no step leads down or ten of them gain less than `least`.
     template <class Value>
-    double descend(Value &&value, double *x, double start, double reach, std::size_t steps,
-                   double least) {
-        constexpr std::size_t patience = 10;
+    Found descend(Value &&value, double *x, double reach, std::size_t steps, double least) {
+        constexpr std::size_t looked_at = 10;
         used_ = next_ = 0;
         std::copy(x, x + n_, x_.begin());
-        double f = value(x_.data(), g_.data()), earlier = f;
-        (void)start;
-        for (std::size_t taken = 0; taken < steps; ++taken) {
-            direction(reach);
-            const double moved = along(value, f);
-            if (!(moved < f)) break;
-            f = moved;
-            if (taken % patience == patience - 1) {
-                if (earlier - f < least) break;
+        double f = value(x_.data(), gradient_.data()), earlier = f;
+        bool settled = false;
+        for (std::size_t taken = 1; taken <= steps && !settled; ++taken) {
+            point_down(reach);
+            const double found = step(value, f);
+            settled = !(found < f);
+            if (!settled) f = found;
+            if (taken % looked_at == 0) {
+                settled = settled || earlier - f < least;
                 earlier = f;
             }
         }
         std::copy(x_.begin(), x_.end(), x);
-        return f;
+        return {f, settled};
     }
 
 private:
-    static double dot(const double *a, const double *b, std::size_t n) {
+    double dot(const double *a, const double *b) const {
         double sum = 0.0;
-        for (std::size_t i = 0; i < n; ++i) sum += a[i] * b[i];
+        for (std::size_t i = 0; i < n_; ++i) sum += a[i] * b[i];
         return sum;
     }
 
-    void direction(double reach) {
-        std::copy(g_.begin(), g_.end(), d_.begin());
-        for (std::size_t c = 0; c < used_; ++c) {
-            const std::size_t j = (next_ + memory_ - 1 - c) % memory_;
-            alpha_[j] = rho_[j] * dot(&s_[j * n_], d_.data(), n_);
-            for (std::size_t i = 0; i < n_; ++i) d_[i] -= alpha_[j] * y_[j * n_ + i];
-        }
-        double unit;
-        if (used_ > 0) {
-            const std::size_t j = (next_ + memory_ - 1) % memory_;
-            unit = 1.0 / (rho_[j] * dot(&y_[j * n_], &y_[j * n_], n_));
-        } else {
-            double steepest = 0.0;
-            for (const double each : g_) steepest = std::max(steepest, std::abs(each));
-            unit = steepest > 0.0 ? reach / steepest : 0.0;
-        }
-        for (double &each : d_) each *= unit;
-        for (std::size_t c = used_; c-- > 0;) {
-            const std::size_t j = (next_ + memory_ - 1 - c) % memory_;
-            const double beta = rho_[j] * dot(&y_[j * n_], d_.data(), n_);
-            for (std::size_t i = 0; i < n_; ++i) d_[i] += (alpha_[j] - beta) * s_[j * n_ + i];
-        }
-        for (double &each : d_) each = -each;
-        if (!(dot(g_.data(), d_.data(), n_) < 0.0) && used_ > 0) {
+    std::size_t back_by(std::size_t count) const { return (next_ + memory_ - count) % memory_; }
+
+    void point_down(double reach) {
+        along_memory(reach);
+        if (used_ > 0 && !(dot(gradient_.data(), direction_.data()) < 0.0)) {
             used_ = 0;
-            direction(reach);
+            along_memory(reach);
         }
     }
 
-    template <class Value> double along(Value &&value, double f) {
-        const double slope = dot(g_.data(), d_.data(), n_);
+    // The two loops over what is remembered; without memory the steepest way.
+    void along_memory(double reach) {
+        std::copy(gradient_.begin(), gradient_.end(), direction_.begin());
+        for (std::size_t c = 1; c <= used_; ++c) {
+            const std::size_t j = back_by(c);
+            alpha_[j] = rho_[j] * dot(&moved_[j * n_], direction_.data());
+            for (std::size_t i = 0; i < n_; ++i) direction_[i] -= alpha_[j] * turned_[j * n_ + i];
+        }
+        double unit = 0.0;
+        if (used_ > 0) {
+            const double *turned = &turned_[back_by(1) * n_];
+            unit = 1.0 / (rho_[back_by(1)] * dot(turned, turned));
+        } else {
+            double steepest = 0.0;
+            for (const double each : gradient_) steepest = std::max(steepest, std::abs(each));
+            if (steepest > 0.0) unit = reach / steepest;
+        }
+        for (double &each : direction_) each *= unit;
+        for (std::size_t c = used_; c > 0; --c) {
+            const std::size_t j = back_by(c);
+            const double beta = rho_[j] * dot(&turned_[j * n_], direction_.data());
+            for (std::size_t i = 0; i < n_; ++i) {
+                direction_[i] += (alpha_[j] - beta) * moved_[j * n_ + i];
+            }
+        }
+        for (double &each : direction_) each = -each;
+    }
+
+    // Goes along the direction; gives f and stays where no step fulfils both conditions.
+    template <class Value> double step(Value &&value, double f) {
+        constexpr double enough = 1e-4, flat = 0.9;
+        constexpr int most_tried = 30;
+        const double slope = dot(gradient_.data(), direction_.data());
         if (!(slope < 0.0)) return f;
         double low = 0.0, high = std::numeric_limits<double>::infinity(), t = 1.0;
-        double best = f;
-        for (int tried = 0; tried < 30; ++tried) {
-            for (std::size_t i = 0; i < n_; ++i) trial_[i] = x_[i] + t * d_[i];
-            const double found = value(trial_.data(), trial_g_.data());
-            if (!(found <= f + 1e-4 * t * slope)) {
+        for (int tried = 0; tried < most_tried; ++tried) {
+            for (std::size_t i = 0; i < n_; ++i) trial_[i] = x_[i] + t * direction_[i];
+            const double found = value(trial_.data(), trial_gradient_.data());
+            if (!(found <= f + enough * t * slope)) {
                 high = t;
-            } else if (dot(trial_g_.data(), d_.data(), n_) < 0.9 * slope) {
+            } else if (dot(trial_gradient_.data(), direction_.data()) < flat * slope) {
                 low = t;
             } else {
-                best = found;
-                break;
+                remember();
+                return found;
             }
-            t = high < std::numeric_limits<double>::infinity() ? 0.5 * (low + high) : 2.0 * low;
+            t = std::isinf(high) ? 2.0 * low : 0.5 * (low + high);
         }
-        if (!(best < f)) return f;
-        double *s = &s_[next_ * n_], *y = &y_[next_ * n_];
+        return f;
+    }
+
+    void remember() {
+        double *moved = &moved_[next_ * n_], *turned = &turned_[next_ * n_];
         for (std::size_t i = 0; i < n_; ++i) {
-            s[i] = trial_[i] - x_[i];
-            y[i] = trial_g_[i] - g_[i];
+            moved[i] = trial_[i] - x_[i];
+            turned[i] = trial_gradient_[i] - gradient_[i];
         }
-        const double curvature = dot(s, y, n_);
         x_.swap(trial_);
-        g_.swap(trial_g_);
-        if (curvature > 0.0) {
-            rho_[next_] = 1.0 / curvature;
-            next_ = (next_ + 1) % memory_;
-            used_ = std::min(used_ + 1, memory_);
-        }
-        return best;
+        gradient_.swap(trial_gradient_);
+        const double curvature = dot(moved, turned);
+        if (!(curvature > 0.0)) return;
+        rho_[next_] = 1.0 / curvature;
+        next_ = (next_ + 1) % memory_;
+        used_ = std::min(used_ + 1, memory_);
     }
 
     std::size_t n_, memory_, used_ = 0, next_ = 0;
-    std::vector<double> s_, y_, rho_, alpha_, g_, d_, x_, trial_, trial_g_;
+    std::vector<double> moved_, turned_, rho_, alpha_;  // the memory: changes of x and of gradient
+    std::vector<double> gradient_, direction_, x_, trial_, trial_gradient_;
 };
 
 }  // namespace hyst

@@ -75,9 +75,9 @@ double TrackedDrive::step(std::size_t k, double wanted) {
         s.bend = goal_.terms.roughness * (u - 2.0 * last + held(k - 2)) / goal_.terms.scale;
         s.term += power_of(s.bend, goal_.terms.power);
     }
-    s.term += goal_.terms.stray * (wanted - u) * (wanted - u);
     passed_.push_back(s);
-    return s.term;
+    // How far it strayed is not kept with the sample: the drive that is accepted is held.
+    return s.term + goal_.terms.stray * (wanted - u) * (wanted - u);
 }
 
 bool TrackedDrive::merged(std::size_t k) const {
@@ -142,9 +142,7 @@ void TrackedDrive::back(std::size_t count, double *gradient) {
 void TrackedDrive::accept() {
     for (std::size_t j = 0; j < passed_.size(); ++j) {
         drive_[first_ + j] = passed_[j].held;
-        term_[first_ + j] = passed_[j].term -
-                            goal_.terms.stray * (passed_[j].wanted - passed_[j].held) *
-                                (passed_[j].wanted - passed_[j].held);
+        term_[first_ + j] = passed_[j].term;
     }
     std::copy(after_.begin(), after_.end(), &before_[(first_ + 1) * plays_]);
 }
