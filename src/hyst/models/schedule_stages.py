@@ -124,7 +124,7 @@ def require_that_memory_is_kept(models: Sequence[Operator], between: Sequence[Op
         if not all(_is_straight(models, between, i, k) for k in range(len(between))):
             raise InputError(
                 f"constants of a stage of kind {of_first.kind!r} differ between the models, and "
-                "the kernel's own constants would be no straight lines between them; use at(value), "
+                "the kernel's own constants would be no straight lines between; use at(value), "
                 "or keep times, stiffnesses and exponents the same in all models"
             )
 
