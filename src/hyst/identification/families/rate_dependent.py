@@ -144,6 +144,10 @@ class RateDependent(Family):
     )
     methods = ("trajectory", "sample-exact", "explicit")
     depends_on_rate = True
+    about_rates = (
+        "Let the radii grow by another law of the rate (--rate-law auto), or use family "
+        "hammerstein where there is a resonance."
+    )
     explains = ("rate dependence", "dynamics")  # its output falls behind as the rate grows
 
     plays: Any = option(AUTO, whole_number_or_auto(1, MOST_PLAYS, "Number of plays."))
