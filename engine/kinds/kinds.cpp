@@ -9,8 +9,8 @@
     ROW(creep)                      \
     ROW(dahl)                       \
     ROW(dead_zone)                  \
-    ROW(degrading_bouc_wen)         \
     ROW(dead_zone_solved)           \
+    ROW(degrading_bouc_wen)         \
     ROW(delay)                      \
     ROW(delay_preview)              \
     ROW(direction_dead_zone)        \

@@ -112,7 +112,7 @@ def identify(
         reserve = tuple(each for each in reserve if _is_called_for(each, diagnosis))
         found = find(cleaned(given, diagnosis, about_drift), families, wanted, reserve)
         for number, record in enumerate(judged, 1):
-            found.fit.operator.require_sample_time(record.dt, f"validation record {number}")
+            found.fit.operator.require_possible_time(record.dt, f"validation record {number}")
         if found.delay is not None:
             # In units of powers of two, in which its times and samples are the same.
             diagnosis = diagnosis.with_delay(found.delay, given[0].dt)
