@@ -127,6 +127,7 @@ def identify(
             search(clean, wanted), clean.with_drift(), lags, about_drift == "auto", search, wanted
         )
         found = creeping.found
+        diagnosis = creeping.judged(diagnosis, given)
         for number, record in enumerate(judged, 1):
             found.fit.operator.require_sample_time(record.dt, f"validation record {number}")
         if found.delay is not None:
@@ -142,6 +143,7 @@ def identify(
             [each.operator for each in found.rivals],
             found.delay,
         )
+        identified = creeping.told(identified)
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
     return traced(told, given, asked)
 

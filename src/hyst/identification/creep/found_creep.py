@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hyst.checks.numbers import whole_number
 from hyst.errors import InputError, NotIdentifiableError
+from hyst.identification.creep.creeping import Creeping, by_name, over_windows, taken_out
 from hyst.identification.creep.creeping_family import CreepingFamily, staged_of
 from hyst.identification.creep.evidence import (
     Evidence,
@@ -24,9 +25,16 @@ from hyst.identification.creep.evidence import (
 from hyst.identification.creep.joint_fit import MOST_LAGS, Joint, lags_of
 from hyst.identification.creep.lags import answers, bounds_of, signals_that_creep
 from hyst.identification.creep.merging import merged
+from hyst.identification.creep.told import (
+    DriftBeside,
+    require_told,
+)
 from hyst.identification.families.family import Fit
 from hyst.identification.families.option import AUTO
-from hyst.identification.fit.nuisance import Beside, over_whole_records
+from hyst.identification.fit.nuisance import (
+    Beside,
+    over_whole_records,
+)
 from hyst.identification.fit.problem import model_output
 from hyst.identification.fit.stages import with_stage
 from hyst.identification.judgement.judge import level_of
@@ -73,22 +81,6 @@ def as_creep(creep: Any) -> Wanted:
     return whole_number(creep, "creep", 1, MOST_LAGS, ", 'auto' or None")
 
 
-@dataclass(frozen=True, eq=False)
-class Creeping:
-    """A search whose fit creeps, or what it says of creep where it does not.
-
-    Parameters
-    ----------
-    found
-        With the creep, or as it was.
-    evidence
-        What was seen of creep, where it was looked for and not taken.
-    """
-
-    found: Found
-    evidence: Evidence | None = None
-
-
 def with_creep(
     found: Found,
     records: Cleaned,
@@ -122,19 +114,23 @@ def with_creep(
     NotIdentifiableError
         If creep is asked for and the family has no place for it.
     """
+    as_it_was = Creeping(found, None, (), taken_out(found.data, records))
     if wanted is None:
-        return Creeping(found)
+        return as_it_was
     why = _no_place(found.fit)
     if why and wanted != AUTO:
         raise NotIdentifiableError(why)
     drifted = any(each is not None for each in records.drifts)
     if wanted == AUTO and (why or (not drifted and _leaves_noise(found))):
-        return Creeping(found)
+        return as_it_was
     options.say("creep")
     work = _Work(records, drifts, _scales(found.data))
     seen = evidence_of(*work.scaled(found), drifts)
+    if wanted != AUTO:
+        require_told(seen)
+    without = replace(as_it_was, evidence=seen)
     if not seen.weights.size or (wanted == AUTO and not seen.shown):
-        return Creeping(found, seen)
+        return without
     first = found
     for _ in range(ROUNDS):
         known = replace(options, delay=_delay_beside(found, seen, options))
@@ -143,13 +139,11 @@ def with_creep(
             break
         found, seen = again, evidence_of(*work.scaled(again), drifts)
         if not seen.weights.size:
-            return Creeping(first, seen)
+            return without
     options.say("creep: all constants together")
     found = replace(found, delay=first.delay)
-    found, fit = work.fitted(found, seen, wanted, options)
-    if fit is None:
-        return Creeping(first, seen)
-    return Creeping(work.told(found, options.converged(fit)))
+    found, joint, fit = work.fitted(found, seen, wanted, options)
+    return without if fit is None else work.told(found, joint, options.converged(fit))
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,7 +196,7 @@ class _Work:
 
     def fitted(
         self, found: Found, seen: Evidence, wanted: Wanted, options: Options
-    ) -> tuple[Found, Fit | None]:
+    ) -> tuple[Found, Joint, Fit | None]:
         """Fit all constants together, with the lags asked for or those that pay.
 
         A delay that was taken for 0 would make lags of a few samples, so where it may be free it
@@ -218,7 +212,7 @@ class _Work:
             fit = joint.fit(front, *guess, wanted, joint.searched())
         if free:
             found, joint = self._delayed(found, joint, fit, options)
-        return found, joint.finished(fit)
+        return found, joint, joint.finished(fit)
 
     def _joint(self, found: Found, late: bool, options: Options) -> Joint:
         data, fit = self.scaled(found)
@@ -247,29 +241,35 @@ class _Work:
         found = replace(found, data=found.data.delayed(delay), delay=evidence)
         return found, self._joint(found, True, options)
 
-    def told(self, found: Found, fit: Fit) -> Found:
+    def told(self, found: Found, joint: Joint, fit: Fit) -> Creeping:
         """Give a search with this fit, in the user's units; drift and settling are none of it."""
-        theta, data = fit.solution.theta, self.scaled(found)[0]
+        theta, data = fit.solution.theta, joint.data
         count = lags_of(fit)[0].size
         # What comes late is the delay's, and none of what is taken out.
         nuisances = nuisances_of(count, self.drifts, theta.size - count)
         left = data.measured() - model_output(data, fit.operator)
         coefficients = Beside(data, nuisances).at(theta).coefficients(left)
-        beside = over_whole_records(data, nuisances, theta, coefficients)
-        taken = self.records.without([self.scales[1] * each for each in beside])
+        beside = by_name(data, nuisances, theta, coefficients, self.scales[1])
+        taken = self.records.without(
+            [np.sum(each, axis=0) for each in zip(*beside.values(), strict=True)]
+        )
         given = self._given(found.data)
         pairs = zip(given.records, taken.records, strict=True)
         records = tuple(replace(each, y=whole.y) for each, whole in pairs)
         family = CreepingFamily(found.fit.family)
         parametrization = fit.parametrization.in_units(theta, *self.scales)
         creep = staged_of(fit).stage.with_parameters(np.concatenate(lags_of(fit)))
-        rivals = tuple(_creeping_rival(each, creep) for each in found.rivals)
-        return replace(
+        drifts = tuple(
+            DriftBeside(number, self.scales[1] * total, self.scales[1] * error)
+            for number, (total, error) in enumerate(joint.drift(fit), 1)
+        )
+        found = replace(
             found,
             fit=replace(fit, family=family, parametrization=parametrization),
             data=taken.marked(replace(given, records=records, disturbances=())),
-            rivals=rivals,
+            rivals=tuple(_creeping_rival(each, creep) for each in found.rivals),
         )
+        return Creeping(found, None, drifts, {k: over_windows(given, v) for k, v in beside.items()})
 
 
 def _delay_beside(found: Found, seen: Evidence, options: Options) -> float | str:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.linalg
 from numpy.typing import NDArray
 
 from hyst.identification.creep.creeping_family import CreepingFamily, staged_of
@@ -14,7 +14,7 @@ from hyst.identification.creep.lags import bounds_of, in_use
 from hyst.identification.creep.merging import merged
 from hyst.identification.families.family import Fit
 from hyst.identification.fit.bounded_least_squares import Solution
-from hyst.identification.fit.nuisance import Basis, Beside
+from hyst.identification.fit.nuisance import Basis, Beside, Drift, Nuisances, moments_of
 from hyst.identification.fit.stages import with_stage
 from hyst.identification.judgement.regression import chance, correlation_time
 from hyst.identification.record_use.used_samples import Data
@@ -162,19 +162,44 @@ class Joint:
         fit
             With creep, and lateness beside it.
         """
-        theta, count = fit.solution.theta, lags_of(fit)[0].size
-        alone = nuisances_of(count, self.drifts, theta.size - count)
+        count = lags_of(fit)[0].size
+        alone = nuisances_of(count, self.drifts, fit.solution.theta.size - count)
+        return self._beside(fit, alone, in_use(self.data, self.late)[:, None])[0]
+
+    def drift(self, fit: Fit) -> list[tuple[float, float]]:
+        """Give by how much each record drifts beside its creep, and the standard error.
+
+        Parameters
+        ----------
+        fit
+            With creep.
+        """
+        if not self.drifts:
+            return []
+        count = lags_of(fit)[0].size
+        alone = nuisances_of(count, False, fit.solution.theta.size - count, self.late)
+        moments = moments_of(self.data)
+        lines = [Drift().columns(each, fit.solution.theta) for each in moments]
+        # From -1 to 1 over a record.
+        return self._beside(fit, alone, 0.5 * scipy.linalg.block_diag(*lines))
+
+    def _beside(self, fit: Fit, alone: Nuisances, columns: Array) -> list[tuple[float, float]]:
+        """Give the coefficient of each of some columns beside all else, with its standard error."""
+        theta = fit.solution.theta
         model = replace(fit, parametrization=replace(fit.parametrization, nuisances=alone))
         residual, jacobian = model.problem(self.data, self.kept).linearize(theta)
-        column = in_use(self.data, self.late)
-        column = column if self.kept is None else column[self.kept]
-        beside = Beside(self.data, alone, self.kept).at(theta)
-        free = fit.parametrization.inside(theta)
-        left = Basis.of(jacobian[: column.size, free]).out_of(beside.out_of(column))
-        energy = float(left @ left)
-        rest = fit.problem(self.data, self.kept).residual(theta)[: column.size]
-        variance = float(rest @ rest) / max(column.size - theta.size, 1) * correlation_time(rest)
-        return -float(left @ residual[: column.size]) / energy, math.sqrt(variance / energy)
+        columns = columns if self.kept is None else columns[self.kept]
+        n = len(columns)
+        projection = Beside(self.data, alone, self.kept).at(theta)
+        basis = Basis.of(jacobian[:n, fit.parametrization.inside(theta)])
+        left, error = (basis.out_of(each) for each in (projection.out_of(columns), -residual[:n]))
+        inverse = np.linalg.pinv(left.T @ left)
+        coefficients = inverse @ (left.T @ error)
+        rest = error - left @ coefficients
+        freedom = max(n - theta.size - projection.directions, 1)
+        variance = float(rest @ rest) / freedom * correlation_time(rest)
+        errors = np.sqrt(variance * np.diag(inverse))
+        return list(zip(coefficients.tolist(), errors.tolist(), strict=True))
 
 
 def _pays(data: Data, fewer: Fit, more: Fit, rows: Rows | None) -> bool:
