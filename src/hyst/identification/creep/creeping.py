@@ -43,12 +43,15 @@ class Creeping:
         What drifts beside creep; empty where there is no creep.
     beside
         By name, over the samples in use: what was fitted beside creep, or taken out as drift.
+    asked
+        Whether the user asked for creep.
     """
 
     found: Found
     evidence: Evidence | None = None
     drifts: tuple[DriftBeside, ...] = ()
     beside: Mapping[str, Array] = field(default_factory=dict)
+    asked: bool = False
 
     @property
     def creeps(self) -> bool:
@@ -78,10 +81,10 @@ class Creeping:
         data, notes = self.found.data, identified.undetermined
         if self.creeps:
             notes += notes_on(identified, data)
-        elif self.evidence is not None:
+        elif self.evidence is not None and (self.asked or self.beside):
             notes += (sentence_without(self.evidence),)
-        if not self.creeps and self.evidence is None and not self.beside:
-            return identified
+        elif not self.beside:
+            return identified  # nobody asked, and nothing came up
         known = self.evidence is not None and is_known(self.evidence)
         motion = motion_of(
             data, self.found.fit.operator, self.beside, identified.bands.noise, known

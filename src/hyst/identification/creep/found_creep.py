@@ -128,7 +128,7 @@ def with_creep(
     seen = evidence_of(*work.scaled(found), drifts)
     if wanted != AUTO:
         require_told(seen)
-    without = replace(as_it_was, evidence=seen)
+    without = replace(as_it_was, evidence=seen, asked=wanted != AUTO)
     if not seen.weights.size or (wanted == AUTO and not seen.shown):
         return without
     first = found

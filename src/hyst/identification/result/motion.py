@@ -111,9 +111,8 @@ def motion_lines(parts: tuple[OutputPart, ...], unit: str) -> list[str]:
     """
     lines = [f"{'what moves the output':38s} {'rms':>12s}   of range"]
     for each in parts:
-        where = (
-            "" if each.in_model or np.isnan(each.rms) or each.name == LEFT else "   not modelled"
-        )
+        outside = not each.in_model and each.name not in (NOISE, LACKS)
+        where = "   not in the model" if outside and each.rms else ""
         size = (
             "not told by these records"
             if np.isnan(each.rms)
