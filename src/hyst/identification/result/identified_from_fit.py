@@ -91,6 +91,7 @@ def identified_from_fit(
         diagnosis=diagnosis,
         bands=bands_of(data, fit, spread, rivals),
         per_record=errors_by_record(data, operator),
+        motion=(),
     )
 
 
