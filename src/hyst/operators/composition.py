@@ -254,11 +254,23 @@ def _scales_of_stages(
         not all(leaf.is_map or leaf.keeps_unit() for leaf in leaves_of(stage)) for stage in stages
     ]
     if not any(turning):
-        turning = [not all(leaf.is_map for leaf in leaves_of(stage)) for stage in stages]
+        turning = [
+            not all(leaf.is_map for leaf in leaves_of(stage)) and _may_turn_units(stage)
+            for stage in stages
+        ]
     at = turning.index(True) if any(turning) else len(stages) - 1
     before, after = (input_scale, input_scale), (output_scale, output_scale)
     count = len(stages)
     return [before] * at + [(input_scale, output_scale)] + [after] * (count - at - 1)
+
+
+def _may_turn_units(stage: Operator) -> bool:
+    """Tell whether a stage has a gain of its own, which creep has not."""
+    try:
+        stage.parameter_scales(1.0, 2.0)
+    except InputError:
+        return False
+    return True
 
 
 def _prefixes(leaves: tuple[Operator, ...]) -> list[str]:

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.families.family import Estimates, Fit
-from hyst.identification.fit.problem import Evaluation
+from hyst.identification.fit.nuisance import Beside
+from hyst.identification.fit.problem import Evaluation, projected
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.standard_errors import (
     Spread,
@@ -134,20 +135,28 @@ def spread_of_fit(data: Data, fit: Fit) -> FitSpread:
     theta, parametrization = fit.solution.theta, fit.parametrization
     evaluation = Evaluation(data, parametrization)
     inside = parametrization.inside(theta)
-    jacobian = evaluation.jacobian(theta)[:, inside]
+    jacobian = evaluation.jacobian(theta)
     residual = evaluation.output(theta) - data.measured()
     root = fit.family.root_weights(data)
     if root is not None:
         jacobian, residual = root[:, None] * jacobian, root * residual
+    taken_out = 0
+    if parametrization.nuisances is not None:
+        beside = Beside(data, parametrization.nuisances, None, root)
+        jacobian = projected(beside, theta, residual, jacobian)
+        residual, taken_out = beside.at(theta).out_of(residual), beside.at(theta).directions
+    jacobian = jacobian[:, inside]
     if parametrization.prior is not None:
         y = data.measured()
         held_by = float(np.linalg.norm(y - y.mean())) * parametrization.prior[:, inside]
-        under = spread_under_prior(jacobian, residual, data.lengths(), held_by)
-        freedom = max(residual.size - parametrization.free_count, 1)
+        under = spread_under_prior(jacobian, residual, data.lengths(), held_by, taken_out)
+        freedom = max(residual.size - parametrization.free_count - taken_out, 1)
         rms = float(np.linalg.norm(residual) / np.sqrt(freedom))
         return FitSpread(under, inside, rms, bounds_hold=True)
     gauges = parametrization.gauges
     held = np.empty((0, theta.size)) if gauges is None else gauges(theta)[1]
-    spread = spread_of_estimates(jacobian, residual, data.lengths(), theta[inside], held[:, inside])
-    freedom = max(residual.size - int(inside.sum()) + len(held), 1)
+    spread = spread_of_estimates(
+        jacobian, residual, data.lengths(), theta[inside], held[:, inside], taken_out
+    )
+    freedom = max(residual.size - int(inside.sum()) + len(held) - taken_out, 1)
     return FitSpread(spread, inside, float(np.linalg.norm(residual) / np.sqrt(freedom)))
