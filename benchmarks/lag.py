@@ -64,7 +64,9 @@ def main() -> None:
     """Print coverage by plant and by way to identify."""
     words = sys.argv[1:]
     runs = int(words[words.index("--runs") + 1]) if "--runs" in words else RUNS
-    print("plant                                  options      beta in 2 s.e.  mean s.e.  bias   lag held  mean lag")
+    print(
+        "plant                                  options      beta in 2 s.e.  mean s.e.  bias   lag held  mean lag"
+    )
     for plant in PLANTS:
         clean = [clean_record(plant, f, n) for f, n in FREQUENCIES]
         for name, options in WAYS.items():
@@ -99,9 +101,7 @@ def plays(u: Array, widening: Array) -> Array:
     """Give the output of S4 eq. 38 for thresholds that widen."""
     memory, y = [0.0] * len(P), np.empty_like(u)
     for k, (x, b) in enumerate(zip(u.tolist(), widening.tolist(), strict=True)):
-        memory = [
-            max(x - r - b, min(x + r + b, z)) for r, z in zip(R, memory, strict=True)
-        ]
+        memory = [max(x - r - b, min(x + r + b, z)) for r, z in zip(R, memory, strict=True)]
         y[k] = P0 * x + sum(p * z for p, z in zip(P, memory, strict=True))
     return y
 

@@ -103,6 +103,7 @@ class RateDependent(Family):
     )
     methods = ("trajectory", "sample-exact", "explicit")
     depends_on_rate = True
+    rate_between_samples = True
     explains = ("rate dependence", "dynamics")  # its output falls behind as the rate grows
 
     plays: Any = option(AUTO, whole_number_or_auto(1, MOST_PLAYS, "Number of plays."))
