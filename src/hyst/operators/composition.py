@@ -70,7 +70,7 @@ class Chained(Operator):
         """Give the states of the parts, one after the other."""
         return np.concatenate([part.initial_state() for part in self.parts])
 
-    def inverse(self) -> Operator:
+    def exact_inverse(self) -> Operator:
         """Give the inverses of the parts in reversed order.
 
         Raises
@@ -78,7 +78,7 @@ class Chained(Operator):
         NotInvertibleError
             If a part has none; its own message says why.
         """
-        return Composition(tuple(part.inverse() for part in reversed(self.parts)))
+        return Composition(tuple(part.exact_inverse() for part in reversed(self.parts)))
 
     def parameters(self) -> Parameters:
         """Give the parameters of the parts, one after the other, named by part."""
