@@ -8,9 +8,11 @@
     ROW(creep)                      \
     ROW(dahl)                       \
     ROW(dead_zone)                  \
+    ROW(delay)                      \
     ROW(direction_dead_zone)        \
     ROW(generalized_maxwell_slip)   \
     ROW(jiles_atherton)             \
+    ROW(lag)                        \
     ROW(lugre)                      \
     ROW(masing)                     \
     ROW(maxwell_slip)               \

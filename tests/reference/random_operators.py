@@ -30,7 +30,6 @@ from hyst.models import (
     BoucWen,
     Butterfly,
     ColemanHodgdon,
-    Creep,
     Dahl,
     ExponentialCurve,
     GeneralizedMaxwellSlip,
@@ -53,25 +52,15 @@ from hyst.models import (
 )
 from hyst.models.jiles_atherton import VARIANTS
 from reference.examples import EXAMPLES
+from reference.random_numbers import numbers
+from reference.random_time import WITH_TIME
 
 Array = NDArray[np.float64]
 Operators = st.SearchStrategy[Operator]
 
 
-def numbers(low: float, high: float) -> st.SearchStrategy[float]:
-    lattice = st.integers(int(4 * low), int(4 * high)).map(lambda quarters: quarters / 4.0)
-    return lattice | st.floats(low, high)
-
-
 def signals(low: float = -8.0, high: float = 8.0, most: int = 16) -> st.SearchStrategy[Array]:
     return st.lists(numbers(low, high), min_size=1, max_size=most).map(np.array)
-
-
-@st.composite
-def creeps(draw: st.DrawFn, most: float) -> Creep:
-    times = draw(st.lists(st.floats(1e-3, 1e3), max_size=4))
-    weights = [draw(numbers(-0.5, most)) for _ in times]
-    return Creep(weights, times, 0.01, rest=draw(numbers(-2.0, 2.0)))
 
 
 @st.composite
@@ -344,10 +333,7 @@ RANDOM: dict[str, Operators] = {
         lambda model: model.inverse()
     ),
     "dahl": st.builds(Dahl, few, few, st.floats(0.3, 3.0), numbers(-1.0, 1.0)),
-    "creep": creeps(1.0),
-    "inverse-creep": creeps(0.5)
-    .filter(lambda creep: creep.is_invertible())
-    .map(lambda creep: creep.inverse()),
+    **WITH_TIME,
     # A Coulomb force beyond every input of the contracts.
     "inverse-dahl": st.builds(Dahl, few, st.floats(1e3, 1e4), st.floats(1.0, 3.0)).map(
         lambda friction: friction.inverse()
