@@ -178,8 +178,10 @@ def spread_of_fit(data: Data, fit: Fit, delay: DelayEvidence | None = None) -> F
     freedom = max(residual.size - int(inside.sum()) + len(held) - taken_out, 1)
     rms = float(np.linalg.norm(residual) / np.sqrt(freedom))
     moves = None
-    if delay is not None and counts_delay(fit.family, delay):
+    late = counts_delay(fit.family, delay)
+    if late or fit.family.rate_between_samples:
         # What it may be at most is what the records leave possible before any model.
-        furthest, back = max(delay.high - data.lag, 0.0), max(data.lag - delay.low, 0.0)
-        moves = lateness_of(data, fit).moves(furthest, back)
+        furthest = max(delay.high - data.lag, 0.0) if late and delay is not None else 0.0
+        back = max(data.lag - delay.low, 0.0) if late and delay is not None else 0.0
+        moves = lateness_of(data, fit, delay_is_free=late).moves(furthest, back)
     return FitSpread(spread, inside, rms, moves=moves)

@@ -90,7 +90,9 @@ def counts_delay(family: Family, evidence: DelayEvidence | None) -> bool:
     return family.has_memory and family.settles_delay and family.loops_tell_delay is True
 
 
-def lateness_of(data: Data, fit: Fit, chosen: NDArray[np.bool_] | None = None) -> Lateness:
+def lateness_of(
+    data: Data, fit: Fit, chosen: NDArray[np.bool_] | None = None, *, delay_is_free: bool = True
+) -> Lateness:
     """Fit the delay together with the constants, to first order about a fit.
 
     Parameters
@@ -101,6 +103,8 @@ def lateness_of(data: Data, fit: Fit, chosen: NDArray[np.bool_] | None = None) -
         A fit to them.
     chosen
         Shape (samples used,): which samples count; all if left out.
+    delay_is_free
+        Whether the delay was estimated; else only what lies between samples is asked for.
 
     Returns
     -------
@@ -110,17 +114,17 @@ def lateness_of(data: Data, fit: Fit, chosen: NDArray[np.bool_] | None = None) -
     root = fit.family.root_weights(data)
     residual, jacobian = problem_of(data, parametrization, chosen, root).linearize(theta)
     jacobian = jacobian[:, parametrization.inside(theta)]
-    later_by, earlier_by = (
-        problem_of(data.a_little_later(each), parametrization, chosen, root).residual(theta)
-        for each in (STEP, -STEP)
-    )
-    columns = [(later_by - earlier_by) / (2.0 * STEP)]
+    columns = np.zeros((residual.size, 2))
+    if delay_is_free:
+        later_by, earlier_by = (
+            problem_of(data.a_little_later(each), parametrization, chosen, root).residual(theta)
+            for each in (STEP, -STEP)
+        )
+        columns[:, 0] = (later_by - earlier_by) / (2.0 * STEP)
     if fit.family.rate_between_samples:
-        columns.append(np.zeros(residual.size))
         own = _between_samples(data, parametrization, theta, chosen, root)
-        columns[1][: own.size] = own
-    lengths = _lengths(data, chosen)
-    return _joint(jacobian, np.column_stack(columns), residual, lengths)
+        columns[: own.size, 1] = own
+    return _joint(jacobian, columns, residual, _lengths(data, chosen))
 
 
 def _joint(jacobian: Array, columns: Array, residual: Array, lengths: list[int]) -> Lateness:
@@ -129,19 +133,16 @@ def _joint(jacobian: Array, columns: Array, residual: Array, lengths: list[int])
     beyond = columns - jacobian @ by_columns
     size = np.linalg.norm(columns, axis=0)
     own = np.linalg.norm(beyond, axis=0) > OWN_PART * size
-    none = np.zeros(jacobian.shape[1])
-    if not own[0]:
-        return Lateness(0.0, np.inf, -by_columns[:, 0], none)
-    beyond, by_columns = beyond[:, own], by_columns[:, own]
-    best = -_least_squares(beyond, residual)
-    rows = slice(0, sum(lengths))
-    left = (residual + beyond @ best)[rows]
-    unit = float(np.ldexp(1.0, np.frexp(np.abs(left).max(initial=0.0))[1]))
-    covariance = robust_covariance(beyond[rows] / unit, left / unit, lengths)
-    errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    between = none
-    if errors.size == 2:
-        between = -by_columns[:, 1] * float(np.hypot(best[1], errors[1]))
+    best, errors = np.zeros(2), np.array([np.inf, 0.0])
+    if own.any():
+        beyond = beyond[:, own]
+        best[own] = -_least_squares(beyond, residual)
+        rows = slice(0, sum(lengths))
+        left = (residual + beyond @ best[own])[rows]
+        unit = float(np.ldexp(1.0, np.frexp(np.abs(left).max(initial=0.0))[1]))
+        covariance = robust_covariance(beyond[rows] / unit, left / unit, lengths)
+        errors[own] = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    between = -by_columns[:, 1] * float(np.hypot(best[1], errors[1]))
     return Lateness(float(best[0]), float(errors[0]), -by_columns[:, 0], between)
 
 
