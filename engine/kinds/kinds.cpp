@@ -9,9 +9,10 @@
     ROW(creep)                      \
     ROW(dahl)                       \
     ROW(dead_zone)                  \
-    ROW(degrading_bouc_wen)         \
     ROW(dead_zone_solved)           \
+    ROW(degrading_bouc_wen)         \
     ROW(delay)                      \
+    ROW(delay_preview)              \
     ROW(direction_dead_zone)        \
     ROW(generalized_maxwell_slip)   \
     ROW(jiles_atherton)             \
@@ -25,6 +26,7 @@
     ROW(play)                       \
     ROW(preisach)                   \
     ROW(rate_dependent_pi)          \
+    ROW(rate_preview)               \
     ROW(rate_shift)                 \
     ROW(sections)                   \
     ROW(state_map)                  \

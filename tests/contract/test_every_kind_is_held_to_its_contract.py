@@ -92,6 +92,7 @@ DECLARED = {
     "delay of whole samples": "------",
     "delay of nothing": "LRMCOI",
     "inverse delay": "-----I",
+    "delay taken back by preview": "------",
     "preisach": "-RMCOI",
     "preisach of relays alone": "-RMCO-",
     "preisach from saturation": "-RMCOI",

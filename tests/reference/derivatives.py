@@ -17,6 +17,7 @@ WITHOUT_OWN = {
     "dahl",
     "degrading_bouc_wen",
     "delay",
+    "delay_preview",
     "generalized_maxwell_slip",
     "jiles_atherton",
     "lag",

@@ -189,6 +189,8 @@ OTHERS: dict[str, Operator] = {
     "delay of whole samples": Delay(3, dt=0.01),
     "delay of nothing": Delay(0.0, dt=0.01),
     "inverse delay": Delay(0.2, dt=0.01).inverse(),
+    "delay taken back by preview": Delay(1.7, dt=0.01).inverse(preview=5),
+    "inverse of hysteresis behind a delay": (PI @ Delay(3.8, dt=0.01)).inverse(preview=9),
     "hysteresis and creep behind a lag": Creep([0.02, 0.02], [0.1, 1.0], dt=0.01)
     @ PI
     @ Delay(0.25, dt=0.01)
