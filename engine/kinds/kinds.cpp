@@ -10,7 +10,9 @@
     ROW(dahl)                       \
     ROW(dead_zone)                  \
     ROW(dead_zone_solved)           \
+    ROW(degrading_bouc_wen)         \
     ROW(delay)                      \
+    ROW(delay_preview)              \
     ROW(direction_dead_zone)        \
     ROW(generalized_maxwell_slip)   \
     ROW(jiles_atherton)             \

@@ -5,6 +5,7 @@ from hyst.models.butterfly import Butterfly as Butterfly
 from hyst.models.coleman_hodgdon import ColemanHodgdon as ColemanHodgdon
 from hyst.models.creep import Creep as Creep
 from hyst.models.dahl import Dahl as Dahl
+from hyst.models.degrading_bouc_wen import DegradingBoucWen as DegradingBoucWen
 from hyst.models.delay import Delay as Delay
 from hyst.models.exponential_curve import ExponentialCurve as ExponentialCurve
 from hyst.models.generalized_maxwell_slip import (

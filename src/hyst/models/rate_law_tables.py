@@ -1,6 +1,6 @@
 """Laws of the widening over the rate as tables whose straight pieces all miss by as much.
 
-A piece of length d between points of a curve misses it by at most ``e = |g''| d^2 / 8``, so knees are
+A piece of length d between points of a curve misses it by up to ``e = |g''| d^2 / 8``, so knees are
 dense in proportion to the root of ``|g''|``. The laws are concave and pieces would lie below them,
 by 2/3 e in the mean: all points but the one at rest are lifted by that, so that a law that is found
 as a table is not found too small.

@@ -135,8 +135,8 @@ class ScheduledSystem(Described):
             second = np.full(signal.size, second)
         if second.shape != signal.shape:
             raise InputError(
-                f"{self.name} has shape {second.shape} and the input {signal.shape}; give one value "
-                "for each sample, or a number"
+                f"{self.name} has shape {second.shape} and the input {signal.shape}; give one "
+                "value for each sample, or a number"
             )
         start = self.initial_state() if state is None else state
         memory = as_state(start, self._moving.state_length, None)[0]

@@ -117,15 +117,15 @@ def require_that_memory_is_kept(models: Sequence[Operator], between: Sequence[Op
             continue
         if of_first.kind not in KEEPS_ITS_MEANING:
             raise InputError(
-                f"constants of a stage of kind {of_first.kind!r} differ between the models, and its "
-                "memory does not tell what it would be with other constants; use at(value), or "
+                f"constants of a stage of kind {of_first.kind!r} differ between the models, and "
+                "its memory does not tell what it would be with other constants; use at(value), or "
                 "models that differ in plays, maps, gains and offsets alone"
             )
         if not all(_is_straight(models, between, i, k) for k in range(len(between))):
             raise InputError(
-                f"constants of a stage of kind {of_first.kind!r} differ between the models, and the "
-                "kernel's own constants would be no straight lines between them; use at(value), or "
-                "keep times, stiffnesses and exponents the same in all models"
+                f"constants of a stage of kind {of_first.kind!r} differ between the models, and "
+                "the kernel's own constants would be no straight lines between; use at(value), "
+                "or keep times, stiffnesses and exponents the same in all models"
             )
 
 

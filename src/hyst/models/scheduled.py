@@ -90,7 +90,8 @@ class Scheduled(ScheduledSystem):
         if wrong.size:
             i = int(wrong[0])
             raise InputError(
-                f"values[{i + 1}] = {at[i + 1]:.6g} comes after {at[i]:.6g}; give values that ascend"
+                f"values[{i + 1}] = {at[i + 1]:.6g} comes after {at[i]:.6g}; give values that "
+                "ascend"
             )
         object.__setattr__(self, "models", given)
         object.__setattr__(self, "values", at)

@@ -145,9 +145,9 @@ def _solved_stage(leaves: Sequence[Operator], scheduled: Scheduled) -> list[_Sol
     ):
         return [_Solved(leaf.inverse()) for leaf in leaves]
     raise NotInvertibleError(
-        f"the constants of a {first.kind} move with {scheduled.name}, and its inverse would not keep "
-        "its memory; plays, dead zones, gains, offsets and creep that adds can be inverted while they "
-        "move, and at(value).inverse() is the inverse at one value"
+        f"the constants of a {first.kind} move with {scheduled.name}, and its inverse would not "
+        "keep its memory; plays, dead zones, gains, offsets and creep that adds can be inverted "
+        "while they move, and at(value).inverse() is the inverse at one value"
     )
 
 
@@ -183,9 +183,9 @@ def _require_monotone_plays(leaves: Sequence[Operator], scheduled: Scheduled) ->
     if wrong.size:
         i = int(wrong[0])
         raise NotInvertibleError(
-            f"radii move with {scheduled.name}, and at {scheduled.values[i]:.6g} p0 and the negative "
-            f"weights add up to {least[i]:.6g}: the output might fall while the input rises; give or "
-            "identify weights of zero or more, or radii that stay"
+            f"radii move with {scheduled.name}, and at {scheduled.values[i]:.6g} p0 and the "
+            f"negative weights add up to {least[i]:.6g}: the output might fall while the input "
+            "rises; give or identify weights of zero or more, or radii that stay"
         )
 
 

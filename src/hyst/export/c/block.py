@@ -138,7 +138,8 @@ def block_of(model: Model, precision: Precision) -> Block:
     Parameters
     ----------
     model
-        Any operator, a scheduled model or its inverse, or a tracking controller; a stable inverse is refused with the reason.
+        Any operator, a scheduled model or its inverse, or a tracking controller; a stable inverse
+        is refused with the reason.
     precision
         Of the target.
 

@@ -78,7 +78,8 @@ def c_project(
     ----------
     model
         Any operator; a scheduled model, whose step takes the second signal too; a tracking
-        controller, whose step takes y_ref and y; or a joint estimator, which takes in samples and gives commands, from the estimate and the memory it has now.
+        controller, whose step takes y_ref and y; or a joint estimator, which takes in samples and
+        gives commands, from the estimate and the memory it has now.
     folder
         What to create: a folder, or a zip if it ends in ``.zip``.
     precision

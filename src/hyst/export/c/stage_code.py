@@ -7,9 +7,10 @@ can be parameters; ``held_by`` then says how that structure is reached, as "mode
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from textwrap import wrap
 from typing import final
 
@@ -69,7 +70,7 @@ class StageCode:
     stages: tuple[CoreStage, ...]
     precision: Precision
     held_by: str | None = None
-    now: Mapping[int, int] = field(default_factory=dict)
+    now: Mapping[int, int] = dataclasses.field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for constant in self.constants():
@@ -229,7 +230,7 @@ def values_of(stage: CoreStage) -> tuple[float, ...]:
 
 def _in_array(stage: CoreStage, first: int) -> Callable[[str], str]:
     """Give what C writes for a constant of a stage whose constants stand in an array."""
-    places: dict[str, str] = {field: "NULL" for field in stage.tables}
+    places: dict[str, str] = dict.fromkeys(stage.tables, "NULL")
     for each in _constants(stage, 0):
         places[each.field] = f"now + {first}" if each.is_table else f"now[{first}]"
         first += len(each.values)

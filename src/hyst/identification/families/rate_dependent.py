@@ -11,22 +11,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Self, final
+from typing import TYPE_CHECKING, Any, Literal, Self, final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
+from hyst.identification.families.drive_noise import errors_by_drives, told_of_drives
 from hyst.identification.families.estimates import Estimates
 from hyst.identification.families.family import Family, Fit, Start, Words
 from hyst.identification.families.mapped_plays import KNOTS_OPTION
 from hyst.identification.families.option import (
     AUTO,
-    Option,
-    as_numbers,
     choice,
     option,
-    read_numbers,
     whole_number_or_auto,
 )
 from hyst.identification.families.plays import PLAY_TEXT, SIZES, radii_option
@@ -37,8 +35,16 @@ from hyst.identification.families.rate_dependent_layout import (
     FREE,
     GIVEN,
     NO_MAP,
-    RateDependentLayout,
+    radius_count,
 )
+from hyst.identification.families.rate_dependent_options import (
+    EQUAL,
+    FILTER_OPTION,
+    HYSTERESIS,
+    RECORD_WEIGHTS_OPTION,
+)
+from hyst.identification.families.rate_dependent_starts import FirstGuesses
+from hyst.identification.families.rate_dependent_words import words_of
 from hyst.identification.families.rate_law import (
     LAWS,
     LINEAR,
@@ -46,12 +52,11 @@ from hyst.identification.families.rate_law import (
     PIECEWISE,
     SATURATING,
     RateLaw,
-    bends_to_try,
-    first_constants,
     forms_of,
     law_for,
 )
 from hyst.identification.families.rate_law_choice import (
+    has_dynamics,
     layout_of,
     simplest_law,
     solved,
@@ -63,26 +68,21 @@ from hyst.identification.families.rate_law_told import (
     with_constants_of_law,
 )
 from hyst.identification.fit.bounded_least_squares import Solution
-from hyst.identification.fit.non_negative import non_negative
-from hyst.identification.fit.problem import model_jacobian
 from hyst.identification.record_use.overview import Overview
-from hyst.identification.record_use.used_samples import Data
-from hyst.models import RateDependentPrandtlIshlinskii
-from hyst.signals import hysteresis_percent, reversals
+from hyst.identification.record_use.smoothed_drive import (
+    Smoother,
+    driven_by,
+    without_noise,
+)
+from hyst.identification.record_use.used_samples import Data, prepare
+from hyst.signals import Record, hysteresis_percent, reversals
 
 if TYPE_CHECKING:
     from hyst.identification.result.identified import Identified
 
 Array = NDArray[np.float64]
 
-EQUAL, HYSTERESIS = "equal", "hysteresis"
 MOST_PLAYS = 50
-
-_SPANS = (0.3, 0.5, 0.7, 0.9)
-"""Largest radius of first guesses, over the largest the records can show."""
-
-_WIDENINGS = (0.0, 0.1, 0.25, 0.5, 0.9)
-"""Widening at the fastest sample of first guesses, over the largest radius."""
 
 _PLAYS_FOR_THE_LAW = 6
 """Evenly spaced, with which a law is chosen before their number is known."""
@@ -93,21 +93,6 @@ _STARTS = 3
 
 _ONE_FREQUENCY = 1.2
 """Half swings whose durations differ by less than this factor all belong to one frequency."""
-
-
-def _as_record_weights(given: Any, name: str) -> str | tuple[float, ...]:
-    if isinstance(given, str):
-        if given in (EQUAL, HYSTERESIS):
-            return given
-        raise InputError(
-            f"{name} is {given!r}; choose {EQUAL!r}, {HYSTERESIS!r} or a number a record"
-        )
-    what = f"positive numbers, one a record, or {EQUAL!r} or {HYSTERESIS!r}"
-    return tuple(as_numbers(given, name, what, 0.0).tolist())
-
-
-def _read_record_weights(text: str, name: str) -> Any:
-    return read_numbers(text, name) if "," in text else text
 
 
 @final
@@ -137,6 +122,11 @@ class RateDependent(Family):
     knots
         Number of knots of the map, 1 to 50, evenly spaced over the signal it acts on; of an
         envelope also their places, input units.
+    rate_filter
+        What is done about noise of the measured drive, whose differences are no rates of the
+        actuator: ``"auto"``: where there is some, it is smoothed out of the whole record, as
+        strongly as cross-validation says; a time constant, s: of a low-pass without lag; or
+        None. The model has no filter: it is for the commanded drive.
     """
 
     name = "rdpi"
@@ -154,6 +144,11 @@ class RateDependent(Family):
     )
     methods = ("trajectory", "sample-exact", "explicit")
     depends_on_rate = True
+    about_rates = (
+        "Let the radii grow by another law of the rate (--rate-law auto), or use family "
+        "hammerstein where there is a resonance."
+    )
+    rate_between_samples = True
     explains = ("rate dependence", "dynamics")  # its output falls behind as the rate grows
 
     plays: Any = option(AUTO, whole_number_or_auto(1, MOST_PLAYS, "Number of plays."))
@@ -161,15 +156,7 @@ class RateDependent(Family):
     spacing: Any = option(
         EVEN, choice((EVEN, FREE), "Radii even (multiples of the first) or free.")
     )
-    record_weights: Any = option(
-        EQUAL,
-        Option(
-            _as_record_weights,
-            "equal, hysteresis, or a number a record, as 1,1.56,2.",
-            _read_record_weights,
-            "WEIGHTS",
-        ),
-    )
+    record_weights: Any = option(EQUAL, RECORD_WEIGHTS_OPTION)
     rate: Any = option(
         LINEAR, choice((*LAWS, AUTO), "How radii grow with the rate.", typed="rate-law")
     )
@@ -178,6 +165,7 @@ class RateDependent(Family):
         choice((NO_MAP, DEAD_ZONE, ENVELOPE), "A map after the plays, before them, or none."),
     )
     knots: Any = option(6, KNOTS_OPTION)
+    rate_filter: Any = option(AUTO, FILTER_OPTION)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -190,6 +178,21 @@ class RateDependent(Family):
                 f"knots are {list(self.knots)}; give their number, for only the places of an "
                 "envelope's knots are known before the fit"
             )
+
+    def records_to_use(
+        self, records: tuple[Record, ...], start: Literal["auto"] | int
+    ) -> tuple[Data, tuple[str, ...]]:
+        """Take the noise out of measured drives, and say so."""
+        smoothers = tuple(self._smoother(each) for each in records)
+        if not any(smoothers):
+            return prepare(records, start), ()
+        smooth = tuple(map(driven_by, records, smoothers))
+        return replace(prepare(smooth, start), smoothers=smoothers), told_of_drives(smoothers)
+
+    def _smoother(self, record: Record) -> Smoother | None:
+        if self.rate_filter is None:
+            return None
+        return without_noise(record, None if self.rate_filter == AUTO else self.rate_filter)
 
     def suited(self, data: Data) -> tuple[Self, tuple[str, ...]]:
         """Refuse radii out of reach and a wrong number of weights; say if no rate shows."""
@@ -206,7 +209,7 @@ class RateDependent(Family):
                 f"record_weights are {list(self.record_weights)}; give {count} positive numbers, "
                 "one a record"
             )
-        return self, _frequency_note(data)
+        return self, _frequency_note(data) + _sample_times_note(data)
 
     def in_units(self, input_scale: float, output_scale: float) -> Self:
         """Give the family with scaled radii and knots."""
@@ -232,18 +235,27 @@ class RateDependent(Family):
         """Give sqrt(A_p) at the samples of record p (S4 eq. 44)."""
         if self.record_weights == EQUAL:
             return None
-        weights = self.record_weights
-        if weights == HYSTERESIS:
-            percent = np.array(
-                [
-                    hysteresis_percent(r.u[w], y)
-                    for r, w, y in zip(data.records, data.windows(), data.outputs(), strict=True)
-                ]
-            )
-            if percent[0] == 0.0:
-                raise InputError("the first record shows no hysteresis; give record_weights")
-            weights = percent / percent[0]
-        return np.repeat(np.sqrt(np.asarray(weights)), data.lengths())
+        return np.repeat(np.sqrt(self._record_weights(data)), data.lengths())
+
+    def _record_weights(self, data: Data) -> Array:
+        """Give A_p, one a record (S4 eq. 45)."""
+        if self.record_weights != HYSTERESIS:
+            return np.asarray(self.record_weights)
+        percent = np.array(
+            [
+                hysteresis_percent(r.u[w], y)
+                for r, w, y in zip(data.records, data.windows(), data.outputs(), strict=True)
+            ]
+        )
+        if percent[0] == 0.0:
+            raise InputError("the first record shows no hysteresis; give record_weights")
+        return np.asarray(percent / percent[0])
+
+    def _told_weights(self, data: Data) -> tuple[str, ...]:
+        if self.record_weights != HYSTERESIS:
+            return ()
+        weights = ", ".join(f"{each:.3g}" for each in self._record_weights(data))
+        return (f"the records weigh {weights}: their hysteresis percent over that of the first",)
 
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
         """Give the best points of a grid over radii and widening, weights by least squares."""
@@ -255,14 +267,11 @@ class RateDependent(Family):
             laws = [law_for(name, form, overview.data)]
         else:
             laws = self._laws(overview.data)
-        guesses = [each for law in laws for each in self._guesses(overview, size, law)]
-        guesses.sort(key=lambda each: each.miss)
-        return [self._start_from(overview, each) for each in guesses[:_STARTS]]
+        return self._first_guesses(overview).best(size, laws, _STARTS)
 
     def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
         """Renew the tangent of the law; choose the law once more where it is open."""
-        layout = layout_of(fit)
-        if not layout.has_rate or layout.size != fit.solution.theta.size:  # dynamics come after
+        if not layout_of(fit).has_rate or has_dynamics(fit):
             return fit
         fit = solved(fit, overview, fit.solution.theta, max_iterations)
         own = layout_of(fit).law
@@ -279,13 +288,27 @@ class RateDependent(Family):
         return with_constants_of_law(super().estimates(fit), fit)
 
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
-        """Say what a law is worth, and where it does not fit."""
-        return notes_of_law(fit)
+        """Say which law was found, and what the records weigh."""
+        return notes_of_law(fit) + self._told_weights(data)
 
     def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
-        """Say where the law does not fit."""
-        told = law_that_does_not_fit(fit, overview.data, self.root_weights(overview.data))
-        return replace(identified, undetermined=(*identified.undetermined, *told))
+        """Say where the law does not fit, and count the drive's noise in the standard errors."""
+        data, root = overview.data, self.root_weights(overview.data)
+        by_drives = errors_by_drives(fit, data, root)
+        errors = identified.standard_errors.copy()
+        # Constants of further stages come last.
+        errors[: by_drives.size] = np.hypot(errors[: by_drives.size], by_drives)
+        whole = len(fit.operator.parameters()) == len(identified.model.parameters())
+        told = law_that_does_not_fit(fit, data, root) if whole else ()
+        return replace(
+            identified,
+            undetermined=(*identified.undetermined, *told),
+            standard_errors=errors,
+        )
+
+    def words_for(self, identified: Identified) -> Words:
+        """Give the words for the law and the map that were found."""
+        return words_of(self.words, identified.model)
 
     def _shows_rate(self, data: Data) -> bool:
         return not _frequency_note(data)
@@ -298,18 +321,16 @@ class RateDependent(Family):
     def _first_choice(self, overview: Overview) -> tuple[str, str]:
         """Choose a law with a fixed number of plays, evenly spaced."""
         size = self.sizes()[0] if len(self.sizes()) == 1 else _PLAYS_FOR_THE_LAW
-        fits = []
+        fits, guesses = [], self._first_guesses(overview)
         for law in self._laws(overview.data):
-            guess = min(self._guesses(overview, size, law), key=lambda each: each.miss)
-            parametrization, theta = self._start_from(overview, guess)
+            [(parametrization, theta)] = guesses.best(size, [law], 1)
             unsolved = Fit(self, size, parametrization, Solution(theta, np.inf, 0, ""))
             fits.append(solved(unsolved, overview, theta, _ITERATIONS_FOR_THE_LAW))
         law = layout_of(simplest_law(fits, overview)).law
         return law.name, law.form
 
     def _radius_count(self, size: int) -> int:
-        """How many parameters say where the radii are."""
-        return {EVEN: min(size, 1), FREE: size, GIVEN: 0}[self._spacing]
+        return radius_count(self._spacing, size)
 
     @property
     def _knot_count(self) -> int:
@@ -321,83 +342,16 @@ class RateDependent(Family):
     def _spacing(self) -> str:
         return GIVEN if self.radii is not None else self.spacing
 
-    def _radius_guesses(self, size: int, largest: float) -> list[Array]:
-        if self.radii is not None:
-            return [np.array(self.radii)]
-        even = [share * largest * np.arange(1, size + 1) / size for share in _SPANS]
-        if self.spacing == EVEN:
-            return even
-        return even + [each**2 / each[-1] for each in even if size > 1]
-
-    def _guesses(self, overview: Overview, size: int, law: RateLaw) -> list[_Guess]:
-        has_rate = self._shows_rate(overview.data)
-        widenings = _WIDENINGS if has_rate else (0.0,)
-        return [
-            self._guess(overview, radii, law, share, bend)
-            for radii in self._radius_guesses(size, overview.data.largest_radius)
-            for share in widenings
-            for bend in (bends_to_try(law) if share > 0.0 else bends_to_try(law)[:1])
-        ]
-
-    def _guess(
-        self, overview: Overview, radii: Array, law: RateLaw, share: float, bend: float
-    ) -> _Guess:
-        """Fit the weights for given radii and widening at the fastest sample."""
-        data, n = overview.data, radii.size
-        constants = first_constants(law, share * data.largest_radius, bend)
-        law = law.renewed(constants) if law.renewed is not None else law
-        root = self.root_weights(data)
-        root = np.ones(data.measured().size) if root is None else root
-        curve, dt = law.at(constants), data.records[0].dt
-        bank = RateDependentPrandtlIshlinskii(np.zeros(n), radii, curve, dt)
-        # The derivative by p0 and p is the input and the play outputs.
-        columns = overview.sign * model_jacobian(data, bank)[:, : n + 1] * root[:, None]
-        matrix = np.column_stack([columns, root, -root])
-        weights, miss = non_negative(matrix, root * data.measured())
-        # A weight that starts on its bound would give its radius no derivative.
-        slopes = np.maximum(weights[: n + 1], 0.01 * overview.mean_slope)
-        return _Guess(miss, slopes, radii, law, constants, float(weights[-2] - weights[-1]))
-
-    def _start_from(self, overview: Overview, guess: _Guess) -> Start:
-        layout = RateDependentLayout(
-            guess.radii,
+    def _first_guesses(self, overview: Overview) -> FirstGuesses:
+        return FirstGuesses(
+            overview,
             self._spacing,
-            guess.law,
+            self.radii,
             self.map,
-            self._knots_over(overview, guess.offset),
+            self.knots,
             self._shows_rate(overview.data),
+            self.root_weights(overview.data),
         )
-        theta = layout.theta(guess.weights, guess.radii, guess.constants, guess.offset)
-        return layout.parametrization(overview), theta
-
-    def _knots_over(self, overview: Overview, offset: float) -> Array:
-        """Spread the knots evenly over the signal that the map acts on, none at 0."""
-        if self.map == NO_MAP:
-            return np.empty(0)
-        if not isinstance(self.knots, int):
-            places = np.array(self.knots)
-            return places[np.abs(places) > 1e-6 * 2.0 * overview.data.half_range]
-        if self.map == ENVELOPE:
-            records = overview.data.records
-            low = min(float(each.u.min()) for each in records)
-            high = max(float(each.u.max()) for each in records)
-        else:
-            signal = overview.sign * (overview.data.measured() - offset)
-            low, high = float(signal.min()), float(signal.max())
-        knots = np.linspace(low, high, self.knots + 2)[1:-1]
-        return np.asarray(knots[np.abs(knots) > 1e-6 * (high - low)])
-
-
-@dataclass(frozen=True, eq=False)
-class _Guess:
-    """Residual norm, weights with p0 first, radii, law with its constants, and offset."""
-
-    miss: float
-    weights: Array
-    radii: Array
-    law: RateLaw
-    constants: Array
-    offset: float
 
 
 def _frequency_note(data: Data) -> tuple[str, ...]:
@@ -412,4 +366,16 @@ def _frequency_note(data: Data) -> tuple[str, ...]:
         f"all records turn at one frequency, {frequency:.4g} Hz: beta and a linear lag cannot be "
         "told apart; beta was left at 0, so the model holds at that frequency only; add records at "
         "other frequencies",
+    )
+
+
+def _sample_times_note(data: Data) -> tuple[str, ...]:
+    """Say for which of several sample times the model is written."""
+    times = [each.dt for each in data.records]
+    if max(times) <= (1.0 + 1e-6) * min(times):
+        return ()
+    return (
+        f"the records have sample times from {min(times):.4g} to {max(times):.4g} s; the model is "
+        f"written for that of the first, {times[0]:.4g} s; as its rates are per second, "
+        "model.at_sample_time(dt) gives it for any other",
     )

@@ -60,7 +60,7 @@ class RateDependentLayout:
     @property
     def radius_count(self) -> int:
         """How many parameters say where the radii are."""
-        return {EVEN: min(self.plays, 1), FREE: self.plays, GIVEN: 0}[self.spacing]
+        return radius_count(self.spacing, self.plays)
 
     @property
     def law_places(self) -> slice:
@@ -71,7 +71,7 @@ class RateDependentLayout:
     @property
     def size(self) -> int:
         """Entries of theta."""
-        return self.law_places.stop + int(self.knots.size) + 1
+        return int(self.law_places.stop) + int(self.knots.size) + 1
 
     def theta(self, weights: Array, radii: Array, constants: Array, offset: float) -> Array:
         """Put theta together, with a map that is the identity.
@@ -187,6 +187,19 @@ class RatedParametrization(Parametrization):
         law = self.layout.law
         law = replace(law, fastest=law.fastest * input_scale)
         return replace(scaled, layout=self.layout.with_law(law))
+
+
+def radius_count(spacing: str, plays: int) -> int:
+    """Give how many parameters say where the radii are.
+
+    Parameters
+    ----------
+    spacing
+        ``"even"``, ``"free"`` or ``"given"``.
+    plays
+        Number of plays.
+    """
+    return {EVEN: min(plays, 1), FREE: plays, GIVEN: 0}[spacing]
 
 
 def _sorted_plays(n: int) -> Any:

@@ -21,6 +21,8 @@ from hyst.identification.families.rate_law import (
     first_constants,
 )
 from hyst.identification.fit.bounded_least_squares import Solution
+from hyst.identification.fit.parametrization import Parametrization
+from hyst.identification.fit.stages import StagedParametrization, with_stage
 from hyst.identification.judgement.regression import correlation_time
 from hyst.identification.record_use.overview import Overview
 
@@ -45,11 +47,25 @@ def layout_of(fit: Fit) -> RateDependentLayout:
     Parameters
     ----------
     fit
-        Of rate-dependent plays.
+        Of rate-dependent plays, perhaps with further stages.
     """
     parametrization = fit.parametrization
+    while isinstance(parametrization, StagedParametrization):
+        parametrization = parametrization.base
     assert isinstance(parametrization, RatedParametrization), "the family made it"
     return parametrization.layout
+
+
+def has_dynamics(fit: Fit) -> bool:
+    """Tell whether the plays are the front of a model with dynamics, whose theta goes on.
+
+    Parameters
+    ----------
+    fit
+        Of rate-dependent plays, perhaps with further stages.
+    """
+    own = fit.parametrization
+    return isinstance(own, RatedParametrization) and own.layout.size != own.size
 
 
 def solved(fit: Fit, overview: Overview, theta: Array, max_iterations: int) -> Fit:
@@ -79,7 +95,8 @@ def solved(fit: Fit, overview: Overview, theta: Array, max_iterations: int) -> F
         if not moved and number > 0:
             break
         renewed = layout.with_law(layout.law.renewed(theta[layout.law_places]))
-        fit = replace(fit, parametrization=renewed.parametrization(overview))
+        laid_out = _laid_out(fit.parametrization, renewed, overview)
+        fit = replace(fit, parametrization=laid_out)
     return fit
 
 
@@ -102,14 +119,26 @@ def with_law(fit: Fit, law: RateLaw, overview: Overview, max_iterations: int) ->
     constants = _close_to(law, layout.law, theta[places])
     if law.renewed is not None:
         law = law.renewed(constants)
-    other = layout.with_law(law)
     start = np.concatenate([theta[: places.start], constants, theta[places.stop :]])
     unsolved = replace(
         fit,
-        parametrization=other.parametrization(overview),
+        parametrization=_laid_out(fit.parametrization, layout.with_law(law), overview),
         solution=Solution(start, np.inf, 0, ""),
     )
     return solved(unsolved, overview, start, max_iterations)
+
+
+def _laid_out(
+    before: Parametrization, layout: RateDependentLayout, overview: Overview
+) -> Parametrization:
+    """Give the free parameters of a layout, with the stages and columns that another had."""
+    if not isinstance(before, StagedParametrization):
+        return replace(layout.parametrization(overview), nuisances=before.nuisances)
+    base, own = _laid_out(before.base, layout, overview), slice(before.base.size, None)
+    nothing = np.zeros(base.size)
+    bounds = before.lower[own], before.upper[own]
+    staged, _ = with_stage(base, nothing, before.stage, before.where, *bounds)
+    return replace(staged, nuisances=before.nuisances)
 
 
 def simplest_law(fits: Sequence[Fit], overview: Overview) -> Fit:

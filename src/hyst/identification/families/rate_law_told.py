@@ -112,7 +112,7 @@ def notes_of_law(fit: Fit) -> tuple[str, ...]:
         if law.form == "rational"
         else f"{slope * rate:.4g} (1 - exp(-x / {rate:.4g}))"
     )
-    said = (
+    said: tuple[str, ...] = (
         f"the radii grow by g(x) = {formula} with the rate x of the input, as a table that ends at "
         "twice the fastest rate of the records",
     )
@@ -161,7 +161,8 @@ def law_that_does_not_fit(fit: Fit, data: Data, root: Array | None) -> tuple[str
         Square root of every sample's weight, or None.
     """
     layout = layout_of(fit)
-    if not layout.has_rate or layout.law.name == PIECEWISE:
+    beside = fit.parametrization.nuisances is not None
+    if beside or not layout.has_rate or layout.law.name == PIECEWISE:
         return ()
     seen = _slopes_missed(fit, data, root)
     if seen is None or seen.probability > UNLIKELY or seen.share < WORTH_A_NOTE:

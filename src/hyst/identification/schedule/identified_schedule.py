@@ -210,8 +210,8 @@ def told_of(checked: Checked, name: str, unit: str, output_unit: str) -> str:
             f"the end: {error}"
         )
     return (
-        f"{name} {checked.value:.6g}{unit}, by straight lines from {low:.6g} to {high:.6g}: {error}, "
-        f"of which the lines add {checked.interpolation:.3g}{output_unit}"
+        f"{name} {checked.value:.6g}{unit}, by straight lines from {low:.6g} to {high:.6g}: "
+        f"{error}, of which the lines add {checked.interpolation:.3g}{output_unit}"
     )
 
 

@@ -102,7 +102,7 @@ def sharing_of(estimates: Sequence[Estimate], held: Mask | None = None) -> Shari
     limit = CHANCE / max(int(free.sum()), 1)
     while (free & ~shared).any():
         trials = np.flatnonzero(free & ~shared)
-        costs = [_missed(estimates, _with(shared, i)) for i in trials]
+        costs = [_missed(estimates, _with(shared, int(i))) for i in trials]
         best = int(np.argmin(costs))
         chance[trials] = scipy.stats.chi2.sf(
             np.maximum(np.array(costs) - missed, 0.0), len(estimates) - 1

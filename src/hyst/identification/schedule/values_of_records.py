@@ -55,7 +55,8 @@ def by_value(records: Any, at: Any, what: str = "record") -> tuple[AtValue, ...]
     values = as_constants(at, f"values of the {what}s")
     if values.size != len(given):
         raise InputError(
-            f"{len(given)} {what}(s) but {values.size} values of the second signal; give one for each"
+            f"{len(given)} {what}(s) but {values.size} values of the second signal; give one for "
+            "each"
         )
     return tuple(
         AtValue(

@@ -76,13 +76,14 @@ def notes_of(
     notes = [_about_sharing(model, constants)]
     if gave_up:
         notes = [
-            "radii of neighbouring plays would pass each other if what does not change were shared, "
-            "so every value has constants of its own; give fewer plays"
+            "radii of neighbouring plays would pass each other if what does not change were "
+            "shared, so every value has constants of its own; give fewer plays"
         ]
     if not left_out:
         notes.append(
             f"{model.values.size} values of {model.name} do not show whether constants follow "
-            "straight lines in between; record at one more value between them, to fit or to judge by"
+            "straight lines in between; record at one more value between them, to fit or to judge "
+            "by"
         )
     for each in left_out:
         if _is_bent(each):
@@ -106,8 +107,8 @@ def _about_sharing(model: Scheduled, constants: Sequence[ScheduledConstant]) -> 
     shared = [each.name for each in constants if not each.moves]
     if not moving:
         return (
-            f"no constant changes with {model.name} beyond what scatter explains: one model would do "
-            "for all values"
+            f"no constant changes with {model.name} beyond what scatter explains: one model would "
+            "do for all values"
         )
     if not shared:
         return f"all {len(moving)} constants change with {model.name}"
