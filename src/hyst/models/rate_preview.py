@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, final
+from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.numbers import as_number, as_positive, whole_number
 from hyst.errors import InputError, NotInvertibleError
-from hyst.models.rate_dependent import RateDependentPrandtlIshlinskii
 from hyst.operators.base import Operator
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.portrait import NOTHING, Portrait
@@ -19,8 +18,12 @@ from hyst.operators.registry import entries, operator_from_dict, register
 from hyst.operators.stage import Stage
 from hyst.operators.traits import Degree, Traits
 
+if TYPE_CHECKING:
+    from hyst.models.rate_dependent import RateDependentPrandtlIshlinskii
+
 Array = NDArray[np.float64]
 
+_PLAYS = "rate-dependent-prandtl-ishlinskii"
 MOST_PLANNED = 60
 """Samples planned ahead at most; the cost of a sample grows with the third power."""
 _SCALARS = 5
@@ -64,6 +67,7 @@ class RateDependentPreview(Operator):
 
     Examples
     --------
+    >>> from hyst.models import RateDependentPrandtlIshlinskii
     >>> plays = RateDependentPrandtlIshlinskii([0.5], [1.0], beta=7e-4, dt=1e-4, p0=0.5)
     >>> y_ref = 10.0 * np.sin(0.05 * np.arange(400.0))
     >>> command = plays.inverse(preview=20)(y_ref)[20:]
@@ -85,7 +89,7 @@ class RateDependentPreview(Operator):
         command_range: tuple[float, float] | None = None,
         largest_change: float | None = None,
     ) -> None:
-        if not isinstance(plays, RateDependentPrandtlIshlinskii):
+        if not isinstance(plays, Operator) or plays.kind != _PLAYS:
             raise InputError(
                 f"plays is a {type(plays).__name__}; give a RateDependentPrandtlIshlinskii"
             )
@@ -141,7 +145,7 @@ class RateDependentPreview(Operator):
             Fed the record's first ``preview`` samples, the next output is its first command.
         """
         plays, n = self.plays, self.plays.p.size
-        held = RateDependentPrandtlIshlinskii(
+        held = type(plays)(
             plays.p, plays.r, plays.rate_curve, plays.dt, plays.p0, state[:n]
         )
         whole = self.initial_state()
@@ -217,7 +221,8 @@ class RateDependentPreview(Operator):
             If an entry is missing, unknown or not allowed.
         """
         given = entries(data, ("plays", "preview"), ("command_range", "largest_change"))
-        return cls(**{**given, "plays": operator_from_dict(given["plays"])})
+        plays: Any = operator_from_dict(given.pop("plays"))
+        return cls(plays, **given)
 
     def stages(self) -> tuple[Stage, ...]:
         """Give the one stage of this operator."""
