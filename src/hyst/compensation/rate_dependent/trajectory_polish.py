@@ -37,8 +37,10 @@ _NOTHING = 1e-7  # an error that is not worth a round, over the largest output
 # A window is some times as long as the plays carry an error along, in samples.
 _SHORTEST, _LONGEST, _TIMES = 24, 256, 5.0
 
-# Worth of a second difference where none is given, over the gain.
-_ROUGHNESS = 0.01
+# Worth of a second difference where none is given, over the gain: the drive then stays about as
+# rough as it was, and answers no more to what a model lacks. Largest errors stand against largest
+# second differences, so they need less.
+_ROUGHNESS: dict[Objective, float] = {"rms": 0.1, "largest": 0.02}
 
 # Where no range is given the drive may leave that of the first one by this share of it.
 _ROOM = 0.02
@@ -72,7 +74,7 @@ class Aim:
         -------
         float
         """
-        return _ROUGHNESS * gain if self.roughness is None else self.roughness
+        return _ROUGHNESS[self.objective] * gain if self.roughness is None else self.roughness
 
 
 @dataclass(frozen=True, eq=False)
