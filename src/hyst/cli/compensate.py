@@ -12,7 +12,6 @@ from hyst.cli.arguments import (
     DespiteVerdict,
     ModelFile,
     SampleRate,
-    load_operator,
     numbers,
     require_same_unit,
     sample_time_known,
@@ -20,6 +19,15 @@ from hyst.cli.arguments import (
 from hyst.cli.console import note, progress_bar, show_files, show_table
 from hyst.cli.reading_options import reads_columns
 from hyst.cli.relevant_options import refuse_irrelevant
+from hyst.cli.scheduled import (
+    ScheduleColumn,
+    ScheduleValue,
+    command_over,
+    loaded,
+    model_at_rest,
+    read_signal,
+    refuse_what_is_fixed,
+)
 from hyst.cli.time_column import time_column
 from hyst.operators.composition import leaves_of
 
@@ -117,16 +125,32 @@ def compensate(
     rate: SampleRate = None,
     allow_unconverged: AllowUnconverged = False,
     despite_verdict: DespiteVerdict = False,
+    schedule_column: ScheduleColumn = None,
+    schedule_value: ScheduleValue = None,
 ) -> None:
     """Turn a wanted output into the input that produces it, and predict how well."""
     if method in hyst.compensation.METHODS:
         refuse_irrelevant(context, _BY_METHOD, [method], "--method")
-    model = load_operator(model_file)
+    model = loaded(model_file, schedule_column, schedule_value)
     about = model.description
     y_ref, _, unit = hyst.io.read_column(reference, column, **how)
     require_same_unit(unit, about.output_unit, "the reference")
     input_range = _input_range(limits, no_limits, about)
-    known = sample_time_known(model, reference, rate, "the reference", **how)
+    known = sample_time_known(model_at_rest(model), reference, rate, "the reference", **how)
+    if isinstance(model, hyst.Scheduled):
+        refuse_what_is_fixed({"--method": method != "exact", "--outside": outside == "clip"})
+        turns = () if history is None else numbers(history, "history")
+        s = read_signal(model, reference, str(schedule_column), y_ref.size, how)
+        over = command_over(model, y_ref, s, turns, input_range, despite_verdict)
+        headers, columns = time_column(reference, rate, model.dt, y_ref.size, **how)
+        headers += [
+            hyst.io.join_unit("reference", about.output_unit),
+            hyst.io.join_unit("command", about.input_unit),
+            hyst.io.join_unit("predicted", about.output_unit),
+        ]
+        hyst.io.write_columns(out, headers, [*columns, y_ref, *over])
+        show_files([out])
+        return
     _require_method_for(model, method)
     with progress_bar("inverting") as progress:
         done = hyst.compensation.invert_trajectory(
