@@ -15,7 +15,7 @@ from hyst.compensation.expectation import beyond_the_records, error_to_expect
 from hyst.compensation.nearest_input import drive_to_nearest, turns
 from hyst.compensation.noncausal import invert_noncausally
 from hyst.compensation.rate_dependent.explicit import drive_explicitly
-from hyst.compensation.rate_dependent.limits_kept import judge_rate_limit
+from hyst.compensation.rate_dependent.limits_kept import held_in_range, judge_rate_limit
 from hyst.compensation.rate_dependent.preview import drive_with_preview
 from hyst.compensation.rate_dependent.sample_exact import drive_sample_by_sample
 from hyst.compensation.rate_dependent.solved_drive import ITERATION_LIMIT, SolvedDrive
@@ -243,8 +243,11 @@ def _silent(_: float) -> None:
 def _compensation(task: RateDependentTask, found: SolvedDrive, method: str) -> Compensation:
     """Drive the whole model with the command and see what it does."""
     u = task.input_of(found.drive)
-    y_predicted, _ = task.model.run(u, task.start)
     at_end = int(np.count_nonzero((found.drive <= task.low) | (found.drive >= task.high)))
+    if task.before is not None:
+        u, beyond = held_in_range(task, u)
+        at_end = max(at_end, beyond)
+    y_predicted, _ = task.model.run(u, task.start)
     return Compensation(
         u, task.y_ref, y_predicted, method, at_end, found.status, found.iterations, found.notes
     )
@@ -283,7 +286,7 @@ def _change(task: RateDependentTask, rate_limit: float | None) -> float:
     rate = as_positive(rate_limit, "rate_limit", "a rate in input units per second")
     if task.before is not None:
         raise InputError(
-            "the model has a map before its plays, so the rate of its input is not that of the "
+            "the model has a stage before its plays, so the rate of its input is not that of the "
             "drive; leave out rate_limit"
         )
     return rate * task.plays.dt

@@ -54,7 +54,8 @@ def in_unit_size(task: RateDependentTask, drive: Array) -> tuple[RateDependentTa
     start[: n + 1] *= a
     return (
         replace(
-            task, model=new, plays=new, before=None, start=start, y_ref=task.target * b,
+            task, model=new, plays=new, before=None, start=start,
+            plays_state=start, y_ref=task.target * b,
             target=task.target * b, low=task.low * a, high=task.high * a,
         ),
         a,

@@ -125,8 +125,8 @@ class _Search:
 
     def __init__(self, task: RateDependentTask, change: float, max_iterations: int) -> None:
         self.task, self.change, self.max_iterations = task, change, max_iterations
-        started = task.start[-1] > 0.0
-        self.before = float(task.start[-2]) if started else None
+        started = task.plays_state[-1] > 0.0
+        self.before = float(task.plays_state[-2]) if started else None
         self.score, self.steps = np.inf, 0
         self.drive, self.variation = task.target, np.inf
         self.extent = float(np.ptp(task.target)) or 1.0
