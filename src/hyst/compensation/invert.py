@@ -50,7 +50,8 @@ def invert_trajectory(
     """Find the input that makes a model follow a wanted output.
 
     ``exact``: ``u = model.inverse()(y_ref)``, with the memory of both starting in the same state.
-    The other methods are for rate-dependent plays, with maps before and after them or without:
+    The other methods are for rate-dependent plays, with maps, lags, delays or creep before and
+    after them, which are taken back exactly, or without:
 
     ``explicit``: the explicit inverse of S4 eqs. 12-16, causal and smooth. It takes the rate of the
     reference for that of the drive and leaves an error.
@@ -92,7 +93,7 @@ def invert_trajectory(
     objective
         What ``trajectory`` minimises: ``"rms"``, the root mean square of the error, or
         ``"largest"``, its largest absolute value. The drive pays for either: without
-        ``input_range`` it stays within 2 % of the range that the first, smooth solution takes.
+        ``input_range`` it leaves the range of the first, smooth solution by 1.5 % of it at most.
     roughness
         Of ``trajectory``: a second difference of one input unit (of the drive of the plays, from
         sample to sample) counts as an error of so many output units, >= 0. More of it gives a

@@ -85,18 +85,19 @@ def drive_along_trajectory(
     Returns
     -------
     SolvedDrive
-        Never worse than the explicit one held within the limits.
+        Better than the explicit one held within the limits.
     """
-    inverse, memory = task.explicit_inverse()
-    explicit, _ = inverse.run(task.target, memory)
-    unit, by_input, by_output = in_unit_size(task, explicit)
+    # The explicit inverse takes the reference's rate for the drive's: it, too, needs like sizes.
+    unit, by_input, by_output = in_unit_size(task)
+    inverse, memory = unit.explicit_inverse()
+    explicit, _ = inverse.run(unit.target, memory)
     search = _Search(unit, change * by_input, max_iterations)
-    search.offer(explicit * by_input)
-    scales = scales_of(unit, explicit * by_input)
+    search.offer(explicit)
+    scales = scales_of(unit, explicit)
     if scales is None:
         return SolvedDrive(search.drive / by_input, SOLVED, 1, ())
     for number, course in enumerate(_COURSES):
-        search.follow(explicit * by_input, course, scales)
+        search.follow(explicit, course, scales)
         progress(_SHARE_OF_COURSES * (number + 1) / len(_COURSES))
     rest = 1.0 - _SHARE_OF_COURSES
     gain = task.plays.p0 + float(np.abs(task.plays.p).sum())
