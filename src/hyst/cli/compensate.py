@@ -68,7 +68,7 @@ Roughness = Annotated[
     float | None,
     typer.Option(
         metavar="W",
-        show_default="1 % of the gain",
+        show_default="10 % of the gain, 2 % for largest",
         help="Of trajectory: a second difference of the command of 1 counts as an error of W.",
     ),
 ]
