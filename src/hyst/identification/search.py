@@ -159,13 +159,24 @@ def _tasks(
 
 def _task(family: Family, given: Data, left_out: tuple[str, ...]) -> Task:
     suited, notes = family.suited(given)
-    scales = (
-        _power_of_two(2.0 * given.half_range),
-        _power_of_two(max(float(np.ptp(each.y)) for each in given.records)),
-    )
+    scales = scales_of(given)
     data = given.in_units(1.0 / scales[0], 1.0 / scales[1])
     return Task(
         suited.in_units(1.0 / scales[0], 1.0 / scales[1]), given, data, scales, left_out + notes
+    )
+
+
+def scales_of(given: Data) -> tuple[float, float]:
+    """Give the powers of two of input and output in whose units records are fitted.
+
+    Parameters
+    ----------
+    given
+        The records in the user's units.
+    """
+    return (
+        _power_of_two(2.0 * given.half_range),
+        _power_of_two(max(float(np.ptp(each.y)) for each in given.records)),
     )
 
 
