@@ -10,9 +10,13 @@
     ROW(dahl)                       \
     ROW(dead_zone)                  \
     ROW(dead_zone_solved)           \
+    ROW(degrading_bouc_wen)         \
+    ROW(delay)                      \
+    ROW(delay_preview)              \
     ROW(direction_dead_zone)        \
     ROW(generalized_maxwell_slip)   \
     ROW(jiles_atherton)             \
+    ROW(lag)                        \
     ROW(lugre)                      \
     ROW(masing)                     \
     ROW(maxwell_slip)               \
@@ -22,6 +26,7 @@
     ROW(play)                       \
     ROW(preisach)                   \
     ROW(rate_dependent_pi)          \
+    ROW(rate_preview)               \
     ROW(rate_shift)                 \
     ROW(sections)                   \
     ROW(state_map)                  \

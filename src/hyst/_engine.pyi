@@ -44,6 +44,30 @@ class Rounding:
 class Limits:
     def __init__(self, low: float, high: float, change: float, penalty: float) -> None: ...
 
+class TrackingTerms:
+    def __init__(
+        self,
+        low: float,
+        high: float,
+        change: float,
+        power: int,
+        scale: float,
+        roughness: float,
+        stray: float,
+    ) -> None: ...
+
+class Polish:
+    def __init__(
+        self,
+        window: int,
+        follow: int,
+        trials: int,
+        steps: int,
+        least: float,
+        size: float,
+        seed: int,
+    ) -> None: ...
+
 class Stepper:
     @property
     def state(self) -> Array: ...
@@ -133,6 +157,9 @@ def sample_exact(
     chain: Chain, state: Array, target: Array, u: Array, low: float, high: float
 ) -> tuple[int, int]: ...
 def stepper(chain: Chain, state: Any, y_safe: float) -> Stepper: ...
+def tracking_gradient(
+    chain: Chain, state: Array, target: Array, u: Array, terms: TrackingTerms, gradient: Array
+) -> float: ...
 def trajectory_cost(
     chain: Chain,
     state: Array,
@@ -142,6 +169,9 @@ def trajectory_cost(
     rounding: Rounding,
     limits: Limits,
 ) -> float: ...
+def trajectory_polish(
+    chain: Chain, state: Array, target: Array, u: Array, terms: TrackingTerms, how: Polish
+) -> tuple[float, float, int]: ...
 def trajectory_step(
     chain: Chain,
     state: Array,

@@ -61,6 +61,17 @@ RateLimit = Annotated[
         metavar="X", show_default=False, help="Largest rate of the input, of preview, trajectory."
     ),
 ]
+Objective = Annotated[
+    Literal["rms", "largest"], typer.Option(help="Which error trajectory makes small.")
+]
+Roughness = Annotated[
+    float | None,
+    typer.Option(
+        metavar="W",
+        show_default="1 % of the gain",
+        help="Of trajectory: a second difference of the command of 1 counts as an error of W.",
+    ),
+]
 AllowUnconverged = Annotated[
     bool, typer.Option("--allow-unconverged", help="Accept a command that did not converge.")
 ]
@@ -89,6 +100,8 @@ _BY_METHOD = {
     "preview": ("preview",),
     "rate_limit": ("preview", "trajectory"),
     "allow_unconverged": ("trajectory",),
+    "objective": ("trajectory",),
+    "roughness": ("trajectory",),
 }
 
 
@@ -107,6 +120,8 @@ def compensate(
     history: History = None,
     preview: Preview = 20,
     rate_limit: RateLimit = None,
+    objective: Objective = "rms",
+    roughness: Roughness = None,
     rate: SampleRate = None,
     allow_unconverged: AllowUnconverged = False,
     despite_verdict: DespiteVerdict = False,
@@ -146,6 +161,8 @@ def compensate(
             outside=outside,
             history=None if history is None else numbers(history, "history"),
             rate_limit=rate_limit,
+            objective=objective,
+            roughness=roughness,
             preview=preview,
             allow_unconverged=allow_unconverged,
             despite_verdict=despite_verdict,
@@ -228,7 +245,8 @@ def _tell(
         print(
             f"{done.method}, {done.status}: the command's total variation is "
             f"{done.total_variation:.3f} of the reference's, its peak rate {done.peak_rate:.3f}; "
-            f"it turns {done.reversals} times"
+            f"it turns {done.reversals} times, its second differences are {done.roughness:.4g} rms "
+            f"and {done.largest_bend:.4g} at most"
         )
     for sentence in done.notes:
         print(sentence)

@@ -24,6 +24,7 @@ from hyst.identification.options import Options, silent
 from hyst.identification.record_use.cleaned import Cleaned, as_drift, cleaned
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.part_of_a_sample import lag_in_samples
+from hyst.identification.record_use.scales import scales_of
 from hyst.identification.record_use.used_samples import Data, prepare, require_same_units
 from hyst.identification.result.fit_spread import spread_of_fit
 from hyst.identification.result.identified import Identified
@@ -37,7 +38,7 @@ from hyst.identification.schedule.joint_fit import fit_jointly
 from hyst.identification.schedule.shared import Estimate, Sharing, nothing_shared, sharing_of
 from hyst.identification.schedule.values_of_records import AtValue, by_value, require_several
 from hyst.identification.schedule.words import notes_of, verdict_of
-from hyst.identification.search import Found, find, scales_of
+from hyst.identification.search import Found, find
 from hyst.models import Scheduled
 from hyst.operators import Operator
 from hyst.operators.provenance import options_asked
