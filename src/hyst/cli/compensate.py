@@ -22,7 +22,7 @@ from hyst.cli.relevant_options import refuse_irrelevant
 from hyst.cli.scheduled import (
     ScheduleColumn,
     ScheduleValue,
-    command_over,
+    compensate_over,
     loaded,
     model_at_rest,
     read_signal,
@@ -139,17 +139,9 @@ def compensate(
     known = sample_time_known(model_at_rest(model), reference, rate, "the reference", **how)
     if isinstance(model, hyst.Scheduled):
         refuse_what_is_fixed({"--method": method != "exact", "--outside": outside == "clip"})
-        turns = () if history is None else numbers(history, "history")
         s = read_signal(model, reference, str(schedule_column), y_ref.size, how)
-        over = command_over(model, y_ref, s, turns, input_range, despite_verdict)
-        headers, columns = time_column(reference, rate, model.dt, y_ref.size, **how)
-        headers += [
-            hyst.io.join_unit("reference", about.output_unit),
-            hyst.io.join_unit("command", about.input_unit),
-            hyst.io.join_unit("predicted", about.output_unit),
-        ]
-        hyst.io.write_columns(out, headers, [*columns, y_ref, *over])
-        show_files([out])
+        time = time_column(reference, rate, model.dt, y_ref.size, **how)
+        compensate_over(model, y_ref, s, history, input_range, despite_verdict, out, time)
         return
     _require_method_for(model, method)
     with progress_bar("inverting") as progress:
