@@ -27,6 +27,8 @@ from hyst.cli.scheduled import (
     model_at_rest,
     read_signal,
     refuse_what_is_fixed,
+    tell_virgin,
+    write_command,
 )
 from hyst.cli.time_column import time_column
 from hyst.operators.composition import leaves_of
@@ -162,22 +164,10 @@ def compensate(
         )
     if not known:
         note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
-    headers, columns = time_column(reference, rate, model.dt, done.u.size, **how)
-    headers += [
-        hyst.io.join_unit(name, unit)
-        for name, unit in (
-            ("reference", about.output_unit),
-            ("command", about.input_unit),
-            ("predicted", about.output_unit),
-        )
-    ]
-    hyst.io.write_columns(out, headers, [*columns, done.y_ref, done.u, done.y_predicted])
+    time = time_column(reference, rate, model.dt, done.u.size, **how)
+    write_command(out, about, time, (done.y_ref, done.u, done.y_predicted))
     _tell(done, about, input_range)
-    if history is None and model.initial_state().size:
-        print(
-            "memory taken as virgin, as of an actuator never driven; if it was driven, give the "
-            "turns of the drive just before with --history"
-        )
+    tell_virgin(history is None and model.initial_state().size > 0)
     show_files([out])
 
 

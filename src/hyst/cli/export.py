@@ -193,9 +193,7 @@ def export(
     if target not in _TARGETS:
         raise hyst.InputError(f"--target is {target!r}; give {' or '.join(_TARGETS)}")
     refuse_irrelevant(context, _BY_TARGET, [target], "--target")
-    model = (
-        hyst.load(model_file) if schedule_value is None else loaded_at(model_file, schedule_value)
-    )
+    model = loaded_at(model_file, schedule_value)
     if inverse or explicit:
         model = hyst.export.inverse_of(model, explicit)
     order = _Order(model, out, precision, name, force, fmi, binary, despite_verdict, flat)

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from hyst.operators import ModelDescription
+
 Schedule = Annotated[
     str | None,
     typer.Option(
@@ -72,7 +74,13 @@ class About:
     validate_schedule: str | None
 
     def is_given(self) -> bool:
-        """Tell whether there is one; more of none is refused."""
+        """Tell whether there is one.
+
+        Raises
+        ------
+        InputError
+            If there is none, but more is said of it.
+        """
         more = (self.name, self.unit, self.validate_schedule)
         if self.schedule is None and any(each is not None for each in more):
             raise hyst.InputError(
@@ -185,10 +193,9 @@ def loaded(path: Path, column: str | None, value: float | None) -> hyst.Operator
     return found if value is None else frozen(found, value)
 
 
-def loaded_at(path: Path, value: float) -> hyst.Operator:
-    """Read the file of a scheduled model, and give it as it is at one value."""
-    found = loaded(path, None, value)
-    return found.at(value) if isinstance(found, hyst.Scheduled) else found
+def loaded_at(path: Path, value: float | None) -> Any:
+    """Read what a file holds; if a value is given, a scheduled model as it is there."""
+    return hyst.load(path) if value is None else loaded(path, None, value)
 
 
 def frozen(model: hyst.Scheduled, value: float) -> hyst.Operator:
@@ -290,12 +297,17 @@ def command_over(
         "model, hyst info and metrics.json tell at each value"
     )
     print(f"command from {u.min():.6g} to {u.max():.6g}")
-    if not len(history) and memory.size:
+    tell_virgin(not len(history) and memory.size > 0)
+    return u, predicted
+
+
+def tell_virgin(is_virgin: bool) -> None:
+    """Say that no history was given to a model with memory, where that is so."""
+    if is_virgin:
         print(
             "memory taken as virgin, as of an actuator never driven; if it was driven, give the "
             "turns of the drive just before with --history"
         )
-    return u, predicted
 
 
 def compensate_over(
@@ -323,15 +335,37 @@ def compensate_over(
     """
     turns = () if history is None else numbers(history, "history")
     done = command_over(model, y_ref, s, turns, input_range, despite_verdict)
-    about, (headers, columns) = model.description, time
+    write_command(out, model.description, time, (y_ref, *done))
+    show_files([out])
+
+
+def write_command(
+    out: Path,
+    about: ModelDescription,
+    time: tuple[list[str], list[Any]],
+    signals: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+) -> None:
+    """Write reference, command and predicted output.
+
+    Parameters
+    ----------
+    out
+        The file to write.
+    about
+        Of the model, for units.
+    time
+        Headers and columns that come first.
+    signals
+        The three.
+    """
+    headers, columns = time
     named = (
         ("reference", about.output_unit),
         ("command", about.input_unit),
         ("predicted", about.output_unit),
     )
     headers = [*headers, *(hyst.io.join_unit(*each) for each in named)]
-    hyst.io.write_columns(out, headers, [*columns, y_ref, *done])
-    show_files([out])
+    hyst.io.write_columns(out, headers, [*columns, *signals])
 
 
 def refuse_what_is_fixed(given: dict[str, bool]) -> None:
