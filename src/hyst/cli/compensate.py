@@ -22,11 +22,13 @@ from hyst.cli.relevant_options import refuse_irrelevant
 from hyst.cli.scheduled import (
     ScheduleColumn,
     ScheduleValue,
-    command_over,
+    compensate_over,
     loaded,
     model_at_rest,
     read_signal,
     refuse_what_is_fixed,
+    tell_virgin,
+    write_command,
 )
 from hyst.cli.time_column import time_column
 from hyst.operators.composition import leaves_of
@@ -139,17 +141,9 @@ def compensate(
     known = sample_time_known(model_at_rest(model), reference, rate, "the reference", **how)
     if isinstance(model, hyst.Scheduled):
         refuse_what_is_fixed({"--method": method != "exact", "--outside": outside == "clip"})
-        turns = () if history is None else numbers(history, "history")
         s = read_signal(model, reference, str(schedule_column), y_ref.size, how)
-        over = command_over(model, y_ref, s, turns, input_range, despite_verdict)
-        headers, columns = time_column(reference, rate, model.dt, y_ref.size, **how)
-        headers += [
-            hyst.io.join_unit("reference", about.output_unit),
-            hyst.io.join_unit("command", about.input_unit),
-            hyst.io.join_unit("predicted", about.output_unit),
-        ]
-        hyst.io.write_columns(out, headers, [*columns, y_ref, *over])
-        show_files([out])
+        time = time_column(reference, rate, model.dt, y_ref.size, **how)
+        compensate_over(model, y_ref, s, history, input_range, despite_verdict, out, time)
         return
     _require_method_for(model, method)
     with progress_bar("inverting") as progress:
@@ -170,22 +164,10 @@ def compensate(
         )
     if not known:
         note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
-    headers, columns = time_column(reference, rate, model.dt, done.u.size, **how)
-    headers += [
-        hyst.io.join_unit(name, unit)
-        for name, unit in (
-            ("reference", about.output_unit),
-            ("command", about.input_unit),
-            ("predicted", about.output_unit),
-        )
-    ]
-    hyst.io.write_columns(out, headers, [*columns, done.y_ref, done.u, done.y_predicted])
+    time = time_column(reference, rate, model.dt, done.u.size, **how)
+    write_command(out, about, time, (done.y_ref, done.u, done.y_predicted))
     _tell(done, about, input_range)
-    if history is None and model.initial_state().size:
-        print(
-            "memory taken as virgin, as of an actuator never driven; if it was driven, give the "
-            "turns of the drive just before with --history"
-        )
+    tell_virgin(history is None and model.initial_state().size > 0)
     show_files([out])
 
 

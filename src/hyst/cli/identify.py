@@ -33,6 +33,7 @@ from hyst.cli.fitted import (
 )
 from hyst.cli.reading_options import reads_records
 from hyst.cli.scheduled import (
+    About,
     Schedule,
     ScheduleName,
     ScheduleUnit,
@@ -95,16 +96,9 @@ def identify(
         "allow_unconverged": allow_unconverged,
         **options,
     }
-    about_schedule = schedule_name, schedule_unit
-    if schedule is not None:
-        return identify_over(
-            data, validate, folder, files, schedule, validate_schedule, *about_schedule, asked
-        )
-    if any(each is not None for each in (*about_schedule, validate_schedule)):
-        raise hyst.InputError(
-            "--schedule-name, --schedule-unit and --validate-schedule say more of --schedule; give "
-            "it too"
-        )
+    about = About(schedule, schedule_name, schedule_unit, validate_schedule)
+    if about.is_given():
+        return identify_over(data, validate, folder, files, about, asked)
     with at_work("identifying") as say:
         say("reading")
         measured = files.records(data)
