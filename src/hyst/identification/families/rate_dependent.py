@@ -87,7 +87,7 @@ MOST_PLAYS = 50
 _PLAYS_FOR_THE_LAW = 6
 """Evenly spaced, with which a law is chosen before their number is known."""
 
-_ITERATIONS_FOR_THE_LAW = 40
+_ITERATIONS_FOR_THE_LAW = 25
 
 _STARTS = 3
 
@@ -277,10 +277,13 @@ class RateDependent(Family):
         fits = [
             fit
             if (law.name, law.form) == (own.name, own.form)
-            else with_law(fit, law, overview, max_iterations)
+            else with_law(fit, law, overview, min(max_iterations, _ITERATIONS_FOR_THE_LAW))
             for law in self._laws(overview.data)
         ]
-        return simplest_law(fits, overview) if len(fits) > 1 else fit
+        chosen = simplest_law(fits, overview) if len(fits) > 1 else fit
+        if chosen is fit:
+            return fit
+        return solved(chosen, overview, chosen.solution.theta, max_iterations)
 
     def estimates(self, fit: Fit) -> Estimates:
         """Give the constants that are free; of a law its own and not those of its table."""
