@@ -17,6 +17,7 @@ from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.cross_validation import fewest_left
 from hyst.identification.choice.delay import OWN, find_delay, told_by_family, usable_delay
+from hyst.identification.choice.joint_delay import with_joint_delay
 from hyst.identification.choice.rivals import other_signs, rivals_of
 from hyst.identification.choice.selection import (
     Contender,
@@ -133,6 +134,7 @@ def find(
     fit, task = choice.fit, choice.task
     if task.searched() is not task.data:
         fit = _polished(fit, task, options)
+    fit, task = with_joint_delay(fit, task, options.max_iterations)
     fit, *rivals = (
         replace(each, parametrization=_in_given_units(each, task)) for each in (fit, *choice.rivals)
     )
@@ -163,6 +165,7 @@ def _task(family: Family, given: Data, left_out: tuple[str, ...]) -> Task:
         _power_of_two(2.0 * given.half_range),
         _power_of_two(max(float(np.ptp(each.y)) for each in given.records)),
     )
+    given = replace(given, keeps_corners=not family.depends_on_rate)
     data = given.in_units(1.0 / scales[0], 1.0 / scales[1])
     return Task(
         suited.in_units(1.0 / scales[0], 1.0 / scales[1]), given, data, scales, left_out + notes

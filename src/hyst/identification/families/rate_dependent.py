@@ -148,6 +148,7 @@ class RateDependent(Family):
         "Let the radii grow by another law of the rate (--rate-law auto), or use family "
         "hammerstein where there is a resonance."
     )
+    rate_between_samples = True
     explains = ("rate dependence", "dynamics")  # its output falls behind as the rate grows
 
     plays: Any = option(AUTO, whole_number_or_auto(1, MOST_PLAYS, "Number of plays."))

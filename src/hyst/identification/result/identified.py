@@ -19,6 +19,7 @@ from hyst.identification.record_use.part_of_a_sample import (
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.bands import NEW, Bands, as_level
 from hyst.identification.result.late_output import late_output
+from hyst.identification.result.motion import OutputPart, motion_lines
 from hyst.identification.result.record_errors import RecordErrors, run_at_several_rates
 from hyst.operators import ModelDescription, Operator, Verdict
 from hyst.operators.plain_data import as_number
@@ -102,6 +103,9 @@ class Identified:
         What ``band`` is made of.
     per_record
         Errors over each of the records it was identified from, in their order.
+    motion
+        What moves the output, part by part: hysteresis, creep, drift and what is left; empty where
+        neither creep nor drift came up.
     """
 
     model: Operator
@@ -122,6 +126,7 @@ class Identified:
     diagnosis: Diagnosis
     bands: Bands = field(repr=False)
     per_record: tuple[RecordErrors, ...]
+    motion: tuple[OutputPart, ...]
 
     def __repr__(self) -> str:
         what = self.family or self.model.kind
@@ -241,6 +246,7 @@ class Identified:
             "delay_interval": [as_number("delay_interval", each) for each in self.delay_interval],
             "metrics": {name: each.to_dict() for name, each in self.metrics.items()},
             "per_record": [each.to_dict() for each in self.per_record],
+            **({"motion": [each.to_dict() for each in self.motion]} if self.motion else {}),
             "parameters": [
                 {"name": name, "value": float(value), "standard_error": error}
                 for name, value, error in zip(
@@ -274,6 +280,8 @@ class Identified:
         if len(self.per_record) > 1:
             several = run_at_several_rates(self.per_record)
             lines += [_record_line(each, unit, several) for each in self.per_record]
+        if self.motion:
+            lines += ["", *motion_lines(self.motion, unit)]
         lines += ["", f"{'parameter':36s} {'value':>13s} {'standard error':>15s}"]
         for name, value, error in zip(
             self.parameter_names, self.parameter_values, self.standard_errors, strict=True

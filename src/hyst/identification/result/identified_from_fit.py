@@ -67,7 +67,7 @@ def identified_from_fit(
     """
     operator, estimates = fit.operator, fit.family.estimates(fit)
     errors, not_told_apart = np.full(len(estimates.names), np.nan), tuple[str, ...]()
-    spread = spread_of_fit(data, fit)
+    spread = spread_of_fit(data, fit, delay)
     if fit.family.estimates_noise:
         errors = spread.of(estimates.by_theta)
         not_told_apart = spread.not_told_apart(estimates)
@@ -91,6 +91,7 @@ def identified_from_fit(
         diagnosis=diagnosis,
         bands=bands_of(data, fit, spread, rivals),
         per_record=errors_by_record(data, operator),
+        motion=(),
     )
 
 
