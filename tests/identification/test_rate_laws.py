@@ -221,3 +221,14 @@ def test_record_weights_by_hysteresis_are_told() -> None:
 def test_options_that_are_none(options: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         identify(records(LAWS["linear"], seed=0), **options)
+
+
+@pytest.mark.parametrize("options", [{"rate": "saturating"}, {"rate_filter": 1e-3}])
+def test_what_cannot_be_served_before_dynamics(options: dict[str, Any]) -> None:
+    with pytest.raises(InputError, match="before dynamics"):
+        hyst.identify(
+            records(LAWS["linear"], 0, runs=[(50.0, 10.0, 1e-4)]),
+            family="hammerstein",
+            hysteresis="rdpi",
+            **options,
+        )
