@@ -1,4 +1,4 @@
-"""Laws of the rate, maps and noise of the drive: rate-dependent plays found from independent plants.
+"""Laws of the rate, maps and noise of the drive: rate-dependent plays found from other plants.
 
 Plants are written with the equations of S4 in NumPy alone, as the tests have them. Prints
 - which law ``rate="auto"`` chooses, and how its constants scatter over their standard errors,
