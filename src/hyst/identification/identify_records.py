@@ -12,6 +12,7 @@ from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
 from hyst.identification.creep.found_creep import as_creep, with_creep
 from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families, families_in_reserve
+from hyst.identification.lag.found_lag import as_lag, found_with_lag
 from hyst.identification.options import Options, listed, silent
 from hyst.identification.record_use.cleaned import Cleaned, as_drift, cleaned
 from hyst.identification.record_use.overview import Overview
@@ -31,6 +32,7 @@ def identify(
     start: int | Literal["auto"] = "auto",
     drift: Literal["auto", False] = "auto",
     creep: int | Literal["auto"] | None = "auto",
+    lag: float | Literal["auto"] | None = None,
     validation: Record | Sequence[Record] = (),
     max_iterations: int = 200,
     allow_unconverged: bool = False,
@@ -71,6 +73,11 @@ def identify(
         ``"auto"``: as many as the records pay for, none unless what the model leaves shows them
         beyond drift, noise and loops of another shape; ``None``: none. What settles since a
         record began, or drifts whatever the drive does, is no creep.
+    lag
+        Time constant, s, of a first-order lag of the drive before the hysteresis, as of an
+        amplifier: it is a stage of the model then, which its inverse undoes. ``"auto"``: estimated
+        where the records show a lag, and told from a pure delay where they can; a number: held;
+        None: the model has none, and what comes late is the delay beside it.
     validation
         Records to judge the model by; they do not take part in the fit.
     max_iterations
@@ -113,6 +120,7 @@ def identify(
     wanted = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
     families, about_drift = chosen_families(family, options), as_drift(drift)
     lags = as_creep(creep)
+    time_constant = as_lag(lag)
     reserve = families_in_reserve(family, options)
     with threadpool_limits(1, user_api="blas"):
         diagnosis = diagnose_all_but_delay(given)
@@ -128,8 +136,9 @@ def identify(
         )
         found = creeping.found
         diagnosis = creeping.judged(diagnosis, given)
+        found = found_with_lag(search, clean, time_constant, wanted)
         for number, record in enumerate(judged, 1):
-            found.fit.operator.require_sample_time(record.dt, f"validation record {number}")
+            found.fit.operator.require_possible_time(record.dt, f"validation record {number}")
         if found.delay is not None:
             # In units of powers of two, in which its times and samples are the same.
             diagnosis = diagnosis.with_delay(found.delay, given[0].dt)

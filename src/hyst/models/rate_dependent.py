@@ -184,7 +184,7 @@ class RateDependentPrandtlIshlinskii(Operator):
         """Give the initial play outputs and that there is no previous input, shape (n + 2,)."""
         return np.concatenate([self.z0, np.zeros(2)])
 
-    def inverse(self) -> Operator:
+    def exact_inverse(self) -> Operator:
         """Give the exact inverse where there is one: for beta = 0.
 
         Raises

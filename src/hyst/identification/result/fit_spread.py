@@ -7,10 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.identification.families.family import Estimates, Fit
 from hyst.identification.fit.nuisance import Beside
 from hyst.identification.fit.problem import Evaluation, projected
 from hyst.identification.record_use.used_samples import Data
+from hyst.identification.result.lateness import counts_delay, lateness_of
 from hyst.identification.result.standard_errors import (
     Spread,
     spread_of_estimates,
@@ -41,6 +43,7 @@ class FitSpread:
     inside: NDArray[np.bool_]
     noise_rms: float
     bounds_hold: bool = False
+    moves: Array | None = None
 
     def of(self, by_theta: Array) -> Array:
         """Give the standard errors of functions of theta.
@@ -59,7 +62,8 @@ class FitSpread:
         errors = np.full(len(by_theta), np.nan)
         moves = by_theta[:, self.inside].any(axis=1)
         known = moves & (self.bounds_hold | ~by_theta[:, ~self.inside].any(axis=1))
-        errors[known] = self.spread.of(by_theta[np.ix_(known, self.inside)])
+        rows = by_theta[np.ix_(known, self.inside)]
+        errors[known] = self._moved(self.spread.of(rows), rows)
         return errors
 
     def of_what_is_determined(self, by_theta: Array) -> Array:
@@ -75,7 +79,17 @@ class FitSpread:
         numpy.ndarray
             Shape (q,).
         """
-        return self.spread.if_determined(by_theta[:, self.inside])
+        rows = by_theta[:, self.inside]
+        return self._moved(self.spread.if_determined(rows), rows)
+
+    def _moved(self, errors: Array, rows: Array) -> Array:
+        """Add what the things beside the model may move."""
+        if self.moves is None:
+            return errors
+        size = np.abs(errors).max(initial=0.0, where=np.isfinite(errors)) or 1.0
+        size = float(np.ldexp(1.0, np.frexp(size)[1]))  # squares of what is tiny would underflow
+        moved = (rows @ self.moves) / size
+        return np.asarray(size * np.sqrt((errors / size) ** 2 + (moved**2).sum(axis=1)))
 
     def not_told_apart(self, estimates: Estimates) -> tuple[str, ...]:
         """Name the estimates in every combination that the records do not determine.
@@ -117,7 +131,7 @@ def _joined(disturbed: NDArray[np.bool_]) -> list[NDArray[np.bool_]]:
     return groups
 
 
-def spread_of_fit(data: Data, fit: Fit) -> FitSpread:
+def spread_of_fit(data: Data, fit: Fit, delay: DelayEvidence | None = None) -> FitSpread:
     """Find how sure the free parameters of a fit are.
 
     Parameters
@@ -126,6 +140,9 @@ def spread_of_fit(data: Data, fit: Fit) -> FitSpread:
         The records.
     fit
         The final fit, in their units.
+    delay
+        What the records say of their delay where it was estimated: then it is part of what is not
+        known exactly.
 
     Returns
     -------
@@ -159,4 +176,12 @@ def spread_of_fit(data: Data, fit: Fit) -> FitSpread:
         jacobian, residual, data.lengths(), theta[inside], held[:, inside], taken_out
     )
     freedom = max(residual.size - int(inside.sum()) + len(held) - taken_out, 1)
-    return FitSpread(spread, inside, float(np.linalg.norm(residual) / np.sqrt(freedom)))
+    rms = float(np.linalg.norm(residual) / np.sqrt(freedom))
+    moves = None
+    late = counts_delay(fit.family, delay)
+    if late or fit.family.rate_between_samples:
+        # What it may be at most is what the records leave possible before any model.
+        furthest = max(delay.high - data.lag, 0.0) if late and delay is not None else 0.0
+        back = max(data.lag - delay.low, 0.0) if late and delay is not None else 0.0
+        moves = lateness_of(data, fit, delay_is_free=late).moves(furthest, back)
+    return FitSpread(spread, inside, rms, moves=moves)

@@ -20,7 +20,7 @@ from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.bands import NEW, Bands, as_level
 from hyst.identification.result.late_output import late_output
 from hyst.identification.result.motion import OutputPart, motion_lines
-from hyst.identification.result.record_errors import RecordErrors
+from hyst.identification.result.record_errors import RecordErrors, run_at_several_rates
 from hyst.operators import ModelDescription, Operator, Verdict
 from hyst.operators.plain_data import as_number
 from hyst.signals import Metrics
@@ -278,6 +278,8 @@ class Identified:
                 f"max {each.max_abs:.4g}{unit}   fit {each.nrmse_fit_percent:.2f} %"
             )
         if len(self.per_record) > 1:
+            several = run_at_several_rates(self.per_record)
+            lines += [_record_line(each, unit, several) for each in self.per_record]
             lines += [_record_line(each, unit) for each in self.per_record]
         if self.motion:
             lines += ["", *motion_lines(self.motion, unit)]
@@ -293,11 +295,21 @@ class Identified:
         return "\n".join(lines)
 
 
-def _record_line(each: RecordErrors, unit: str) -> str:
+def _record_line(each: RecordErrors, unit: str, several_rates: bool) -> str:
     named = f"record {each.number}" + (f", {each.name}" if each.name else "")
     if each.metrics is None:
         return f"{named:28s} no sample that moves was used"
     return (
         f"{named:28s} rms {each.metrics.rms:.4g}{unit} ({each.metrics.rms_percent:.3f} % of its "
         f"own range)   max {each.metrics.max_abs:.4g}{unit}   {each.samples} samples"
+        f"{_loop_in_words(each) if several_rates else ''}"
+    )
+
+
+def _loop_in_words(each: RecordErrors) -> str:
+    if each.frequency is None or each.hysteresis is None or each.modelled_hysteresis is None:
+        return ""
+    return (
+        f"   at {each.frequency:.4g} Hz: hysteresis {each.hysteresis:.3g} %, of the model "
+        f"{each.modelled_hysteresis:.3g} %"
     )
