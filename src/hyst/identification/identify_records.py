@@ -128,15 +128,17 @@ def identify(
         reserve = tuple(each for each in reserve if _is_called_for(each, diagnosis))
         clean = cleaned(given, diagnosis, about_drift)
 
-        def search(records: Cleaned, how: Options) -> Found:
+        def without_lag(records: Cleaned, how: Options) -> Found:
             return find(records, families, how, reserve)
+
+        def search(records: Cleaned, how: Options) -> Found:
+            return found_with_lag(without_lag, records, time_constant, how)
 
         creeping = with_creep(
             search(clean, wanted), clean.with_drift(), lags, about_drift == "auto", search, wanted
         )
         found = creeping.found
         diagnosis = creeping.judged(diagnosis, given)
-        found = found_with_lag(search, clean, time_constant, wanted)
         for number, record in enumerate(judged, 1):
             found.fit.operator.require_possible_time(record.dt, f"validation record {number}")
         if found.delay is not None:

@@ -111,16 +111,6 @@ class Operator(Inverses, Constants, ABC):
         except InputError:
             self.require_sample_time(dt, what)
 
-    @abstractmethod
-    def inverse(self) -> Operator:
-        """Give the exact inverse, with its initial state, so that both cancel from sample 0 on.
-
-        Raises
-        ------
-        NotInvertibleError
-            If there is none; the message names the condition that fails.
-        """
-
     def keeps_unit(self) -> bool:
         """Tell whether a signal keeps its unit, as what is only bent, shifted or delayed does."""
         return False

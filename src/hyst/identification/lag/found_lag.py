@@ -97,7 +97,7 @@ def found_with_lag(search: Search, records: Cleaned, wanted: Wanted, options: Op
         If the family has dynamics of its own.
     """
     if wanted is None:
-        return search(records)
+        return search(records, options)
     if isinstance(wanted, float):
         found = search(_lagged(records, wanted), options)
         _require_place(found.fit)

@@ -280,7 +280,6 @@ class Identified:
         if len(self.per_record) > 1:
             several = run_at_several_rates(self.per_record)
             lines += [_record_line(each, unit, several) for each in self.per_record]
-            lines += [_record_line(each, unit) for each in self.per_record]
         if self.motion:
             lines += ["", *motion_lines(self.motion, unit)]
         lines += ["", f"{'parameter':36s} {'value':>13s} {'standard error':>15s}"]
