@@ -11,6 +11,7 @@ import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
     number_or_auto,
+    whole_auto_or_none,
     whole_or_auto,
 )
 from hyst.cli.console import at_work, show_files
@@ -55,6 +56,13 @@ LeaveDisturbances = Annotated[
         "--leave-disturbances", help="Take neither drift nor foreign sines out of the output."
     ),
 ]
+Creep = Annotated[
+    str,
+    typer.Option(
+        metavar="N|auto|none",
+        help="Number of lags that creep behind the hysteresis; auto: as many as the records show.",
+    ),
+]
 Start = Annotated[str, typer.Option(metavar="N|auto", help="First sample to use.")]
 
 
@@ -68,6 +76,7 @@ def identify(
     delay: Delay = "auto",
     start: Start = "auto",
     leave_disturbances: LeaveDisturbances = False,
+    creep: Creep = "auto",
     validate: Validate = None,
     validate_input: ValidateInput = None,
     validate_output: ValidateOutput = None,
@@ -86,6 +95,7 @@ def identify(
     chosen = hyst.identification.chosen_families(family, options)
     chosen += hyst.identification.families_in_reserve(family, options)
     lag, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
+    lags = whole_auto_or_none(creep, "creep")
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(how, others, (input_label, output_label))
     asked = {
@@ -105,6 +115,7 @@ def identify(
         validation = files.validation(validate)
         found = hyst.identify(
             measured,
+            creep=lags,
             validation=validation,
             progress=say,
             **asked,
