@@ -41,6 +41,13 @@ Delay = Annotated[
         help="Samples by which the output lags; parts of one, or negative where it is ahead.",
     ),
 ]
+Lag = Annotated[
+    str,
+    typer.Option(
+        metavar="SECONDS|auto|none",
+        help="Time constant of a first-order lag of the drive, as of an amplifier, in the model.",
+    ),
+]
 LeaveDisturbances = Annotated[
     bool,
     typer.Option(
@@ -59,6 +66,7 @@ def identify(
     family: Family = "auto",
     delay: Delay = "auto",
     start: Start = "auto",
+    lag: Lag = "none",
     leave_disturbances: LeaveDisturbances = False,
     validate: Validate = None,
     validate_input: ValidateInput = None,
@@ -73,7 +81,8 @@ def identify(
     options = options_given(context, family)
     chosen = hyst.identification.chosen_families(family, options)
     chosen += hyst.identification.families_in_reserve(family, options)
-    lag, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
+    late, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
+    time_constant = None if lag == "none" else number_or_auto(lag, "lag", " or none")
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(how, others, (input_label, output_label))
     with at_work("identifying") as say:
@@ -83,8 +92,9 @@ def identify(
         found = hyst.identify(
             measured,
             family=family,
-            delay=lag,
+            delay=late,
             start=first,
+            lag=time_constant,
             drift=False if leave_disturbances else "auto",
             validation=validation,
             allow_unconverged=allow_unconverged,

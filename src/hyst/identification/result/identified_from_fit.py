@@ -151,7 +151,8 @@ def metrics_by_record(
 def _validation_data(record: Record, data: Data) -> Data:
     """Prepare a record that takes no part: it lags by the same time as the others."""
     lag = lag_in_samples(data.lag, data.records[0].dt, record.dt)
-    return prepare(record, "auto", lag)
+    own = replace(prepare(record, "auto"), keeps_corners=data.keeps_corners)
+    return own.delayed(lag)
 
 
 def _pair(name: str, data: Data, operator: Operator) -> dict[str, Metrics]:
