@@ -1,5 +1,6 @@
-// A delay by parts of a sample and its inverse.
+// A delay by parts of a sample and its inverses: at once, and by preview.
 #include "hyst/delay.h"
+#include "hyst/delay_preview.h"
 
 #include "kind.hpp"
 
@@ -28,9 +29,22 @@ const void *fill_delay(Constants &of) {
                               of.is("inverse")});
 }
 
+// No parameters: the fraction is kept, and how many samples are known ahead is a choice.
+void derive_delay_preview(const Given &given, Constants &made) {
+    given.require(given.constants.empty());
+    const hyst_real fraction = given.kept("fraction").at(0);
+    made.number("lead", (hyst_real(1.0) - fraction) / fraction, not_offered);
+    made.choose("ahead", given.choices.at("ahead"));
+    made.structure = "hyst_delay_preview $model = {#ahead, $lead};";
+}
+
+const void *fill_delay_preview(Constants &of) {
+    return of.hold(hyst_delay_preview{of.choice("ahead"), of.number("lead")});
+}
+
 }  // namespace
 
-extern const Kind delay;
+extern const Kind delay, delay_preview;
 
 const Kind delay = {"delay",
                     &hyst_delay_kind,
@@ -40,6 +54,16 @@ const Kind delay = {"delay",
                     nullptr,
                     nullptr,
                     nullptr};
+
+const Kind delay_preview = {
+    "delay_preview",
+    &hyst_delay_preview_kind,
+    derive_delay_preview,
+    fill_delay_preview,
+    {"hyst/delay_preview.h", "$signal = hyst_delay_preview_step(&$model, $memory, $signal);"},
+    nullptr,
+    nullptr,
+    nullptr};
 
 }  // namespace HYST_KINDS
 }  // namespace hyst

@@ -20,6 +20,7 @@ from hyst.models import (
     ColemanHodgdon,
     Creep,
     Dahl,
+    DegradingBoucWen,
     Delay,
     ExponentialCurve,
     GeneralizedMaxwellSlip,
@@ -187,6 +188,8 @@ OTHERS: dict[str, Operator] = {
     "delay of whole samples": Delay(3, dt=0.01),
     "delay of nothing": Delay(0.0, dt=0.01),
     "inverse delay": Delay(0.2, dt=0.01).inverse(),
+    "delay taken back by preview": Delay(1.7, dt=0.01).inverse(preview=5),
+    "inverse of hysteresis behind a delay": (PI @ Delay(3.8, dt=0.01)).inverse(preview=9),
     "hysteresis and creep behind a lag": Creep([0.02, 0.02], [0.1, 1.0], dt=0.01)
     @ PI
     @ Delay(0.25, dt=0.01)
@@ -200,6 +203,14 @@ OTHERS: dict[str, Operator] = {
     "bouc-wen sharp": BoucWen(0.2, 1.5, 0.7, -0.3, 1.7, phi=0.1, z0=-0.25, u0=0.5),
     "bouc-wen without inverse": BoucWen(0.5, 0.4, 0.5, 0.1, 0.6, -1.0),
     "inverse bouc-wen": BoucWen(1.1, 0.4, 0.2, 0.1, 2.5, -1.0, 0.02).inverse(),
+    "degrading bouc-wen": DegradingBoucWen(0.4, 0.8, 0.3, 0.2, 1.0, 0.02, 0.05),
+    "degrading bouc-wen that pinches": DegradingBoucWen(
+        0.3, 1.0, 0.4, -0.1, 1.7, 0.01, 0.02, 0.45, 0.5, 0.2, 0.4, 0.01, 0.3
+    ),
+    "degrading bouc-wen without inverse": DegradingBoucWen(0.0, 1.0, 0.5, 0.1, 2.0, 0.3),
+    "inverse degrading bouc-wen": DegradingBoucWen(
+        0.5, 0.6, 0.4, 0.1, 1.3, 0.03, 0.1, 0.4, 1.0, 0.1, 0.5, 0.0, 0.5
+    ).inverse(),
     "jiles-atherton": JilesAtherton(2.0, 3.0, 2.0, 0.2, 1.0),
     "jiles-atherton 1992": JilesAtherton(2.0, 3.0, 2.0, 0.2, 1.0, "jiles-thoelke-devine-1992"),
     "jiles-atherton 1986": JilesAtherton(2.0, 3.0, 5.0, 0.3, 1.0, "jiles-atherton-1986"),

@@ -31,6 +31,7 @@ from hyst.models import (
     Butterfly,
     ColemanHodgdon,
     Dahl,
+    DegradingBoucWen,
     ExponentialCurve,
     GeneralizedMaxwellSlip,
     Iwan,
@@ -236,6 +237,20 @@ bouc_wens = st.builds(
     st.floats(-0.5, 0.5),
     st.just(0.0),
 )
+degrading_bouc_wens = st.builds(
+    lambda k, a, beta, share, n, nu, eta, zeta, p: DegradingBoucWen(
+        k, a, beta, share * beta, n, nu, eta, zeta, p, 0.1, 0.5, 0.02, 0.5
+    ),
+    few,
+    few,
+    few,
+    st.floats(-0.75, 1.0),
+    st.sampled_from((1.0, 2.0)) | st.floats(1.0, 4.0),
+    st.floats(0.0, 0.02),
+    st.floats(0.0, 0.1),
+    st.floats(0.0, 0.49),
+    st.floats(0.0, 1.0),
+)
 # Poles and zeros inside the unit circle.
 lags = st.builds(
     lambda zero, poles, gain, delay: LinearDynamics.from_zeros_poles_gain(
@@ -332,6 +347,10 @@ RANDOM: dict[str, Operators] = {
     "inverse-bouc-wen": bouc_wens.filter(lambda model: model.traits().invertible).map(
         lambda model: model.inverse()
     ),
+    "degrading-bouc-wen": degrading_bouc_wens,
+    "inverse-degrading-bouc-wen": degrading_bouc_wens.filter(
+        lambda model: model.traits().invertible
+    ).map(lambda model: model.inverse()),
     "dahl": st.builds(Dahl, few, few, st.floats(0.3, 3.0), numbers(-1.0, 1.0)),
     **WITH_TIME,
     # A Coulomb force beyond every input of the contracts.

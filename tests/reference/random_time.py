@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from hyst import Operator
 from hyst.models import Creep, Delay, Lag
+from hyst.models.previewed_delay import PreviewedDelay
 from reference.random_numbers import numbers
 
 
@@ -29,6 +30,7 @@ WITH_TIME: dict[str, st.SearchStrategy[Operator]] = {
     "inverse-delay": st.builds(Delay, st.floats(0.0, 0.24), st.just(0.01)).map(
         lambda delay: delay.inverse()
     ),
+    "previewed-delay": st.builds(PreviewedDelay, st.floats(0.55, 1.0), st.integers(0, 6)),
     "lag": first_order,
     "inverse-lag": first_order.map(lambda lag: lag.inverse()),
 }

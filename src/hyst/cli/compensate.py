@@ -14,7 +14,6 @@ from hyst.cli.arguments import (
     DespiteVerdict,
     ModelFile,
     SampleRate,
-    load_operator,
     numbers,
     require_same_unit,
     sample_time_known,
@@ -22,6 +21,15 @@ from hyst.cli.arguments import (
 from hyst.cli.console import note, progress_bar, show_files, show_table
 from hyst.cli.reading_options import reads_columns
 from hyst.cli.relevant_options import refuse_irrelevant
+from hyst.cli.scheduled import (
+    ScheduleColumn,
+    ScheduleValue,
+    command_over,
+    loaded,
+    model_at_rest,
+    read_signal,
+    refuse_what_is_fixed,
+)
 from hyst.cli.time_column import time_column
 from hyst.operators.composition import leaves_of
 
@@ -55,6 +63,17 @@ RateLimit = Annotated[
         metavar="X", show_default=False, help="Largest rate of the input, of preview, trajectory."
     ),
 ]
+Objective = Annotated[
+    Literal["rms", "largest"], typer.Option(help="Which error trajectory makes small.")
+]
+Roughness = Annotated[
+    float | None,
+    typer.Option(
+        metavar="W",
+        show_default="1 % of the gain",
+        help="Of trajectory: a second difference of the command of 1 counts as an error of W.",
+    ),
+]
 AllowUnconverged = Annotated[
     bool, typer.Option("--allow-unconverged", help="Accept a command that did not converge.")
 ]
@@ -83,6 +102,8 @@ _BY_METHOD = {
     "preview": ("preview",),
     "rate_limit": ("preview", "trajectory"),
     "allow_unconverged": ("trajectory",),
+    "objective": ("trajectory",),
+    "roughness": ("trajectory",),
 }
 
 
@@ -110,20 +131,44 @@ def compensate(
     history: History = None,
     preview: Preview = 20,
     rate_limit: RateLimit = None,
+    objective: Objective = "rms",
+    roughness: Roughness = None,
     rate: SampleRate = None,
     allow_unconverged: AllowUnconverged = False,
     despite_verdict: DespiteVerdict = False,
     with_delay: WithDelay = False,
+    schedule_column: ScheduleColumn = None,
+    schedule_value: ScheduleValue = None,
 ) -> None:
     """Turn a wanted output into the input that produces it, and predict how well."""
     if method in hyst.compensation.METHODS:
         refuse_irrelevant(context, _BY_METHOD, [method], "--method")
-    model = load_operator(model_file)
+    model = loaded(model_file, schedule_column, schedule_value)
     about = model.description
     y_ref, _, unit = hyst.io.read_column(reference, column, **how)
     require_same_unit(unit, about.output_unit, "the reference")
     input_range = _input_range(limits, no_limits, about)
-    known = sample_time_known(model, reference, rate, "the reference", **how)
+    known = sample_time_known(model_at_rest(model), reference, rate, "the reference", **how)
+    if isinstance(model, hyst.Scheduled):
+        refuse_what_is_fixed(
+            {
+                "--method": method != "exact",
+                "--outside": outside == "clip",
+                "--with-delay": with_delay,
+            }
+        )
+        turns = () if history is None else numbers(history, "history")
+        s = read_signal(model, reference, str(schedule_column), y_ref.size, how)
+        over = command_over(model, y_ref, s, turns, input_range, despite_verdict)
+        headers, columns = time_column(reference, rate, model.dt, y_ref.size, **how)
+        headers += [
+            hyst.io.join_unit("reference", about.output_unit),
+            hyst.io.join_unit("command", about.input_unit),
+            hyst.io.join_unit("predicted", about.output_unit),
+        ]
+        hyst.io.write_columns(out, headers, [*columns, y_ref, *over])
+        show_files([out])
+        return
     _require_method_for(model, method)
     wanted = _as_early(y_ref, about) if with_delay else y_ref
     with progress_bar("inverting") as progress:
@@ -135,6 +180,8 @@ def compensate(
             outside=outside,
             history=None if history is None else numbers(history, "history"),
             rate_limit=rate_limit,
+            objective=objective,
+            roughness=roughness,
             preview=preview,
             allow_unconverged=allow_unconverged,
             despite_verdict=despite_verdict,
@@ -232,7 +279,8 @@ def _tell(
         print(
             f"{done.method}, {done.status}: the command's total variation is "
             f"{done.total_variation:.3f} of the reference's, its peak rate {done.peak_rate:.3f}; "
-            f"it turns {done.reversals} times"
+            f"it turns {done.reversals} times, its second differences are {done.roughness:.4g} rms "
+            f"and {done.largest_bend:.4g} at most"
         )
     for sentence in done.notes:
         print(sentence)

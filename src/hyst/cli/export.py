@@ -14,6 +14,7 @@ import hyst
 from hyst.cli.arguments import DespiteVerdict, ModelFile
 from hyst.cli.console import show_table
 from hyst.cli.relevant_options import refuse_irrelevant
+from hyst.cli.scheduled import ScheduleValue, loaded
 
 if TYPE_CHECKING:
     from hyst.export.c.block import Model
@@ -186,12 +187,15 @@ def export(
     ] = True,
     despite_verdict: DespiteVerdict = False,
     flat: Flat = False,
+    schedule_value: ScheduleValue = None,
 ) -> None:
     """Write a model as code for other tools: the numbers of Python, bit for bit in double."""
     if target not in _TARGETS:
         raise hyst.InputError(f"--target is {target!r}; give {' or '.join(_TARGETS)}")
     refuse_irrelevant(context, _BY_TARGET, [target], "--target")
     model = hyst.load(model_file)
+    if schedule_value is not None:
+        model = loaded(model_file, None, schedule_value)
     if inverse or explicit:
         model = hyst.export.inverse_of(model, explicit)
     order = _Order(model, out, precision, name, force, fmi, binary, despite_verdict, flat)

@@ -32,6 +32,13 @@ from hyst.cli.fitted import (
     write_fitted,
 )
 from hyst.cli.reading_options import reads_records
+from hyst.cli.scheduled import (
+    Schedule,
+    ScheduleName,
+    ScheduleUnit,
+    ValidateSchedule,
+    identify_over,
+)
 
 Family = Annotated[str, typer.Option(help="Of the model.")]  # the registry explains it
 Delay = Annotated[
@@ -75,6 +82,10 @@ def identify(
     input_label: InputLabel = None,
     output_label: OutputLabel = None,
     allow_unconverged: AllowUnconverged = False,
+    schedule: Schedule = None,
+    schedule_name: ScheduleName = None,
+    schedule_unit: ScheduleUnit = None,
+    validate_schedule: ValidateSchedule = None,
 ) -> int:
     """Identify a model from measured records, and write model, numbers, figures and a report."""
     require_folder(folder)
@@ -85,21 +96,36 @@ def identify(
     time_constant = None if lag == "none" else number_or_auto(lag, "lag", " or none")
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(how, others, (input_label, output_label))
+    asked = {
+        "family": family,
+        "delay": late,
+        "start": first,
+        "drift": False if leave_disturbances else "auto",
+        "allow_unconverged": allow_unconverged,
+        **options,
+    }
+    about_schedule = schedule_name, schedule_unit
+    if schedule is not None and time_constant is not None:
+        raise hyst.InputError("--lag is not for --schedule; give one of them")
+    if schedule is not None:
+        return identify_over(
+            data, validate, folder, files, schedule, validate_schedule, *about_schedule, asked
+        )
+    if any(each is not None for each in (*about_schedule, validate_schedule)):
+        raise hyst.InputError(
+            "--schedule-name, --schedule-unit and --validate-schedule say more of --schedule; give "
+            "it too"
+        )
     with at_work("identifying") as say:
         say("reading")
         measured = files.records(data)
         validation = files.validation(validate)
         found = hyst.identify(
             measured,
-            family=family,
-            delay=late,
-            start=first,
             lag=time_constant,
-            drift=False if leave_disturbances else "auto",
             validation=validation,
-            allow_unconverged=allow_unconverged,
             progress=say,
-            **options,
+            **asked,
         )
         say("report")
         found = named_by_files(found, files.sources)

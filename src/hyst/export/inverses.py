@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from hyst.errors import InputError
 from hyst.export.c.block import Model
-from hyst.models import RateDependentPrandtlIshlinskii
+from hyst.models import RateDependentPrandtlIshlinskii, Scheduled
+from hyst.models.scheduled_inverse import ScheduledInverse
 from hyst.operators import Operator
 from hyst.operators.composition import leaves_of
 from hyst.operators.registry import compose
@@ -51,19 +52,19 @@ def explicit_inverse(model: Operator) -> Operator:
     return inverse.with_description(model.description.of_inverse())
 
 
-def inverse_of(model: Model, explicit: bool = False) -> Operator:
+def inverse_of(model: Model, explicit: bool = False) -> Operator | ScheduledInverse:
     """Give the inverse that is exported.
 
     Parameters
     ----------
     model
-        An operator.
+        An operator or a scheduled model.
     explicit
         Whether the explicit inverse is wanted.
 
     Returns
     -------
-    Operator
+    Operator or ScheduledInverse
 
     Raises
     ------
@@ -72,6 +73,8 @@ def inverse_of(model: Model, explicit: bool = False) -> Operator:
     NotInvertibleError
         If it has no inverse.
     """
+    if isinstance(model, Scheduled) and not explicit:
+        return model.inverse()
     if not isinstance(model, Operator):
         raise InputError(f"a {type(model).__name__} has no inverse; export it as it is")
     return explicit_inverse(model) if explicit else model.inverse()

@@ -9,6 +9,7 @@ from threadpoolctl import threadpool_limits
 
 from hyst.diagnosis import Diagnosis
 from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
+from hyst.identification.creep.found_creep import as_creep, with_creep
 from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families, families_in_reserve
 from hyst.identification.lag.found_lag import as_lag, found_with_lag
@@ -30,6 +31,7 @@ def identify(
     delay: float | Literal["auto"] = "auto",
     start: int | Literal["auto"] = "auto",
     drift: Literal["auto", False] = "auto",
+    creep: int | Literal["auto"] | None = "auto",
     lag: float | Literal["auto"] | None = None,
     validation: Record | Sequence[Record] = (),
     max_iterations: int = 200,
@@ -66,6 +68,11 @@ def identify(
         ``"auto"``: slow drift of the output, and sines in it that are none of its drive, as mains
         hum, are taken out before the fit where ``hyst.diagnose`` finds them; ``False``: the output
         is left as it is.
+    creep
+        Number of first-order lags that follow the output of the hysteresis and add to it, 1 to 5;
+        ``"auto"``: as many as the records pay for, none unless what the model leaves shows them
+        beyond drift, noise and loops of another shape; ``None``: none. What settles since a
+        record began, or drifts whatever the drive does, is no creep.
     lag
         Time constant, s, of a first-order lag of the drive before the hysteresis, as of an
         amplifier: it is a stage of the model then, which its inverse undoes. ``"auto"``: estimated
@@ -112,6 +119,7 @@ def identify(
     require_same_units((*given, *judged))
     wanted = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
     families, about_drift = chosen_families(family, options), as_drift(drift)
+    lags = as_creep(creep)
     time_constant = as_lag(lag)
     reserve = families_in_reserve(family, options)
     with threadpool_limits(1, user_api="blas"):
@@ -120,12 +128,19 @@ def identify(
         reserve = tuple(each for each in reserve if _is_called_for(each, diagnosis))
         clean = cleaned(given, diagnosis, about_drift)
 
-        def search(records: Cleaned, how: Options) -> Found:
+        def without_lag(records: Cleaned, how: Options) -> Found:
             return find(records, families, how, reserve)
 
-        found = found_with_lag(search, clean, time_constant, wanted)
+        def search(records: Cleaned, how: Options) -> Found:
+            return found_with_lag(without_lag, records, time_constant, how)
+
+        creeping = with_creep(
+            search(clean, wanted), clean.with_drift(), lags, about_drift == "auto", search, wanted
+        )
+        found = creeping.found
+        diagnosis = creeping.judged(diagnosis, given)
         for number, record in enumerate(judged, 1):
-            found.fit.operator.require_sample_time(record.dt, f"validation record {number}")
+            found.fit.operator.require_possible_time(record.dt, f"validation record {number}")
         if found.delay is not None:
             # In units of powers of two, in which its times and samples are the same.
             diagnosis = diagnosis.with_delay(found.delay, given[0].dt)
@@ -139,6 +154,7 @@ def identify(
             [each.operator for each in found.rivals],
             found.delay,
         )
+        identified = creeping.told(identified)
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
     return traced(told, given, asked)
 

@@ -5,6 +5,7 @@ from hyst.models.butterfly import Butterfly as Butterfly
 from hyst.models.coleman_hodgdon import ColemanHodgdon as ColemanHodgdon
 from hyst.models.creep import Creep as Creep
 from hyst.models.dahl import Dahl as Dahl
+from hyst.models.degrading_bouc_wen import DegradingBoucWen as DegradingBoucWen
 from hyst.models.delay import Delay as Delay
 from hyst.models.exponential_curve import ExponentialCurve as ExponentialCurve
 from hyst.models.generalized_maxwell_slip import (
@@ -40,6 +41,7 @@ from hyst.models.rate_dependent import (
     RateDependentPrandtlIshlinskii as RateDependentPrandtlIshlinskii,
 )
 from hyst.models.rate_shift import RateShift as RateShift
+from hyst.models.scheduled import Scheduled as Scheduled
 from hyst.models.second_order_sections import SecondOrderSections as SecondOrderSections
 from hyst.models.stable_inverse import StableInverse as StableInverse
 from hyst.models.two_envelope import InverseTwoEnvelope as InverseTwoEnvelope

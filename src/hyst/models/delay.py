@@ -1,23 +1,22 @@
-"""A delay by parts of a sample, and its exact inverse where there is one."""
+"""A delay by parts of a sample, and its inverses: exact at once, or by preview."""
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from collections.abc import Sequence
+import math
 from dataclasses import dataclass
-from typing import Any, Self, final
+from typing import final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.checks.numbers import as_not_negative, as_sample_time
-from hyst.errors import InputError, NotInvertibleError
-from hyst.operators import Operator
-from hyst.operators.parameters import Parameters, as_parameter_vector
-from hyst.operators.portrait import NOTHING, Portrait
-from hyst.operators.registry import entries, register
+from hyst.errors import NotInvertibleError
+from hyst.models.late import Late
+from hyst.models.previewed_delay import PreviewedDelay
+from hyst.operators import Affine, Operator
+from hyst.operators.inverses import MOST_PREVIEW
+from hyst.operators.parameters import Parameters
+from hyst.operators.registry import delayed, register
 from hyst.operators.stage import Stage
-from hyst.operators.traits import Degree, Traits
 
 Array = NDArray[np.float64]
 
@@ -25,124 +24,10 @@ LARGEST_DELAY = 100_000
 """Samples; an export writes as many numbers of memory."""
 
 
-@dataclass(frozen=True, eq=False, init=False, repr=False)
-class _Late(Operator):
-    """What a delay and its inverse have in common: all constants."""
-
-    samples: float
-    sample_time: float | None
-
-    def __init__(self, samples: float, dt: float | None = None) -> None:
-        late = as_not_negative(samples, "samples", "by how many samples it is late")
-        if not self._allows(late):
-            raise InputError(self._refusal(late))
-        object.__setattr__(self, "samples", late)
-        step = None if dt is None else as_sample_time(dt)
-        object.__setattr__(self, "sample_time", step)
-
-    @abstractmethod
-    def _allows(self, samples: float) -> bool:
-        """Tell whether there is such a delay, or such an inverse."""
-
-    @abstractmethod
-    def _refusal(self, samples: float) -> str:
-        """Say why there is none."""
-
-    @property
-    def dt(self) -> float | None:
-        """The sample time, seconds; None if any will do."""
-        return self.sample_time
-
-    @property
-    def whole(self) -> int:
-        """The whole samples of the delay."""
-        return int(self.samples)
-
-    def __repr__(self) -> str:
-        of = "" if self.dt is None else f", dt={self.dt!r}"
-        return f"{type(self).__name__}({self.samples!r}{of})"
-
-    def at_sample_time(self, dt: float) -> Self:
-        """Give the same time of delay for records of another sample time.
-
-        Without a sample time of its own the delay is so many samples of any record.
-        """
-        step, own = as_sample_time(dt), self.dt
-        return self if own is None or step == own else type(self)(self.samples * own / step, step)
-
-    def initial_state(self) -> Array:
-        """Give the place of the next sample, none held, and the memory of them, shape (n + 3,)."""
-        return np.zeros(self.whole + 3)
-
-    def traits(self) -> Traits:
-        """Give the traits of a linear memory; without a delay it is the input itself."""
-        none = self.samples == 0.0
-        return Traits(
-            memoryless=none,
-            rate_independent=Degree.EXACTLY if none else Degree.NO,
-            return_point_memory=none,
-            congruent_loops=none,
-            monotone=none,  # else it falls on while the input begins to rise
-            invertible=self.is_invertible,
-        )
-
-    def with_parameters(self, theta: Sequence[float] | Array) -> Self:
-        """Give another delay; the sample time stays."""
-        return type(self)(float(as_parameter_vector(theta, 1)[0]), self.dt)
-
-    def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
-        """Give one: a delay is counted in samples.
-
-        Raises
-        ------
-        InputError
-            If input and output grow by different factors.
-        """
-        if input_scale != output_scale:
-            raise InputError(
-                "a delay leaves the unit of its signal as it is; put the gain into an Affine or "
-                "the model beside it"
-            )
-        return np.ones(1)
-
-    def keeps_unit(self) -> bool:
-        """Tell that what is late has the unit of the signal."""
-        return True
-
-    def portrait(self) -> Portrait:
-        """Show nothing: a delay is seen over time, not over the input."""
-        return NOTHING
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give kind, delay and, where there is one, the sample time."""
-        more = {} if self.dt is None else {"dt": self.dt}
-        return {"kind": self.kind, "samples": self.samples, **more}
-
-    @classmethod
-    def from_dict(cls, data: dict[str, Any]) -> Self:
-        """Rebuild from ``to_dict()``.
-
-        Raises
-        ------
-        InputError
-            If an entry is missing, unknown or not allowed.
-        """
-        return cls(**entries(data, ("samples",), ("dt",)))
-
-    @abstractmethod
-    def _is_inverse(self) -> bool:
-        """Tell whether the input is what is late."""
-
-    def stages(self) -> tuple[Stage, ...]:
-        """Give the one stage of this operator."""
-        choices = {"whole": self.whole, "inverse": int(self._is_inverse())}
-        return (Stage("delay", (self.samples,), choices=choices, dt=self.dt),)
-
-
 @register
 @final
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class Delay(_Late):
+class Delay(Late):
     """A delay by n whole samples and a fraction f, on the line between two samples.
 
     ``y_k = (1 - f) u_{k-n} + f u_{k-n-1}``. The signal has rested at its first sample.
@@ -208,20 +93,80 @@ class Delay(_Late):
             for it is known, or would grow.
         """
         if not self.samples < 0.5:
+            self.preview_range()
             raise NotInvertibleError(
                 f"the delay is {self.samples:.6g} samples; a causal inverse that does not grow is "
-                f"for less than 0.5, so ask for inverse(preview=N), which answers N samples late"
+                "for less than 0.5, so ask for inverse(preview=N), which answers N samples late"
             )
         return InverseDelay(self.samples, self.dt)
 
-    def _is_inverse(self) -> bool:
-        return False
+    def preview_range(self) -> tuple[int, int]:
+        """Give what an inverse needs: n samples where f < 1/2; else n + 1, and more to be exact.
+
+        Raises
+        ------
+        NotInvertibleError
+            If f is 1/2: what the drive does at half the sample rate does not show in the output.
+        """
+        whole, fraction = self.whole, self.samples - self.whole
+        if fraction == 0.5:
+            raise NotInvertibleError(
+                f"the delay is {self.samples:.6g} samples: the line half way between two samples "
+                "loses what alternates from sample to sample, so there is no inverse, with preview "
+                "neither"
+            )
+        if fraction < 0.5:
+            return whole, whole
+        # Beyond, a sample more of preview changes no digit of the command.
+        useful = math.ceil(math.log(2.0**-53) / math.log((1.0 - fraction) / fraction))
+        return whole + 1, min(whole + 1 + useful, max(MOST_PREVIEW, whole + 1))
+
+    def preview_inverse(self, samples: int) -> Operator:
+        """Give an inverse whose output at k is the command for sample k - samples.
+
+        With f < 1/2 it is exact. With f > 1/2 the output that is reached is wrong by
+        ``f ((1 - f) / f)^(samples - n) |y_i - y_{i-1}|``, y_i the last sample that is known: what
+        comes after it is taken to rest there.
+
+        Raises
+        ------
+        NotInvertibleError
+            If the preview is shorter than the delay asks for, or f is 1/2.
+        """
+        least, most = self.preview_range()
+        if samples < least:
+            raise NotInvertibleError(
+                f"the delay is {self.samples:.6g} samples, so its inverse must know {least} "
+                f"samples of the reference beyond the present one; a preview of {samples} is too "
+                "short"
+            )
+        whole, fraction, used = self.whole, self.samples - self.whole, min(samples, most)
+        inverse: Operator = Affine(1.0, 0.0)
+        if fraction > 0.5:
+            inverse = PreviewedDelay(fraction, used - whole - 1, self.dt)
+        elif fraction > 0.0:
+            inverse = InverseDelay(fraction, self.dt)
+        return inverse if samples == used else delayed(inverse, samples - used)
+
+    @property
+    def whole(self) -> int:
+        """The whole samples of the delay."""
+        return int(self.samples)
+
+    def initial_state(self) -> Array:
+        """Give the place of the next sample, none held, and the memory of them, shape (n + 3,)."""
+        return np.zeros(self.whole + 3)
+
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        choices = {"whole": self.whole, "inverse": 0}
+        return (Stage("delay", (self.samples,), choices=choices, dt=self.dt),)
 
 
 @register
 @final
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class InverseDelay(_Late):
+class InverseDelay(Late):
     """Inverse of a delay by a fraction of a sample, from what is late to what was given.
 
     ``u_k = (y_k - f u_{k-1}) / (1 - f)``; ``Delay.inverse()`` makes it.
@@ -271,5 +216,11 @@ class InverseDelay(_Late):
         """Give the delay."""
         return Delay(self.samples, self.dt)
 
-    def _is_inverse(self) -> bool:
-        return True
+    def initial_state(self) -> Array:
+        """Give the place of the next sample, none held, and the memory of one, shape (3,)."""
+        return np.zeros(3)
+
+    def stages(self) -> tuple[Stage, ...]:
+        """Give the one stage of this operator."""
+        choices = {"whole": 0, "inverse": 1}
+        return (Stage("delay", (self.samples,), choices=choices, dt=self.dt),)

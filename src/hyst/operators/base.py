@@ -91,6 +91,26 @@ class Operator(Inverses, Constants, ABC):
         self.require_sample_time(dt)
         return self
 
+    def require_possible_time(self, dt: float, what: str = "the record") -> None:
+        """Refuse a record of a sample time that the operator cannot be brought to.
+
+        Parameters
+        ----------
+        dt
+            Sample time of the record, seconds.
+        what
+            What messages call the record.
+
+        Raises
+        ------
+        InputError
+            If its constants, or those of a part, hold for another sample time only.
+        """
+        try:
+            self.at_sample_time(dt)
+        except InputError:
+            self.require_sample_time(dt, what)
+
     def keeps_unit(self) -> bool:
         """Tell whether a signal keeps its unit, as what is only bent, shifted or delayed does."""
         return False

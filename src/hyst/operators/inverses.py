@@ -89,6 +89,19 @@ class Inverses(Described):
         inverse = self.exact_inverse()
         return inverse if samples == 0 else delayed(inverse, samples)
 
+    def preview_range(self) -> tuple[int, int]:
+        """Give how many samples of preview an inverse needs, and how many are of use.
+
+        None where there is an exact inverse.
+
+        Raises
+        ------
+        NotInvertibleError
+            If there is no inverse, with preview neither.
+        """
+        self.exact_inverse()
+        return 0, 0
+
     @final
     def is_invertible(self) -> bool:
         """Tell whether ``inverse()`` gives an exact inverse."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from hyst.compensation import Compensation, error_parts
 from hyst.identification import Identified, RecordErrors
+from hyst.identification.result.record_errors import run_at_several_rates
 from hyst.operators import Operator
 from hyst.operators.traits import Degree
 
@@ -128,6 +129,7 @@ def per_record_table(identified: Identified) -> Table:
     """
     unit = identified.description.output_unit
     several = identified.per_record if len(identified.per_record) > 1 else ()
+    rates = run_at_several_rates(several)
     return Table(
         "Error by record (percent of its own output range)",
         (
@@ -137,8 +139,17 @@ def per_record_table(identified: Identified) -> Table:
             with_unit("max", unit and f"[{unit}]"),
             "max [%]",
             "samples used",
+            *(("frequency [Hz]", "hysteresis [%]", "of the model [%]") if rates else ()),
         ),
-        tuple(_record_row(each) for each in several),
+        tuple(_record_row(each) + (_loop_cells(each) if rates else ()) for each in several),
+    )
+
+
+def _loop_cells(each: RecordErrors) -> tuple[str, ...]:
+    return (
+        "-" if each.frequency is None else number(each.frequency),
+        "-" if each.hysteresis is None else f"{each.hysteresis:.2f}",
+        "-" if each.modelled_hysteresis is None else f"{each.modelled_hysteresis:.2f}",
     )
 
 

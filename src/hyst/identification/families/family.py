@@ -80,6 +80,8 @@ class Family(ABC):
     """Whether the delay of the output is part of the model, so that none is looked for before."""
     depends_on_rate: ClassVar[bool] = False
     """Whether samples left out of a record would change the model."""
+    about_rates: ClassVar[str] = ""
+    """Advice where its error depends on the rate, if another than a family that does."""
     rate_between_samples: ClassVar[bool] = False
     """Whether it takes a rate from one sample to the next, of which a plant has one in between."""
     explains: ClassVar[tuple[str, ...]] = ()

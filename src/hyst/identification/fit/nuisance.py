@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import final
 
 import numpy as np
@@ -34,15 +34,27 @@ class Moments:
     ----------
     number
         Of the record, counted from 0.
-    time
-        Shape (n,), s since the first sample of the record, by the clock of the model's output.
+    places
+        Shape (n,), which samples of the record, by the clock of the model's output.
+    dt
+        Time between samples, s.
     duration
         Of the record, s.
+    first
+        The first sample in use: what settles is measured from there, for of what has died away
+        before nothing is known.
     """
 
     number: int
-    time: Array
+    places: NDArray[np.intp]
+    dt: float
     duration: float
+    first: int = 0
+
+    @property
+    def time(self) -> Array:
+        """Shape (n,), s since the first sample of the record."""
+        return np.asarray(self.places * self.dt)
 
 
 class Nuisance(ABC):
@@ -106,6 +118,8 @@ class Drift(Nuisance):
 class Settling(Nuisance):
     """What first-order lags still do of their unknown state before the record: ``exp(-t / tau)``.
 
+    Time counts from the first sample in use, and before it as 0.
+
     Parameters
     ----------
     places
@@ -116,15 +130,37 @@ class Settling(Nuisance):
 
     def columns(self, moments: Moments, theta: Array) -> Array:
         """Give one exponential for each time constant."""
-        return np.exp(-moments.time[:, None] / theta[list(self.places)])
+        return np.exp(-self._since(moments) / theta[list(self.places)])
 
     def slopes(self, moments: Moments, theta: Array, coefficients: Array) -> Array:
         """Give ``c t / tau^2 exp(-t / tau)`` at the place of each time constant."""
         tau = theta[list(self.places)]
-        result = np.zeros((moments.time.size, theta.size))
-        by_tau = moments.time[:, None] / tau**2 * self.columns(moments, theta)
+        result = np.zeros((moments.places.size, theta.size))
+        by_tau = self._since(moments) / tau**2 * self.columns(moments, theta)
         result[:, list(self.places)] = coefficients * by_tau
         return result
+
+    def _since(self, moments: Moments) -> Array:
+        return np.maximum(moments.places - moments.first, 0)[:, None] * moments.dt
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Given(Nuisance):
+    """A column that is known for every sample of each record, whatever theta.
+
+    Parameters
+    ----------
+    signals
+        Of each record, shape (samples of the record, or up to the last one used).
+    """
+
+    signals: tuple[Array, ...]
+
+    def columns(self, moments: Moments, theta: Array) -> Array:
+        """Give the column; beyond its ends it goes on as it ends."""
+        signal = self.signals[moments.number]
+        return signal[np.clip(moments.places, 0, signal.size - 1), None]
 
 
 @final
@@ -146,7 +182,7 @@ class Nuisances:
 
     def slopes(self, moments: Moments, theta: Array, coefficients: Array) -> Array:
         """Give the derivative of ``columns @ coefficients`` by theta, shape (n, m)."""
-        total = np.zeros((moments.time.size, theta.size))
+        total = np.zeros((moments.places.size, theta.size))
         first = 0
         for each in self.parts:
             count = each.count(moments, theta)
@@ -186,7 +222,7 @@ class Beside:
         self._moments, self._roots = list[Moments](), list[Array | None]()
         for each, mask, root in zip(moments, masks, roots, strict=True):
             rows = slice(None) if mask is None else mask
-            self._moments.append(Moments(each.number, each.time[rows], each.duration))
+            self._moments.append(replace(each, places=each.places[rows]))
             self._roots.append(None if root is None else root[rows])
 
     def at(self, theta: Array) -> Projection:
@@ -194,7 +230,7 @@ class Beside:
         bases = []
         for moments, root in zip(self._moments, self._roots, strict=True):
             columns = self._nuisances.columns(moments, theta)
-            bases.append(_Basis.of(columns if root is None else root[:, None] * columns))
+            bases.append(Basis.of(columns if root is None else root[:, None] * columns))
         return Projection(bases)
 
     def slopes(self, theta: Array, coefficients: Sequence[Array]) -> Array:
@@ -215,14 +251,23 @@ class Beside:
 
 
 @dataclass(frozen=True, eq=False)
-class _Basis:
-    """Columns of one record: an orthonormal basis of them, and what makes it of them."""
+class Basis:
+    """Columns of one record: an orthonormal basis of them, and what makes it of them.
+
+    Parameters
+    ----------
+    orthonormal
+        Shape (n, k).
+    of_columns
+        Shape (q, k): the basis is the columns times this.
+    """
 
     orthonormal: Array
     of_columns: Array
 
     @classmethod
-    def of(cls, columns: Array) -> _Basis:
+    def of(cls, columns: Array) -> Basis:
+        """Give the basis of some columns; copies of others count once."""
         if not columns.size:
             return cls(np.zeros((len(columns), 0)), np.zeros((columns.shape[1], 0)))
         size = np.linalg.norm(columns, axis=0)
@@ -230,6 +275,10 @@ class _Basis:
         left, values, right = np.linalg.svd(columns / size, full_matrices=False)
         kept = values > SMALLEST_DIRECTION * max(float(values[0]), SMALLEST_DIRECTION)
         return cls(left[:, kept], right[kept].T / values[kept] / size[:, None])
+
+    def out_of(self, values: Array) -> Array:
+        """Give what is left of values, shape (n,) or (n, m), beside the columns."""
+        return np.asarray(values - self.orthonormal @ (self.orthonormal.T @ values))
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,7 +291,7 @@ class Projection:
         Of the columns of each record.
     """
 
-    bases: list[_Basis]
+    bases: list[Basis]
 
     @property
     def directions(self) -> int:
@@ -258,9 +307,7 @@ class Projection:
             Shape (samples,) or (samples, m).
         """
         pieces = zip(self.bases, self._pieces(values), strict=True)
-        return np.concatenate(
-            [piece - each.orthonormal @ (each.orthonormal.T @ piece) for each, piece in pieces]
-        )
+        return np.concatenate([each.out_of(piece) for each, piece in pieces])
 
     def coefficients(self, values: Array) -> list[Array]:
         """Give what the columns of each record are best multiplied by to make some values.
@@ -290,7 +337,7 @@ def moments_of(data: Data) -> list[Moments]:
     for number, (record, window, counts) in enumerate(passes):
         places = np.arange(window.start, window.stop)
         places = places if counts is None else places[counts]
-        found.append(Moments(number, places * record.dt, record.duration))
+        found.append(Moments(number, places, record.dt, record.duration, window.start))
     return found
 
 
@@ -309,9 +356,9 @@ def over_whole_records(
         Of each record.
     """
     whole = []
-    passes = zip(data.records, data.whole_lags(), coefficients, strict=True)
-    for number, (record, late, each) in enumerate(passes):
-        time = np.maximum(np.arange(len(record)) - late, 0) * record.dt
-        moments = Moments(number, time, record.duration)
+    passes = zip(data.records, data.windows(), data.whole_lags(), coefficients, strict=True)
+    for number, (record, window, late, each) in enumerate(passes):
+        places = np.arange(len(record)) - late
+        moments = Moments(number, places, record.dt, record.duration, window.start)
         whole.append(np.asarray(nuisances.columns(moments, theta) @ each))
     return whole

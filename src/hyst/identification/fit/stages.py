@@ -131,6 +131,21 @@ def with_part(operator: Operator, stage: Operator, where: Where) -> Operator:
     return Composition((*parts[:at], stage, *parts[at:]))
 
 
+def without_part(operator: Operator, kind: str) -> Operator | None:
+    """Give a composition without its stage of a kind; None if it has none.
+
+    Parameters
+    ----------
+    operator
+        Any.
+    kind
+        Of the stage.
+    """
+    parts = _parts(operator)
+    rest = [each for each in parts if each.kind != kind]
+    return Composition(tuple(rest)) if rest and len(rest) < len(parts) else None
+
+
 def _parts(operator: Operator) -> tuple[Operator, ...]:
     return operator.parts if isinstance(operator, Composition) else (operator,)
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from hyst.checks.numbers import whole_number
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.record_use.part_of_a_sample import by_whole_samples, lag_in_samples, later
+from hyst.identification.record_use.smoothed_drive import Smoother
 from hyst.signals import Record, reversals, units_differ
 
 Array = NDArray[np.float64]
@@ -69,6 +70,8 @@ class Data:
         where there were none.
     measured_inputs
         The inputs as they were measured, where those of ``records`` are later by part of a sample.
+    smoothers
+        For each record what took the noise out of its input; None where nothing did.
     keeps_corners
         Whether an input that is later by part of a sample keeps its corners, as memory needs them;
         not where rates matter.
@@ -82,6 +85,7 @@ class Data:
     kept: tuple[NDArray[np.bool_] | None, ...] = ()
     disturbances: tuple[Array | None, ...] = ()
     measured_inputs: tuple[Array, ...] = ()
+    smoothers: tuple[Smoother | None, ...] = ()
     keeps_corners: bool = True
 
     @property
@@ -235,6 +239,10 @@ class Data:
                 None if each is None else each * output_scale for each in self.disturbances
             ),
             measured_inputs=tuple(u * input_scale for u in self.measured_inputs),
+            smoothers=tuple(
+                None if each is None else replace(each, noise=each.noise * input_scale)
+                for each in self.smoothers
+            ),
         )
 
     def with_disturbances(self) -> Data:

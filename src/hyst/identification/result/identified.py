@@ -20,7 +20,8 @@ from hyst.identification.record_use.part_of_a_sample import (
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.bands import NEW, Bands, as_level
 from hyst.identification.result.late_output import late_output
-from hyst.identification.result.record_errors import RecordErrors
+from hyst.identification.result.motion import OutputPart, motion_lines
+from hyst.identification.result.record_errors import RecordErrors, run_at_several_rates
 from hyst.models import Delay, Lag
 from hyst.operators import ModelDescription, Operator, Verdict
 from hyst.operators.composition import leaves_of
@@ -108,6 +109,9 @@ class Identified:
         What ``band`` is made of.
     per_record
         Errors over each of the records it was identified from, in their order.
+    motion
+        What moves the output, part by part: hysteresis, creep, drift and what is left; empty where
+        neither creep nor drift came up.
     """
 
     model: Operator
@@ -128,6 +132,7 @@ class Identified:
     diagnosis: Diagnosis
     bands: Bands = field(repr=False)
     per_record: tuple[RecordErrors, ...]
+    motion: tuple[OutputPart, ...]
 
     def __repr__(self) -> str:
         what = self.family or self.model.kind
@@ -307,6 +312,7 @@ class Identified:
             "lag_interval": None if self.lag_interval is None else list(self.lag_interval),
             "metrics": {name: each.to_dict() for name, each in self.metrics.items()},
             "per_record": [each.to_dict() for each in self.per_record],
+            **({"motion": [each.to_dict() for each in self.motion]} if self.motion else {}),
             "parameters": [
                 {"name": name, "value": float(value), "standard_error": error}
                 for name, value, error in zip(
@@ -339,7 +345,10 @@ class Identified:
                 f"max {each.max_abs:.4g}{unit}   fit {each.nrmse_fit_percent:.2f} %"
             )
         if len(self.per_record) > 1:
-            lines += [_record_line(each, unit) for each in self.per_record]
+            several = run_at_several_rates(self.per_record)
+            lines += [_record_line(each, unit, several) for each in self.per_record]
+        if self.motion:
+            lines += ["", *motion_lines(self.motion, unit)]
         lines += ["", f"{'parameter':36s} {'value':>13s} {'standard error':>15s}"]
         for name, value, error in zip(
             self.parameter_names, self.parameter_values, self.standard_errors, strict=True
@@ -352,11 +361,21 @@ class Identified:
         return "\n".join(lines)
 
 
-def _record_line(each: RecordErrors, unit: str) -> str:
+def _record_line(each: RecordErrors, unit: str, several_rates: bool) -> str:
     named = f"record {each.number}" + (f", {each.name}" if each.name else "")
     if each.metrics is None:
         return f"{named:28s} no sample that moves was used"
     return (
         f"{named:28s} rms {each.metrics.rms:.4g}{unit} ({each.metrics.rms_percent:.3f} % of its "
         f"own range)   max {each.metrics.max_abs:.4g}{unit}   {each.samples} samples"
+        f"{_loop_in_words(each) if several_rates else ''}"
+    )
+
+
+def _loop_in_words(each: RecordErrors) -> str:
+    if each.frequency is None or each.hysteresis is None or each.modelled_hysteresis is None:
+        return ""
+    return (
+        f"   at {each.frequency:.4g} Hz: hysteresis {each.hysteresis:.3g} %, of the model "
+        f"{each.modelled_hysteresis:.3g} %"
     )
