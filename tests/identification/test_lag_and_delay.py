@@ -56,20 +56,20 @@ def told(found: hyst.Identified, name: str) -> tuple[float, float]:
     return float(found.parameter_values[place]), float(found.standard_errors[place])
 
 
-@pytest.mark.parametrize("kind", ["delay", "first-order"])
-def test_beta_and_lag_are_held_by_what_is_told_of_them(kind: str) -> None:
-    """20 seeds; of 20 that are held with 95 % fewer than 17 are held once in sixty times."""
+@pytest.mark.parametrize(("kind", "seeds", "least"), [("delay", 20, 17), ("first-order", 8, 6)])
+def test_beta_and_lag_are_held_by_what_is_told_of_them(kind: str, seeds: int, least: int) -> None:
+    """Of what is held with 95 % fewer than these are held once in sixty times."""
     runs = clean(kind, LAG)
     held_beta = held_lag = 0
-    for seed in range(20):
+    for seed in range(seeds):
         found = hyst.identify(noisy(runs, seed), family="rdpi", plays=3)
         beta, error = told(found, "beta")
         held_beta += abs(beta - ACTUATOR["beta"]) <= 2.0 * error
         held_lag += found.delay_interval[0] <= LAG <= found.delay_interval[1]
         # Widened by the lag, and still known to a percent; without it 10 % off.
         assert error < 0.01 * ACTUATOR["beta"]
-    assert held_beta >= 17
-    assert held_lag >= 17
+    assert held_beta >= least
+    assert held_lag >= least
 
 
 @pytest.mark.parametrize("late", [0.0, LAG])
@@ -77,13 +77,13 @@ def test_a_lag_makes_no_rate_dependence(late: float) -> None:
     """Beta 0 within two standard errors; on its bound it is 0 and has none."""
     runs = clean("delay", late, share=0.0)
     held = 0
-    for seed in range(12):
+    for seed in range(8):
         found = hyst.identify(noisy(runs, seed), family="rdpi", plays=3)
         beta, error = told(found, "beta")
         held += beta == 0.0 if np.isnan(error) else beta <= 2.0 * error
         # With the lag left in it is 13 % of S4's own.
         assert beta < 0.03 * ACTUATOR["beta"]
-    assert held >= 10  # of 12 with 95 % each; fewer once in fifty times
+    assert held >= 6  # of 8 with 95 % each; fewer once in sixty times
 
 
 P, R, P0 = (0.4, 0.3), (0.1, 0.35), 0.8
@@ -103,11 +103,11 @@ def decaying(late: float) -> tuple[Array, Array]:
 
 @pytest.mark.parametrize("late", [0.0, 0.2, 0.42, 0.5, 0.9, 1.42, -0.7])
 def test_any_part_of_a_sample_is_counted(late: float) -> None:
-    """6 seeds of 6 constants; errors within a record are correlated, so 30 of 36 are asked for."""
+    """4 seeds of 6 constants; errors within a record are correlated, so 20 of 24 are asked for."""
     u, y = decaying(late)
     truth = np.array([P0, *P, *R, 0.0])
     held = inside = 0
-    for seed in range(6):
+    for seed in range(4):
         noise = 0.002 * np.random.default_rng(seed).standard_normal(y.size)
         found = hyst.identify(hyst.Record(u, y + noise, 1e-3), family="pi", plays=2)
         held += found.delay_interval[0] <= late <= found.delay_interval[1]
@@ -115,8 +115,8 @@ def test_any_part_of_a_sample_is_counted(late: float) -> None:
         inside += int((miss <= 2.0 * found.standard_errors).sum())
         if late == 0.0:
             assert found.delay == 0
-    assert held == 6
-    assert inside >= 30
+    assert held == 4
+    assert inside >= 20
 
 
 def test_a_delay_is_in_its_standard_errors_only_where_it_was_estimated() -> None:
@@ -226,11 +226,6 @@ def test_a_delay_is_put_into_the_model_on_request() -> None:
     assert late.description.delay == 0
     with pytest.raises(NotInvertibleError, match="preview"):
         late.inverse()
-    y_ref = 0.8 * np.sin(np.arange(500) * 0.05)
-    command = late.inverse(preview=12)(y_ref)
-    followed = late(command)[12:]
-    assert np.abs(followed[100:] - y_ref[100:-12]).max() < 0.01
-    assert np.abs(found.predict(found.model.inverse()(y_ref)) - y_ref)[100:].max() > 0.05
 
 
 def test_what_is_ahead_has_no_stage() -> None:

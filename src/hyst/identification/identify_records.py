@@ -132,7 +132,7 @@ def identify(
             return find(records, families, how, reserve)
 
         def search(records: Cleaned, how: Options) -> Found:
-            return found_with_lag(without_lag, records, time_constant, how)
+            return found_with_lag(without_lag, records, time_constant, how, families)
 
         creeping = with_creep(
             search(clean, wanted), clean.with_drift(), lags, about_drift == "auto", search, wanted

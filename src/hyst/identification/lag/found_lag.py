@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.joint_delay import BETWEEN_SAMPLES
-from hyst.identification.families.family import Fit
+from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.option import AUTO
 from hyst.identification.fit.stages import with_stage
 from hyst.identification.judgement.judge import level_of
@@ -72,7 +72,13 @@ def as_lag(lag: Any) -> Wanted:
     return float(lag)
 
 
-def found_with_lag(search: Search, records: Cleaned, wanted: Wanted, options: Options) -> Found:
+def found_with_lag(
+    search: Search,
+    records: Cleaned,
+    wanted: Wanted,
+    options: Options,
+    families: Sequence[Family] = (),
+) -> Found:
     """Search, and give the model the lag that is asked for.
 
     A time constant that is given is held: everything is chosen for the drive as it comes out of
@@ -89,6 +95,8 @@ def found_with_lag(search: Search, records: Cleaned, wanted: Wanted, options: Op
         As of ``identify``.
     options
         What the user wants.
+    families
+        That are named.
 
     Raises
     ------
@@ -100,8 +108,8 @@ def found_with_lag(search: Search, records: Cleaned, wanted: Wanted, options: Op
     if wanted is None:
         return search(records, options)
     if isinstance(wanted, float):
+        _require_place(families)
         found = search(_lagged(records, wanted), options)
-        _require_place(found.fit)
         return _held(found, records.records, wanted)
     found = search(records, options)
     if found.fit.family.answers_late:
@@ -117,12 +125,13 @@ def _lagged(records: Cleaned, time_constant: float) -> Cleaned:
     return replace(records, records=tuple(lagged))
 
 
-def _require_place(fit: Fit) -> None:
-    if fit.family.answers_late:
-        raise NotIdentifiableError(
-            f"{fit.family.name} has linear dynamics of its own, which hold any lag; leave out lag, "
-            "or choose another family"
-        )
+def _require_place(families: Sequence[Family]) -> None:
+    for each in families:
+        if each.answers_late:
+            raise NotIdentifiableError(
+                f"{each.name} has linear dynamics of its own, which hold any lag; leave out lag, "
+                "or choose another family"
+            )
 
 
 def _held(found: Found, records: Sequence[Record], time_constant: float) -> Found:
