@@ -148,10 +148,11 @@ def row(plant: Plant, name: str, found: list[Run]) -> str:
     # A value on the bound 0 has no error: it holds the truth only if that is 0.
     inside = np.where(np.isnan(errors), values == beta, np.abs(values - beta) <= 2.0 * errors)
     late = plant.late if plant.lag != "none" else 0.0
+    delays = np.mean([e.delay for e in found])
     held = np.mean([e.interval[0] <= late <= e.interval[1] for e in found])
     return (
         f"{plant.name:38s} {name:12s} {inside.mean():12.2f} {np.nanmean(errors) / BETA:11.4f} "
-        f"{(values.mean() - beta) / BETA:7.4f} {held:8.2f} {np.mean([e.delay for e in found]):8.3f} {len(found):5d}"
+        f"{(values.mean() - beta) / BETA:7.4f} {held:8.2f} {delays:8.3f} {len(found):5d}"
     )
 
 

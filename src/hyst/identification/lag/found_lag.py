@@ -134,13 +134,47 @@ def _require_place(families: Sequence[Family]) -> None:
             )
 
 
-def _held(found: Found, records: Sequence[Record], time_constant: float) -> Found:
+def search_beside_lag(
+    search: Search, found: Found, wanted: Wanted, options: Options
+) -> tuple[Search, Options]:
+    """Give how to search again for what else there is, as creep, with the lag that was found.
+
+    Parameters
+    ----------
+    search
+        Identifies without a lag.
+    found
+        What was found with a lag, or without.
+    wanted, options
+        As of ``found_with_lag``.
+
+    Returns
+    -------
+    Search
+        Gives models with that lag, free where it was estimated.
+    Options
+        With the delay that was found beside a free lag: both free are one too many.
+    """
+    if not isinstance(found.fit.family, LaggingFamily):
+        return search, options
+    tau, free = float(found.fit.solution.theta[-1]), wanted == AUTO
+
+    def again(records: Cleaned, how: Options) -> Found:
+        return _held(search(_lagged(records, tau), how), records.records, tau, free)
+
+    return again, replace(options, delay=found.data.lag) if free else options
+
+
+def _held(
+    found: Found, records: Sequence[Record], time_constant: float, free: bool = False
+) -> Found:
     """Give the model a lag that is known, and the records their own drive again."""
     data = found.data
     whole = tuple(replace(each, u=own.u) for each, own in zip(data.records, records, strict=True))
     data = replace(data, records=whole, measured_inputs=(), keeps_corners=False).delayed(data.lag)
+    longest = LONGEST * time_constant
     fits = [
-        _lagging(each, data.records[0].dt, time_constant, held=True)
+        _lagging(each, data.records[0].dt, time_constant, held=not free, longest=longest)
         for each in (found.fit, *found.rivals)
     ]
     return replace(found, data=data, fit=fits[0], rivals=tuple(fits[1:]))
