@@ -12,7 +12,7 @@ from hyst.identification.families.family import Estimates, Fit
 from hyst.identification.fit.nuisance import Beside
 from hyst.identification.fit.problem import Evaluation, projected
 from hyst.identification.record_use.used_samples import Data
-from hyst.identification.result.lateness import counts_delay, lateness_of
+from hyst.identification.result.lateness import moves_of
 from hyst.identification.result.standard_errors import (
     Spread,
     spread_of_estimates,
@@ -175,11 +175,4 @@ def spread_of_fit(data: Data, fit: Fit, delay: DelayEvidence | None = None) -> F
     )
     freedom = max(residual.size - int(inside.sum()) + len(held) - taken_out, 1)
     rms = float(np.linalg.norm(residual) / np.sqrt(freedom))
-    moves = None
-    late = counts_delay(fit.family, delay)
-    if late or fit.family.rate_between_samples:
-        # What it may be at most is what the records leave possible before any model.
-        furthest = max(delay.high - data.lag, 0.0) if late and delay is not None else 0.0
-        back = max(data.lag - delay.low, 0.0) if late and delay is not None else 0.0
-        moves = lateness_of(data, fit, delay_is_free=late).moves(furthest, back)
-    return FitSpread(spread, inside, rms, moves=moves)
+    return FitSpread(spread, inside, rms, moves=moves_of(data, fit, delay))
