@@ -82,6 +82,8 @@ DECLARED = {
     "two envelopes": "-rMCOI",
     "two envelopes without linear part": "-rMCO-",
     "inverse of two envelopes": "-rM-OI",
+    "rate-dependent preview": "------",
+    "rate-dependent preview held back": "------",
     "creep": "-----I",
     "creep that goes back": "-----I",
     "inverse creep": "-----I",

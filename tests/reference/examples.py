@@ -40,6 +40,7 @@ from hyst.models import (
     Preisach,
     RambergOsgood,
     RateCurve,
+    RateDependentPreview,
     RateShift,
     SecondOrderSections,
     TwoEnvelopePrandtlIshlinskii,
@@ -178,6 +179,10 @@ OTHERS: dict[str, Operator] = {
     "inverse of two envelopes": TWO_ENVELOPE.inverse(),
     "rate shift": RateShift(0.3, 0.4, 0.1),
     "plays behind a rate shift": PI @ RateShift(0.3, 0.7, 0.1, z0=0.5),
+    "rate-dependent preview": RATE_DEPENDENT.inverse(preview=4),
+    "rate-dependent preview held back": RateDependentPreview(
+        RATE_DEPENDENT, 3, command_range=(-2.0, 3.0), largest_change=0.5
+    ),
     "creep": Creep([0.03, 0.02, 0.01], [0.05, 0.5, 5.0], dt=0.01, rest=0.5),
     "creep that goes back": Creep([0.3, -0.2], [0.1, 1.0], dt=0.01),
     "inverse creep": Creep([0.2, 0.1], [0.03, 0.4], dt=0.01).inverse(),

@@ -41,6 +41,7 @@ from hyst.models.rate_curve import RateCurve as RateCurve
 from hyst.models.rate_dependent import (
     RateDependentPrandtlIshlinskii as RateDependentPrandtlIshlinskii,
 )
+from hyst.models.rate_preview import RateDependentPreview as RateDependentPreview
 from hyst.models.rate_shift import RateShift as RateShift
 from hyst.models.scheduled import Scheduled as Scheduled
 from hyst.models.second_order_sections import SecondOrderSections as SecondOrderSections
