@@ -142,14 +142,8 @@ def compensate(
         turns = () if history is None else numbers(history, "history")
         s = read_signal(model, reference, str(schedule_column), y_ref.size, how)
         over = command_over(model, y_ref, s, turns, input_range, despite_verdict)
-        headers, columns = time_column(reference, rate, model.dt, y_ref.size, **how)
-        headers += [
-            hyst.io.join_unit("reference", about.output_unit),
-            hyst.io.join_unit("command", about.input_unit),
-            hyst.io.join_unit("predicted", about.output_unit),
-        ]
-        hyst.io.write_columns(out, headers, [*columns, y_ref, *over])
-        show_files([out])
+        times = time_column(reference, rate, model.dt, y_ref.size, **how)
+        _write(out, times, about, [y_ref, *over])
         return
     _require_method_for(model, method)
     with progress_bar("inverting") as progress:
@@ -170,22 +164,28 @@ def compensate(
         )
     if not known:
         note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
-    headers, columns = time_column(reference, rate, model.dt, done.u.size, **how)
-    headers += [
-        hyst.io.join_unit(name, unit)
-        for name, unit in (
-            ("reference", about.output_unit),
-            ("command", about.input_unit),
-            ("predicted", about.output_unit),
-        )
-    ]
-    hyst.io.write_columns(out, headers, [*columns, done.y_ref, done.u, done.y_predicted])
+    times = time_column(reference, rate, model.dt, done.u.size, **how)
     _tell(done, about, input_range)
     if history is None and model.initial_state().size:
         print(
             "memory taken as virgin, as of an actuator never driven; if it was driven, give the "
             "turns of the drive just before with --history"
         )
+    _write(out, times, about, [done.y_ref, done.u, done.y_predicted])
+
+
+def _write(
+    out: Path, times: tuple[list[str], list[Any]], about: ModelDescription, signals: list[Any]
+) -> None:
+    """Write the times there are, and reference, command and predicted output."""
+    headers, columns = times
+    named = (
+        ("reference", about.output_unit),
+        ("command", about.input_unit),
+        ("predicted", about.output_unit),
+    )
+    headers = [*headers, *(hyst.io.join_unit(name, unit) for name, unit in named)]
+    hyst.io.write_columns(out, headers, [*columns, *signals])
     show_files([out])
 
 
