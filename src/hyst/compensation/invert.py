@@ -24,6 +24,7 @@ from hyst.compensation.rate_dependent.trajectory_polish import Aim, Objective
 from hyst.compensation.rate_dependent.whole_trajectory import drive_along_trajectory
 from hyst.compensation.result import Compensation
 from hyst.errors import InputError, SolverError
+from hyst.models.rate_preview import MOST_PLANNED
 from hyst.operators import ModelDescription, Operator
 from hyst.operators.verdict import refuse_if_unfit
 
@@ -56,8 +57,8 @@ def invert_trajectory(
     ``explicit``: the explicit inverse of S4 eqs. 12-16, causal and smooth. It takes the rate of the
     reference for that of the drive and leaves an error.
     ``sample-exact``: every sample solved exactly, causal; the drive may chatter.
-    ``preview``: causal but for the next ``preview`` samples of the reference, planned anew at every
-    sample, here for a whole record at once.
+    ``preview``: causal but for the next ``preview`` samples of the reference, planned ahead as
+    ``model.inverse(preview=N)`` does sample by sample, here for a record that goes on as it ends.
     ``trajectory``: the whole reference known; the simulated error of the plays is taken to a
     minimum of ``objective``. For a butterfly, whose output turns: sample by sample the nearest
     input that gives the wanted output.
@@ -100,7 +101,7 @@ def invert_trajectory(
         smoother drive and a larger error; 0 the least error that was found, for a plant that the
         model knows well. Left out, it is 10 % (for ``"largest"`` 2 %) of the gain of the plays.
     preview
-        Samples of the reference known beyond the present one, >= 1, for ``preview``.
+        Samples of the reference known beyond the present one, 1 to 60, for ``preview``.
     max_iterations
         Of each stage of ``trajectory`` and of each window of its polish.
     allow_unconverged
@@ -214,7 +215,7 @@ def _inverted(asked: _Task, method: str, options: _Options) -> Compensation:
     elif method == "sample-exact":
         found = drive_sample_by_sample(task)
     elif method == "preview":
-        ahead = whole_number(options.preview, "preview", 1)
+        ahead = whole_number(options.preview, "preview", 1, MOST_PLANNED)
         change = _change(task, options.rate_limit)
         found = drive_with_preview(task, ahead, change, options.say)
         found = judge_rate_limit(task, found, change, False)
