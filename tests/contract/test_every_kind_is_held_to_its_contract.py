@@ -104,6 +104,9 @@ DECLARED = {
     "jiles-atherton 1992": "-R--OI",
     "jiles-atherton 1986": "-R--OI",
     "jiles-atherton of B": "-R--OI",
+    "jiles-atherton with losses": "-----I",
+    "jiles-atherton of B with eddy currents": "-----I",
+    "inverse jiles-atherton with eddy currents": "-----I",
     "inverse jiles-atherton": "-R--OI",
     "inverse jiles-atherton of B": "-R--OI",
 }

@@ -22,6 +22,7 @@ from hyst.models import (
     Dahl,
     DegradingBoucWen,
     Delay,
+    DynamicJilesAtherton,
     ExponentialCurve,
     GeneralizedMaxwellSlip,
     Iwan,
@@ -223,6 +224,15 @@ OTHERS: dict[str, Operator] = {
     "inverse jiles-atherton": JilesAtherton(200.0, 3.0, 2.0, 0.4, 0.01).inverse(),
     "inverse jiles-atherton of B": JilesAtherton(
         2.0, 3.0, 2.0, 0.2, 1.0, output="B", mu0=0.5
+    ).inverse(),
+    "jiles-atherton with losses": DynamicJilesAtherton(
+        JilesAtherton(2.0, 3.0, 2.0, 0.2, 1.0), 0.05, 0.1, dt=0.1
+    ),
+    "jiles-atherton of B with eddy currents": DynamicJilesAtherton(
+        JilesAtherton(2.0, 3.0, 1.0, 0.1, 1.5, output="B", mu0=0.5), 0.2, 0.0, dt=0.1
+    ),
+    "inverse jiles-atherton with eddy currents": DynamicJilesAtherton(
+        JilesAtherton(200.0, 3.0, 2.0, 0.4, 0.01), 0.001, 0.0, dt=0.1
     ).inverse(),
     "lugre": LuGre(1.5, 0.05, 0.02, Fc=2.0, Fs=3.0, vs=20.0, dt=0.1, Fv=0.5, vv=15.0),
     "hysteresis before dynamics": LAG @ PI,

@@ -14,7 +14,7 @@ import hyst
 from hyst.cli.arguments import DespiteVerdict, ModelFile
 from hyst.cli.console import show_table
 from hyst.cli.relevant_options import refuse_irrelevant
-from hyst.cli.scheduled import ScheduleValue, loaded
+from hyst.cli.scheduled import ScheduleValue, loaded_at
 
 if TYPE_CHECKING:
     from hyst.export.c.block import Model
@@ -209,6 +209,7 @@ def export(
         model = loaded(model_file, None, schedule_value)
     if preview is not None and not inverse:
         raise hyst.InputError("--preview is of an inverse; add --inverse, or leave it out")
+    model = loaded_at(model_file, schedule_value)
     if inverse or explicit:
         model = hyst.export.inverse_of(model, explicit, preview)
     order = _Order(model, out, precision, name, force, fmi, binary, despite_verdict, flat)
