@@ -7,6 +7,7 @@ from hyst.models.creep import Creep as Creep
 from hyst.models.dahl import Dahl as Dahl
 from hyst.models.degrading_bouc_wen import DegradingBoucWen as DegradingBoucWen
 from hyst.models.delay import Delay as Delay
+from hyst.models.dynamic_jiles_atherton import DynamicJilesAtherton as DynamicJilesAtherton
 from hyst.models.exponential_curve import ExponentialCurve as ExponentialCurve
 from hyst.models.generalized_maxwell_slip import (
     GeneralizedMaxwellSlip as GeneralizedMaxwellSlip,

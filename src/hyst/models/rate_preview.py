@@ -145,9 +145,7 @@ class RateDependentPreview(Operator):
             Fed the record's first ``preview`` samples, the next output is its first command.
         """
         plays, n = self.plays, self.plays.p.size
-        held = type(plays)(
-            plays.p, plays.r, plays.rate_curve, plays.dt, plays.p0, state[:n]
-        )
+        held = type(plays)(plays.p, plays.r, plays.rate_curve, plays.dt, plays.p0, state[:n])
         whole = self.initial_state()
         whole[: n + 2] = state
         whole[n + 2 : 2 * n + 4] = held.explicit_inverse().initial_state()
@@ -155,6 +153,14 @@ class RateDependentPreview(Operator):
             whole[2 * n + 2 : 2 * n + 4] = plays.p0 * state[n] + float(plays.p @ state[:n]), 1.0
         whole[2 * n + 4 + _BEGUN] = 1.0
         return whole
+
+    def _gain(self) -> float:
+        """Give by what the output's rate is divided for that of the drive in the explicit inverse.
+
+        The slope of the output is p0 behind a turn and p0 + sum p far from it; of the values
+        between, two thirds of the way leave the least errors where the preview is short.
+        """
+        return self.plays.p0 + 2.0 / 3.0 * float(self.plays.p.sum())
 
     def exact_inverse(self) -> Operator:
         """Refuse: what is planned ahead cannot be taken back.
@@ -234,7 +240,7 @@ class RateDependentPreview(Operator):
                 (),
                 fixed={
                     **_core_constants(self.plays, ""),
-                    **_core_constants(self.plays.explicit_inverse(), "guess_"),
+                    **_core_constants(self.plays.explicit_inverse(), "guess_", self._gain()),
                     "low": (low,),
                     "high": (high,),
                     "change": (0.0 if change is None else change,),
@@ -260,12 +266,15 @@ def _as_range(ends: ArrayLike) -> tuple[float, float]:
 
 
 def _core_constants(
-    plays: RateDependentPrandtlIshlinskii, prefix: str
+    plays: RateDependentPrandtlIshlinskii, prefix: str, gain: float = 1.0
 ) -> dict[str, tuple[float, ...]]:
-    """Give the constants of the core, whose rate curve is over the change in a sample."""
-    curve, dt = plays.rate_curve, plays.dt
+    """Give the constants of the core, whose rate curve is over the change in a sample.
+
+    ``gain`` is what the change is divided by first.
+    """
+    curve, dt = plays.rate_curve, plays.dt * gain
     powers = curve.powers / dt ** np.arange(2.0, curve.powers.size + 2.0)
-    values = {
+    values: dict[str, Sequence[float] | Array] = {
         "p0": [plays.p0],
         "p": plays.p,
         "r": plays.r,
