@@ -16,19 +16,17 @@ from hyst.cli.arguments import (
     require_same_unit,
     sample_time_known,
 )
+from hyst.cli.command_over import compensate_over, tell_virgin, write_command
 from hyst.cli.console import note, progress_bar, show_files, show_table
 from hyst.cli.reading_options import reads_columns
 from hyst.cli.relevant_options import refuse_irrelevant
 from hyst.cli.scheduled import (
     ScheduleColumn,
     ScheduleValue,
-    compensate_over,
     loaded,
     model_at_rest,
     read_signal,
     refuse_what_is_fixed,
-    tell_virgin,
-    write_command,
 )
 from hyst.cli.time_column import time_column
 from hyst.operators.composition import leaves_of
