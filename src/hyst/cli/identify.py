@@ -11,6 +11,7 @@ import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
     number_or_auto,
+    whole_auto_or_none,
     whole_or_auto,
 )
 from hyst.cli.console import at_work, show_files
@@ -49,10 +50,24 @@ Delay = Annotated[
         help="Samples by which the output lags; parts of one, or negative where it is ahead.",
     ),
 ]
+Lag = Annotated[
+    str,
+    typer.Option(
+        metavar="SECONDS|auto|none",
+        help="Time constant of a first-order lag of the drive, as of an amplifier, in the model.",
+    ),
+]
 LeaveDisturbances = Annotated[
     bool,
     typer.Option(
         "--leave-disturbances", help="Take neither drift nor foreign sines out of the output."
+    ),
+]
+Creep = Annotated[
+    str,
+    typer.Option(
+        metavar="N|auto|none",
+        help="Number of lags that creep behind the hysteresis; auto: as many as the records show.",
     ),
 ]
 Start = Annotated[str, typer.Option(metavar="N|auto", help="First sample to use.")]
@@ -67,7 +82,9 @@ def identify(
     family: Family = "auto",
     delay: Delay = "auto",
     start: Start = "auto",
+    lag: Lag = "none",
     leave_disturbances: LeaveDisturbances = False,
+    creep: Creep = "auto",
     validate: Validate = None,
     validate_input: ValidateInput = None,
     validate_output: ValidateOutput = None,
@@ -86,11 +103,14 @@ def identify(
     chosen = hyst.identification.chosen_families(family, options)
     chosen += hyst.identification.families_in_reserve(family, options)
     lag, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
+    lags = whole_auto_or_none(creep, "creep")
+    late, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
+    time_constant = None if lag == "none" else number_or_auto(lag, "lag", " or none")
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(how, others, (input_label, output_label))
     asked = {
         "family": family,
-        "delay": lag,
+        "delay": late,
         "start": first,
         "drift": False if leave_disturbances else "auto",
         "allow_unconverged": allow_unconverged,
@@ -99,12 +119,26 @@ def identify(
     about = About(schedule, schedule_name, schedule_unit, validate_schedule)
     if about.is_given():
         return identify_over(data, validate, folder, files, about, asked)
+    about_schedule = schedule_name, schedule_unit
+    if schedule is not None and time_constant is not None:
+        raise hyst.InputError("--lag is not for --schedule; give one of them")
+    if schedule is not None:
+        return identify_over(
+            data, validate, folder, files, schedule, validate_schedule, *about_schedule, asked
+        )
+    if any(each is not None for each in (*about_schedule, validate_schedule)):
+        raise hyst.InputError(
+            "--schedule-name, --schedule-unit and --validate-schedule say more of --schedule; give "
+            "it too"
+        )
     with at_work("identifying") as say:
         say("reading")
         measured = files.records(data)
         validation = files.validation(validate)
         found = hyst.identify(
             measured,
+            creep=lags,
+            lag=time_constant,
             validation=validation,
             progress=say,
             **asked,
