@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -72,14 +72,22 @@ class About:
     unit: str | None
     validate_schedule: str | None
 
-    def is_given(self) -> bool:
+    def is_given(self, others: Mapping[str, bool]) -> bool:
         """Tell whether there is one.
+
+        Parameters
+        ----------
+        others
+            Options that do not go with it, and for each whether it was typed.
 
         Raises
         ------
         InputError
-            If there is none, but more is said of it.
+            If there is none, but more is said of it; or there is one beside what it excludes.
         """
+        for option, typed in others.items():
+            if self.schedule is not None and typed:
+                raise hyst.InputError(f"{option} is not for --schedule; give one of them")
         more = (self.name, self.unit, self.validate_schedule)
         if self.schedule is None and any(each is not None for each in more):
             raise hyst.InputError(
@@ -240,15 +248,15 @@ def read_signal(
     return s
 
 
-def refuse_what_is_fixed(given: dict[str, bool]) -> None:
+def refuse_what_is_fixed(options: Sequence[str], given: Sequence[bool]) -> None:
     """Refuse options that a model whose constants move does not take.
 
     Parameters
     ----------
-    given
-        By option: whether it was typed.
+    options, given
+        The options, and for each whether it was typed.
     """
-    for option, typed in given.items():
+    for option, typed in zip(options, given, strict=True):
         if typed:
             raise hyst.InputError(
                 f"{option} is for models whose constants stand still; leave it out, or take the "

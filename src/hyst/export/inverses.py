@@ -80,6 +80,8 @@ def inverse_of(
     NotInvertibleError
         If it has no inverse.
     """
+    if isinstance(model, Scheduled) and preview is not None:
+        raise InputError("the inverse of a scheduled model needs no preview; leave it out")
     if isinstance(model, Scheduled) and not explicit:
         return model.inverse()
     if not isinstance(model, Operator):
