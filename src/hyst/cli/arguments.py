@@ -64,14 +64,14 @@ def whole_or_auto(text: str, name: str) -> int | Literal["auto"]:
         raise hyst.InputError(f"--{name} is {text!r}; give a whole number or auto") from None
 
 
-def number_or_auto(text: str, name: str) -> float | Literal["auto"]:
-    """Read a number, a whole one as such, or the word auto."""
+def number_or_auto(text: str, name: str, more: str = "") -> float | Literal["auto"]:
+    """Read a number, a whole one as such, or the word auto; the message says what more may be."""
     if text == "auto":
         return "auto"
     try:
         value = float(text)
     except ValueError:
-        raise hyst.InputError(f"--{name} is {text!r}; give a number or auto") from None
+        raise hyst.InputError(f"--{name} is {text!r}; give a number or auto{more}") from None
     return int(value) if value.is_integer() else value
 
 

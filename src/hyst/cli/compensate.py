@@ -5,7 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import numpy as np
 import typer
+from numpy.typing import NDArray
 
 import hyst
 from hyst.cli.arguments import (
@@ -22,11 +24,13 @@ from hyst.cli.relevant_options import refuse_irrelevant
 from hyst.cli.scheduled import (
     ScheduleColumn,
     ScheduleValue,
-    command_over,
+    compensate_over,
     loaded,
     model_at_rest,
     read_signal,
     refuse_what_is_fixed,
+    tell_virgin,
+    write_command,
 )
 from hyst.cli.time_column import time_column
 from hyst.operators.composition import leaves_of
@@ -68,7 +72,7 @@ Roughness = Annotated[
     float | None,
     typer.Option(
         metavar="W",
-        show_default="1 % of the gain",
+        show_default="10 % of the gain, 2 % for largest",
         help="Of trajectory: a second difference of the command of 1 counts as an error of W.",
     ),
 ]
@@ -105,6 +109,15 @@ _BY_METHOD = {
 }
 
 
+WithDelay = Annotated[
+    bool,
+    typer.Option(
+        "--with-delay",
+        help="Give the command earlier by the delay that the model file tells of its record.",
+    ),
+]
+
+
 @reads_columns
 def compensate(
     context: typer.Context,
@@ -125,6 +138,7 @@ def compensate(
     rate: SampleRate = None,
     allow_unconverged: AllowUnconverged = False,
     despite_verdict: DespiteVerdict = False,
+    with_delay: WithDelay = False,
     schedule_column: ScheduleColumn = None,
     schedule_value: ScheduleValue = None,
 ) -> None:
@@ -139,23 +153,24 @@ def compensate(
     known = sample_time_known(model_at_rest(model), reference, rate, "the reference", **how)
     if isinstance(model, hyst.Scheduled):
         refuse_what_is_fixed({"--method": method != "exact", "--outside": outside == "clip"})
+        refuse_what_is_fixed(
+            {
+                "--method": method != "exact",
+                "--outside": outside == "clip",
+                "--with-delay": with_delay,
+            }
+        )
         turns = () if history is None else numbers(history, "history")
         s = read_signal(model, reference, str(schedule_column), y_ref.size, how)
-        over = command_over(model, y_ref, s, turns, input_range, despite_verdict)
-        headers, columns = time_column(reference, rate, model.dt, y_ref.size, **how)
-        headers += [
-            hyst.io.join_unit("reference", about.output_unit),
-            hyst.io.join_unit("command", about.input_unit),
-            hyst.io.join_unit("predicted", about.output_unit),
-        ]
-        hyst.io.write_columns(out, headers, [*columns, y_ref, *over])
-        show_files([out])
+        time = time_column(reference, rate, model.dt, y_ref.size, **how)
+        compensate_over(model, y_ref, s, history, input_range, despite_verdict, out, time)
         return
     _require_method_for(model, method)
+    wanted = _as_early(y_ref, about) if with_delay else y_ref
     with progress_bar("inverting") as progress:
         done = hyst.compensation.invert_trajectory(
             model,
-            y_ref,
+            wanted,
             method,
             input_range=input_range,
             outside=outside,
@@ -170,6 +185,10 @@ def compensate(
         )
     if not known:
         note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
+    time = time_column(reference, rate, model.dt, done.u.size, **how)
+    write_command(out, about, time, (done.y_ref, done.u, done.y_predicted))
+    _tell(done, about, input_range)
+    tell_virgin(history is None and model.initial_state().size > 0)
     headers, columns = time_column(reference, rate, model.dt, done.u.size, **how)
     headers += [
         hyst.io.join_unit(name, unit)
@@ -179,14 +198,28 @@ def compensate(
             ("predicted", about.output_unit),
         )
     ]
-    hyst.io.write_columns(out, headers, [*columns, done.y_ref, done.u, done.y_predicted])
-    _tell(done, about, input_range)
+    predicted = done.y_predicted
+    if with_delay:
+        predicted = hyst.identification.earlier(predicted, -about.delay)
+    reference_told = y_ref if with_delay else done.y_ref
+    hyst.io.write_columns(out, headers, [*columns, reference_told, done.u, predicted])
+    _tell(done, about, input_range, with_delay)
     if history is None and model.initial_state().size:
         print(
             "memory taken as virgin, as of an actuator never driven; if it was driven, give the "
             "turns of the drive just before with --history"
         )
     show_files([out])
+
+
+def _as_early(y_ref: NDArray[np.float64], about: ModelDescription) -> NDArray[np.float64]:
+    """Give the reference as early as the output lags."""
+    if about.delay < 0:
+        raise hyst.InputError(
+            f"--with-delay: the model file tells of an output {-about.delay:.4g} samples ahead of "
+            "its input, which no actuator is; align the channels of the record and identify again"
+        )
+    return hyst.identification.earlier(y_ref, about.delay)
 
 
 def _require_method_for(model: Operator, method: str) -> None:
@@ -227,6 +260,7 @@ def _tell(
     done: hyst.compensation.Compensation,
     about: ModelDescription,
     input_range: tuple[float, float] | None,
+    with_delay: bool,
 ) -> None:
     print(done.expectation(about.output_unit))
     for sentence in done.unknown:
@@ -252,3 +286,24 @@ def _tell(
         print(sentence)
     if about.delay:
         print(hyst.report.delay_sentence(about.delay, about.dt, about.delay_interval))
+    if about.delay > 0:
+        print(_with_delay_counted(done, about, with_delay))
+
+
+def _with_delay_counted(
+    done: hyst.compensation.Compensation, about: ModelDescription, with_delay: bool
+) -> str:
+    """Say what the delay does to the output, which the model itself does not predict."""
+    if with_delay:
+        of = "" if about.dt is None else f" of {about.dt:.4g} s"
+        return (
+            f"--with-delay: the command comes {about.delay:.4g} samples{of} earlier, and the "
+            "errors above are those of the delayed output; the end of the reference is held"
+        )
+    error = hyst.identification.earlier(done.y_predicted, -about.delay) - done.y_ref
+    unit = f" {about.output_unit}" if about.output_unit else ""
+    return (
+        f"with that delay, which the errors above leave out, the output would miss the reference "
+        f"by {float(np.sqrt(np.mean(error**2))):.3g}{unit} rms, at most "
+        f"{float(np.abs(error).max()):.3g}{unit}; --with-delay gives the command earlier"
+    )

@@ -79,9 +79,7 @@ def _as_parameter(name: str) -> str:
 
 
 def _names() -> tuple[str, ...]:
-    return tuple(
-        dict.fromkeys(name for each in hyst.families.values() for name in each.options())
-    )
+    return tuple(dict.fromkeys(name for each in hyst.families.values() for name in each.options()))
 
 
 def _families_in_words() -> str:

@@ -34,6 +34,7 @@ from hyst.cli.fitted import (
 )
 from hyst.cli.reading_options import reads_records
 from hyst.cli.scheduled import (
+    About,
     Schedule,
     ScheduleName,
     ScheduleUnit,
@@ -47,6 +48,13 @@ Delay = Annotated[
     typer.Option(
         metavar="X|auto",
         help="Samples by which the output lags; parts of one, or negative where it is ahead.",
+    ),
+]
+Lag = Annotated[
+    str,
+    typer.Option(
+        metavar="SECONDS|auto|none",
+        help="Time constant of a first-order lag of the drive, as of an amplifier, in the model.",
     ),
 ]
 LeaveDisturbances = Annotated[
@@ -74,6 +82,7 @@ def identify(
     family: Family = "auto",
     delay: Delay = "auto",
     start: Start = "auto",
+    lag: Lag = "none",
     leave_disturbances: LeaveDisturbances = False,
     creep: Creep = "auto",
     validate: Validate = None,
@@ -95,17 +104,24 @@ def identify(
     chosen += hyst.identification.families_in_reserve(family, options)
     lag, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
     lags = whole_auto_or_none(creep, "creep")
+    late, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
+    time_constant = None if lag == "none" else number_or_auto(lag, "lag", " or none")
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(how, others, (input_label, output_label))
     asked = {
         "family": family,
-        "delay": lag,
+        "delay": late,
         "start": first,
         "drift": False if leave_disturbances else "auto",
         "allow_unconverged": allow_unconverged,
         **options,
     }
+    about = About(schedule, schedule_name, schedule_unit, validate_schedule)
+    if about.is_given():
+        return identify_over(data, validate, folder, files, about, asked)
     about_schedule = schedule_name, schedule_unit
+    if schedule is not None and time_constant is not None:
+        raise hyst.InputError("--lag is not for --schedule; give one of them")
     if schedule is not None:
         return identify_over(
             data, validate, folder, files, schedule, validate_schedule, *about_schedule, asked
@@ -122,6 +138,7 @@ def identify(
         found = hyst.identify(
             measured,
             creep=lags,
+            lag=time_constant,
             validation=validation,
             progress=say,
             **asked,

@@ -12,7 +12,7 @@ from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
 from hyst.identification.creep.found_creep import as_creep, require_place, with_creep
 from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families, families_in_reserve
-from hyst.identification.lag.found_lag import as_lag, found_with_lag
+from hyst.identification.lag.found_lag import as_lag, found_with_lag, search_beside_lag
 from hyst.identification.options import Options, listed, silent
 from hyst.identification.record_use.cleaned import Cleaned, as_drift, cleaned
 from hyst.identification.record_use.overview import Overview
@@ -129,15 +129,13 @@ def identify(
         reserve = tuple(each for each in reserve if _is_called_for(each, diagnosis))
         clean = cleaned(given, diagnosis, about_drift)
 
-        def without_lag(records: Cleaned, how: Options) -> Found:
-            return find(records, families, how, reserve)
+        def without_lag(records: Cleaned, asked_of: Options) -> Found:
+            return find(records, families, asked_of, reserve)
 
-        def search(records: Cleaned, how: Options) -> Found:
-            return found_with_lag(without_lag, records, time_constant, how)
-
-        creeping = with_creep(
-            search(clean, wanted), clean.with_drift(), lags, about_drift == "auto", search, wanted
-        )
+        found = found_with_lag(without_lag, clean, time_constant, wanted, families)
+        again, how = search_beside_lag(without_lag, found, time_constant, wanted)
+        drifts = about_drift == "auto"
+        creeping = with_creep(found, clean.with_drift(), lags, drifts, again, how)
         found = creeping.found
         diagnosis = creeping.judged(diagnosis, given)
         for number, record in enumerate(judged, 1):

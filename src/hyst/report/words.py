@@ -149,6 +149,7 @@ def in_short(identified: Identified, records: tuple[Record, ...]) -> tuple[str, 
             "No validation record was given, so how well it predicts another drive is not measured."
         )
     sentences.append(lag_sentence(identified))
+    sentences += stage_of_lag(identified)
     if identified.verdict.level != UNFIT:
         sentences.append(invertible_sentence(identified.model))
     return tuple(sentences)
@@ -181,6 +182,31 @@ def lag_sentence(identified: Identified) -> str:
         return "The dynamics have no delay beside their own lag."
     time = number(delay * inside[0].dt)
     return f"The dynamics contain a delay of {delay} sample{'s' * (delay > 1)} ({time} s)."
+
+
+def stage_of_lag(identified: Identified) -> tuple[str, ...]:
+    """Say what first-order lag of the drive is a stage of the model; nothing without one.
+
+    Parameters
+    ----------
+    identified
+        The result.
+
+    Returns
+    -------
+    tuple of str
+    """
+    tau, interval = identified.lag, identified.lag_interval
+    if tau is None:
+        return ()
+    how = ""
+    if interval is not None:
+        low, high = interval
+        how = " (held)" if low == high else f" ({number(low, 3)} to {number(high, 3)} s)"
+    return (
+        f"Before the hysteresis the drive passes a first-order lag of {number(tau, 3)} s{how}; it "
+        "is a stage of the model, and the inverse undoes it.",
+    )
 
 
 def verdict_lines(verdict: Verdict) -> str:

@@ -33,7 +33,9 @@ DIGITS = 3
 
 
 def with_joint_delay(fit: Fit, task: Task, max_iterations: int) -> tuple[Fit, Task]:
-    """Go on from a fit with the delay free as well, where the records showed one and it is good.
+    """Go on from a fit with the delay free as well, where the records showed one.
+
+    It is kept if nothing but noise is left then.
 
     A delay of 0 that the records do not exclude stays 0, but for families of rates: general loops
     cannot tell a delay from what grows with the rate, so there the family itself says whether there
@@ -55,8 +57,9 @@ def with_joint_delay(fit: Fit, task: Task, max_iterations: int) -> tuple[Fit, Ta
     if known is None or not counts_delay(fit.family, known):
         return fit, task
     asks_family = fit.family.depends_on_rate
-    if not (task.data.lag or asks_family) or level_of(task.data, fit) != "good":
+    if not (task.data.lag or asks_family):
         return fit, task
+    before = fit, task
     late = Lateness(0.0, 0.0, *(2 * (fit.solution.theta,)))
     for _ in range(ROUNDS):
         late = _lateness(fit, task)
@@ -70,6 +73,9 @@ def with_joint_delay(fit: Fit, task: Task, max_iterations: int) -> tuple[Fit, Ta
     best = min(max(task.data.lag + late.change, known.low), known.high)
     told = _told(best, late.error, asks_family, known)
     fit, task = _at(told, fit, task, max_iterations)
+    # Where loops are of another shape the delay may stand in for it.
+    if level_of(task.data, fit) != "good" and level_of(before[1].data, before[0]) != "good":
+        return before
     return fit, replace(task, evidence=_evidence(told, best, late.error, known))
 
 

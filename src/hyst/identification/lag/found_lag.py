@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 
 from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.errors import InputError, NotIdentifiableError
-from hyst.identification.families.family import Fit
+from hyst.identification.choice.joint_delay import BETWEEN_SAMPLES
+from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.option import AUTO
 from hyst.identification.fit.stages import with_stage
 from hyst.identification.judgement.judge import level_of
 from hyst.identification.judgement.regression import correlation_time
-from hyst.identification.lag.lagging_family import LaggingFamily, lagged_of
+from hyst.identification.lag.lagging_family import LaggingFamily, behind_lag
 from hyst.identification.options import Options
 from hyst.identification.record_use.cleaned import Cleaned
 from hyst.identification.record_use.overview import Overview
@@ -71,7 +72,13 @@ def as_lag(lag: Any) -> Wanted:
     return float(lag)
 
 
-def found_with_lag(search: Search, records: Cleaned, wanted: Wanted, options: Options) -> Found:
+def found_with_lag(
+    search: Search,
+    records: Cleaned,
+    wanted: Wanted,
+    options: Options,
+    families: Sequence[Family] = (),
+) -> Found:
     """Search, and give the model the lag that is asked for.
 
     A time constant that is given is held: everything is chosen for the drive as it comes out of
@@ -88,6 +95,8 @@ def found_with_lag(search: Search, records: Cleaned, wanted: Wanted, options: Op
         As of ``identify``.
     options
         What the user wants.
+    families
+        That are named.
 
     Raises
     ------
@@ -99,8 +108,8 @@ def found_with_lag(search: Search, records: Cleaned, wanted: Wanted, options: Op
     if wanted is None:
         return search(records, options)
     if isinstance(wanted, float):
+        _require_place(families)
         found = search(_lagged(records, wanted), options)
-        _require_place(found.fit)
         return _held(found, records.records, wanted)
     found = search(records, options)
     if found.fit.family.answers_late:
@@ -116,21 +125,56 @@ def _lagged(records: Cleaned, time_constant: float) -> Cleaned:
     return replace(records, records=tuple(lagged))
 
 
-def _require_place(fit: Fit) -> None:
-    if fit.family.answers_late:
-        raise NotIdentifiableError(
-            f"{fit.family.name} has linear dynamics of its own, which hold any lag; leave out lag, "
-            "or choose another family"
-        )
+def _require_place(families: Sequence[Family]) -> None:
+    for each in families:
+        if each.answers_late:
+            raise NotIdentifiableError(
+                f"{each.name} has linear dynamics of its own, which hold any lag; leave out lag, "
+                "or choose another family"
+            )
 
 
-def _held(found: Found, records: Sequence[Record], time_constant: float) -> Found:
+def search_beside_lag(
+    search: Search, found: Found, wanted: Wanted, options: Options
+) -> tuple[Search, Options]:
+    """Give how to search again for what else there is, as creep, with the lag that was found.
+
+    Parameters
+    ----------
+    search
+        Identifies without a lag.
+    found
+        What was found with a lag, or without.
+    wanted, options
+        As of ``found_with_lag``.
+
+    Returns
+    -------
+    Search
+        Gives models with that lag, free where it was estimated.
+    Options
+        With the delay that was found beside a free lag: both free are one too many.
+    """
+    if not isinstance(found.fit.family, LaggingFamily):
+        return search, options
+    tau, free = float(found.fit.solution.theta[-1]), wanted == AUTO
+
+    def again(records: Cleaned, how: Options) -> Found:
+        return _held(search(_lagged(records, tau), how), records.records, tau, free)
+
+    return again, replace(options, delay=found.data.lag) if free else options
+
+
+def _held(
+    found: Found, records: Sequence[Record], time_constant: float, free: bool = False
+) -> Found:
     """Give the model a lag that is known, and the records their own drive again."""
     data = found.data
     whole = tuple(replace(each, u=own.u) for each, own in zip(data.records, records, strict=True))
     data = replace(data, records=whole, measured_inputs=(), keeps_corners=False).delayed(data.lag)
+    longest = LONGEST * time_constant
     fits = [
-        _lagging(each, data.records[0].dt, time_constant, held=True)
+        _lagging(each, data.records[0].dt, time_constant, held=not free, longest=longest)
         for each in (found.fit, *found.rivals)
     ]
     return replace(found, data=data, fit=fits[0], rivals=tuple(fits[1:]))
@@ -166,6 +210,10 @@ class _Tried:
     def of(cls, fit: Fit, data: Data) -> _Tried:
         residual = fit.problem(data).residual(fit.solution.theta)
         return cls(fit, data, residual[: sum(data.lengths())])
+
+    def late(self, dt: float) -> float:
+        """Give by how much the output comes late in all, by delay and by lag, samples."""
+        return self.data.lag + float(self.fit.solution.theta[-1]) / dt
 
     @property
     def cost(self) -> float:
@@ -253,23 +301,37 @@ class _Work:
                 if self._describes()
                 else "no lag was found that describes the records, so the model has none"
             )
-        if not delay.far_better(lag):
-            alike = not lag.far_better(delay)
-            return self._taken(lag, self._beside(lag, 0.0, alike), self._words(lag, alike))
-        both, late = self._with_both(lag)
-        if not both.far_better(delay):
-            return self._noted(
-                "the records show a pure delay and not a first-order lag, so the model has none; "
-                "the delay stands beside it"
-            )
-        return self._taken(both, late, "the records show a lag and a pure delay, both told apart")
+        return self._best(delay, lag)
 
-    def _words(self, lag: _Tried, alike: bool) -> str:
+    def _best(self, delay: _Tried, lag: _Tried) -> Found:
+        """Choose between delay, lag and both, the simplest that none leaves far less than."""
+        both = self._with_free_delay(lag)
+        late = both.late(self.dt)
+        if late > SETTLED or both.far_better(delay):
+            # The loops themselves may be others than those found without a lag.
+            alone = behind_lag(both.fit)
+            other = self._with_free_delay(self._solved(alone, self._same_samples(late)))
+            delay = other if other.far_better(delay) else delay
+        if not both.far_better(lag) and not delay.far_better(lag):
+            alike = not lag.far_better(delay)
+            return self._taken(lag, self._beside(lag, alike), self._words(lag, delay, alike))
+        if both.far_better(delay):
+            told = "the records show a lag and a pure delay, both told apart"
+            return self._taken(both, self._beside(both, alike=False), told)
+        told = (
+            "the records show a pure delay and not a first-order lag, so the model has none; the "
+            "delay stands beside it"
+        )
+        if delay.fit is self.fit:
+            return self._noted(told)
+        return self._taken(delay, self._beside(delay, alike=False), told)
+
+    def _words(self, lag: _Tried, delay: _Tried, alike: bool) -> str:
         tau = float(lag.fit.solution.theta[-1])
         if not alike:
             return "the records show a first-order lag and not a pure delay"
         return (
-            f"a first-order lag of {tau:.3g} s and a pure delay of {self.data.lag:.3g} samples "
+            f"a first-order lag of {tau:.3g} s and a pure delay of {delay.data.lag:.3g} samples "
             "describe the records alike; it was asked for as a lag, and its standard error takes "
             "that for granted; records at higher frequencies would tell them apart"
         )
@@ -293,20 +355,20 @@ class _Work:
         solution = fit.family.solve(problem, fit.solution.theta, self.options.max_iterations)
         return _Tried.of(self.options.converged(replace(fit, solution=solution)), data)
 
-    def _with_both(self, lag: _Tried) -> tuple[_Tried, DelayEvidence | None]:
-        """Let the delay beside the lag move to where both together leave least."""
-        best = lag
+    def _with_free_delay(self, tried: _Tried) -> _Tried:
+        """Let the delay beside a fit move to where both together leave least."""
+        best = tried
         for _ in range(ROUNDS):
             late = lateness_of(best.data, best.fit)
-            delay = min(max(best.data.lag + late.change, 0.0), 2.0 * self.data.lag)
-            if abs(delay - best.data.lag) <= SETTLED:
+            delay = max(best.data.lag + min(max(late.change, -1.0), 1.0), 0.0)
+            if abs(late.change) <= TWO * late.error or abs(delay - best.data.lag) <= SETTLED:
                 break
             best = self._solved(best.fit, self._same_samples(delay))
-        return best, self._beside(best, best.data.lag, alike=False)
+        return best
 
-    def _beside(self, tried: _Tried, delay: float, alike: bool) -> DelayEvidence | None:
+    def _beside(self, tried: _Tried, alike: bool) -> DelayEvidence | None:
         """Say what is left of a delay beside a lag; nothing where both are one and the same."""
-        known = self.found.delay
+        known, delay = self.found.delay, tried.data.lag
         if known is None:
             return None
         if alike:
@@ -314,7 +376,7 @@ class _Work:
                 known, delay=0.0, low=0.0, high=0.0, excludes_zero=False, rate_or_lag=False
             )
         late = lateness_of(tried.data, tried.fit)
-        half = TWO * late.error if math.isfinite(late.error) else 0.0
+        half = BETWEEN_SAMPLES + (TWO * late.error if math.isfinite(late.error) else 0.0)
         low = min(delay + late.change - half, delay)
         high = max(delay + late.change + half, delay)
         return replace(
@@ -333,16 +395,17 @@ class _Work:
         parametrization = tried.fit.parametrization.in_units(theta, *self.scales)
         family = tried.fit.family.in_units(*self.scales)
         fit = replace(tried.fit, family=family, parametrization=parametrization)
-        tau = float(theta[-1])
-        at_end = not lagged_of(fit).inside(theta)[-1]
+        notes = (*self.found.notes, note)
+        if isinstance(family, LaggingFamily) and not parametrization.inside(theta)[-1]:
+            notes += (
+                f"the time constant of the lag, {theta[-1]:.3g} s, is at the end of what was tried",
+            )
         data = replace(self.found.data, keeps_corners=False)
         data = data.delayed(round(tried.data.lag, 3) or 0)
-        notes = (*self.found.notes, note)
-        if at_end:
-            notes += (
-                f"the time constant of the lag, {tau:.3g} s, is at the end of what was tried",
-            )
-        rivals = tuple(_lagging(each, self.dt, tau, held=True) for each in self.found.rivals)
+        rivals = self.found.rivals
+        if isinstance(family, LaggingFamily):
+            tau = float(theta[-1])
+            rivals = tuple(_lagging(each, self.dt, tau, held=True) for each in rivals)
         return replace(self.found, fit=fit, data=data, notes=notes, rivals=rivals, delay=beside)
 
     def _noted(self, note: str) -> Found:

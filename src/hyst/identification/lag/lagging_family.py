@@ -15,7 +15,7 @@ from hyst.identification.fit.bounded_least_squares import Problem, Solution
 from hyst.identification.fit.stages import StagedParametrization
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data
-from hyst.identification.result.identified import Identified
+from hyst.identification.result.identified import LAG, Identified
 
 Array = NDArray[np.float64]
 
@@ -31,8 +31,6 @@ TAKEN = (
     "in_reserve",
     "compared",
 )
-
-NAME = "lag.time_constant"
 
 
 @final
@@ -91,11 +89,11 @@ class LaggingFamily(Family):
 
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
         """Say what the family of the hysteresis says."""
-        return self.base.notes(self.behind_lag(fit), data)
+        return self.base.notes(behind_lag(fit), data)
 
     def estimates(self, fit: Fit) -> Estimates:
         """Give the constants of the hysteresis, and the time constant where it is free."""
-        behind = self.base.estimates(self.behind_lag(fit))
+        behind = self.base.estimates(behind_lag(fit))
         own, theta = lagged_of(fit), fit.solution.theta
         by_theta = np.pad(behind.by_theta, ((0, 0), (0, 1)))
         if own.lower[-1] == own.upper[-1]:
@@ -103,26 +101,14 @@ class LaggingFamily(Family):
         row = np.zeros((1, theta.size))
         row[0, -1] = 1.0
         return Estimates(
-            (*behind.names, NAME),
+            (*behind.names, LAG),
             np.append(behind.values, theta[-1]),
             np.concatenate([by_theta, row]),
         )
 
-    def behind_lag(self, fit: Fit) -> Fit:
-        """Give what comes after the lag, as a fit of its own family.
-
-        Parameters
-        ----------
-        fit
-            With the lag.
-        """
-        base = lagged_of(fit).base
-        solution = replace(fit.solution, theta=fit.solution.theta[: base.size])
-        return Fit(self.base, fit.size, base, solution)
-
     def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
         """Add what the family of the hysteresis adds."""
-        return self.base.result(identified, self.behind_lag(fit), overview)
+        return self.base.result(identified, behind_lag(fit), overview)
 
 
 def lagged_of(fit: Fit) -> StagedParametrization:
@@ -136,3 +122,17 @@ def lagged_of(fit: Fit) -> StagedParametrization:
     parametrization = fit.parametrization
     assert isinstance(parametrization, StagedParametrization), "with_stage made it"
     return parametrization
+
+
+def behind_lag(fit: Fit) -> Fit:
+    """Give what comes after the lag, as a fit of its own family.
+
+    Parameters
+    ----------
+    fit
+        With the lag.
+    """
+    assert isinstance(fit.family, LaggingFamily), "it has a lag"
+    base = lagged_of(fit).base
+    solution = replace(fit.solution, theta=fit.solution.theta[: base.size])
+    return Fit(fit.family.base, fit.size, base, solution)

@@ -71,3 +71,27 @@ def by_whole_samples(y: NDArray[Value], late: int) -> NDArray[Value]:
     if late == 0:
         return y
     return np.asarray(y[np.clip(np.arange(y.size) - late, 0, y.size - 1)])
+
+
+def earlier(y: Array, samples: float) -> Array:
+    """Give a signal some samples earlier, on the line between two; its ends are held.
+
+    Parameters
+    ----------
+    y
+        Shape (N,).
+    samples
+        Parts of one included; negative for later.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (N,).
+
+    Examples
+    --------
+    >>> earlier(np.array([0.0, 1.0, 4.0]), 0.5)
+    array([0.5, 2.5, 4. ])
+    """
+    places = np.arange(y.size, dtype=float)
+    return np.asarray(np.interp(places + samples, places, y))

@@ -12,7 +12,7 @@ from hyst.identification.families.family import Estimates, Fit
 from hyst.identification.fit.nuisance import Beside
 from hyst.identification.fit.problem import Evaluation, projected
 from hyst.identification.record_use.used_samples import Data
-from hyst.identification.result.lateness import counts_delay, lateness_of
+from hyst.identification.result.lateness import moves_of
 from hyst.identification.result.standard_errors import (
     Spread,
     spread_of_estimates,
@@ -86,10 +86,8 @@ class FitSpread:
         """Add what the things beside the model may move."""
         if self.moves is None:
             return errors
-        size = np.abs(errors).max(initial=0.0, where=np.isfinite(errors)) or 1.0
-        size = float(np.ldexp(1.0, np.frexp(size)[1]))  # squares of what is tiny would underflow
-        moved = (rows @ self.moves) / size
-        return np.asarray(size * np.sqrt((errors / size) ** 2 + (moved**2).sum(axis=1)))
+        # Constants have units of their own: squares of what is tiny would underflow.
+        return np.asarray(np.hypot(errors, np.hypot.reduce(rows @ self.moves, axis=1)))
 
     def not_told_apart(self, estimates: Estimates) -> tuple[str, ...]:
         """Name the estimates in every combination that the records do not determine.
@@ -177,11 +175,4 @@ def spread_of_fit(data: Data, fit: Fit, delay: DelayEvidence | None = None) -> F
     )
     freedom = max(residual.size - int(inside.sum()) + len(held) - taken_out, 1)
     rms = float(np.linalg.norm(residual) / np.sqrt(freedom))
-    moves = None
-    late = counts_delay(fit.family, delay)
-    if late or fit.family.rate_between_samples:
-        # What it may be at most is what the records leave possible before any model.
-        furthest = max(delay.high - data.lag, 0.0) if late and delay is not None else 0.0
-        back = max(data.lag - delay.low, 0.0) if late and delay is not None else 0.0
-        moves = lateness_of(data, fit, delay_is_free=late).moves(furthest, back)
-    return FitSpread(spread, inside, rms, moves=moves)
+    return FitSpread(spread, inside, rms, moves=moves_of(data, fit, delay))

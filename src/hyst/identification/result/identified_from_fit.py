@@ -156,7 +156,8 @@ def _validation_data(record: Record, data: Data) -> Data:
     if smoother is not None:
         record = driven_by(record, without_noise(record, smoother.time_constant))
     lag = lag_in_samples(data.lag, data.records[0].dt, record.dt)
-    return prepare(record, "auto", lag)
+    own = replace(prepare(record, "auto"), keeps_corners=data.keeps_corners)
+    return own.delayed(lag)
 
 
 def _pair(name: str, data: Data, operator: Operator) -> dict[str, Metrics]:

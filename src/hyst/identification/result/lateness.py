@@ -2,8 +2,8 @@
 
 With J the derivative of the model's output by its constants and c that by the delay, the joint fit
 of both has the delay of the part of c that no constant makes, and what the delay may be wrong by
-moves the constants along ``-J^+ c``. A law that takes a rate from one sample to the next has a second
-column: how its output differs where the rate is taken between samples too, as a plant does.
+moves the constants along ``-J^+ c``. A law that takes a rate from one sample to the next has a
+second column: how its output differs where the rate is taken between samples too, as a plant does.
 """
 
 from __future__ import annotations
@@ -36,6 +36,10 @@ FEWEST_STEPS = 4
 SMALLEST_DIRECTION = 1e-9
 """Of columns of one size."""
 
+FAR, ITERATIONS = 2.0, 20
+"""Standard errors beyond which the way of the constants is no line any more, and what a fit there
+may take."""
+
 OWN_PART = 1e-3
 """Of a column's norm that no constant makes: with less the delay is one more name for constants."""
 
@@ -62,21 +66,9 @@ class Lateness:
     by_delay: Array
     between: Array
 
-    def moves(self, furthest: float, back: float) -> Array:
-        """Give how far the constants may be moved by what is not known, shape (m, 2).
-
-        Parameters
-        ----------
-        furthest, back
-            How much longer and shorter the delay can be, samples, >= 0.
-        """
-        change = min(max(self.change, -back), furthest)
-        size = min(float(np.hypot(change, self.error)), max(furthest, back))
-        return np.column_stack([size * self.by_delay, self.between])
-
 
 def counts_delay(family: Family, evidence: DelayEvidence | None) -> bool:
-    """Tell whether the delay of a fit was estimated, so that its uncertainty is the constants', too.
+    """Tell whether the delay of a fit was estimated, so that the constants are as unsure.
 
     Parameters
     ----------
@@ -88,6 +80,47 @@ def counts_delay(family: Family, evidence: DelayEvidence | None) -> bool:
     if evidence is None or evidence.high <= evidence.low:
         return False
     return family.has_memory and family.settles_delay and family.loops_tell_delay is True
+
+
+def moves_of(data: Data, fit: Fit, delay: DelayEvidence | None) -> Array | None:
+    """Give how far the constants inside their bounds may be moved by what is not known exactly.
+
+    Parameters
+    ----------
+    data, fit
+        The records, with the delay of the fit.
+    delay
+        What the records say of it where it was estimated.
+
+    Returns
+    -------
+    numpy.ndarray or None
+        Shape (m, 3), each column one standard error: by the error of the delay, by as much as the
+        joint fit would have another one, and by what lies between samples. None where all is known.
+    """
+    free = counts_delay(fit.family, delay)
+    if not (free or fit.family.rate_between_samples):
+        return None
+    late = lateness_of(data, fit, delay_is_free=free)
+    inside = fit.parametrization.inside(fit.solution.theta)
+    columns = np.zeros((int(inside.sum()), 3))
+    columns[:, 2] = late.between
+    if free and delay is not None:
+        # At most what the records leave possible before any model.
+        furthest, back = max(delay.high - data.lag, 0.0), max(data.lag - delay.low, 0.0)
+        change = min(max(late.change, -back), furthest)
+        error = min(late.error, max(furthest, back))
+        columns[:, 0], columns[:, 1] = error * late.by_delay, change * late.by_delay
+        if abs(change) > FAR * late.error:
+            columns[:, 1] = _moved_by(data, fit, change)[inside]
+    return columns
+
+
+def _moved_by(data: Data, fit: Fit, change: float) -> Array:
+    """Give how all constants move with the delay where that is more than a step."""
+    theta = fit.solution.theta
+    there = fit.problem(data.a_little_later(change))
+    return np.asarray(fit.family.solve(there, theta, ITERATIONS).theta - theta)
 
 
 def lateness_of(
