@@ -152,7 +152,6 @@ def compensate(
     input_range = _input_range(limits, no_limits, about)
     known = sample_time_known(model_at_rest(model), reference, rate, "the reference", **how)
     if isinstance(model, hyst.Scheduled):
-        refuse_what_is_fixed({"--method": method != "exact", "--outside": outside == "clip"})
         refuse_what_is_fixed(
             {
                 "--method": method != "exact",
@@ -160,7 +159,6 @@ def compensate(
                 "--with-delay": with_delay,
             }
         )
-        turns = () if history is None else numbers(history, "history")
         s = read_signal(model, reference, str(schedule_column), y_ref.size, how)
         time = time_column(reference, rate, model.dt, y_ref.size, **how)
         compensate_over(model, y_ref, s, history, input_range, despite_verdict, out, time)
@@ -186,29 +184,12 @@ def compensate(
     if not known:
         note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
     time = time_column(reference, rate, model.dt, done.u.size, **how)
-    write_command(out, about, time, (done.y_ref, done.u, done.y_predicted))
-    _tell(done, about, input_range)
-    tell_virgin(history is None and model.initial_state().size > 0)
-    headers, columns = time_column(reference, rate, model.dt, done.u.size, **how)
-    headers += [
-        hyst.io.join_unit(name, unit)
-        for name, unit in (
-            ("reference", about.output_unit),
-            ("command", about.input_unit),
-            ("predicted", about.output_unit),
-        )
-    ]
-    predicted = done.y_predicted
+    predicted, told = done.y_predicted, done.y_ref
     if with_delay:
-        predicted = hyst.identification.earlier(predicted, -about.delay)
-    reference_told = y_ref if with_delay else done.y_ref
-    hyst.io.write_columns(out, headers, [*columns, reference_told, done.u, predicted])
+        predicted, told = hyst.identification.earlier(predicted, -about.delay), y_ref
+    write_command(out, about, time, (told, done.u, predicted))
     _tell(done, about, input_range, with_delay)
-    if history is None and model.initial_state().size:
-        print(
-            "memory taken as virgin, as of an actuator never driven; if it was driven, give the "
-            "turns of the drive just before with --history"
-        )
+    tell_virgin(history is None and model.initial_state().size > 0)
     show_files([out])
 
 

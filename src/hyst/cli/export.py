@@ -204,9 +204,6 @@ def export(
     if target not in _TARGETS:
         raise hyst.InputError(f"--target is {target!r}; give {' or '.join(_TARGETS)}")
     refuse_irrelevant(context, _BY_TARGET, [target], "--target")
-    model = hyst.load(model_file)
-    if schedule_value is not None:
-        model = loaded(model_file, None, schedule_value)
     if preview is not None and not inverse:
         raise hyst.InputError("--preview is of an inverse; add --inverse, or leave it out")
     model = loaded_at(model_file, schedule_value)

@@ -102,7 +102,6 @@ def identify(
     options = options_given(context, family)
     chosen = hyst.identification.chosen_families(family, options)
     chosen += hyst.identification.families_in_reserve(family, options)
-    lag, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
     lags = whole_auto_or_none(creep, "creep")
     late, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
     time_constant = None if lag == "none" else number_or_auto(lag, "lag", " or none")
@@ -118,19 +117,9 @@ def identify(
     }
     about = About(schedule, schedule_name, schedule_unit, validate_schedule)
     if about.is_given():
+        if time_constant is not None:
+            raise hyst.InputError("--lag is not for --schedule; give one of them")
         return identify_over(data, validate, folder, files, about, asked)
-    about_schedule = schedule_name, schedule_unit
-    if schedule is not None and time_constant is not None:
-        raise hyst.InputError("--lag is not for --schedule; give one of them")
-    if schedule is not None:
-        return identify_over(
-            data, validate, folder, files, schedule, validate_schedule, *about_schedule, asked
-        )
-    if any(each is not None for each in (*about_schedule, validate_schedule)):
-        raise hyst.InputError(
-            "--schedule-name, --schedule-unit and --validate-schedule say more of --schedule; give "
-            "it too"
-        )
     with at_work("identifying") as say:
         say("reading")
         measured = files.records(data)
