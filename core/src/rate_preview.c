@@ -101,7 +101,8 @@ static int preview_scales(const hyst_rate_preview *model, const hyst_preview_pla
     scales->rate = most;
     scales->contact = high - low;
     /* So small that the corners have no width left is no movement. */
-    return hyst_is_finite(HYST_REAL(1e6) / most) != 0 && hyst_is_finite(scales->contact) != 0;
+    return most > HYST_REAL(0.0) && hyst_is_finite(HYST_REAL(1e6) / most) != 0 &&
+           hyst_is_finite(scales->contact) != 0;
 }
 
 static hyst_preview_stage preview_stage(const hyst_preview_stage *scales, size_t number)

@@ -100,21 +100,24 @@ static hyst_real preview_move(const preview_problem *of, const preview_scratch *
     const hyst_real share = HYST_REAL(0.25) / c;
     const hyst_real low = u - widening;
     const hyst_real high = u + widening;
-    const hyst_real zero = HYST_REAL(0.0);
-    for (size_t i = 0; i < count; ++i) {
-        const hyst_real under = (low - pi->r[i]) - own->z[i];
-        const hyst_real lift = hyst_clamp(-c, c, under) + c;
-        const hyst_real raised =
-            own->z[i] + (HYST_SELECT(under > c, under - c, zero) + lift * lift * share);
-        const hyst_real over = raised - (high + pi->r[i]);
-        const hyst_real drop = hyst_clamp(-c, c, over) + c;
-        own->z[i] = raised - (HYST_SELECT(over > c, over - c, zero) + drop * drop * share);
-        own->now[i] = lift;
-        own->before[i] = drop;
-    }
+    const hyst_real *p = pi->p;
+    const hyst_real *r = pi->r;
+    hyst_real *z = own->z;
+    hyst_real *lifts = own->now;
+    hyst_real *drops = own->before;
     hyst_real y = pi->p0 * u;
     for (size_t i = 0; i < count; ++i) {
-        y += pi->p[i] * own->z[i];
+        const hyst_real last = z[i];
+        const hyst_real under = (low - r[i]) - last;
+        const hyst_real lift = hyst_clamp(-c, c, under) + c;
+        const hyst_real raised = last + ((under - HYST_SELECT(under < c, under, c)) + lift * lift * share);
+        const hyst_real over = raised - (high + r[i]);
+        const hyst_real drop = hyst_clamp(-c, c, over) + c;
+        const hyst_real moved = raised - ((over - HYST_SELECT(over < c, over, c)) + drop * drop * share);
+        z[i] = moved;
+        lifts[i] = lift;
+        drops[i] = drop;
+        y += p[i] * moved;
     }
     return y;
 }

@@ -1,6 +1,7 @@
 // A first-order lag and its inverse.
 #include "hyst/lag.h"
 
+#include "fast/creep.hpp"
 #include "kind.hpp"
 
 namespace hyst {
@@ -36,7 +37,7 @@ const Kind lag = {"lag",
                   fill_lag,
                   {"hyst/lag.h", "$signal = hyst_lag_step(&$model, $memory, $signal);"},
                   nullptr,
-                  nullptr,
+                  HYST_IN_DOUBLE(run_lag),
                   nullptr};
 
 }  // namespace HYST_KINDS

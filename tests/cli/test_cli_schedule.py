@@ -17,6 +17,8 @@ HEADER = "drive [V],position [um]"
 COLUMNS = ["--input", "drive", "--output", "position", "--rate", 1000]
 OVER = ["--schedule", "20,35,50", "--schedule-name", "temperature", "--schedule-unit", "degC"]
 
+FAST = ["--plays", 3, "--delay", 0]
+
 
 def write_record(path: Path, t: float, seed: int) -> Path:
     u = moving_plays.sweep(600)
@@ -55,7 +57,9 @@ def test_a_model_over_temperature_is_identified_and_used(
 ):
     between = write_record(folder / "between.csv", 27.5, 9)
     judged = ["--validate", between, "--validate-schedule", 27.5]
-    ended = run("identify", *records, *COLUMNS, *OVER, *judged, "--family", "pi", "-o", "out")
+    ended = run(
+        "identify", *records, *COLUMNS, *OVER, *judged, "--family", "pi", *FAST, "-o", "out"
+    )
     assert ended.code == 0, ended.err
     assert "over temperature" in ended.out
     assert "temperature 27.5 degC, by straight lines from 20 to 35" in ended.out
@@ -110,9 +114,10 @@ def test_what_does_not_go_together_is_refused(records: list[Path], run: Callable
     assert "give its column with --schedule-column" in run(*simulate).err
     both = ["--schedule-column", "temp", "--schedule-value", 30]
     assert run(*simulate, *both).code == 2
-    other, _, _ = signals(folder, unit="K")
-    ended = run("simulate", model, other, "--input", "drive", *both[:2], "-o", "y.csv")
+    signals(folder, unit="K")
+    ended = run("simulate", model, path, "--input", "drive", *both[:2], "-o", "y.csv")
     assert "temperature is in 'K' but the model's in 'degC'" in ended.err
+    signals(folder)
     plain = folder / "plain.json"
     hyst.Affine(2.0).save(plain)
     ended = run("simulate", plain, path, "--input", "drive", *both[:2], "-o", "y.csv")

@@ -82,6 +82,8 @@ DECLARED = {
     "two envelopes": "-rMCOI",
     "two envelopes without linear part": "-rMCO-",
     "inverse of two envelopes": "-rM-OI",
+    "rate-dependent preview": "------",
+    "rate-dependent preview held back": "------",
     "creep": "-----I",
     "creep that goes back": "-----I",
     "inverse creep": "-----I",
@@ -102,6 +104,9 @@ DECLARED = {
     "jiles-atherton 1992": "-R--OI",
     "jiles-atherton 1986": "-R--OI",
     "jiles-atherton of B": "-R--OI",
+    "jiles-atherton with losses": "-----I",
+    "jiles-atherton of B with eddy currents": "-----I",
+    "inverse jiles-atherton with eddy currents": "-----I",
     "inverse jiles-atherton": "-R--OI",
     "inverse jiles-atherton of B": "-R--OI",
 }

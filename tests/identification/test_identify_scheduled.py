@@ -44,7 +44,7 @@ def identified(seed: int, at: tuple[float, ...] = KNOTS, **more) -> hyst.Identif
 
 @functools.cache
 def found() -> hyst.IdentifiedSchedule:
-    held_out = [record(27.5, 91), record(60.0, 92)]
+    held_out = [record(27.5, 91), record(60.0, 92, high=90.0)]
     return identified(0, validation=held_out, validation_at=[27.5, 60.0], unit="degC")
 
 
@@ -115,7 +115,7 @@ def test_values_that_took_no_part_judge_the_straight_lines():
 
 
 def test_constants_that_bend_are_told():
-    """The gain is a parabola over the signal: between two values it is 10 % from a straight line."""
+    """The gain is a parabola: half way between two values it is 10 % from a straight line."""
     u = moving_plays.sweep(700)
 
     def bent(t: float, seed: int) -> hyst.Record:
@@ -123,7 +123,7 @@ def test_constants_that_bend_are_told():
         y = moving_plays.output(u, np.full(u.size, 20.0)) * (1.0 + 0.1 * ((t - 35.0) / 15.0) ** 2)
         return hyst.Record(u, y + 0.002 * np.ptp(y) * rng.normal(size=u.size), dt=1e-3)
 
-    settings = {"family": "pi", "plays": 3, "delay": 0}
+    settings = {"family": "pi", "plays": 3, "delay": 0, "start": 0}
     result = hyst.identify_scheduled(
         [bent(20.0, 1), bent(50.0, 2)],
         [20.0, 50.0],
@@ -239,7 +239,7 @@ def test_what_cannot_be_used_is_refused():
     still = hyst.Record(u, np.zeros(u.size), dt=1e-3)
     with pytest.raises(NotIdentifiableError, match="at s = 35: "):
         hyst.identify_scheduled([records[0], still], [20.0, 35.0])
-    with pytest.raises(InputError, match="no family"):
+    with pytest.raises(InputError, match="unknown family"):
         hyst.identify_scheduled(records, KNOTS, family="none")
 
 

@@ -123,6 +123,21 @@ def test_it_degrades_as_opensees_bouc_wen_of_fine_steps() -> None:
     assert np.abs(fine - replace(model, delta_eta=0.0)(u)).max() >= 2e-2 * np.ptp(force)
 
 
+@pytest.mark.parametrize("q", [0.0, 0.2])
+def test_it_pinches_as_opensees_bwbn_of_fine_steps(q: float) -> None:
+    """Lengths there are in z without a unit, 0.7 of it here; its energy is that of the force."""
+    material = ("BWBN", 1, 0.3, 1.0, 1.0, 0.2, 0.7, 1.0, q, 0.6, 1.0, 0.3, 0.02, 0.5, 1e-12, 200)
+    model = DegradingBoucWen(
+        0.3, 0.7, 0.7, 0.2, 1.0, zeta=0.6, p=1.0, q=q, psi=0.21, delta_psi=0.014, lam=0.5
+    )
+    u = cycles()
+    force = model(u)
+    coarse, fine = opensees(material, u, 60), opensees(material, u, 120)
+    # As above; without the pinch it is off by a hundred times that.
+    assert np.abs(2.0 * fine - coarse - force).max() <= 2e-4 * np.ptp(force)
+    assert np.abs(fine - replace(model, zeta=0.0)(u)).max() >= 2e-2 * np.ptp(force)
+
+
 @pytest.mark.parametrize("wear", [0.02, 0.1])
 @pytest.mark.parametrize("model", [WORN, PINCHED], ids=["degrading", "pinched"])
 def test_the_inverse_gives_the_input_back(model: DegradingBoucWen, wear: float) -> None:

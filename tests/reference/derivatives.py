@@ -25,6 +25,7 @@ WITHOUT_OWN = {
     "masing",
     "maxwell_slip",
     "memory_element",
+    "rate_preview",
     "rate_shift",
     "state_map",
     "two_envelope",

@@ -22,6 +22,7 @@ from hyst.models import (
     Dahl,
     DegradingBoucWen,
     Delay,
+    DynamicJilesAtherton,
     ExponentialCurve,
     GeneralizedMaxwellSlip,
     Iwan,
@@ -39,6 +40,7 @@ from hyst.models import (
     Preisach,
     RambergOsgood,
     RateCurve,
+    RateDependentPreview,
     RateShift,
     SecondOrderSections,
     TwoEnvelopePrandtlIshlinskii,
@@ -177,6 +179,10 @@ OTHERS: dict[str, Operator] = {
     "inverse of two envelopes": TWO_ENVELOPE.inverse(),
     "rate shift": RateShift(0.3, 0.4, 0.1),
     "plays behind a rate shift": PI @ RateShift(0.3, 0.7, 0.1, z0=0.5),
+    "rate-dependent preview": RATE_DEPENDENT.inverse(preview=4),
+    "rate-dependent preview held back": RateDependentPreview(
+        RATE_DEPENDENT, 3, command_range=(-2.0, 3.0), largest_change=0.5
+    ),
     "creep": Creep([0.03, 0.02, 0.01], [0.05, 0.5, 5.0], dt=0.01, rest=0.5),
     "creep that goes back": Creep([0.3, -0.2], [0.1, 1.0], dt=0.01),
     "inverse creep": Creep([0.2, 0.1], [0.03, 0.4], dt=0.01).inverse(),
@@ -218,6 +224,15 @@ OTHERS: dict[str, Operator] = {
     "inverse jiles-atherton": JilesAtherton(200.0, 3.0, 2.0, 0.4, 0.01).inverse(),
     "inverse jiles-atherton of B": JilesAtherton(
         2.0, 3.0, 2.0, 0.2, 1.0, output="B", mu0=0.5
+    ).inverse(),
+    "jiles-atherton with losses": DynamicJilesAtherton(
+        JilesAtherton(2.0, 3.0, 2.0, 0.2, 1.0), 0.05, 0.1, dt=0.1
+    ),
+    "jiles-atherton of B with eddy currents": DynamicJilesAtherton(
+        JilesAtherton(2.0, 3.0, 1.0, 0.1, 1.5, output="B", mu0=0.5), 0.2, 0.0, dt=0.1
+    ),
+    "inverse jiles-atherton with eddy currents": DynamicJilesAtherton(
+        JilesAtherton(200.0, 3.0, 2.0, 0.4, 0.01), 0.001, 0.0, dt=0.1
     ).inverse(),
     "lugre": LuGre(1.5, 0.05, 0.02, Fc=2.0, Fs=3.0, vs=20.0, dt=0.1, Fv=0.5, vv=15.0),
     "hysteresis before dynamics": LAG @ PI,

@@ -35,7 +35,6 @@ from hyst.models import (
     ExponentialCurve,
     GeneralizedMaxwellSlip,
     Iwan,
-    JilesAtherton,
     LinearDynamics,
     LuGre,
     MasingOperator,
@@ -51,8 +50,8 @@ from hyst.models import (
     SecondOrderSections,
     TwoEnvelopePrandtlIshlinskii,
 )
-from hyst.models.jiles_atherton import VARIANTS
 from reference.examples import EXAMPLES
+from reference.random_magnets import MAGNETS
 from reference.random_numbers import numbers
 from reference.random_time import WITH_TIME
 
@@ -307,16 +306,6 @@ def relays(draw: st.DrawFn, least: float = 0.0) -> Preisach:
     return Preisach(weights, edges, p0, u0, density)
 
 
-@st.composite
-def magnets(draw: st.DrawFn, outputs: st.SearchStrategy[str]) -> JilesAtherton:
-    """Of any variant, twice whose constants are a magnet, too: alpha Ms / (3 a) at most 0.4."""
-    saturation, shape = draw(few), draw(st.floats(0.5, 4.0))
-    coupling = draw(st.floats(0.0, 1.2)) * shape / saturation
-    pinning, reversible = shape * draw(st.floats(0.2, 4.0)), draw(st.floats(0.05, 0.45))
-    variant, output = draw(st.sampled_from(VARIANTS)), draw(outputs)
-    return JilesAtherton(saturation, shape, pinning, reversible, coupling, variant, output, 0.5)
-
-
 RANDOM: dict[str, Operators] = {
     "affine": affines,
     "play": st.builds(Play, numbers(0.0, 5.0), numbers(-4.0, 4.0)),
@@ -352,6 +341,7 @@ RANDOM: dict[str, Operators] = {
         lambda model: model.traits().invertible
     ).map(lambda model: model.inverse()),
     "dahl": st.builds(Dahl, few, few, st.floats(0.3, 3.0), numbers(-1.0, 1.0)),
+    **MAGNETS,
     **WITH_TIME,
     # A Coulomb force beyond every input of the contracts.
     "inverse-dahl": st.builds(Dahl, few, st.floats(1e3, 1e4), st.floats(1.0, 3.0)).map(
@@ -369,8 +359,6 @@ RANDOM: dict[str, Operators] = {
     ),
     "preisach": relays(),
     "inverse-preisach": relays(0.25).map(lambda model: model.inverse()),
-    "jiles-atherton": magnets(st.sampled_from(("M", "B"))),
-    "inverse-jiles-atherton": magnets(st.just("B")).map(lambda magnet: magnet.inverse()),
     "inverse": invertible.map(lambda operator: operator.inverse()),
 }
 

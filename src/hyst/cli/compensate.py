@@ -24,11 +24,13 @@ from hyst.cli.relevant_options import refuse_irrelevant
 from hyst.cli.scheduled import (
     ScheduleColumn,
     ScheduleValue,
-    command_over,
+    compensate_over,
     loaded,
     model_at_rest,
     read_signal,
     refuse_what_is_fixed,
+    tell_virgin,
+    write_command,
 )
 from hyst.cli.time_column import time_column
 from hyst.operators.composition import leaves_of
@@ -70,7 +72,7 @@ Roughness = Annotated[
     float | None,
     typer.Option(
         metavar="W",
-        show_default="1 % of the gain",
+        show_default="10 % of the gain, 2 % for largest",
         help="Of trajectory: a second difference of the command of 1 counts as an error of W.",
     ),
 ]
@@ -157,17 +159,9 @@ def compensate(
                 "--with-delay": with_delay,
             }
         )
-        turns = () if history is None else numbers(history, "history")
         s = read_signal(model, reference, str(schedule_column), y_ref.size, how)
-        over = command_over(model, y_ref, s, turns, input_range, despite_verdict)
-        headers, columns = time_column(reference, rate, model.dt, y_ref.size, **how)
-        headers += [
-            hyst.io.join_unit("reference", about.output_unit),
-            hyst.io.join_unit("command", about.input_unit),
-            hyst.io.join_unit("predicted", about.output_unit),
-        ]
-        hyst.io.write_columns(out, headers, [*columns, y_ref, *over])
-        show_files([out])
+        time = time_column(reference, rate, model.dt, y_ref.size, **how)
+        compensate_over(model, y_ref, s, history, input_range, despite_verdict, out, time)
         return
     _require_method_for(model, method)
     wanted = _as_early(y_ref, about) if with_delay else y_ref
@@ -189,26 +183,13 @@ def compensate(
         )
     if not known:
         note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
-    headers, columns = time_column(reference, rate, model.dt, done.u.size, **how)
-    headers += [
-        hyst.io.join_unit(name, unit)
-        for name, unit in (
-            ("reference", about.output_unit),
-            ("command", about.input_unit),
-            ("predicted", about.output_unit),
-        )
-    ]
-    predicted = done.y_predicted
+    time = time_column(reference, rate, model.dt, done.u.size, **how)
+    predicted, told = done.y_predicted, done.y_ref
     if with_delay:
-        predicted = hyst.identification.earlier(predicted, -about.delay)
-    reference_told = y_ref if with_delay else done.y_ref
-    hyst.io.write_columns(out, headers, [*columns, reference_told, done.u, predicted])
+        predicted, told = hyst.identification.earlier(predicted, -about.delay), y_ref
+    write_command(out, about, time, (told, done.u, predicted))
     _tell(done, about, input_range, with_delay)
-    if history is None and model.initial_state().size:
-        print(
-            "memory taken as virgin, as of an actuator never driven; if it was driven, give the "
-            "turns of the drive just before with --history"
-        )
+    tell_virgin(history is None and model.initial_state().size > 0)
     show_files([out])
 
 

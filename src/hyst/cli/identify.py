@@ -11,6 +11,7 @@ import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
     number_or_auto,
+    whole_auto_or_none,
     whole_or_auto,
 )
 from hyst.cli.console import at_work, show_files
@@ -33,6 +34,7 @@ from hyst.cli.fitted import (
 )
 from hyst.cli.reading_options import reads_records
 from hyst.cli.scheduled import (
+    About,
     Schedule,
     ScheduleName,
     ScheduleUnit,
@@ -61,6 +63,13 @@ LeaveDisturbances = Annotated[
         "--leave-disturbances", help="Take neither drift nor foreign sines out of the output."
     ),
 ]
+Creep = Annotated[
+    str,
+    typer.Option(
+        metavar="N|auto|none",
+        help="Number of lags that creep behind the hysteresis; auto: as many as the records show.",
+    ),
+]
 Start = Annotated[str, typer.Option(metavar="N|auto", help="First sample to use.")]
 
 
@@ -75,6 +84,7 @@ def identify(
     start: Start = "auto",
     lag: Lag = "none",
     leave_disturbances: LeaveDisturbances = False,
+    creep: Creep = "auto",
     validate: Validate = None,
     validate_input: ValidateInput = None,
     validate_output: ValidateOutput = None,
@@ -92,6 +102,7 @@ def identify(
     options = options_given(context, family)
     chosen = hyst.identification.chosen_families(family, options)
     chosen += hyst.identification.families_in_reserve(family, options)
+    lags = whole_auto_or_none(creep, "creep")
     late, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
     time_constant = None if lag == "none" else number_or_auto(lag, "lag", " or none")
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
@@ -104,24 +115,18 @@ def identify(
         "allow_unconverged": allow_unconverged,
         **options,
     }
-    about_schedule = schedule_name, schedule_unit
-    if schedule is not None and time_constant is not None:
-        raise hyst.InputError("--lag is not for --schedule; give one of them")
-    if schedule is not None:
-        return identify_over(
-            data, validate, folder, files, schedule, validate_schedule, *about_schedule, asked
-        )
-    if any(each is not None for each in (*about_schedule, validate_schedule)):
-        raise hyst.InputError(
-            "--schedule-name, --schedule-unit and --validate-schedule say more of --schedule; give "
-            "it too"
-        )
+    about = About(schedule, schedule_name, schedule_unit, validate_schedule)
+    if about.is_given():
+        if time_constant is not None:
+            raise hyst.InputError("--lag is not for --schedule; give one of them")
+        return identify_over(data, validate, folder, files, about, asked)
     with at_work("identifying") as say:
         say("reading")
         measured = files.records(data)
         validation = files.validation(validate)
         found = hyst.identify(
             measured,
+            creep=lags,
             lag=time_constant,
             validation=validation,
             progress=say,

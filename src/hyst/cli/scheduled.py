@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -19,6 +20,8 @@ from hyst.cli.fitted import HowToRead, write_fitted
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from hyst.operators import ModelDescription
 
 Schedule = Annotated[
     str | None,
@@ -53,15 +56,46 @@ ScheduleValue = Annotated[
 ]
 
 
+@dataclass(frozen=True)
+class About:
+    """The second signal of records, as typed.
+
+    Parameters
+    ----------
+    schedule, validate_schedule
+        Its values for records and validation records.
+    name, unit
+        What it is.
+    """
+
+    schedule: str | None
+    name: str | None
+    unit: str | None
+    validate_schedule: str | None
+
+    def is_given(self) -> bool:
+        """Tell whether there is one.
+
+        Raises
+        ------
+        InputError
+            If there is none, but more is said of it.
+        """
+        more = (self.name, self.unit, self.validate_schedule)
+        if self.schedule is None and any(each is not None for each in more):
+            raise hyst.InputError(
+                "--schedule-name, --schedule-unit and --validate-schedule say more of --schedule; "
+                "give it too"
+            )
+        return self.schedule is not None
+
+
 def identify_over(
     data: Sequence[Path],
     validate: Sequence[Path] | None,
     folder: Path,
     files: HowToRead,
-    schedule: str,
-    validate_schedule: str | None,
-    name: str | None,
-    unit: str | None,
+    about: About,
     asked: dict[str, Any],
 ) -> int:
     """Identify a model over a second signal, and write it, its numbers and a report at each value.
@@ -74,13 +108,12 @@ def identify_over(
         Where to write.
     files
         How they are read.
-    schedule, validate_schedule
-        Values of the second signal, as typed.
-    name, unit
-        Of the second signal.
+    about
+        The second signal.
     asked
         Further arguments of ``hyst.identify_scheduled``.
     """
+    validate_schedule = about.validate_schedule
     if bool(validate) != (validate_schedule is not None):
         raise hyst.InputError(
             "--validate and --validate-schedule belong together where --schedule is given; give a "
@@ -89,14 +122,14 @@ def identify_over(
     with at_work("identifying") as say:
         say("reading")
         records, judged = files.records(data), files.validation(validate)
-        values, at_validation = numbers(schedule, "schedule"), list[float]()
+        values, at_validation = numbers(str(about.schedule), "schedule"), list[float]()
         if validate_schedule is not None:
             at_validation = numbers(validate_schedule, "validate-schedule")
         found = hyst.identify_scheduled(
             records,
             values,
-            name=name or "s",
-            unit=unit or "",
+            name=about.name or "s",
+            unit=about.unit or "",
             validation=judged,
             validation_at=at_validation,
             progress=say,
@@ -158,6 +191,11 @@ def loaded(path: Path, column: str | None, value: float | None) -> hyst.Operator
             "with --schedule-value"
         )
     return found if value is None else frozen(found, value)
+
+
+def loaded_at(path: Path, value: float | None) -> Any:
+    """Read what a file holds; if a value is given, a scheduled model as it is there."""
+    return hyst.load(path) if value is None else loaded(path, None, value)
 
 
 def frozen(model: hyst.Scheduled, value: float) -> hyst.Operator:
@@ -259,12 +297,75 @@ def command_over(
         "model, hyst info and metrics.json tell at each value"
     )
     print(f"command from {u.min():.6g} to {u.max():.6g}")
-    if not len(history) and memory.size:
+    tell_virgin(not len(history) and memory.size > 0)
+    return u, predicted
+
+
+def tell_virgin(is_virgin: bool) -> None:
+    """Say that no history was given to a model with memory, where that is so."""
+    if is_virgin:
         print(
             "memory taken as virgin, as of an actuator never driven; if it was driven, give the "
             "turns of the drive just before with --history"
         )
-    return u, predicted
+
+
+def compensate_over(
+    model: hyst.Scheduled,
+    y_ref: NDArray[np.float64],
+    s: NDArray[np.float64],
+    history: str | None,
+    input_range: tuple[float, float] | None,
+    despite_verdict: bool,
+    out: Path,
+    time: tuple[list[str], list[Any]],
+) -> None:
+    """Write the command for a reference while the second signal moves.
+
+    Parameters
+    ----------
+    model, y_ref, s, input_range, despite_verdict
+        As of ``command_over``.
+    history
+        As typed.
+    out
+        The file to write.
+    time
+        Headers and columns that come first.
+    """
+    turns = () if history is None else numbers(history, "history")
+    done = command_over(model, y_ref, s, turns, input_range, despite_verdict)
+    write_command(out, model.description, time, (y_ref, *done))
+    show_files([out])
+
+
+def write_command(
+    out: Path,
+    about: ModelDescription,
+    time: tuple[list[str], list[Any]],
+    signals: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+) -> None:
+    """Write reference, command and predicted output.
+
+    Parameters
+    ----------
+    out
+        The file to write.
+    about
+        Of the model, for units.
+    time
+        Headers and columns that come first.
+    signals
+        The three.
+    """
+    headers, columns = time
+    named = (
+        ("reference", about.output_unit),
+        ("command", about.input_unit),
+        ("predicted", about.output_unit),
+    )
+    headers = [*headers, *(hyst.io.join_unit(*each) for each in named)]
+    hyst.io.write_columns(out, headers, [*columns, *signals])
 
 
 def refuse_what_is_fixed(given: dict[str, bool]) -> None:

@@ -15,7 +15,7 @@ from hyst.compensation.expectation import beyond_the_records, error_to_expect
 from hyst.compensation.nearest_input import drive_to_nearest, turns
 from hyst.compensation.noncausal import invert_noncausally
 from hyst.compensation.rate_dependent.explicit import drive_explicitly
-from hyst.compensation.rate_dependent.limits_kept import judge_rate_limit
+from hyst.compensation.rate_dependent.limits_kept import held_in_range, judge_rate_limit
 from hyst.compensation.rate_dependent.preview import drive_with_preview
 from hyst.compensation.rate_dependent.sample_exact import drive_sample_by_sample
 from hyst.compensation.rate_dependent.solved_drive import ITERATION_LIMIT, SolvedDrive
@@ -24,6 +24,7 @@ from hyst.compensation.rate_dependent.trajectory_polish import Aim, Objective
 from hyst.compensation.rate_dependent.whole_trajectory import drive_along_trajectory
 from hyst.compensation.result import Compensation
 from hyst.errors import InputError, SolverError
+from hyst.models.rate_preview import MOST_PLANNED
 from hyst.operators import ModelDescription, Operator
 from hyst.operators.verdict import refuse_if_unfit
 
@@ -50,13 +51,14 @@ def invert_trajectory(
     """Find the input that makes a model follow a wanted output.
 
     ``exact``: ``u = model.inverse()(y_ref)``, with the memory of both starting in the same state.
-    The other methods are for rate-dependent plays, with maps before and after them or without:
+    The other methods are for rate-dependent plays, with maps, lags, delays or creep before and
+    after them, which are taken back exactly, or without:
 
     ``explicit``: the explicit inverse of S4 eqs. 12-16, causal and smooth. It takes the rate of the
     reference for that of the drive and leaves an error.
     ``sample-exact``: every sample solved exactly, causal; the drive may chatter.
-    ``preview``: causal but for the next ``preview`` samples of the reference, planned anew at every
-    sample, here for a whole record at once.
+    ``preview``: causal but for the next ``preview`` samples of the reference, planned ahead as
+    ``model.inverse(preview=N)`` does sample by sample, here for a record that goes on as it ends.
     ``trajectory``: the whole reference known; the simulated error of the plays is taken to a
     minimum of ``objective``. For a butterfly, whose output turns: sample by sample the nearest
     input that gives the wanted output.
@@ -92,13 +94,14 @@ def invert_trajectory(
     objective
         What ``trajectory`` minimises: ``"rms"``, the root mean square of the error, or
         ``"largest"``, its largest absolute value. The drive pays for either: without
-        ``input_range`` it stays within 2 % of the range that the first, smooth solution takes.
+        ``input_range`` it leaves the range of the first, smooth solution by 1.5 % of it at most.
     roughness
         Of ``trajectory``: a second difference of one input unit (of the drive of the plays, from
         sample to sample) counts as an error of so many output units, >= 0. More of it gives a
-        smoother drive and a larger error; left out, it is 1 % of the gain of the plays.
+        smoother drive and a larger error; 0 the least error that was found, for a plant that the
+        model knows well. Left out, it is 10 % (for ``"largest"`` 2 %) of the gain of the plays.
     preview
-        Samples of the reference known beyond the present one, >= 1, for ``preview``.
+        Samples of the reference known beyond the present one, 1 to 60, for ``preview``.
     max_iterations
         Of each stage of ``trajectory`` and of each window of its polish.
     allow_unconverged
@@ -212,7 +215,7 @@ def _inverted(asked: _Task, method: str, options: _Options) -> Compensation:
     elif method == "sample-exact":
         found = drive_sample_by_sample(task)
     elif method == "preview":
-        ahead = whole_number(options.preview, "preview", 1)
+        ahead = whole_number(options.preview, "preview", 1, MOST_PLANNED)
         change = _change(task, options.rate_limit)
         found = drive_with_preview(task, ahead, change, options.say)
         found = judge_rate_limit(task, found, change, False)
@@ -242,8 +245,11 @@ def _silent(_: float) -> None:
 def _compensation(task: RateDependentTask, found: SolvedDrive, method: str) -> Compensation:
     """Drive the whole model with the command and see what it does."""
     u = task.input_of(found.drive)
-    y_predicted, _ = task.model.run(u, task.start)
     at_end = int(np.count_nonzero((found.drive <= task.low) | (found.drive >= task.high)))
+    if task.before is not None:
+        u, beyond = held_in_range(task, u)
+        at_end = max(at_end, beyond)
+    y_predicted, _ = task.model.run(u, task.start)
     return Compensation(
         u, task.y_ref, y_predicted, method, at_end, found.status, found.iterations, found.notes
     )
@@ -282,7 +288,7 @@ def _change(task: RateDependentTask, rate_limit: float | None) -> float:
     rate = as_positive(rate_limit, "rate_limit", "a rate in input units per second")
     if task.before is not None:
         raise InputError(
-            "the model has a map before its plays, so the rate of its input is not that of the "
+            "the model has a stage before its plays, so the rate of its input is not that of the "
             "drive; leave out rate_limit"
         )
     return rate * task.plays.dt

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from hyst.errors import InputError
 from hyst.export.c.block import Model
 from hyst.models import RateDependentPrandtlIshlinskii, Scheduled
@@ -52,7 +54,9 @@ def explicit_inverse(model: Operator) -> Operator:
     return inverse.with_description(model.description.of_inverse())
 
 
-def inverse_of(model: Model, explicit: bool = False) -> Operator | ScheduledInverse:
+def inverse_of(
+    model: Model, explicit: bool = False, preview: int | None = None
+) -> Operator | ScheduledInverse:
     """Give the inverse that is exported.
 
     Parameters
@@ -61,6 +65,9 @@ def inverse_of(model: Model, explicit: bool = False) -> Operator | ScheduledInve
         An operator or a scheduled model.
     explicit
         Whether the explicit inverse is wanted.
+    preview
+        Samples of the reference that the inverse may know, and by which its command is late; None
+        for the exact inverse.
 
     Returns
     -------
@@ -69,7 +76,7 @@ def inverse_of(model: Model, explicit: bool = False) -> Operator | ScheduledInve
     Raises
     ------
     InputError
-        If it is no operator, or has no explicit inverse.
+        If it is no operator, has no explicit inverse, or this one is wanted with a preview.
     NotInvertibleError
         If it has no inverse.
     """
@@ -77,4 +84,11 @@ def inverse_of(model: Model, explicit: bool = False) -> Operator | ScheduledInve
         return model.inverse()
     if not isinstance(model, Operator):
         raise InputError(f"a {type(model).__name__} has no inverse; export it as it is")
-    return explicit_inverse(model) if explicit else model.inverse()
+    if preview is None:
+        return explicit_inverse(model) if explicit else model.inverse()
+    if explicit:
+        raise InputError("the explicit inverse needs no preview; ask for one of the two")
+    inverse = model.inverse(preview=preview)
+    about = inverse.description
+    name = f"{about.output_name}, {preview} samples late"
+    return inverse.with_description(replace(about, output_name=name))

@@ -7,7 +7,6 @@ record by powers of two scales the result, bit for bit; other factors change the
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -41,6 +40,7 @@ from hyst.identification.judgement.judge import level_of
 from hyst.identification.options import Options, as_delay
 from hyst.identification.record_use.cleaned import Cleaned
 from hyst.identification.record_use.overview import Overview
+from hyst.identification.record_use.scales import scales_of
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.identified import Candidate
 
@@ -161,20 +161,12 @@ def _tasks(
 
 def _task(family: Family, given: Data, left_out: tuple[str, ...]) -> Task:
     suited, notes = family.suited(given)
-    scales = (
-        _power_of_two(2.0 * given.half_range),
-        _power_of_two(max(float(np.ptp(each.y)) for each in given.records)),
-    )
+    scales = scales_of(given)
     given = replace(given, keeps_corners=not family.depends_on_rate)
     data = given.in_units(1.0 / scales[0], 1.0 / scales[1])
     return Task(
         suited.in_units(1.0 / scales[0], 1.0 / scales[1]), given, data, scales, left_out + notes
     )
-
-
-def _power_of_two(span: float) -> float:
-    """Give the power of two whose ratio to a range lies between 1 and 2."""
-    return math.ldexp(1.0, math.frexp(span)[1] - 1)
 
 
 def _in_reserve(

@@ -7,6 +7,7 @@ from hyst.models.creep import Creep as Creep
 from hyst.models.dahl import Dahl as Dahl
 from hyst.models.degrading_bouc_wen import DegradingBoucWen as DegradingBoucWen
 from hyst.models.delay import Delay as Delay
+from hyst.models.dynamic_jiles_atherton import DynamicJilesAtherton as DynamicJilesAtherton
 from hyst.models.exponential_curve import ExponentialCurve as ExponentialCurve
 from hyst.models.generalized_maxwell_slip import (
     GeneralizedMaxwellSlip as GeneralizedMaxwellSlip,
@@ -40,6 +41,7 @@ from hyst.models.rate_curve import RateCurve as RateCurve
 from hyst.models.rate_dependent import (
     RateDependentPrandtlIshlinskii as RateDependentPrandtlIshlinskii,
 )
+from hyst.models.rate_preview import RateDependentPreview as RateDependentPreview
 from hyst.models.rate_shift import RateShift as RateShift
 from hyst.models.scheduled import Scheduled as Scheduled
 from hyst.models.second_order_sections import SecondOrderSections as SecondOrderSections

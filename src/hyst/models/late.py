@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
 class Late(Operator):
-    """A delay, or what takes one back: by how many samples, and of which sample time."""
+    """A delay by ``samples`` of ``sample_time``, or what takes one back."""
 
     samples: float
     sample_time: float | None

@@ -114,6 +114,34 @@ def metrics_table(identified: Identified) -> Table:
     )
 
 
+def motion_table(identified: Identified) -> Table:
+    """Give what moves the output, part by part; no rows where nothing came up but hysteresis.
+
+    Parameters
+    ----------
+    identified
+        The result.
+
+    Returns
+    -------
+    Table
+    """
+    unit = identified.description.output_unit
+    return Table(
+        "What moves the output, and what of it the model has",
+        ("part", with_unit("rms", unit and f"[{unit}]"), "rms [% of range]", "in the model"),
+        tuple(
+            (
+                each.name,
+                "not told by these records" if math.isnan(each.rms) else number(each.rms),
+                "-" if math.isnan(each.percent) else f"{each.percent:.3f}",
+                "yes" if each.in_model else "no",
+            )
+            for each in identified.motion
+        ),
+    )
+
+
 def per_record_table(identified: Identified) -> Table:
     """Errors over each of the records it was identified from.
 

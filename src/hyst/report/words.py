@@ -19,6 +19,15 @@ from hyst.report.delay_words import delay_sentence, lag_in_words
 from hyst.report.tables import number, with_unit
 from hyst.signals import Record
 
+CREEP_EQUATION = (
+    "with creep z + \u03a3 w_i x_i in the place of z, the output above without its offset; "
+    "\u03c4_i dx_i/dt = z - x_i"
+)
+CREEP_TEXT = (
+    "After a step of z the output goes on by the share w_i of the step, with the time constant "
+    "\u03c4_i; the lags x_i answer one sample later, so that the inverse stays exact."
+)
+
 
 def words_of(identified: Identified) -> Words:
     """Give the words of a result, its equations with the sign of its output.
@@ -45,7 +54,13 @@ def words_of(identified: Identified) -> Words:
     ]
     sign = "-" if gains and gains[-1] < 0.0 else ""
     equations = tuple(each.format(sign=sign) for each in words.equations)
-    return Words(words.full_name, equations, words.explanations)
+    if not any(each.kind == "creep" for each in leaves_of(identified.model)):
+        return Words(words.full_name, equations, words.explanations)
+    return Words(
+        f"{words.full_name} with creep",
+        (*equations, CREEP_EQUATION),
+        (*words.explanations, CREEP_TEXT),
+    )
 
 
 def command_method(identified: Identified) -> str:

@@ -19,15 +19,13 @@ from hyst.models.rate_curve import RateCurve
 Array = NDArray[np.float64]
 
 
-def in_unit_size(task: RateDependentTask, drive: Array) -> tuple[RateDependentTask, float, float]:
+def in_unit_size(task: RateDependentTask) -> tuple[RateDependentTask, float, float]:
     """Bring plays, target, state and range to about 1.
 
     Parameters
     ----------
     task
         In units of the model.
-    drive
-        Shape (N,), a first guess of the drive.
 
     Returns
     -------
@@ -36,8 +34,9 @@ def in_unit_size(task: RateDependentTask, drive: Array) -> tuple[RateDependentTa
     by_input, by_output : float
         Powers of two: what the numbers of the drive and of the target were multiplied by.
     """
-    a, b = _factor(drive), _factor(task.target)
     plays = task.plays
+    gain = plays.p0 + float(np.abs(plays.p).sum())
+    a, b = _factor(task.target / gain), _factor(task.target)
     n = plays.p.size
     curve = plays.rate_curve
     # g(x) of the widening in new units at the rate in new units: a g(x / a).
@@ -54,7 +53,8 @@ def in_unit_size(task: RateDependentTask, drive: Array) -> tuple[RateDependentTa
     start[: n + 1] *= a
     return (
         replace(
-            task, model=new, plays=new, before=None, start=start, y_ref=task.target * b,
+            task, model=new, plays=new, before=None, start=start,
+            plays_state=start, y_ref=task.target * b,
             target=task.target * b, low=task.low * a, high=task.high * a,
         ),
         a,

@@ -85,18 +85,19 @@ def drive_along_trajectory(
     Returns
     -------
     SolvedDrive
-        Never worse than the explicit one held within the limits.
+        Better than the explicit one held within the limits.
     """
-    inverse, memory = task.explicit_inverse()
-    explicit, _ = inverse.run(task.target, memory)
-    unit, by_input, by_output = in_unit_size(task, explicit)
+    # The explicit inverse takes the reference's rate for the drive's: it, too, needs like sizes.
+    unit, by_input, by_output = in_unit_size(task)
+    inverse, memory = unit.explicit_inverse()
+    explicit, _ = inverse.run(unit.target, memory)
     search = _Search(unit, change * by_input, max_iterations)
-    search.offer(explicit * by_input)
-    scales = scales_of(unit, explicit * by_input)
+    search.offer(explicit)
+    scales = scales_of(unit, explicit)
     if scales is None:
         return SolvedDrive(search.drive / by_input, SOLVED, 1, ())
     for number, course in enumerate(_COURSES):
-        search.follow(explicit * by_input, course, scales)
+        search.follow(explicit, course, scales)
         progress(_SHARE_OF_COURSES * (number + 1) / len(_COURSES))
     rest = 1.0 - _SHARE_OF_COURSES
     gain = task.plays.p0 + float(np.abs(task.plays.p).sum())
@@ -125,8 +126,8 @@ class _Search:
 
     def __init__(self, task: RateDependentTask, change: float, max_iterations: int) -> None:
         self.task, self.change, self.max_iterations = task, change, max_iterations
-        started = task.start[-1] > 0.0
-        self.before = float(task.start[-2]) if started else None
+        started = task.plays_state[-1] > 0.0
+        self.before = float(task.plays_state[-2]) if started else None
         self.score, self.steps = np.inf, 0
         self.drive, self.variation = task.target, np.inf
         self.extent = float(np.ptp(task.target)) or 1.0

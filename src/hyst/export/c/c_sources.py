@@ -127,7 +127,17 @@ def selftest_source(block: Block, places: dict[str, str]) -> str:
 
 
 def vectors(block: Block, test: SelfTest, places: dict[str, str], precision: Precision) -> str:
-    """Give the header with what the ``test`` of a ``block`` expects, filled with ``places``."""
+    """Give the header with what a self-test expects.
+
+    Parameters
+    ----------
+    block, test
+        What is exported, and its self-test.
+    places
+        What stands at every place.
+    precision
+        Of the target.
+    """
     drive = test.drive
     more = {
         "low": f"({drive.low})",

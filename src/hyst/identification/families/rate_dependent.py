@@ -41,6 +41,7 @@ from hyst.identification.families.rate_dependent_options import (
     EQUAL,
     FILTER_OPTION,
     HYSTERESIS,
+    NO_FILTER,
     RECORD_WEIGHTS_OPTION,
 )
 from hyst.identification.families.rate_dependent_starts import FirstGuesses
@@ -51,6 +52,7 @@ from hyst.identification.families.rate_law import (
     MOST_PIECES,
     PIECEWISE,
     SATURATING,
+    SQRT,
     RateLaw,
     forms_of,
     law_for,
@@ -87,7 +89,7 @@ MOST_PLAYS = 50
 _PLAYS_FOR_THE_LAW = 6
 """Evenly spaced, with which a law is chosen before their number is known."""
 
-_ITERATIONS_FOR_THE_LAW = 40
+_ITERATIONS_FOR_THE_LAW = 25
 
 _STARTS = 3
 
@@ -126,7 +128,7 @@ class RateDependent(Family):
         What is done about noise of the measured drive, whose differences are no rates of the
         actuator: ``"auto"``: where there is some, it is smoothed out of the whole record, as
         strongly as cross-validation says; a time constant, s: of a low-pass without lag; or
-        None. The model has no filter: it is for the commanded drive.
+        ``"none"``. The model has no filter: it is for the commanded drive.
     """
 
     name = "rdpi"
@@ -179,6 +181,20 @@ class RateDependent(Family):
                 "envelope's knots are known before the fit"
             )
 
+    def refused_before_dynamics(self) -> str:
+        """Refuse laws that more than scale, and a filter of the drive."""
+        if self.rate in (SATURATING, AUTO):
+            return (
+                f"rate is {self.rate!r}, but before dynamics only laws that one or more factors "
+                f"scale are identified; give {LINEAR!r}, {SQRT!r} or {PIECEWISE!r}"
+            )
+        if not isinstance(self.rate_filter, str):
+            return (
+                f"rate_filter is {self.rate_filter} s, but before dynamics the drive is taken as "
+                "it is; leave out rate_filter, or smooth the drive of the records"
+            )
+        return ""
+
     def records_to_use(
         self, records: tuple[Record, ...], start: Literal["auto"] | int
     ) -> tuple[Data, tuple[str, ...]]:
@@ -190,7 +206,7 @@ class RateDependent(Family):
         return replace(prepare(smooth, start), smoothers=smoothers), told_of_drives(smoothers)
 
     def _smoother(self, record: Record) -> Smoother | None:
-        if self.rate_filter is None:
+        if self.rate_filter == NO_FILTER:
             return None
         return without_noise(record, None if self.rate_filter == AUTO else self.rate_filter)
 
@@ -278,10 +294,13 @@ class RateDependent(Family):
         fits = [
             fit
             if (law.name, law.form) == (own.name, own.form)
-            else with_law(fit, law, overview, max_iterations)
+            else with_law(fit, law, overview, min(max_iterations, _ITERATIONS_FOR_THE_LAW))
             for law in self._laws(overview.data)
         ]
-        return simplest_law(fits, overview) if len(fits) > 1 else fit
+        chosen = simplest_law(fits, overview) if len(fits) > 1 else fit
+        if chosen is fit:
+            return fit
+        return solved(chosen, overview, chosen.solution.theta, max_iterations)
 
     def estimates(self, fit: Fit) -> Estimates:
         """Give the constants that are free; of a law its own and not those of its table."""

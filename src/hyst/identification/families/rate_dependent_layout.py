@@ -16,7 +16,7 @@ from hyst.identification.families.play_layout import SMALLEST_MAP_SLOPE, slopes_
 from hyst.identification.families.rate_law import RateLaw
 from hyst.identification.fit.parametrization import SMALLEST_SLOPE, Parametrization, unchanged
 from hyst.identification.record_use.overview import Overview
-from hyst.models import RateDependentPrandtlIshlinskii
+from hyst.models import RateCurve, RateDependentPrandtlIshlinskii
 from hyst.operators import Affine, Composition, DeadZone, Operator
 
 Array = NDArray[np.float64]
@@ -185,7 +185,8 @@ class RatedParametrization(Parametrization):
         """Give the same free parameters for signals that are larger by these factors."""
         scaled = super().in_units(theta, input_scale, output_scale)
         law = self.layout.law
-        law = replace(law, fastest=law.fastest * input_scale)
+        curve = RateCurve(0.0, (), np.zeros(law.curve.knees.size), law.curve.knees * input_scale)
+        law = replace(law, fastest=law.fastest * input_scale, curve=curve)
         return replace(scaled, layout=self.layout.with_law(law))
 
 

@@ -15,6 +15,7 @@ from hyst.identification.families.option import (
 )
 
 EQUAL, HYSTERESIS = "equal", "hysteresis"
+NO_FILTER = "none"
 
 
 def _as_record_weights(given: Any, name: str) -> str | tuple[float, ...]:
@@ -32,18 +33,16 @@ def _read_record_weights(text: str, name: str) -> Any:
     return read_numbers(text, name) if "," in text else text
 
 
-def _as_filter(given: Any, name: str) -> str | float | None:
-    if given is None or (isinstance(given, str) and given == AUTO):
-        return given
+def _as_filter(given: Any, name: str) -> str | float:
     if isinstance(given, str):
-        raise InputError(f"{name} is {given!r}; give seconds, {AUTO!r} or None")
-    return as_positive(given, name, "seconds, 'auto' or None")
+        if given in (AUTO, NO_FILTER):
+            return given
+        raise InputError(f"{name} is {given!r}; give seconds, {AUTO!r} or {NO_FILTER!r}")
+    return as_positive(given, name, f"seconds, {AUTO!r} or {NO_FILTER!r}")
 
 
 def _read_filter(text: str, name: str) -> Any:
-    if text in (AUTO, "none"):
-        return AUTO if text == AUTO else None
-    return read_number(text, name)
+    return text if text in (AUTO, NO_FILTER) else read_number(text, name)
 
 
 RECORD_WEIGHTS_OPTION = Option(

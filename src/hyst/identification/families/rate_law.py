@@ -35,8 +35,8 @@ found from the model may ask for more than the records did."""
 
 MOST_PIECES = 8
 
-APART = 1.25
-"""Least ratio of two knees."""
+APART = 1.15
+"""Least ratio of two knees, and of the fastest rate to the last one."""
 
 _SLOWEST, _STRAIGHTEST = 1.0 / 200.0, 20.0
 """Bounds of the rate at which a law bends, over the fastest rate of the records."""

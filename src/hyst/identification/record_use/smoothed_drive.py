@@ -115,7 +115,8 @@ def without_noise(record: Record, time_constant: float | None = None) -> Smoothe
                 f"rate_filter is {time_constant:.4g} s but samples are {record.dt:.4g} s apart; "
                 f"give at most {longest:.4g} s, or thin the record"
             )
-        if u.size < FEWEST:
+        # No sample tells of what is shorter than the time between two.
+        if u.size < FEWEST or record.dt >= math.pi * time_constant:
             return None
         return replace(_smoother(record, chosen, none), time_constant=time_constant)
     if u.size < FEWEST or not is_noisy(u):

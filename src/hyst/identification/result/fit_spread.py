@@ -86,10 +86,8 @@ class FitSpread:
         """Add what the things beside the model may move."""
         if self.moves is None:
             return errors
-        size = np.abs(errors).max(initial=0.0, where=np.isfinite(errors)) or 1.0
-        size = float(np.ldexp(1.0, np.frexp(size)[1]))  # squares of what is tiny would underflow
-        moved = (rows @ self.moves) / size
-        return np.asarray(size * np.sqrt((errors / size) ** 2 + (moved**2).sum(axis=1)))
+        # Constants have units of their own: squares of what is tiny would underflow.
+        return np.asarray(np.hypot(errors, np.hypot.reduce(rows @ self.moves, axis=1)))
 
     def not_told_apart(self, estimates: Estimates) -> tuple[str, ...]:
         """Name the estimates in every combination that the records do not determine.

@@ -19,29 +19,28 @@ from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.registry import chosen_families
 from hyst.identification.fit.bounded_least_squares import Problem
 from hyst.identification.fit.parametrization import Parametrization
-from hyst.identification.fit.problem import model_output
 from hyst.identification.options import Options, silent
 from hyst.identification.record_use.cleaned import Cleaned, as_drift, cleaned
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.part_of_a_sample import lag_in_samples
-from hyst.identification.record_use.used_samples import Data, prepare, require_same_units
+from hyst.identification.record_use.scales import scales_of
+from hyst.identification.record_use.used_samples import Data, require_same_units
 from hyst.identification.result.fit_spread import spread_of_fit
 from hyst.identification.result.identified import Identified
 from hyst.identification.result.identified_from_fit import identified_from_fit, traced
 from hyst.identification.schedule.identified_schedule import (
-    Checked,
     IdentifiedSchedule,
     ScheduledConstant,
 )
 from hyst.identification.schedule.joint_fit import fit_jointly
+from hyst.identification.schedule.judged import held_out_of, left_out_of
 from hyst.identification.schedule.shared import Estimate, Sharing, nothing_shared, sharing_of
 from hyst.identification.schedule.values_of_records import AtValue, by_value, require_several
 from hyst.identification.schedule.words import notes_of, verdict_of
 from hyst.identification.search import Found, find
 from hyst.models import Scheduled
-from hyst.operators import Operator
 from hyst.operators.provenance import options_asked
-from hyst.signals import Record, error_metrics
+from hyst.signals import Record
 
 Array = NDArray[np.float64]
 
@@ -66,11 +65,18 @@ class _Value:
 
 @dataclass(frozen=True, eq=False)
 class _Fitted:
-    """A fit at one value, over its records."""
+    """A fit at one value, over its records, in the units of powers of two of the layout."""
 
     value: _Value
     data: Data
     fit: Fit
+    scales: tuple[float, float]
+
+    def given(self) -> tuple[Data, Fit]:
+        """Give records and fit in the user's units."""
+        theta = self.fit.solution.theta
+        parametrization = self.fit.parametrization.in_units(theta, *self.scales)
+        return self.data.in_units(*self.scales), replace(self.fit, parametrization=parametrization)
 
 
 def identify_scheduled(
@@ -153,9 +159,10 @@ def identify_scheduled(
         )
     numbers = np.array([each.group.value for each in values])
     model = Scheduled([each.model for each in results], numbers, name, unit)
+    data = [each.given()[0] for each in fitted]
     constants = _constants(fitted[0].fit, results, sharing)
-    left_out = _left_out(model, fitted, results)
-    held_out = tuple(_held_out(model, each, results, fitted[0].data) for each in judged)
+    left_out = left_out_of(model, data, results)
+    held_out = tuple(held_out_of(model, each, results, data[0], start) for each in judged)
     verdict = verdict_of(model, results, left_out, held_out)
     notes = notes_of(model, results, constants, left_out, held_out, sharing.gave_up)
     about = replace(model.description, verdict=verdict)
@@ -217,18 +224,26 @@ def _noise(fitted: _Fitted) -> float:
 
 
 def _refitted(value: _Value, layout: Found, options: Options) -> _Fitted:
+    """Fit a layout, whose parameters are in its own units of powers of two, at another value."""
     family, first = layout.fit.family, layout.data.records[0].dt
+    scales = scales_of(layout.data)
+    to_own = 1.0 / scales[0], 1.0 / scales[1]
+    theta = layout.fit.solution.theta
+    own = replace(layout.fit, parametrization=layout.fit.parametrization.in_units(theta, *to_own))
     data = value.clean.marked(family.records_to_use(value.clean.records, options.start)[0])
+    data = replace(data, keeps_corners=layout.data.keeps_corners)
     data = data.delayed(lag_in_samples(layout.data.lag, first, data.records[0].dt))
     options.say(f"fit at {value.group.value:.6g}")
-    overview = Overview(data, layout.data.lag, rates_matter=family.depends_on_rate)
-    problem = layout.fit.problem(overview.data, overview.kept)
-    solution = family.solve(problem, layout.fit.solution.theta, options.max_iterations)
-    near = family.finish(replace(layout.fit, solution=solution), overview, options.max_iterations)
-    if near.parametrization is not layout.fit.parametrization:  # another layout
-        near = replace(layout.fit, solution=solution)
+    overview = Overview(
+        data.in_units(*to_own), layout.data.lag, rates_matter=family.depends_on_rate
+    )
+    problem = own.problem(overview.data, overview.kept)
+    reached = replace(own, solution=family.solve(problem, theta, options.max_iterations))
+    near = family.finish(reached, overview, options.max_iterations)
+    if near.parametrization is not own.parametrization:  # another layout
+        near = reached
     fit = options.converged(settled(near, overview, options.max_iterations))
-    return _Fitted(value, overview.data, fit)
+    return _Fitted(value, overview.data, fit, scales)
 
 
 def _estimate(fitted: _Fitted) -> Estimate:
@@ -297,9 +312,10 @@ def _result(
 ) -> Identified:
     group = fitted.value.group
     same = [each.records for each in judged if each.value == group.value]
+    data, fit = fitted.given()
     found = identified_from_fit(
-        fitted.data,
-        fitted.fit,
+        data,
+        fit,
         layout.candidates,
         same[0] if same else (),
         (),
@@ -307,13 +323,11 @@ def _result(
         (),
         None,
     )
-    by_theta = fitted.fit.family.estimates(fitted.fit).by_theta
+    by_theta = fit.family.estimates(fit).by_theta
     variance = np.einsum("ij,jk,ik->i", by_theta, sharing.covariances[place], by_theta)
     errors = np.where(np.isnan(found.standard_errors), np.nan, np.sqrt(np.maximum(variance, 0.0)))
-    told = fitted.fit.family.result(
-        replace(found, standard_errors=errors),
-        fitted.fit,
-        Overview(fitted.data, fitted.data.lag),
+    told = fit.family.result(
+        replace(found, standard_errors=errors), fit, Overview(fitted.data, fitted.data.lag)
     )
     return traced(told, group.records, asked)
 
@@ -337,43 +351,6 @@ def _constants(
             )
         )
     return tuple(constants)
-
-
-def _left_out(
-    model: Scheduled, fitted: Sequence[_Fitted], results: Sequence[Identified]
-) -> tuple[Checked, ...]:
-    """Judge the straight lines by every inner value: what the others say of it."""
-    checked = []
-    for i in range(1, len(fitted) - 1):
-        rest = [k for k in range(len(fitted)) if k != i]
-        others = Scheduled([model.models[k] for k in rest], model.values[rest], model.name)
-        value, noise = float(model.values[i]), results[i].metrics["training"].rms
-        ends = float(model.values[i - 1]), float(model.values[i + 1])
-        checked.append(_checked(others.at(value), fitted[i].data, value, noise, ends))
-    return tuple(checked)
-
-
-def _held_out(
-    model: Scheduled, group: AtValue, results: Sequence[Identified], first: Data
-) -> Checked:
-    lag = lag_in_samples(first.lag, first.records[0].dt, group.records[0].dt)
-    data = prepare(group.records, "auto", lag)
-    values, value = model.values, group.value
-    high = min(max(int(np.searchsorted(values, value)), 1), values.size - 1)
-    noise = max(results[k].metrics["training"].rms for k in (high - 1, high))
-    outside = bool(model.outside(value))
-    ends = (values[0], values[-1]) if outside else (values[high - 1], values[high])
-    between = (float(ends[0]), float(ends[1]))
-    return replace(_checked(model.at(value), data, value, noise, between), outside=outside)
-
-
-def _checked(
-    operator: Operator, data: Data, value: float, noise: float, between: tuple[float, float]
-) -> Checked:
-    measured = data.measured()
-    span = max(r.y.max() for r in data.records) - min(r.y.min() for r in data.records)
-    errors = error_metrics(measured, model_output(data, operator), output_range=float(span))
-    return Checked(value, errors.rms, errors.rms_percent, noise, between)
 
 
 @contextlib.contextmanager
