@@ -24,8 +24,8 @@ def late_error(command: Array, y_ref: Array, constants: dict, late: int) -> Arra
     return (y[late:] - y_ref[: y.size - late])[third : 2 * third]
 
 
-# Measured: 0.068, 0.29, 1.5 and 2.2 with rms 0.007, 0.042, 0.24 and 0.43; the planner in Python that
-# this replaced left 0.089, 0.26, 0.68 and 2.2 with rms 0.064, 0.17, 0.35 and 0.70. Which local
+# Measured: 0.068, 0.29, 1.5 and 2.2 with rms 0.007, 0.042, 0.24 and 0.43; the planner in Python
+# that this replaced left 0.089, 0.26, 0.68 and 2.2 with rms 0.064, 0.17, 0.35 and 0.70. Which local
 # minimum is met changes with rounding, so the largest error has room, the rms hardly any.
 @pytest.mark.parametrize(
     ("f", "largest", "rms"),
