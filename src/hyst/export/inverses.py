@@ -81,6 +81,10 @@ def inverse_of(
         If it has no inverse.
     """
     if isinstance(model, Scheduled) and preview is not None:
+        raise InputError(
+            "a scheduled model has no inverse with a preview; export that of one value of the "
+            "schedule"
+        )
         raise InputError("the inverse of a scheduled model needs no preview; leave it out")
     if isinstance(model, Scheduled) and not explicit:
         return model.inverse()

@@ -3,50 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.errors import InputError, NotIdentifiableError
-from hyst.identification.choice.joint_delay import BETWEEN_SAMPLES
-from hyst.identification.families.family import Family, Fit
+from hyst.identification.families.family import Family
 from hyst.identification.families.option import AUTO
-from hyst.identification.fit.stages import with_stage
-from hyst.identification.judgement.judge import level_of
-from hyst.identification.judgement.regression import correlation_time
-from hyst.identification.lag.lagging_family import LaggingFamily, behind_lag
+from hyst.identification.lag.lag_or_delay import LagOrDelay, Search
+from hyst.identification.lag.lagging_family import LaggingFamily
+from hyst.identification.lag.stage import LONGEST, lagged, lagging
 from hyst.identification.options import Options
 from hyst.identification.record_use.cleaned import Cleaned
-from hyst.identification.record_use.overview import Overview
-from hyst.identification.record_use.used_samples import Data
-from hyst.identification.result.lateness import lateness_of
 from hyst.identification.search import Found
-from hyst.models import Lag
 from hyst.signals import Record
 
-Array = NDArray[np.float64]
 Wanted = float | Literal["auto"] | None
-Search = Callable[[Cleaned, Options], Found]
-
-FAR = 20.0
-"""Variance ratio of one constant: noise reaches it once in a hundred thousand times."""
-
-SHORTEST, LONGEST = 1e-3, 20.0
-"""Of a time constant that is looked for: samples, and times the delay seen first."""
-
-ROUNDS = 6
-SHARES = (0.25, 0.5, 1.0)
-"""Of the longest delay possible: time constants to search with where nothing describes the records
-without a lag."""
-
-SETTLED = 0.05
-"""Samples: a change of the delay beside a lag that is worth no further round."""
-
-TWO = 2.0
 
 
 def as_lag(lag: Any) -> Wanted:
@@ -109,20 +83,14 @@ def found_with_lag(
         return search(records, options)
     if isinstance(wanted, float):
         _require_place(families)
-        found = search(_lagged(records, wanted), options)
+        found = search(lagged(records, wanted), options)
         return _held(found, records.records, wanted)
     found = search(records, options)
     if found.fit.family.answers_late:
         return found
     options.say("lag")
-    work = _Work.of(found, options)
+    work = LagOrDelay.of(found, options)
     return work.told(work.from_guesses(search, records))
-
-
-def _lagged(records: Cleaned, time_constant: float) -> Cleaned:
-    """Give records whose drive is what comes out of a lag."""
-    lagged = [replace(each, u=Lag(time_constant, each.dt)(each.u)) for each in records.records]
-    return replace(records, records=tuple(lagged))
 
 
 def _require_place(families: Sequence[Family]) -> None:
@@ -160,7 +128,7 @@ def search_beside_lag(
     tau, free = float(found.fit.solution.theta[-1]), wanted == AUTO
 
     def again(records: Cleaned, how: Options) -> Found:
-        return _held(search(_lagged(records, tau), how), records.records, tau, free)
+        return _held(search(lagged(records, tau), how), records.records, tau, free)
 
     return again, replace(options, delay=found.data.lag) if free else options
 
@@ -174,7 +142,7 @@ def _held(
     data = replace(data, records=whole, measured_inputs=(), keeps_corners=False).delayed(data.lag)
     longest = LONGEST * time_constant
     fits = [
-        _lagging(each, data.records[0].dt, time_constant, held=not free, longest=longest)
+        lagging(each, data.records[0].dt, time_constant, held=not free, longest=longest)
         for each in (found.fit, *found.rivals)
     ]
     return replace(found, data=data, fit=fits[0], rivals=tuple(fits[1:]))
@@ -350,10 +318,11 @@ class _Work:
         return self._solved(first, self._same_samples(delay))
 
     def _solved(self, fit: Fit, data: Data) -> _Tried:
-        kept = Overview(data, rates_matter=True).kept
-        problem = fit.problem(data, kept)
-        solution = fit.family.solve(problem, fit.solution.theta, self.options.max_iterations)
-        return _Tried.of(self.options.converged(replace(fit, solution=solution)), data)
+        overview, most = Overview(data, rates_matter=True), self.options.max_iterations
+        problem = fit.problem(data, overview.kept)
+        solution = fit.family.solve(problem, fit.solution.theta, most)
+        fit = fit.family.renewed(replace(fit, solution=solution), overview, most)
+        return _Tried.of(self.options.converged(fit), data)
 
     def _with_free_delay(self, tried: _Tried) -> _Tried:
         """Let the delay beside a fit move to where both together leave least."""
