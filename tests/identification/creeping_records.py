@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+from benchmarks.creeping_actuator import lagged
 from numpy.typing import NDArray
 
 import hyst
-from benchmarks.creeping_actuator import lagged
 
 Array = NDArray[np.float64]
 

@@ -204,9 +204,6 @@ def export(
     if target not in _TARGETS:
         raise hyst.InputError(f"--target is {target!r}; give {' or '.join(_TARGETS)}")
     refuse_irrelevant(context, _BY_TARGET, [target], "--target")
-    model = hyst.load(model_file)
-    if schedule_value is not None:
-        model = loaded(model_file, None, schedule_value)
     if preview is not None and not inverse:
         raise hyst.InputError("--preview is of an inverse; add --inverse, or leave it out")
     model = loaded_at(model_file, schedule_value)
@@ -217,9 +214,12 @@ def export(
     what = "inverse of " if inverse or explicit else ""
     title = f"{what}{model_file.name} as {target}: {out}"
     show_table(hyst.report.Table(title, ("", ""), done.rows))
-    about = model.description
+    _tell_lateness(model.description, preview)
+    print(f"\nnext: {done.next_step}")
+
+
+def _tell_lateness(about: hyst.ModelDescription, preview: int | None) -> None:
     if about.delay:
         print("\n" + hyst.report.delay_sentence(about.delay, about.dt, about.delay_interval))
     if preview:
         print(f"\nthe output at sample k is the command for sample k - {preview} of the reference")
-    print(f"\nnext: {done.next_step}")

@@ -102,7 +102,6 @@ def identify(
     options = options_given(context, family)
     chosen = hyst.identification.chosen_families(family, options)
     chosen += hyst.identification.families_in_reserve(family, options)
-    lag, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
     lags = whole_auto_or_none(creep, "creep")
     late, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
     time_constant = None if lag == "none" else number_or_auto(lag, "lag", " or none")
@@ -117,32 +116,16 @@ def identify(
         **options,
     }
     about = About(schedule, schedule_name, schedule_unit, validate_schedule)
-    if about.is_given():
+    if about.is_given(
+        {"--lag": time_constant is not None, "--creep": creep not in ("auto", "none")}
+    ):
         return identify_over(data, validate, folder, files, about, asked)
-    about_schedule = schedule_name, schedule_unit
-    if schedule is not None and time_constant is not None:
-        raise hyst.InputError("--lag is not for --schedule; give one of them")
-    if schedule is not None:
-        return identify_over(
-            data, validate, folder, files, schedule, validate_schedule, *about_schedule, asked
-        )
-    if any(each is not None for each in (*about_schedule, validate_schedule)):
-        raise hyst.InputError(
-            "--schedule-name, --schedule-unit and --validate-schedule say more of --schedule; give "
-            "it too"
-        )
+    asked |= {"creep": lags, "lag": time_constant}
     with at_work("identifying") as say:
         say("reading")
         measured = files.records(data)
         validation = files.validation(validate)
-        found = hyst.identify(
-            measured,
-            creep=lags,
-            lag=time_constant,
-            validation=validation,
-            progress=say,
-            **asked,
-        )
+        found = hyst.identify(measured, validation=validation, progress=say, **asked)
         say("report")
         found = named_by_files(found, files.sources)
         records = _records_used(found, chosen, measured, first)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, final
+from typing import TYPE_CHECKING, ClassVar, Literal, Self, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -224,6 +224,20 @@ class Family(ABC):
             As of ``minimize``.
         """
         return minimize(problem, theta, max_iterations, tolerance)
+
+    def renewed(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Solve again where free parameters hold near a solution only, with stages or without.
+
+        Parameters
+        ----------
+        fit
+            As it was solved.
+        overview
+            The records.
+        max_iterations
+            Of each further fit.
+        """
+        return fit
 
     def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
         """Improve a fit by what only the family knows, as moving radii across kinks.
