@@ -265,7 +265,7 @@ class InverseCreepingPlays(_CreepingBank):
     Examples
     --------
     >>> CreepingPlays([0.5], [1.0], 1.0, [[0.1]], [1.0], 1.0).inverse()([3.0, 3.0]).round(6)
-    array([2.333333, 2.277144])
+    array([2.333333, 2.249051])
     """
 
     kind = "inverse-creeping-plays"
