@@ -122,7 +122,7 @@ def print_maps() -> None:
         for where in ("after", "before"):
             made = plants.records(plants.LAWS["linear"], 1, **{where: map_})
             left = [
-                identify(made, map=each, knots=9).metrics["training"].rms_percent
+                identify(made, map=each, map_knots=9).metrics["training"].rms_percent
                 for each in ("none", "dead-zone", "envelope")
             ]
             print(f"  {name:10s} {where:8s} " + "".join(f"{each:11.3f}" for each in left))
