@@ -3,7 +3,6 @@
 Prints, for one machine and one run,
 - what the trajectory inversion leaves for every objective, what the drive pays, and what is left
   where the plant has a lag or other constants that the model does not know,
-- the time of the trajectory inversion over the number of samples, and of the preview a sample,
 - what explicit inverse, preview and trajectory leave of the example, and what a sample costs,
 - the time of the trajectory inversion over the number of samples,
 - coverage of the standard errors and errors over the bound, of 100 identifications from records at
