@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.diagnosis.delay_evidence import DelayEvidence
+from hyst.errors import SolverError
 from hyst.identification.choice.joint_delay import BETWEEN_SAMPLES
 from hyst.identification.families.family import Fit
 from hyst.identification.judgement.judge import level_of
