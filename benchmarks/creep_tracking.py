@@ -66,25 +66,32 @@ def tracked(actuator: CreepingActuator, model: hyst.Operator, reference: Array) 
 
 
 def main() -> None:
-    print("| plant | creep | fit, s | weights | time constants, s | triangle | sine | mixed |")
-    print("|---|---|---|---|---|---|---|---|")
+    named = ("plant", "creep", "lag", "fit, s", "weights", "time constants, s", "late")
+    print("| " + " | ".join((*named, "triangle", "sine", "mixed")) + " |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
     for name, actuator in PLANTS.items():
         u = record_of_a_lab(dt=actuator.dt)
         stroke = float(np.ptp(actuator.output(u)))
         y = actuator.output(u, NOISE * stroke, seed=1)
         record = hyst.Record(u, y, actuator.dt)
         goals = references(actuator.offset, actuator.offset + 0.95 * stroke, actuator.dt)
-        for creep in ("auto", None):
+        for creep, lag in (("auto", None), ("auto", "auto"), (None, None)):
             begun = time.perf_counter()
-            found = hyst.identify(record, family="mpi", creep=creep)
+            found = hyst.identify(record, family="mpi", creep=creep, lag=lag)
             took = time.perf_counter() - begun
             errors = [
                 100.0 * float(np.sqrt(np.mean(tracked(actuator, found.model, goal) ** 2))) / stroke
                 for goal in goals.values()
             ]
             weights, times = (_told(found, kind) for kind in ("weights[", "time_constants["))
-            cells = (name, "yes" if creep else "no", f"{took:.1f}", weights, times)
+            late = f"{found.delay:.3g} samples" if lag is None else _lag(found)
+            cells = (name, creep or "-", lag or "-", f"{took:.1f}", weights, times, late)
             print("| " + " | ".join((*cells, *(f"{each:.3f} %" for each in errors))) + " |")
+
+
+def _lag(found: hyst.Identified) -> str:
+    at = [i for i, name in enumerate(found.parameter_names) if name.endswith("lag.time_constant")]
+    return ", ".join(f"{1e3 * found.parameter_values[i]:.3g} ms" for i in at) or "none"
 
 
 def _told(found: hyst.Identified, kind: str) -> str:

@@ -263,8 +263,8 @@ class _Work:
             evidence = replace(
                 evidence,
                 delay=delay,
-                low=lag + low / dt,
-                high=lag + high / dt,
+                low=min(lag + low / dt, delay),
+                high=max(lag + high / dt, delay),
                 excludes_zero=bool(lag + low / dt > 0.0 or lag + high / dt < 0.0),
                 rate_or_lag=False,
             )
@@ -308,12 +308,13 @@ def _delay_beside(found: Found, seen: Evidence, options: Options) -> float | str
 
 
 def _later(found: Found, late: float, error: float) -> float:
-    """Give the delay in samples that is later by some time, if that is none by chance."""
-    dt, lag = found.data.records[0].dt, found.data.lag
-    if abs(late) < max(SURE_OF_DELAY * error, LEAST_DELAY * dt):
-        return lag
-    delay = round(lag + late / dt, 3)
-    return int(delay) if float(delay).is_integer() else delay
+    """Give the delay in samples that is later by some time: 0 or whole where it may be."""
+    dt = found.data.records[0].dt
+    delay = found.data.lag + late / dt
+    if abs(delay) <= max(SURE_OF_DELAY * error / dt, LEAST_DELAY):
+        return 0
+    whole = round(delay)
+    return whole if abs(delay - whole) <= LEAST_DELAY else round(delay, 3)
 
 
 def _creeping_rival(fit: Fit, creep: Operator) -> Fit:

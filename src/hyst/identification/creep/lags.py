@@ -22,8 +22,8 @@ PER_DECADE = 3
 FEWEST_SAMPLES, OF_A_STROKE = 10.0, 0.125
 """Of a time constant: a lag that is faster beside the strokes is hardly told from a delay."""
 
-SMALLEST_TURN = 0.05
-"""Of the input's range."""
+SMALLEST_TURN, STILL = 0.05, 0.02
+"""Of the input's range, and of its largest change from sample to sample: less is a hold."""
 
 
 def grid_of(data: Data) -> Array:
@@ -55,9 +55,11 @@ def bounds_of(data: Data) -> tuple[float, float]:
 
 
 def _stroke(record: Record) -> float:
-    """Give the mean time from one turn of the input to the next, s."""
+    """Give the mean time from one turn of the input to the next, holds left out, s."""
     turns = reversals(record.u, SMALLEST_TURN * float(np.ptp(record.u)))
-    return record.duration / (turns.size + 1)
+    steps = np.abs(np.diff(record.u))
+    moving = np.count_nonzero(steps > STILL * float(steps.max()))
+    return record.dt * moving / (turns.size + 1)
 
 
 def signals_that_creep(data: Data, fit: Fit, *, whole: bool = False) -> list[Array]:

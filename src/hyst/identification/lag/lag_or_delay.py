@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.diagnosis.delay_evidence import DelayEvidence
+from hyst.errors import SolverError
 from hyst.identification.choice.joint_delay import BETWEEN_SAMPLES
 from hyst.identification.families.family import Fit
 from hyst.identification.judgement.judge import level_of
@@ -135,8 +137,10 @@ class LagOrDelay:
         for share in SHARES:
             tau = share * evidence.high * self.dt
             found = search(lagged(records, tau), replace(self.options, delay=0))
-            if not found.fit.family.answers_late:
-                own = self.scaled(found.fit, self.scales)
+            if found.fit.family.answers_late:
+                continue
+            own = self.scaled(found.fit, self.scales)
+            with suppress(SolverError):  # a guess that ends nowhere is none, as where it creeps
                 tried.append(self._with_lag(own, 0.0, tau, LONGEST * evidence.high * self.dt))
         return min(tried, key=lambda each: each.cost, default=None)
 
