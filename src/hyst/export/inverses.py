@@ -80,6 +80,12 @@ def inverse_of(
     NotInvertibleError
         If it has no inverse.
     """
+    if isinstance(model, Scheduled) and preview is not None:
+        raise InputError(
+            "a scheduled model has no inverse with a preview; export that of one value of the "
+            "schedule"
+        )
+        raise InputError("the inverse of a scheduled model needs no preview; leave it out")
     if isinstance(model, Scheduled) and not explicit:
         return model.inverse()
     if not isinstance(model, Operator):

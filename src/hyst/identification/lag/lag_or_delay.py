@@ -216,10 +216,11 @@ class LagOrDelay:
         return self._solved(first, self._same_samples(delay))
 
     def _solved(self, fit: Fit, data: Data) -> Tried:
-        kept = Overview(data, rates_matter=True).kept
-        problem = fit.problem(data, kept)
-        solution = fit.family.solve(problem, fit.solution.theta, self.options.max_iterations)
-        return Tried.of(self.options.converged(replace(fit, solution=solution)), data)
+        overview, most = Overview(data, rates_matter=True), self.options.max_iterations
+        problem = fit.problem(data, overview.kept)
+        solution = fit.family.solve(problem, fit.solution.theta, most)
+        fit = fit.family.renewed(replace(fit, solution=solution), overview, most)
+        return Tried.of(self.options.converged(fit), data)
 
     def _with_free_delay(self, tried: Tried) -> Tried:
         """Let the delay beside a fit move to where both together leave least."""

@@ -83,6 +83,10 @@ class LaggingFamily(Family):
         """Minimise as all families do: the time constant is one more free parameter."""
         return super().solve(problem, theta, max_iterations, tolerance)
 
+    def renewed(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Solve again as the family of the hysteresis does."""
+        return self.base.renewed(fit, overview, max_iterations)
+
     @property
     def estimates_noise(self) -> bool:
         """As of the family of the hysteresis."""
