@@ -85,7 +85,6 @@ def inverse_of(
             "a scheduled model has no inverse with a preview; export that of one value of the "
             "schedule"
         )
-        raise InputError("the inverse of a scheduled model needs no preview; leave it out")
     if isinstance(model, Scheduled) and not explicit:
         return model.inverse()
     if not isinstance(model, Operator):
