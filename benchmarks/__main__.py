@@ -14,7 +14,7 @@ import sys  # noqa: E402
 
 import benchmarks  # noqa: E402
 
-SUPPORT = {"__main__", "measured_tasks", "peers", "plants", "timing"}
+SUPPORT = {"__main__", "measured_tasks", "peers", "plants", "resonant_stage", "timing"}
 
 
 def main(names: list[str]) -> None:

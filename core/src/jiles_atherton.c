@@ -90,23 +90,48 @@ hyst_real hyst_jiles_m(const hyst_jiles_stretch *on, hyst_real x)
     return hyst_langevin(x) - jiles_y(on, x);
 }
 
+/* The excess field at x and m; what it adds to the slope of what is sought. */
+static hyst_real jiles_excess(const hyst_jiles_stretch *on, hyst_real x, hyst_real m,
+                              hyst_real m_slope, hyst_real *slope)
+{
+    const hyst_real zero = HYST_REAL(0.0);
+    const hyst_jiles_atherton *of = on->model;
+    if (of->loses == 0) {
+        return zero;
+    }
+    const hyst_real moved = of->x_share * x + of->m_share * m - on->last;
+    const hyst_real size = moved < zero ? -moved : moved;
+    if (!(size > zero)) {
+        return zero; /* where the slope is none that is finite */
+    }
+    const hyst_real root = hyst_power(size, HYST_REAL(0.5));
+    *slope = *slope + HYST_REAL(0.5) * on->excess * (of->x_share + of->m_share * m_slope) / root;
+    return moved < zero ? -(on->excess * root) : on->excess * root;
+}
+
 hyst_real hyst_jiles_sought(const hyst_jiles_stretch *on, hyst_real x, hyst_real *slope)
 {
     const hyst_real value = hyst_langevin(x), anhysteretic = hyst_langevin_slope(x);
     if (on->rests != 0) {
         const hyst_real reversible = jiles_reversible(on->model);
-        *slope = on->by_x + on->by_m * reversible * anhysteretic;
-        return on->by_x * x + on->by_m * (reversible * value + on->rest);
+        const hyst_real m_slope = reversible * anhysteretic;
+        const hyst_real m = reversible * value + on->rest;
+        *slope = on->by_x + on->by_m * m_slope;
+        return on->by_x * x + on->by_m * m + jiles_excess(on, x, m, m_slope, slope);
     }
     const hyst_real y = jiles_y(on, x);
-    *slope = on->by_x + on->by_m * (anhysteretic - jiles_change(on->model, x, y, on->sign));
-    return on->by_x * x + on->by_m * (value - y);
+    const hyst_real m_slope = anhysteretic - jiles_change(on->model, x, y, on->sign);
+    *slope = on->by_x + on->by_m * m_slope;
+    return on->by_x * x + on->by_m * (value - y) + jiles_excess(on, x, value - y, m_slope, slope);
 }
 
 /* What is sought, at the node. */
 static hyst_real jiles_at_node(const hyst_jiles_stretch *on)
 {
-    return on->by_x * on->x_node + on->by_m * (hyst_langevin(on->x_node) - on->y_node);
+    const hyst_real m = hyst_langevin(on->x_node) - on->y_node;
+    hyst_real slope = HYST_REAL(0.0);
+    return on->by_x * on->x_node + on->by_m * m +
+           jiles_excess(on, on->x_node, m, HYST_REAL(0.0), &slope);
 }
 
 /* The node after this one; 0 where there is none. */
@@ -126,6 +151,14 @@ static int jiles_next(const hyst_jiles_stretch *on, hyst_jiles_stretch *after)
 static hyst_real jiles_between(const hyst_jiles_stretch *on, hyst_real target, hyst_real from,
                                hyst_real at_from, hyst_real to, hyst_real at_to)
 {
+    const hyst_real zero = HYST_REAL(0.0);
+    /* Where the last sample was the root has a kink; what is sought lies beyond. */
+    if (on->excess > zero && on->sign * (on->x_last - from) > zero &&
+        on->sign * (to - on->x_last) > zero) {
+        hyst_real slope;
+        from = on->x_last;
+        at_from = hyst_jiles_sought(on, from, &slope);
+    }
     return on->sign < HYST_REAL(0.0) ? hyst_jiles_root(on, target, to, at_to, from, at_from)
                                      : hyst_jiles_root(on, target, from, at_from, to, at_to);
 }
@@ -194,10 +227,19 @@ static hyst_real jiles_solve(hyst_jiles_stretch *on, hyst_real x_turn, hyst_real
     return jiles_beyond(on, target);
 }
 
+/* What the rate of an output that moved so far takes of the field, over a. */
+static hyst_real jiles_losses(const hyst_jiles_atherton *of, hyst_real moved)
+{
+    const hyst_real zero = HYST_REAL(0.0);
+    const hyst_real root = hyst_power(moved < zero ? -moved : moved, HYST_REAL(0.5));
+    return of->eddy * moved + (moved < zero ? -of->excess : of->excess) * root;
+}
+
 hyst_real hyst_jiles_atherton_step(const hyst_jiles_atherton *model, hyst_real *state,
                                    hyst_real input)
 {
-    const hyst_real zero = HYST_REAL(0.0);
+    const hyst_real zero = HYST_REAL(0.0), one = HYST_REAL(1.0);
+    const int loses = model->eddy > zero || model->excess > zero;
     const hyst_real last = state[HYST_JILES_INPUT];
     const hyst_real sign = input > last ? HYST_REAL(1.0) : HYST_REAL(-1.0);
     const int moves = input > last || input < last;
@@ -205,13 +247,20 @@ hyst_real hyst_jiles_atherton_step(const hyst_jiles_atherton *model, hyst_real *
     hyst_real x_turn = state[HYST_JILES_X_TURN];
     hyst_jiles_stretch on = {model, 0, state[HYST_JILES_SIGN], state[HYST_JILES_REST],
                              state[HYST_JILES_X_NODE], state[HYST_JILES_Y_NODE],
-                             model->inverse ? model->x_share : HYST_REAL(1.0),
-                             model->inverse ? model->m_share : -model->eta};
+                             model->inverse ? model->x_share : one + model->eddy * model->x_share,
+                             model->inverse ? model->m_share
+                                            : model->eddy * model->m_share - model->eta,
+                             model->inverse ? zero : model->excess,
+                             model->x_share * state[HYST_JILES_X] + model->m_share * state[HYST_JILES_M],
+                             state[HYST_JILES_X]};
     if (turns) {
         x_turn = state[HYST_JILES_X];
         jiles_begin(model, &on, sign, x_turn, state[HYST_JILES_M]);
     }
-    const hyst_real target = input / (model->inverse ? model->level : model->field);
+    hyst_real target = input / (model->inverse ? model->level : model->field);
+    if (loses && model->inverse == 0) {
+        target = target + model->eddy * on.last;
+    }
     const int is_beyond = model->inverse && !(on.by_x > zero) &&
                           !(target < HYST_REAL(1.0) && target > HYST_REAL(-1.0));
     if (hyst_is_finite(target) == 0 || is_beyond) {
@@ -222,13 +271,15 @@ hyst_real hyst_jiles_atherton_step(const hyst_jiles_atherton *model, hyst_real *
         x = jiles_solve(&on, x_turn, target);
         m = hyst_jiles_m(&on, x);
     }
-    const hyst_real answer = model->inverse
-                                 ? model->field * (x - model->eta * m)
-                                 : model->level * (model->x_share * x + model->m_share * m);
+    const hyst_real within = model->field * (x - model->eta * m);
+    const hyst_real output = model->x_share * x + model->m_share * m;
+    const hyst_real answer = model->inverse == 0 ? model->level * output
+                             : loses ? within + model->field * jiles_losses(model, output - on.last)
+                                     : within;
     if (hyst_is_finite(answer) == 0) {
         return answer;
     }
-    state[HYST_JILES_INPUT] = input;
+    state[HYST_JILES_INPUT] = loses && model->inverse == 0 ? within : input;
     state[HYST_JILES_SIGN] = on.sign;
     state[HYST_JILES_X] = x;
     state[HYST_JILES_M] = m;

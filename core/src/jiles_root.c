@@ -4,8 +4,10 @@
 /* A step this small is the last: the next would be its square, or a part in 1e9 of it. */
 #ifdef HYST_SINGLE
 #define JILES_NEAR HYST_REAL(1e-5)
+#define JILES_NEARER HYST_REAL(1e-3)
 #else
 #define JILES_NEAR HYST_REAL(3e-11)
+#define JILES_NEARER HYST_REAL(1e-6)
 #endif
 
 static hyst_real jiles_size(hyst_real x)
@@ -22,6 +24,8 @@ hyst_real hyst_jiles_root(const hyst_jiles_stretch *on, hyst_real target, hyst_r
     if (!(at_high > target)) {
         return high;
     }
+    /* Beside a root no step says that the next would be its square. */
+    const hyst_real near = on->excess > HYST_REAL(0.0) ? JILES_NEARER * JILES_NEAR : JILES_NEAR;
     hyst_real x = low + (high - low) * ((target - at_low) / (at_high - at_low));
     for (size_t left = HYST_JILES_LIMIT; left > 0u; --left) {
         hyst_real slope;
@@ -37,7 +41,7 @@ hyst_real hyst_jiles_root(const hyst_jiles_stretch *on, hyst_real target, hyst_r
         }
         const hyst_real step = jiles_size(next - x);
         x = next;
-        if (step <= JILES_NEAR * (HYST_REAL(1.0) + jiles_size(x))) {
+        if (step <= near * (HYST_REAL(1.0) + jiles_size(x))) {
             break;
         }
     }

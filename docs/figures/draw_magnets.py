@@ -54,6 +54,23 @@ def relaxations() -> Figure:
     return figure
 
 
+@drawn
+def losses() -> Figure:
+    """Draw loops of a sheet of steel whose eddy currents widen them with the frequency."""
+    figure, (axes,) = blank(1, 1, 6.4, 4.2)
+    magnet = hyst.JilesAtherton(1.6e6, 300.0, 150.0, 0.1, 4e-4, output="B")
+    phase = 2.0 * np.pi * np.linspace(0.0, 2.25, 9000)
+    for frequency in (1.0, 50.0, 200.0, 400.0):
+        dt = float(phase[1] - phase[0]) / (2.0 * np.pi * frequency)
+        sheet = hyst.DynamicJilesAtherton(magnet, k_cl=0.05, k_ex=1.5, dt=dt)
+        h = 800.0 * np.sin(phase)
+        axes.plot(h[1000:], sheet(h)[1000:], label=f"{frequency:.0f} Hz")
+    axes.set(xlabel="H, A/m", ylabel="B, T", title="k_cl = 0.05, k_ex = 1.5 in A/m and T/s")
+    axes.legend()
+    return figure
+
+
 if __name__ == "__main__":
     (HERE / "jiles-atherton-variants.png").write_bytes(variants())
+    (HERE / "jiles-atherton-losses.png").write_bytes(losses())
     (HERE / "coleman-hodgdon-loops.png").write_bytes(relaxations())

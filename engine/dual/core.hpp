@@ -33,7 +33,7 @@ double core_fallen(double n, double ratio, double tilt, double from, double way)
 double core_langevin(double x);
 double core_langevin_slope(double x);
 double core_langevin_inverse(double v);
-double core_jiles_root(int variant, const double *constants, int rests, const double *stretch,
+double core_jiles_root(int variant, int loses, const double *constants, int rests, const double *stretch,
                        double target, const double *ends);
 
 namespace HYST_KINDS {

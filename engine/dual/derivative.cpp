@@ -69,17 +69,21 @@ double core_log2(double x) { return hyst_log2(x); }
 double core_langevin(double x) { return hyst_langevin(x); }
 double core_langevin_slope(double x) { return hyst_langevin_slope(x); }
 double core_langevin_inverse(double v) { return hyst_langevin_inverse(v); }
-double core_jiles_root(int variant, const double *constants, int rests, const double *stretch,
+double core_jiles_root(int variant, int loses, const double *constants, int rests, const double *stretch,
                        double target, const double *ends) {
     hyst_jiles_atherton of{};
     of.variant = static_cast<hyst_jiles_variant>(variant);
+    of.loses = loses;
     of.eta = constants[0];
     of.kappa = constants[1];
     of.c = constants[2];
     of.width = constants[3];
     of.reach = constants[4];
+    of.x_share = constants[5];
+    of.m_share = constants[6];
     const hyst_jiles_stretch on = {&of,        rests,      stretch[0], stretch[1],
-                                   stretch[2], stretch[3], stretch[4], stretch[5]};
+                                   stretch[2], stretch[3], stretch[4], stretch[5],
+                                   stretch[6], stretch[7], stretch[8]};
     return hyst_jiles_root(&on, target, ends[0], ends[1], ends[2], ends[3]);
 }
 double core_exp2(double v) { return hyst_exp2(v); }

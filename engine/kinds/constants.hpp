@@ -106,6 +106,10 @@ public:
     int is(const char *name) const { return static_cast<int>(choice(name)); }
 
     const std::vector<Constant> &all() const { return all_; }
+    // All constants, to be changed; whoever changes a number fills the structure anew, which stays where
+    // it is, as the values do.
+    std::vector<Constant> &changeable() { return all_; }
+    std::size_t model_size() const { return model_size_; }
     const std::vector<std::pair<std::string, std::size_t>> &choices() const { return choices_; }
 
     std::string form;       // which curve or function: the enumerator of the core, or ""
@@ -114,10 +118,14 @@ public:
     std::vector<Inside> inside;    // stages inside this one; see kind.hpp
     std::vector<hyst_stage> stages;  // the same as the core has them, once they are filled
 
-    // Keeps a structure of the core as long as its constants.
+    // Keeps a structure of the core as long as its constants; made again, it stays where it is.
     template <class Model>
     const void *hold(const Model &model) {
+        if (model_.use_count() == 1) {
+            return new (model_.get()) Model(model);
+        }
         constexpr std::align_val_t alignment{alignof(Model)};
+        model_size_ = sizeof(Model);
         model_ = {::operator new(sizeof(Model), alignment),
                   [](void *place) { ::operator delete(place, std::align_val_t{alignof(Model)}); }};
         return new (model_.get()) Model(model);
@@ -134,6 +142,7 @@ private:
     std::vector<Constant> all_;
     std::vector<std::pair<std::string, std::size_t>> choices_;
     std::shared_ptr<void> model_;
+    std::size_t model_size_ = 0;
 };
 
 }  // namespace HYST_KINDS

@@ -1,6 +1,7 @@
 // Creep and its inverse.
 #include "hyst/creep.h"
 
+#include "fast/creep.hpp"
 #include "kind.hpp"
 
 namespace hyst {
@@ -37,7 +38,7 @@ const Kind creep = {"creep",
                     fill_creep,
                     {"hyst/creep.h", "$signal = hyst_creep_step(&$model, $memory, $signal);"},
                     nullptr,
-                    nullptr,
+                    HYST_IN_DOUBLE(run_creep),
                     nullptr};
 
 }  // namespace HYST_KINDS

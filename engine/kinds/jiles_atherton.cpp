@@ -1,5 +1,6 @@
 // The hysteresis of Jiles and Atherton and its inverse.
 #include "hyst/jiles_atherton.h"
+#include "hyst/power.h"
 
 #include "kind.hpp"
 
@@ -18,9 +19,11 @@ hyst_jiles_variant variant_of(const std::string &form) {
     return HYST_JILES_EFFECTIVE_FIELD;
 }
 
-// Ms a k c alpha; mu0 is fixed. That alpha Ms < 3 a no single entry shows, so nothing is offered.
+// Ms a k c alpha, and with losses k_cl and k_ex; mu0 is fixed. That alpha Ms < 3 a no single entry shows,
+// so nothing is offered.
 void derive_jiles_atherton(const Given &given, Constants &made) {
-    given.require(given.constants.size() == 5);
+    const bool loses = given.constants.size() == 7;
+    given.require(given.constants.size() == 5 || (loses && given.dt > 0.0));
     const hyst_real saturation = given.constants[0], shape = given.constants[1];
     const hyst_real pinning = given.constants[2], c = given.constants[3];
     const hyst_real eta = given.constants[4] * saturation / shape;
@@ -38,24 +41,34 @@ void derive_jiles_atherton(const Given &given, Constants &made) {
     made.number("kappa", kappa, not_offered);
     made.number("c", c, not_offered);
     made.number("field", shape, not_offered);
-    made.number("level", is_flux ? mu0 * shape : saturation, not_offered);
+    const hyst_real level = is_flux ? mu0 * shape : saturation;
+    made.number("level", level, not_offered);
     made.number("x_share", is_flux ? one : hyst_real(0.0), not_offered);
     made.number("m_share", is_flux ? saturation / shape - eta : one, not_offered);
     made.number("width", hyst_real(width_of_sub_step) * (quickest < one ? quickest : one),
                 not_offered);
     made.number("reach", hyst_real(reach_of_sub_steps) * (slowness > one ? slowness : one),
                 not_offered);
+    hyst_real eddy = hyst_real(0.0), excess = hyst_real(0.0);
+    if (loses) {
+        eddy = given.constants[5] * (level / hyst_real(given.dt)) / shape;
+        excess = given.constants[6] * hyst_power(level / hyst_real(given.dt), hyst_real(0.5)) / shape;
+    }
+    made.choose("loses", loses ? 1 : 0);
+    made.number("eddy", eddy, not_offered);
+    made.number("excess", excess, not_offered);
     made.choose("inverse", given.choices.at("inverse"));
     made.structure =
         "hyst_jiles_atherton $model = {$form, $eta, $kappa, $c, $field, $level, $x_share, $m_share, "
-        "$width, $reach, $inverse};";
+        "$width, $reach, $loses, $eddy, $excess, $inverse};";
 }
 
 const void *fill_jiles_atherton(Constants &of) {
     return of.hold(hyst_jiles_atherton{
         variant_of(of.form), of.number("eta"), of.number("kappa"), of.number("c"),
         of.number("field"), of.number("level"), of.number("x_share"), of.number("m_share"),
-        of.number("width"), of.number("reach"), of.is("inverse")});
+        of.number("width"), of.number("reach"),
+        of.is("loses"), of.number("eddy"), of.number("excess"), of.is("inverse")});
 }
 
 }  // namespace

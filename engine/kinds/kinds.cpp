@@ -3,22 +3,30 @@
 
 #define EACH_KIND(ROW)              \
     ROW(affine)                     \
+    ROW(affine_solved)              \
     ROW(bouc_wen)                   \
     ROW(coleman_hodgdon)            \
     ROW(creep)                      \
     ROW(dahl)                       \
     ROW(dead_zone)                  \
+    ROW(dead_zone_solved)           \
+    ROW(degrading_bouc_wen)         \
+    ROW(delay)                      \
+    ROW(delay_preview)              \
     ROW(direction_dead_zone)        \
     ROW(generalized_maxwell_slip)   \
     ROW(jiles_atherton)             \
+    ROW(lag)                        \
     ROW(lugre)                      \
     ROW(masing)                     \
     ROW(maxwell_slip)               \
     ROW(memory_element)             \
     ROW(pi)                         \
+    ROW(pi_solved)                  \
     ROW(play)                       \
     ROW(preisach)                   \
     ROW(rate_dependent_pi)          \
+    ROW(rate_preview)               \
     ROW(rate_shift)                 \
     ROW(sections)                   \
     ROW(state_map)                  \

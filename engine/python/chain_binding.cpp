@@ -18,7 +18,8 @@ Value of(nb::handle stage, const char *name) {
     return nb::cast<Value>(stage.attr(name));
 }
 
-// A hyst.operators.stage.Stage.
+}  // namespace
+
 kinds::Given as_given(nb::handle stage) {
     kinds::Given given;
     given.kind = of<std::string>(stage, "kind");
@@ -31,6 +32,8 @@ kinds::Given as_given(nb::handle stage) {
     for (nb::handle each : stage.attr("inside")) given.inside.push_back(as_given(each));
     return given;
 }
+
+namespace {
 
 void construct(Chain *chain, nb::iterable stages) {
     std::vector<kinds::Given> given;

@@ -16,6 +16,7 @@
 #include "../records/gradient.hpp"
 #include "../records/gram.hpp"
 #include "../jacobian.hpp"
+#include "moving_binding.hpp"
 #include "online_binding.hpp"
 #include "../parallel.hpp"
 #include "rate_dependent_binding.hpp"
@@ -231,6 +232,7 @@ NB_MODULE(_engine, module) {
     module.def("use_instruction_set", &use_instruction_set, nb::arg("name"));
     module.def("stepper", &stepper, nb::arg("chain"), nb::arg("state"), nb::arg("y_safe"));
     hyst::bind_closed_loop(module);
+    hyst::bind_moving(module);
     hyst::bind_online_estimation(module);
     hyst::bind_rate_dependent_inversion(module);
     if (!hyst::register_stepper(module.ptr())) throw nb::python_error();

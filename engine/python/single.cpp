@@ -15,6 +15,7 @@
 
 #include "hyst/hyst.h"
 #include "../kinds/kind.hpp"
+#include "../moving.hpp"
 
 namespace nb = nanobind;
 
@@ -113,6 +114,40 @@ private:
     bool has_two_inputs_ = false;
 };
 
+// Stages whose constants follow a second signal: what each knot has of them.
+class MovingStepper {
+public:
+    MovingStepper(const std::vector<double> &at, const std::vector<std::vector<Description>> &knots,
+                  const std::vector<double> &start)
+        : moving_({at.begin(), at.end()}, stages_of(knots)), state_(start.begin(), start.end()) {
+        if (moving_.state_length() != state_.size()) {
+            throw std::invalid_argument("start has the wrong length");
+        }
+    }
+
+    double step(double u, double s) {
+        return moving_.step(state_.data(), &guard_, &outside_, static_cast<float>(u),
+                            static_cast<float>(s));
+    }
+
+private:
+    static std::vector<hyst::Moving::Stages> stages_of(
+        const std::vector<std::vector<Description>> &knots) {
+        std::vector<hyst::Moving::Stages> made(knots.size());
+        for (std::size_t k = 0; k < knots.size(); ++k) {
+            for (const Description &each : knots[k]) {
+                made[k].emplace_back(&hyst::kinds::known_kind(std::get<0>(each)), rounded(each));
+            }
+        }
+        return made;
+    }
+
+    hyst::Moving moving_;
+    std::vector<float> state_;
+    hyst_guard guard_{};
+    int outside_ = 0;
+};
+
 // A joint estimator; the constants are those that the engine's estimator in double tells.
 class Estimator {
 public:
@@ -181,6 +216,11 @@ NB_MODULE(_single, module) {
         .def_prop_ro("state", &Stepper::state)
         .def_prop_ro("fault", &Stepper::fault)
         .def("clear_fault", &Stepper::clear_fault);
+    nb::class_<MovingStepper>(module, "MovingStepper")
+        .def(nb::init<const std::vector<double> &, const std::vector<std::vector<Description>> &,
+                      const std::vector<double> &>(),
+             nb::arg("at"), nb::arg("knots"), nb::arg("start"))
+        .def("__call__", &MovingStepper::step, nb::arg("u"), nb::arg("s"));
     nb::class_<Estimator>(module, "Estimator")
         .def(nb::init<const Tables &, const std::vector<double> &>(), nb::arg("constants"),
              nb::arg("start"))

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rate_slope.hpp"
+
 namespace hyst {
 namespace {
 
@@ -15,17 +17,6 @@ Ramp rounded_ramp(double x, double width) {
     if (width == 0.0) return x > 0.0 ? Ramp{x, 1.0} : Ramp{0.0, 0.0};
     const double root = std::sqrt(x * x + width * width);
     return {0.5 * (x + root), 0.5 * (1.0 + x / root)};
-}
-
-double slope_of_widening(const hyst_rate_dependent_pi &model, double x) {
-    double slope = model.growth, power = x;
-    for (std::size_t m = 0; m < model.powers; ++m, power *= x) {
-        slope += static_cast<double>(m + 2) * model.power[m] * power;
-    }
-    for (std::size_t j = 0; j < model.ramps.count; ++j) {
-        if (x > model.ramps.threshold[j]) slope += model.ramps.weight[j];
-    }
-    return slope;
 }
 
 // What one sample does to first order: z_i' = keep_i z_i + now_i u_k + before_i u_{k-1}.

@@ -27,6 +27,12 @@ from hyst.identification import compare as compare
 from hyst.identification import identify as identify
 from hyst.identification.families.registry import families as families
 from hyst.identification.fit_model import fit as fit
+from hyst.identification.schedule.identified_schedule import (
+    IdentifiedSchedule as IdentifiedSchedule,
+)
+from hyst.identification.schedule.identify_scheduled import (
+    identify_scheduled as identify_scheduled,
+)
 from hyst.io import read_record as read_record
 from hyst.models import *
 from hyst.operators import Affine as Affine

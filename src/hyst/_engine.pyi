@@ -44,6 +44,30 @@ class Rounding:
 class Limits:
     def __init__(self, low: float, high: float, change: float, penalty: float) -> None: ...
 
+class TrackingTerms:
+    def __init__(
+        self,
+        low: float,
+        high: float,
+        change: float,
+        power: int,
+        scale: float,
+        roughness: float,
+        stray: float,
+    ) -> None: ...
+
+class Polish:
+    def __init__(
+        self,
+        window: int,
+        follow: int,
+        trials: int,
+        steps: int,
+        least: float,
+        size: float,
+        seed: int,
+    ) -> None: ...
+
 class Stepper:
     @property
     def state(self) -> Array: ...
@@ -51,6 +75,25 @@ class Stepper:
     def fault(self) -> bool: ...
     def clear_fault(self) -> None: ...
     def __call__(self, u: float, /) -> float: ...
+
+class Moving:
+    def __init__(self, at: Sequence[float], knots: Iterable[Iterable[Stage]]) -> None: ...
+    @property
+    def state_length(self) -> int: ...
+    def run(self, state: Array, u: Array, s: Array, y: Array) -> tuple[int, int]: ...
+
+class MovingStepper:
+    def __init__(
+        self, at: Sequence[float], knots: Iterable[Iterable[Stage]], state: Array
+    ) -> None: ...
+    @property
+    def state(self) -> Array: ...
+    @property
+    def fault(self) -> bool: ...
+    @property
+    def outside(self) -> bool: ...
+    def clear_fault(self) -> None: ...
+    def __call__(self, u: float, s: float, /) -> float: ...
 
 class TrackingController:
     def __init__(
@@ -114,6 +157,9 @@ def sample_exact(
     chain: Chain, state: Array, target: Array, u: Array, low: float, high: float
 ) -> tuple[int, int]: ...
 def stepper(chain: Chain, state: Any, y_safe: float) -> Stepper: ...
+def tracking_gradient(
+    chain: Chain, state: Array, target: Array, u: Array, terms: TrackingTerms, gradient: Array
+) -> float: ...
 def trajectory_cost(
     chain: Chain,
     state: Array,
@@ -123,6 +169,9 @@ def trajectory_cost(
     rounding: Rounding,
     limits: Limits,
 ) -> float: ...
+def trajectory_polish(
+    chain: Chain, state: Array, target: Array, u: Array, terms: TrackingTerms, how: Polish
+) -> tuple[float, float, int]: ...
 def trajectory_step(
     chain: Chain,
     state: Array,

@@ -13,7 +13,7 @@ _TWO_INPUTS = "tracking-controller"
 
 
 def load(path: str | os.PathLike[str]) -> Any:
-    """Read back what ``save`` wrote: an operator, a tracking controller or an estimator.
+    """Read back what ``save`` wrote: an operator, a scheduled model, a controller or an estimator.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ def load(path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    Operator, TrackingController, JointEstimator, RadiusEstimator or AdaptiveInverse
+    Operator, Scheduled, TrackingController, JointEstimator, RadiusEstimator or AdaptiveInverse
         Equal to the one saved, every double exact; an estimator goes on with the same bits. What
         its numbers mean is its ``description``.
 
@@ -57,9 +57,11 @@ def _model(data: Any) -> Any:
         from hyst.control import TrackingController
 
         return TrackingController.from_dict(data)
-    import hyst.models  # noqa: F401  from here on its classes are known
+    import hyst.models  # from here on its classes are known
     from hyst.operators import operator_from_dict
 
+    if isinstance(data, dict) and data.get("kind") == hyst.models.Scheduled.kind:
+        return hyst.models.Scheduled.from_dict(data)
     return operator_from_dict(data)
 
 

@@ -17,6 +17,15 @@ class Stepper:
     @overload
     def __call__(self, y_ref: float, y: float, /) -> float: ...
 
+class MovingStepper:
+    def __init__(
+        self,
+        at: Sequence[float],
+        knots: Sequence[Sequence[Description]],
+        start: Sequence[float],
+    ) -> None: ...
+    def __call__(self, u: float, s: float, /) -> float: ...
+
 class Estimator:
     def __init__(
         self, constants: Mapping[str, Sequence[float]], start: Sequence[float]

@@ -77,6 +77,24 @@ def test_compensate_by_every_method(run: Run, folder: Path, method: str, largest
         assert "several solutions" in ended.out
 
 
+def test_what_a_trajectory_is_polished_for(run: Run, folder: Path) -> None:
+    MODEL.save(folder / "model.json", describe(MODEL, input_low=None, input_high=None, delay=0))
+    y_ref = reference_signal(200.0)
+    write_csv(folder / "ref.csv", "y [um]", y_ref)
+    words = ("compensate", "model.json", "ref.csv", "--column", "y", "--rate", 10000)
+    how = ("--objective", "largest", "--roughness", "0.2", "-o", "command.csv")
+    ended = run(*words, "--method", "trajectory", *how)
+    assert ended.code == 0, ended.err
+    said = " ".join(ended.out.split())
+    assert "polished for the largest error" in said
+    assert "a second difference of 1 counting as an error of 0.2" in said
+    u = hyst.io.read_column(folder / "command.csv", "command")[0]
+    assert f"{np.abs(np.diff(u, 2)).max():.4g} at most" in said
+    ended = run(*words, "--method", "preview", *how)
+    assert ended.code == 2
+    assert "--objective" in ended.err
+
+
 def test_a_reference_of_another_sample_time_is_refused(run: Run, folder: Path) -> None:
     MODEL.save(folder / "model.json")
     write_csv(folder / "ref.csv", "y", reference_signal(60.0))

@@ -20,10 +20,14 @@ from hyst.models import (
     ColemanHodgdon,
     Creep,
     Dahl,
+    DegradingBoucWen,
+    Delay,
+    DynamicJilesAtherton,
     ExponentialCurve,
     GeneralizedMaxwellSlip,
     Iwan,
     JilesAtherton,
+    Lag,
     LinearDynamics,
     LuGre,
     MasingOperator,
@@ -36,6 +40,7 @@ from hyst.models import (
     Preisach,
     RambergOsgood,
     RateCurve,
+    RateDependentPreview,
     RateShift,
     SecondOrderSections,
     TwoEnvelopePrandtlIshlinskii,
@@ -174,10 +179,27 @@ OTHERS: dict[str, Operator] = {
     "inverse of two envelopes": TWO_ENVELOPE.inverse(),
     "rate shift": RateShift(0.3, 0.4, 0.1),
     "plays behind a rate shift": PI @ RateShift(0.3, 0.7, 0.1, z0=0.5),
+    "rate-dependent preview": RATE_DEPENDENT.inverse(preview=4),
+    "rate-dependent preview held back": RateDependentPreview(
+        RATE_DEPENDENT, 3, command_range=(-2.0, 3.0), largest_change=0.5
+    ),
     "creep": Creep([0.03, 0.02, 0.01], [0.05, 0.5, 5.0], dt=0.01, rest=0.5),
     "creep that goes back": Creep([0.3, -0.2], [0.1, 1.0], dt=0.01),
     "inverse creep": Creep([0.2, 0.1], [0.03, 0.4], dt=0.01).inverse(),
     "creep of hysteresis": Creep([0.02, 0.02], [0.1, 1.0], dt=0.01) @ PI,
+    "lag": Lag(0.013, dt=0.01),
+    "lag of a held signal": Lag(0.004, dt=0.01, hold="zero"),
+    "inverse lag": Lag(0.006, dt=0.01).inverse(),
+    "delay": Delay(2.25, dt=0.01),
+    "delay of whole samples": Delay(3, dt=0.01),
+    "delay of nothing": Delay(0.0, dt=0.01),
+    "inverse delay": Delay(0.2, dt=0.01).inverse(),
+    "delay taken back by preview": Delay(1.7, dt=0.01).inverse(preview=5),
+    "inverse of hysteresis behind a delay": (PI @ Delay(3.8, dt=0.01)).inverse(preview=9),
+    "hysteresis and creep behind a lag": Creep([0.02, 0.02], [0.1, 1.0], dt=0.01)
+    @ PI
+    @ Delay(0.25, dt=0.01)
+    @ Lag(0.0042, dt=0.01),
     "preisach": RELAYS,
     "preisach of relays alone": Preisach([[0.0, 0.0], [1.0, 0.5]], [-1.0, 0.0, 1.5]),
     "preisach from saturation": Preisach([[0.5, 0.0], [1.0, 0.5]], [0.0, 2.0, 3.0], 0.2, u0=-5.0),
@@ -187,6 +209,14 @@ OTHERS: dict[str, Operator] = {
     "bouc-wen sharp": BoucWen(0.2, 1.5, 0.7, -0.3, 1.7, phi=0.1, z0=-0.25, u0=0.5),
     "bouc-wen without inverse": BoucWen(0.5, 0.4, 0.5, 0.1, 0.6, -1.0),
     "inverse bouc-wen": BoucWen(1.1, 0.4, 0.2, 0.1, 2.5, -1.0, 0.02).inverse(),
+    "degrading bouc-wen": DegradingBoucWen(0.4, 0.8, 0.3, 0.2, 1.0, 0.02, 0.05),
+    "degrading bouc-wen that pinches": DegradingBoucWen(
+        0.3, 1.0, 0.4, -0.1, 1.7, 0.01, 0.02, 0.45, 0.5, 0.2, 0.4, 0.01, 0.3
+    ),
+    "degrading bouc-wen without inverse": DegradingBoucWen(0.0, 1.0, 0.5, 0.1, 2.0, 0.3),
+    "inverse degrading bouc-wen": DegradingBoucWen(
+        0.5, 0.6, 0.4, 0.1, 1.3, 0.03, 0.1, 0.4, 1.0, 0.1, 0.5, 0.0, 0.5
+    ).inverse(),
     "jiles-atherton": JilesAtherton(2.0, 3.0, 2.0, 0.2, 1.0),
     "jiles-atherton 1992": JilesAtherton(2.0, 3.0, 2.0, 0.2, 1.0, "jiles-thoelke-devine-1992"),
     "jiles-atherton 1986": JilesAtherton(2.0, 3.0, 5.0, 0.3, 1.0, "jiles-atherton-1986"),
@@ -194,6 +224,15 @@ OTHERS: dict[str, Operator] = {
     "inverse jiles-atherton": JilesAtherton(200.0, 3.0, 2.0, 0.4, 0.01).inverse(),
     "inverse jiles-atherton of B": JilesAtherton(
         2.0, 3.0, 2.0, 0.2, 1.0, output="B", mu0=0.5
+    ).inverse(),
+    "jiles-atherton with losses": DynamicJilesAtherton(
+        JilesAtherton(2.0, 3.0, 2.0, 0.2, 1.0), 0.05, 0.1, dt=0.1
+    ),
+    "jiles-atherton of B with eddy currents": DynamicJilesAtherton(
+        JilesAtherton(2.0, 3.0, 1.0, 0.1, 1.5, output="B", mu0=0.5), 0.2, 0.0, dt=0.1
+    ),
+    "inverse jiles-atherton with eddy currents": DynamicJilesAtherton(
+        JilesAtherton(200.0, 3.0, 2.0, 0.4, 0.01), 0.001, 0.0, dt=0.1
     ).inverse(),
     "lugre": LuGre(1.5, 0.05, 0.02, Fc=2.0, Fs=3.0, vs=20.0, dt=0.1, Fv=0.5, vv=15.0),
     "hysteresis before dynamics": LAG @ PI,

@@ -30,12 +30,11 @@ from hyst.models import (
     BoucWen,
     Butterfly,
     ColemanHodgdon,
-    Creep,
     Dahl,
+    DegradingBoucWen,
     ExponentialCurve,
     GeneralizedMaxwellSlip,
     Iwan,
-    JilesAtherton,
     LinearDynamics,
     LuGre,
     MasingOperator,
@@ -51,27 +50,17 @@ from hyst.models import (
     SecondOrderSections,
     TwoEnvelopePrandtlIshlinskii,
 )
-from hyst.models.jiles_atherton import VARIANTS
 from reference.examples import EXAMPLES
+from reference.random_magnets import MAGNETS
+from reference.random_numbers import numbers
+from reference.random_time import WITH_TIME
 
 Array = NDArray[np.float64]
 Operators = st.SearchStrategy[Operator]
 
 
-def numbers(low: float, high: float) -> st.SearchStrategy[float]:
-    lattice = st.integers(int(4 * low), int(4 * high)).map(lambda quarters: quarters / 4.0)
-    return lattice | st.floats(low, high)
-
-
 def signals(low: float = -8.0, high: float = 8.0, most: int = 16) -> st.SearchStrategy[Array]:
     return st.lists(numbers(low, high), min_size=1, max_size=most).map(np.array)
-
-
-@st.composite
-def creeps(draw: st.DrawFn, most: float) -> Creep:
-    times = draw(st.lists(st.floats(1e-3, 1e3), max_size=4))
-    weights = [draw(numbers(-0.5, most)) for _ in times]
-    return Creep(weights, times, 0.01, rest=draw(numbers(-2.0, 2.0)))
 
 
 @st.composite
@@ -247,6 +236,20 @@ bouc_wens = st.builds(
     st.floats(-0.5, 0.5),
     st.just(0.0),
 )
+degrading_bouc_wens = st.builds(
+    lambda k, a, beta, share, n, nu, eta, zeta, p: DegradingBoucWen(
+        k, a, beta, share * beta, n, nu, eta, zeta, p, 0.1, 0.5, 0.02, 0.5
+    ),
+    few,
+    few,
+    few,
+    st.floats(-0.75, 1.0),
+    st.sampled_from((1.0, 2.0)) | st.floats(1.0, 4.0),
+    st.floats(0.0, 0.02),
+    st.floats(0.0, 0.1),
+    st.floats(0.0, 0.49),
+    st.floats(0.0, 1.0),
+)
 # Poles and zeros inside the unit circle.
 lags = st.builds(
     lambda zero, poles, gain, delay: LinearDynamics.from_zeros_poles_gain(
@@ -303,16 +306,6 @@ def relays(draw: st.DrawFn, least: float = 0.0) -> Preisach:
     return Preisach(weights, edges, p0, u0, density)
 
 
-@st.composite
-def magnets(draw: st.DrawFn, outputs: st.SearchStrategy[str]) -> JilesAtherton:
-    """Of any variant, twice whose constants are a magnet, too: alpha Ms / (3 a) at most 0.4."""
-    saturation, shape = draw(few), draw(st.floats(0.5, 4.0))
-    coupling = draw(st.floats(0.0, 1.2)) * shape / saturation
-    pinning, reversible = shape * draw(st.floats(0.2, 4.0)), draw(st.floats(0.05, 0.45))
-    variant, output = draw(st.sampled_from(VARIANTS)), draw(outputs)
-    return JilesAtherton(saturation, shape, pinning, reversible, coupling, variant, output, 0.5)
-
-
 RANDOM: dict[str, Operators] = {
     "affine": affines,
     "play": st.builds(Play, numbers(0.0, 5.0), numbers(-4.0, 4.0)),
@@ -343,11 +336,13 @@ RANDOM: dict[str, Operators] = {
     "inverse-bouc-wen": bouc_wens.filter(lambda model: model.traits().invertible).map(
         lambda model: model.inverse()
     ),
+    "degrading-bouc-wen": degrading_bouc_wens,
+    "inverse-degrading-bouc-wen": degrading_bouc_wens.filter(
+        lambda model: model.traits().invertible
+    ).map(lambda model: model.inverse()),
     "dahl": st.builds(Dahl, few, few, st.floats(0.3, 3.0), numbers(-1.0, 1.0)),
-    "creep": creeps(1.0),
-    "inverse-creep": creeps(0.5)
-    .filter(lambda creep: creep.is_invertible())
-    .map(lambda creep: creep.inverse()),
+    **MAGNETS,
+    **WITH_TIME,
     # A Coulomb force beyond every input of the contracts.
     "inverse-dahl": st.builds(Dahl, few, st.floats(1e3, 1e4), st.floats(1.0, 3.0)).map(
         lambda friction: friction.inverse()
@@ -364,8 +359,6 @@ RANDOM: dict[str, Operators] = {
     ),
     "preisach": relays(),
     "inverse-preisach": relays(0.25).map(lambda model: model.inverse()),
-    "jiles-atherton": magnets(st.sampled_from(("M", "B"))),
-    "inverse-jiles-atherton": magnets(st.just("B")).map(lambda magnet: magnet.inverse()),
     "inverse": invertible.map(lambda operator: operator.inverse()),
 }
 

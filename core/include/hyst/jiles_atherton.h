@@ -22,6 +22,12 @@
  *
  * The inverse solves the same for the output, which grows with x as well.
  *
+ * Losses that follow the rate of the output v (G. Bertotti, Hysteresis in Magnetism, Academic Press
+ * 1998, ch. 12) lower the field within, a (x - eta m) = H - k_cl dv/dt - k_ex sgn(dv/dt) |dv/dt|^(1/2).
+ * The rate is (v_k - v_{k-1}) / dt, so that the classical part is linear in v and adds to what is
+ * sought, and so does a root for the excess; all of it still grows with x. Whether a branch turns is
+ * told by the field within.
+ *
  * State: HYST_JILES_LENGTH numbers, all zero in the demagnetised state. */
 #ifndef HYST_JILES_ATHERTON_H
 #define HYST_JILES_ATHERTON_H
@@ -37,7 +43,7 @@ extern "C" {
 #define HYST_JILES_LIMIT 100u
 
 enum {
-    HYST_JILES_INPUT,  /* the last one */
+    HYST_JILES_INPUT,  /* the last one; with losses the field within */
     HYST_JILES_SIGN,   /* of the branch; 0 before the first */
     HYST_JILES_X,      /* He / a of the last sample */
     HYST_JILES_M,      /* M / Ms of the last sample */
@@ -61,6 +67,9 @@ typedef struct {
     hyst_real m_share;
     hyst_real width;   /* of a sub-step, in x */
     hyst_real reach;   /* of sub-steps, in x */
+    int loses;         /* whether there are losses, be they 0 */
+    hyst_real eddy;    /* k_cl level / (dt a), 0 without */
+    hyst_real excess;  /* k_ex (level / dt)^(1/2) / a, 0 without */
     int inverse;       /* whether the input is the output */
 } hyst_jiles_atherton;
 
@@ -74,6 +83,9 @@ typedef struct {
     hyst_real y_node;
     hyst_real by_x; /* sought: by_x x + by_m m */
     hyst_real by_m;
+    hyst_real excess; /* and excess times the root of how far the output is from the last one */
+    hyst_real last;   /* which is this, over the level */
+    hyst_real x_last; /* and was at */
 } hyst_jiles_stretch;
 
 /* m at x. */

@@ -29,12 +29,14 @@ hyst_real hyst_jiles_root(const hyst_jiles_stretch *on, hyst_real target, hyst_r
                           hyst_real at_low, hyst_real high, hyst_real at_high)
 {
     const hyst_jiles_atherton &of = *on->model;
-    const double constants[] = {of.eta.v, of.kappa.v, of.c.v, of.width.v, of.reach.v};
+    const double constants[] = {of.eta.v,   of.kappa.v,   of.c.v,      of.width.v,
+                                of.reach.v, of.x_share.v, of.m_share.v};
     const double stretch[] = {on->sign.v,   on->rest.v, on->x_node.v,
-                              on->y_node.v, on->by_x.v, on->by_m.v};
+                              on->y_node.v, on->by_x.v, on->by_m.v,
+                              on->excess.v, on->last.v, on->x_last.v};
     const double ends[] = {low.v, at_low.v, high.v, at_high.v};
     const hyst_real x =
-        ::hyst::core_jiles_root(of.variant, constants, on->rests, stretch, target.v, ends);
+        ::hyst::core_jiles_root(of.variant, of.loses, constants, on->rests, stretch, target.v, ends);
     hyst_real slope;
     const hyst_real at = hyst_jiles_sought(on, x, &slope);
     return {x.v, (target.d - at.d) / slope.v};

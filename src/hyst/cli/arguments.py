@@ -44,6 +44,16 @@ def load_operator(path: Path) -> hyst.operators.Operator:
     return found
 
 
+def whole_auto_or_none(text: str, name: str) -> int | Literal["auto"] | None:
+    """Read a whole number, or the word auto or none."""
+    if text in ("auto", "none"):
+        return None if text == "none" else "auto"
+    try:
+        return int(text)
+    except ValueError:
+        raise hyst.InputError(f"--{name} is {text!r}; give a whole number, auto or none") from None
+
+
 def whole_or_auto(text: str, name: str) -> int | Literal["auto"]:
     """Read a whole number or the word auto."""
     if text == "auto":
@@ -54,14 +64,14 @@ def whole_or_auto(text: str, name: str) -> int | Literal["auto"]:
         raise hyst.InputError(f"--{name} is {text!r}; give a whole number or auto") from None
 
 
-def number_or_auto(text: str, name: str) -> float | Literal["auto"]:
-    """Read a number, a whole one as such, or the word auto."""
+def number_or_auto(text: str, name: str, more: str = "") -> float | Literal["auto"]:
+    """Read a number, a whole one as such, or the word auto; the message says what more may be."""
     if text == "auto":
         return "auto"
     try:
         value = float(text)
     except ValueError:
-        raise hyst.InputError(f"--{name} is {text!r}; give a number or auto") from None
+        raise hyst.InputError(f"--{name} is {text!r}; give a number or auto{more}") from None
     return int(value) if value.is_integer() else value
 
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import numpy as np
 import typer
+from numpy.typing import NDArray
 
 import hyst
 from hyst.cli.arguments import (
     DespiteVerdict,
     ModelFile,
     SampleRate,
-    load_operator,
     numbers,
     require_same_unit,
     sample_time_known,
@@ -20,6 +21,17 @@ from hyst.cli.arguments import (
 from hyst.cli.console import note, progress_bar, show_files, show_table
 from hyst.cli.reading_options import reads_columns
 from hyst.cli.relevant_options import refuse_irrelevant
+from hyst.cli.scheduled import (
+    ScheduleColumn,
+    ScheduleValue,
+    compensate_over,
+    loaded,
+    model_at_rest,
+    read_signal,
+    refuse_what_is_fixed,
+    tell_virgin,
+    write_command,
+)
 from hyst.cli.time_column import time_column
 from hyst.operators.composition import leaves_of
 
@@ -53,6 +65,17 @@ RateLimit = Annotated[
         metavar="X", show_default=False, help="Largest rate of the input, of preview, trajectory."
     ),
 ]
+Objective = Annotated[
+    Literal["rms", "largest"], typer.Option(help="Which error trajectory makes small.")
+]
+Roughness = Annotated[
+    float | None,
+    typer.Option(
+        metavar="W",
+        show_default="10 % of the gain, 2 % for largest",
+        help="Of trajectory: a second difference of the command of 1 counts as an error of W.",
+    ),
+]
 AllowUnconverged = Annotated[
     bool, typer.Option("--allow-unconverged", help="Accept a command that did not converge.")
 ]
@@ -81,7 +104,18 @@ _BY_METHOD = {
     "preview": ("preview",),
     "rate_limit": ("preview", "trajectory"),
     "allow_unconverged": ("trajectory",),
+    "objective": ("trajectory",),
+    "roughness": ("trajectory",),
 }
+
+
+WithDelay = Annotated[
+    bool,
+    typer.Option(
+        "--with-delay",
+        help="Give the command earlier by the delay that the model file tells of its record.",
+    ),
+]
 
 
 @reads_columns
@@ -99,29 +133,49 @@ def compensate(
     history: History = None,
     preview: Preview = 20,
     rate_limit: RateLimit = None,
+    objective: Objective = "rms",
+    roughness: Roughness = None,
     rate: SampleRate = None,
     allow_unconverged: AllowUnconverged = False,
     despite_verdict: DespiteVerdict = False,
+    with_delay: WithDelay = False,
+    schedule_column: ScheduleColumn = None,
+    schedule_value: ScheduleValue = None,
 ) -> None:
     """Turn a wanted output into the input that produces it, and predict how well."""
     if method in hyst.compensation.METHODS:
         refuse_irrelevant(context, _BY_METHOD, [method], "--method")
-    model = load_operator(model_file)
+    model = loaded(model_file, schedule_column, schedule_value)
     about = model.description
     y_ref, _, unit = hyst.io.read_column(reference, column, **how)
     require_same_unit(unit, about.output_unit, "the reference")
     input_range = _input_range(limits, no_limits, about)
-    known = sample_time_known(model, reference, rate, "the reference", **how)
+    known = sample_time_known(model_at_rest(model), reference, rate, "the reference", **how)
+    if isinstance(model, hyst.Scheduled):
+        refuse_what_is_fixed(
+            {
+                "--method": method != "exact",
+                "--outside": outside == "clip",
+                "--with-delay": with_delay,
+            }
+        )
+        s = read_signal(model, reference, str(schedule_column), y_ref.size, how)
+        time = time_column(reference, rate, model.dt, y_ref.size, **how)
+        compensate_over(model, y_ref, s, history, input_range, despite_verdict, out, time)
+        return
     _require_method_for(model, method)
+    wanted = _as_early(y_ref, about) if with_delay else y_ref
     with progress_bar("inverting") as progress:
         done = hyst.compensation.invert_trajectory(
             model,
-            y_ref,
+            wanted,
             method,
             input_range=input_range,
             outside=outside,
             history=None if history is None else numbers(history, "history"),
             rate_limit=rate_limit,
+            objective=objective,
+            roughness=roughness,
             preview=preview,
             allow_unconverged=allow_unconverged,
             despite_verdict=despite_verdict,
@@ -129,23 +183,24 @@ def compensate(
         )
     if not known:
         note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
-    headers, columns = time_column(reference, rate, model.dt, done.u.size, **how)
-    headers += [
-        hyst.io.join_unit(name, unit)
-        for name, unit in (
-            ("reference", about.output_unit),
-            ("command", about.input_unit),
-            ("predicted", about.output_unit),
-        )
-    ]
-    hyst.io.write_columns(out, headers, [*columns, done.y_ref, done.u, done.y_predicted])
-    _tell(done, about, input_range)
-    if history is None and model.initial_state().size:
-        print(
-            "memory taken as virgin, as of an actuator never driven; if it was driven, give the "
-            "turns of the drive just before with --history"
-        )
+    time = time_column(reference, rate, model.dt, done.u.size, **how)
+    predicted, told = done.y_predicted, done.y_ref
+    if with_delay:
+        predicted, told = hyst.identification.earlier(predicted, -about.delay), y_ref
+    write_command(out, about, time, (told, done.u, predicted))
+    _tell(done, about, input_range, with_delay)
+    tell_virgin(history is None and model.initial_state().size > 0)
     show_files([out])
+
+
+def _as_early(y_ref: NDArray[np.float64], about: ModelDescription) -> NDArray[np.float64]:
+    """Give the reference as early as the output lags."""
+    if about.delay < 0:
+        raise hyst.InputError(
+            f"--with-delay: the model file tells of an output {-about.delay:.4g} samples ahead of "
+            "its input, which no actuator is; align the channels of the record and identify again"
+        )
+    return hyst.identification.earlier(y_ref, about.delay)
 
 
 def _require_method_for(model: Operator, method: str) -> None:
@@ -186,6 +241,7 @@ def _tell(
     done: hyst.compensation.Compensation,
     about: ModelDescription,
     input_range: tuple[float, float] | None,
+    with_delay: bool,
 ) -> None:
     print(done.expectation(about.output_unit))
     for sentence in done.unknown:
@@ -204,9 +260,31 @@ def _tell(
         print(
             f"{done.method}, {done.status}: the command's total variation is "
             f"{done.total_variation:.3f} of the reference's, its peak rate {done.peak_rate:.3f}; "
-            f"it turns {done.reversals} times"
+            f"it turns {done.reversals} times, its second differences are {done.roughness:.4g} rms "
+            f"and {done.largest_bend:.4g} at most"
         )
     for sentence in done.notes:
         print(sentence)
     if about.delay:
         print(hyst.report.delay_sentence(about.delay, about.dt, about.delay_interval))
+    if about.delay > 0:
+        print(_with_delay_counted(done, about, with_delay))
+
+
+def _with_delay_counted(
+    done: hyst.compensation.Compensation, about: ModelDescription, with_delay: bool
+) -> str:
+    """Say what the delay does to the output, which the model itself does not predict."""
+    if with_delay:
+        of = "" if about.dt is None else f" of {about.dt:.4g} s"
+        return (
+            f"--with-delay: the command comes {about.delay:.4g} samples{of} earlier, and the "
+            "errors above are those of the delayed output; the end of the reference is held"
+        )
+    error = hyst.identification.earlier(done.y_predicted, -about.delay) - done.y_ref
+    unit = f" {about.output_unit}" if about.output_unit else ""
+    return (
+        f"with that delay, which the errors above leave out, the output would miss the reference "
+        f"by {float(np.sqrt(np.mean(error**2))):.3g}{unit} rms, at most "
+        f"{float(np.abs(error).max()):.3g}{unit}; --with-delay gives the command earlier"
+    )

@@ -14,6 +14,7 @@ import hyst
 from hyst.cli.arguments import DespiteVerdict, ModelFile
 from hyst.cli.console import show_table
 from hyst.cli.relevant_options import refuse_irrelevant
+from hyst.cli.scheduled import ScheduleValue, loaded_at
 
 if TYPE_CHECKING:
     from hyst.export.c.block import Model
@@ -23,6 +24,16 @@ Flat = Annotated[
     bool,
     typer.Option(
         "--flat", help="C in one folder without paths of includes, as an Arduino library."
+    ),
+]
+
+Preview = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        show_default=False,
+        help="With --inverse: it knows the next N samples of the reference, and its command is as "
+        "many samples late; rate-dependent models and delays have no other inverse.",
     ),
 ]
 
@@ -170,6 +181,7 @@ def export(
             "--explicit", help="Export the explicit inverse of a rate-dependent model; not exact."
         ),
     ] = False,
+    preview: Preview = None,
     precision: Annotated[str, typer.Option(help="Of C: double or single.")] = "double",
     name: Annotated[
         str, typer.Option(metavar="NAME", help="Prefix of files, functions and types.")
@@ -186,14 +198,17 @@ def export(
     ] = True,
     despite_verdict: DespiteVerdict = False,
     flat: Flat = False,
+    schedule_value: ScheduleValue = None,
 ) -> None:
     """Write a model as code for other tools: the numbers of Python, bit for bit in double."""
     if target not in _TARGETS:
         raise hyst.InputError(f"--target is {target!r}; give {' or '.join(_TARGETS)}")
     refuse_irrelevant(context, _BY_TARGET, [target], "--target")
-    model = hyst.load(model_file)
+    if preview is not None and not inverse:
+        raise hyst.InputError("--preview is of an inverse; add --inverse, or leave it out")
+    model = loaded_at(model_file, schedule_value)
     if inverse or explicit:
-        model = hyst.export.inverse_of(model, explicit)
+        model = hyst.export.inverse_of(model, explicit, preview)
     order = _Order(model, out, precision, name, force, fmi, binary, despite_verdict, flat)
     done = _TARGETS[target](order)
     what = "inverse of " if inverse or explicit else ""
@@ -202,4 +217,6 @@ def export(
     about = model.description
     if about.delay:
         print("\n" + hyst.report.delay_sentence(about.delay, about.dt, about.delay_interval))
+    if preview:
+        print(f"\nthe output at sample k is the command for sample k - {preview} of the reference")
     print(f"\nnext: {done.next_step}")

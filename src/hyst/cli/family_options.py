@@ -53,7 +53,9 @@ def options_given(context: typer.Context, family: str) -> dict[str, Any]:
     """
     names = hyst.identification.names_of(family)
     values: dict[str, Any] = {}
-    for name, text in context.meta.get(_TYPED, {}).items():
+    own_names = {_as_parameter(name): name for name in _names()}
+    for parameter, text in context.meta.get(_TYPED, {}).items():
+        name = own_names[parameter]
         said = _as_typed(name)
         hyst.identification.require_taken(name, names, said=said, of="--family")
         for each in names:
@@ -65,7 +67,19 @@ def options_given(context: typer.Context, family: str) -> dict[str, Any]:
 
 
 def _as_typed(name: str) -> str:
-    return f"--{name.replace('_', '-')}"
+    """Give an option as it is typed: by its own name, unless that means something else there."""
+    option = hyst.families.option(hyst.families.takers(name)[0], name)
+    typed = option.typed if option is not None else ""
+    return f"--{typed or name.replace('_', '-')}"
+
+
+def _as_parameter(name: str) -> str:
+    """Give the name under which typer knows an option, beside those of the verbs."""
+    return _as_typed(name).removeprefix("--").replace("-", "_")
+
+
+def _names() -> tuple[str, ...]:
+    return tuple(dict.fromkeys(name for each in hyst.families.values() for name in each.options()))
 
 
 def _families_in_words() -> str:
@@ -85,8 +99,8 @@ def _options_of_families() -> tuple[Any, ...]:
     def takes_them() -> None:
         """Have the signature below."""
 
-    names = dict.fromkeys(name for each in hyst.families.values() for name in each.options())
-    hints = {name: Annotated[str | None, _option(name)] for name in names}
+    names = {_as_parameter(name): name for name in _names()}
+    hints = {typed: Annotated[str | None, _option(name)] for typed, name in names.items()}
     takes_them.__annotations__ = hints
     takes_them.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         [

@@ -11,6 +11,7 @@ import hyst
 from hyst._files import require_folder
 from hyst.cli.arguments import (
     number_or_auto,
+    whole_auto_or_none,
     whole_or_auto,
 )
 from hyst.cli.console import at_work, show_files
@@ -32,6 +33,14 @@ from hyst.cli.fitted import (
     write_fitted,
 )
 from hyst.cli.reading_options import reads_records
+from hyst.cli.scheduled import (
+    About,
+    Schedule,
+    ScheduleName,
+    ScheduleUnit,
+    ValidateSchedule,
+    identify_over,
+)
 
 Family = Annotated[str, typer.Option(help="Of the model.")]  # the registry explains it
 Delay = Annotated[
@@ -41,10 +50,24 @@ Delay = Annotated[
         help="Samples by which the output lags; parts of one, or negative where it is ahead.",
     ),
 ]
+Lag = Annotated[
+    str,
+    typer.Option(
+        metavar="SECONDS|auto|none",
+        help="Time constant of a first-order lag of the drive, as of an amplifier, in the model.",
+    ),
+]
 LeaveDisturbances = Annotated[
     bool,
     typer.Option(
         "--leave-disturbances", help="Take neither drift nor foreign sines out of the output."
+    ),
+]
+Creep = Annotated[
+    str,
+    typer.Option(
+        metavar="N|auto|none",
+        help="Number of lags that creep behind the hysteresis; auto: as many as the records show.",
     ),
 ]
 Start = Annotated[str, typer.Option(metavar="N|auto", help="First sample to use.")]
@@ -59,7 +82,9 @@ def identify(
     family: Family = "auto",
     delay: Delay = "auto",
     start: Start = "auto",
+    lag: Lag = "none",
     leave_disturbances: LeaveDisturbances = False,
+    creep: Creep = "auto",
     validate: Validate = None,
     validate_input: ValidateInput = None,
     validate_output: ValidateOutput = None,
@@ -67,29 +92,45 @@ def identify(
     input_label: InputLabel = None,
     output_label: OutputLabel = None,
     allow_unconverged: AllowUnconverged = False,
+    schedule: Schedule = None,
+    schedule_name: ScheduleName = None,
+    schedule_unit: ScheduleUnit = None,
+    validate_schedule: ValidateSchedule = None,
 ) -> int:
     """Identify a model from measured records, and write model, numbers, figures and a report."""
     require_folder(folder)
     options = options_given(context, family)
     chosen = hyst.identification.chosen_families(family, options)
     chosen += hyst.identification.families_in_reserve(family, options)
-    lag, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
+    lags = whole_auto_or_none(creep, "creep")
+    late, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
+    time_constant = None if lag == "none" else number_or_auto(lag, "lag", " or none")
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(how, others, (input_label, output_label))
+    asked = {
+        "family": family,
+        "delay": late,
+        "start": first,
+        "drift": False if leave_disturbances else "auto",
+        "allow_unconverged": allow_unconverged,
+        **options,
+    }
+    about = About(schedule, schedule_name, schedule_unit, validate_schedule)
+    if about.is_given():
+        if time_constant is not None:
+            raise hyst.InputError("--lag is not for --schedule; give one of them")
+        return identify_over(data, validate, folder, files, about, asked)
     with at_work("identifying") as say:
         say("reading")
         measured = files.records(data)
         validation = files.validation(validate)
         found = hyst.identify(
             measured,
-            family=family,
-            delay=lag,
-            start=first,
-            drift=False if leave_disturbances else "auto",
+            creep=lags,
+            lag=time_constant,
             validation=validation,
-            allow_unconverged=allow_unconverged,
             progress=say,
-            **options,
+            **asked,
         )
         say("report")
         found = named_by_files(found, files.sources)

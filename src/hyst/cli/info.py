@@ -7,6 +7,7 @@ from typing import Any
 import hyst
 from hyst.cli.arguments import ModelFile
 from hyst.cli.console import show_table
+from hyst.cli.scheduled import tell
 
 
 def info(model_file: ModelFile) -> None:
@@ -19,6 +20,9 @@ def info(model_file: ModelFile) -> None:
     for table in (hyst.report.errors_table(about), hyst.report.provenance_table(about)):
         if table.rows:
             show_table(table)
+    if isinstance(found, hyst.Scheduled):
+        tell(found)
+        return
     operator = _operator(found)
     if operator is not None:
         show_table(hyst.report.constants_table(operator))

@@ -11,12 +11,19 @@ import hyst
 from hyst.cli.arguments import (
     ModelFile,
     SampleRate,
-    load_operator,
     require_same_unit,
     sample_time_known,
 )
 from hyst.cli.console import note, show_files
 from hyst.cli.reading_options import InputColumn, reads_columns
+from hyst.cli.scheduled import (
+    ScheduleColumn,
+    ScheduleValue,
+    loaded,
+    model_at_rest,
+    read_signal,
+    refuse_what_is_fixed,
+)
 from hyst.cli.time_column import time_column
 
 if TYPE_CHECKING:
@@ -43,14 +50,21 @@ def simulate(
         typer.Option("--with-delay", help="Let the output lag as in the record identified from."),
     ] = False,
     rate: SampleRate = None,
+    schedule_column: ScheduleColumn = None,
+    schedule_value: ScheduleValue = None,
 ) -> None:
     """Compute the output of a model for an input, sample by sample."""
-    model = load_operator(model_file)
+    model = loaded(model_file, schedule_column, schedule_value)
     about = model.description
-    sample_time_known(model, data, rate, "the record", **how)
+    sample_time_known(model_at_rest(model), data, rate, "the record", **how)
     u, _, unit = hyst.io.read_column(data, input_column, **how)
     require_same_unit(unit, about.input_unit, "the input")
-    y = hyst.identification.late_output(model, u, about.delay if with_delay else 0)
+    late = about.delay if with_delay else 0
+    if isinstance(model, hyst.Scheduled):
+        refuse_what_is_fixed({"--with-delay": with_delay})
+        y = model.run(u, read_signal(model, data, str(schedule_column), u.size, how)).y
+    else:
+        y = hyst.identification.late_output(model, u, late)
     headers, columns = time_column(data, rate, model.dt, u.size, **how)
     headers += [
         hyst.io.join_unit(about.input_name, about.input_unit),

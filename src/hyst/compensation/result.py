@@ -48,6 +48,8 @@ class Compensation:
     unknown
         Where not even that is known, in sentences: the command leaves what the model's records
         showed.
+    objective
+        Which error the command was polished for, ``rms`` or ``largest``; empty if for none.
 
     Examples
     --------
@@ -67,6 +69,7 @@ class Compensation:
     interior: tuple[int, int] | None = None
     expected: ModelError | None = None
     unknown: tuple[str, ...] = ()
+    objective: str = ""
 
     def __repr__(self) -> str:
         return (
@@ -88,6 +91,22 @@ class Compensation:
     def max_abs(self) -> float:
         """Largest absolute predicted error, output units."""
         return float(np.max(np.abs(self.predicted_error)))
+
+    @property
+    def command_size(self) -> float:
+        """Largest absolute value of the command, input units."""
+        return float(np.max(np.abs(self.u)))
+
+    @property
+    def roughness(self) -> float:
+        """Root mean square of the command's second differences, input units."""
+        bends = np.diff(self.u, 2)
+        return math.sqrt(float(np.mean(np.square(bends)))) if bends.size else 0.0
+
+    @property
+    def largest_bend(self) -> float:
+        """Largest absolute second difference of the command, input units."""
+        return float(np.max(np.abs(np.diff(self.u, 2)), initial=0.0))
 
     def expectation(self, unit: str = "") -> str:
         """Say which tracking error to expect of the actuator: the model's own beside the predicted.

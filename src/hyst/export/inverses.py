@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from hyst.errors import InputError
 from hyst.export.c.block import Model
-from hyst.models import RateDependentPrandtlIshlinskii
+from hyst.models import RateDependentPrandtlIshlinskii, Scheduled
+from hyst.models.scheduled_inverse import ScheduledInverse
 from hyst.operators import Operator
 from hyst.operators.composition import leaves_of
 from hyst.operators.registry import compose
@@ -51,27 +54,41 @@ def explicit_inverse(model: Operator) -> Operator:
     return inverse.with_description(model.description.of_inverse())
 
 
-def inverse_of(model: Model, explicit: bool = False) -> Operator:
+def inverse_of(
+    model: Model, explicit: bool = False, preview: int | None = None
+) -> Operator | ScheduledInverse:
     """Give the inverse that is exported.
 
     Parameters
     ----------
     model
-        An operator.
+        An operator or a scheduled model.
     explicit
         Whether the explicit inverse is wanted.
+    preview
+        Samples of the reference that the inverse may know, and by which its command is late; None
+        for the exact inverse.
 
     Returns
     -------
-    Operator
+    Operator or ScheduledInverse
 
     Raises
     ------
     InputError
-        If it is no operator, or has no explicit inverse.
+        If it is no operator, has no explicit inverse, or this one is wanted with a preview.
     NotInvertibleError
         If it has no inverse.
     """
+    if isinstance(model, Scheduled) and not explicit:
+        return model.inverse()
     if not isinstance(model, Operator):
         raise InputError(f"a {type(model).__name__} has no inverse; export it as it is")
-    return explicit_inverse(model) if explicit else model.inverse()
+    if preview is None:
+        return explicit_inverse(model) if explicit else model.inverse()
+    if explicit:
+        raise InputError("the explicit inverse needs no preview; ask for one of the two")
+    inverse = model.inverse(preview=preview)
+    about = inverse.description
+    name = f"{about.output_name}, {preview} samples late"
+    return inverse.with_description(replace(about, output_name=name))

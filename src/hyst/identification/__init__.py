@@ -12,7 +12,7 @@ from hyst.identification.families.registry import (
     require_taken,
 )
 from hyst.identification.identify_records import identify
-from hyst.identification.record_use.part_of_a_sample import later
+from hyst.identification.record_use.part_of_a_sample import earlier, later
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.identified import Candidate, Identified
 from hyst.identification.result.late_output import late_output
@@ -34,6 +34,7 @@ __all__ = [
     "UsedSamples",
     "chosen_families",
     "compare",
+    "earlier",
     "families_in_reserve",
     "identify",
     "identify_from_reversal_curves",

@@ -9,15 +9,17 @@ from threadpoolctl import threadpool_limits
 
 from hyst.diagnosis import Diagnosis
 from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
+from hyst.identification.creep.found_creep import as_creep, with_creep
 from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families, families_in_reserve
+from hyst.identification.lag.found_lag import as_lag, found_with_lag, search_beside_lag
 from hyst.identification.options import Options, listed, silent
-from hyst.identification.record_use.cleaned import as_drift, cleaned
+from hyst.identification.record_use.cleaned import Cleaned, as_drift, cleaned
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import require_same_units
 from hyst.identification.result.identified import Identified
 from hyst.identification.result.identified_from_fit import identified_from_fit, traced
-from hyst.identification.search import find
+from hyst.identification.search import Found, find
 from hyst.operators.provenance import options_asked
 from hyst.signals import Record
 
@@ -29,6 +31,8 @@ def identify(
     delay: float | Literal["auto"] = "auto",
     start: int | Literal["auto"] = "auto",
     drift: Literal["auto", False] = "auto",
+    creep: int | Literal["auto"] | None = "auto",
+    lag: float | Literal["auto"] | None = None,
     validation: Record | Sequence[Record] = (),
     max_iterations: int = 200,
     allow_unconverged: bool = False,
@@ -64,6 +68,16 @@ def identify(
         ``"auto"``: slow drift of the output, and sines in it that are none of its drive, as mains
         hum, are taken out before the fit where ``hyst.diagnose`` finds them; ``False``: the output
         is left as it is.
+    creep
+        Number of first-order lags that follow the output of the hysteresis and add to it, 1 to 5;
+        ``"auto"``: as many as the records pay for, none unless what the model leaves shows them
+        beyond drift, noise and loops of another shape; ``None``: none. What settles since a
+        record began, or drifts whatever the drive does, is no creep.
+    lag
+        Time constant, s, of a first-order lag of the drive before the hysteresis, as of an
+        amplifier: it is a stage of the model then, which its inverse undoes. ``"auto"``: estimated
+        where the records show a lag, and told from a pure delay where they can; a number: held;
+        None: the model has none, and what comes late is the delay beside it.
     validation
         Records to judge the model by; they do not take part in the fit.
     max_iterations
@@ -105,14 +119,26 @@ def identify(
     require_same_units((*given, *judged))
     wanted = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
     families, about_drift = chosen_families(family, options), as_drift(drift)
+    lags = as_creep(creep)
+    time_constant = as_lag(lag)
     reserve = families_in_reserve(family, options)
     with threadpool_limits(1, user_api="blas"):
         diagnosis = diagnose_all_but_delay(given)
         # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
         reserve = tuple(each for each in reserve if _is_called_for(each, diagnosis))
-        found = find(cleaned(given, diagnosis, about_drift), families, wanted, reserve)
+        clean = cleaned(given, diagnosis, about_drift)
+
+        def without_lag(records: Cleaned, asked_of: Options) -> Found:
+            return find(records, families, asked_of, reserve)
+
+        found = found_with_lag(without_lag, clean, time_constant, wanted, families)
+        again, how = search_beside_lag(without_lag, found, time_constant, wanted)
+        drifts = about_drift == "auto"
+        creeping = with_creep(found, clean.with_drift(), lags, drifts, again, how)
+        found = creeping.found
+        diagnosis = creeping.judged(diagnosis, given)
         for number, record in enumerate(judged, 1):
-            found.fit.operator.require_sample_time(record.dt, f"validation record {number}")
+            found.fit.operator.require_possible_time(record.dt, f"validation record {number}")
         if found.delay is not None:
             # In units of powers of two, in which its times and samples are the same.
             diagnosis = diagnosis.with_delay(found.delay, given[0].dt)
@@ -126,6 +152,7 @@ def identify(
             [each.operator for each in found.rivals],
             found.delay,
         )
+        identified = creeping.told(identified)
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
     return traced(told, given, asked)
 

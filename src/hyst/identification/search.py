@@ -7,7 +7,6 @@ record by powers of two scales the result, bit for bit; other factors change the
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -17,6 +16,7 @@ from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.cross_validation import fewest_left
 from hyst.identification.choice.delay import OWN, find_delay, told_by_family, usable_delay
+from hyst.identification.choice.joint_delay import with_joint_delay
 from hyst.identification.choice.rivals import other_signs, rivals_of
 from hyst.identification.choice.selection import (
     Contender,
@@ -40,6 +40,7 @@ from hyst.identification.judgement.judge import level_of
 from hyst.identification.options import Options, as_delay
 from hyst.identification.record_use.cleaned import Cleaned
 from hyst.identification.record_use.overview import Overview
+from hyst.identification.record_use.scales import scales_of
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.identified import Candidate
 
@@ -133,6 +134,7 @@ def find(
     fit, task = choice.fit, choice.task
     if task.searched() is not task.data:
         fit = _polished(fit, task, options)
+    fit, task = with_joint_delay(fit, task, options.max_iterations)
     fit, *rivals = (
         replace(each, parametrization=_in_given_units(each, task)) for each in (fit, *choice.rivals)
     )
@@ -159,19 +161,12 @@ def _tasks(
 
 def _task(family: Family, given: Data, left_out: tuple[str, ...]) -> Task:
     suited, notes = family.suited(given)
-    scales = (
-        _power_of_two(2.0 * given.half_range),
-        _power_of_two(max(float(np.ptp(each.y)) for each in given.records)),
-    )
+    scales = scales_of(given)
+    given = replace(given, keeps_corners=not family.depends_on_rate)
     data = given.in_units(1.0 / scales[0], 1.0 / scales[1])
     return Task(
         suited.in_units(1.0 / scales[0], 1.0 / scales[1]), given, data, scales, left_out + notes
     )
-
-
-def _power_of_two(span: float) -> float:
-    """Give the power of two whose ratio to a range lies between 1 and 2."""
-    return math.ldexp(1.0, math.frexp(span)[1] - 1)
 
 
 def _in_reserve(
@@ -203,7 +198,8 @@ def _require_same_records(tasks: Sequence[Task]) -> None:
     """Refuse to compare what was judged by other records, as by averages of periods."""
     first = tasks[0]
     for task in tasks[1:]:
-        if any(a is not b for a, b in zip(task.given.records, first.given.records, strict=True)):
+        pairs = zip(task.given.records, first.given.records, strict=True)
+        if any(not np.array_equal(one.y, other.y) for one, other in pairs):
             raise InputError(
                 f"families {first.family.name!r} and {task.family.name!r} would be compared by "
                 "other records, since one of them averages periods; leave out period, and give "
@@ -350,10 +346,12 @@ def _outlying(task: Task, options: Options) -> tuple[str, ...]:
 
 def _with_overviews(tasks: Sequence[Task], options: Options) -> list[tuple[Family, Overview]]:
     """Give every family its records; those that use the same share what is found out."""
-    shared: dict[tuple[bool, tuple[int, ...], int], Overview] = {}
+    shared: dict[tuple[bool, tuple[int, ...], int, int], Overview] = {}
     result = []
     for task in tasks:
-        key = (task.family.depends_on_rate, task.data.starts, task.data.delay)
+        # A family may take the noise out of its drives.
+        drives = hash(tuple(each.u.tobytes() for each in task.data.records))
+        key = (task.family.depends_on_rate, task.data.starts, task.data.delay, drives)
         if key not in shared:
             shared[key] = Overview(
                 task.searched(), options.delay, rates_matter=task.family.depends_on_rate

@@ -5,6 +5,9 @@ from hyst.models.butterfly import Butterfly as Butterfly
 from hyst.models.coleman_hodgdon import ColemanHodgdon as ColemanHodgdon
 from hyst.models.creep import Creep as Creep
 from hyst.models.dahl import Dahl as Dahl
+from hyst.models.degrading_bouc_wen import DegradingBoucWen as DegradingBoucWen
+from hyst.models.delay import Delay as Delay
+from hyst.models.dynamic_jiles_atherton import DynamicJilesAtherton as DynamicJilesAtherton
 from hyst.models.exponential_curve import ExponentialCurve as ExponentialCurve
 from hyst.models.generalized_maxwell_slip import (
     GeneralizedMaxwellSlip as GeneralizedMaxwellSlip,
@@ -13,6 +16,7 @@ from hyst.models.given_thresholds import GivenThresholds as GivenThresholds
 from hyst.models.iwan import Iwan as Iwan
 from hyst.models.iwan_curve import IwanCurve as IwanCurve
 from hyst.models.jiles_atherton import JilesAtherton as JilesAtherton
+from hyst.models.lag import Lag as Lag
 from hyst.models.linear_dynamics import LinearDynamics as LinearDynamics
 from hyst.models.loading_curve import InverseCurve as InverseCurve
 from hyst.models.lugre import LuGre as LuGre
@@ -37,7 +41,9 @@ from hyst.models.rate_curve import RateCurve as RateCurve
 from hyst.models.rate_dependent import (
     RateDependentPrandtlIshlinskii as RateDependentPrandtlIshlinskii,
 )
+from hyst.models.rate_preview import RateDependentPreview as RateDependentPreview
 from hyst.models.rate_shift import RateShift as RateShift
+from hyst.models.scheduled import Scheduled as Scheduled
 from hyst.models.second_order_sections import SecondOrderSections as SecondOrderSections
 from hyst.models.stable_inverse import StableInverse as StableInverse
 from hyst.models.two_envelope import InverseTwoEnvelope as InverseTwoEnvelope

@@ -225,7 +225,7 @@ class BoucWen(_BoucWen):
             invertible=least > 0.0,
         )
 
-    def inverse(self) -> InverseBoucWen:
+    def exact_inverse(self) -> InverseBoucWen:
         """Give the exact inverse, from y to u.
 
         Raises
@@ -325,7 +325,7 @@ class InverseBoucWen(_BoucWen):
             invertible=True,
         )
 
-    def inverse(self) -> BoucWen:
+    def exact_inverse(self) -> BoucWen:
         """Give the model."""
         return BoucWen(*self._all())
 

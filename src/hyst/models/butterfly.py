@@ -109,7 +109,7 @@ class Butterfly(Operator):
         """Give the state of the hysteresis."""
         return self.hysteresis.initial_state()
 
-    def inverse(self) -> NoReturn:
+    def exact_inverse(self) -> NoReturn:
         """Refuse: one output belongs to several inputs.
 
         Raises

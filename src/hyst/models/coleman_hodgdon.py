@@ -193,7 +193,7 @@ class ColemanHodgdon(_Relaxation):
         found, _ = self._distances()
         return found
 
-    def inverse(self) -> InverseColemanHodgdon:
+    def exact_inverse(self) -> InverseColemanHodgdon:
         """Give the exact inverse, in each piece by Newton's method to rounding.
 
         Raises
@@ -318,7 +318,7 @@ class InverseColemanHodgdon(_Relaxation):
     def __post_init__(self) -> None:
         super().__post_init__()
         try:
-            self.inverse().require_inverse()
+            self.exact_inverse().require_inverse()
         except NotInvertibleError as refused:
             raise InputError(f"these constants have no inverse: {refused}") from None
 
@@ -333,7 +333,7 @@ class InverseColemanHodgdon(_Relaxation):
             invertible=True,
         )
 
-    def inverse(self) -> ColemanHodgdon:
+    def exact_inverse(self) -> ColemanHodgdon:
         """Give the hysteresis."""
         return ColemanHodgdon(self.alpha, self.a, self.b, self.u_s, self.y0, self.u0)
 

@@ -231,7 +231,7 @@ class Creep(_Lags):
         """Give ``1 + sum_i |weights_i|``, which is the least where no weight is negative."""
         return 1.0 + float(np.abs(self.weights).sum())
 
-    def inverse(self) -> InverseCreep:
+    def exact_inverse(self) -> InverseCreep:
         """Give the exact inverse: the lags are known before the sample, which passes as it is.
 
         Raises
@@ -293,7 +293,7 @@ class InverseCreep(_Lags):
             return float("inf")
         return _inverse_gain(self.weights, self.gains())
 
-    def inverse(self) -> Creep:
+    def exact_inverse(self) -> Creep:
         """Give the creep."""
         return Creep(self.weights, self.time_constants, self.dt, self.rest)
 

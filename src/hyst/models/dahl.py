@@ -148,7 +148,7 @@ class Dahl(_Friction):
             invertible=self.n >= 1.0,
         )
 
-    def inverse(self) -> InverseDahl:
+    def exact_inverse(self) -> InverseDahl:
         """Give the exact inverse, from forces smaller than Fc to positions.
 
         A force of Fc or more has no position; ``run`` names its sample, a stepper holds its last
@@ -215,7 +215,7 @@ class InverseDahl(_Friction):
             invertible=True,
         )
 
-    def inverse(self) -> Dahl:
+    def exact_inverse(self) -> Dahl:
         """Give the friction."""
         return Dahl(self.sigma, self.Fc, self.n, self.z0, self.u0)
 

@@ -145,7 +145,7 @@ class GeneralizedMaxwellSlip(Operator):
         """Give force, its rest and way of sliding of each element, and that none was before."""
         return np.zeros(3 * self.k.size + 2)
 
-    def inverse(self) -> Operator:
+    def exact_inverse(self) -> Operator:
         """Refuse: in sliding a force does not tell a position.
 
         Raises

@@ -113,7 +113,7 @@ class Iwan(Operator):
         """
         return self._as_masing().overflowed(state)
 
-    def inverse(self) -> MasingOperator:
+    def exact_inverse(self) -> MasingOperator:
         """Give the exact inverse in the same memory: the operator of the inverse loading curve.
 
         Raises
@@ -121,7 +121,7 @@ class Iwan(Operator):
         NotInvertibleError
             If K_inf is 0: in macro-slip the force stays, wherever the input goes.
         """
-        return self._as_masing().inverse()
+        return self._as_masing().exact_inverse()
 
     def parameters(self) -> Parameters:
         """Give F_S, K_T, chi, beta, K_inf."""

@@ -203,7 +203,7 @@ class JilesAtherton(_Magnet):
             invertible=self.is_invertible,
         )
 
-    def inverse(self) -> InverseJilesAtherton:
+    def exact_inverse(self) -> InverseJilesAtherton:
         """Give the inverse, from M or B to H, solved along the branch to rounding.
 
         A magnetisation of Ms or more has no field; ``run`` names its sample, a stepper holds its
@@ -281,7 +281,7 @@ class InverseJilesAtherton(_Magnet):
             invertible=True,
         )
 
-    def inverse(self) -> JilesAtherton:
+    def exact_inverse(self) -> JilesAtherton:
         """Give the magnet."""
         return JilesAtherton(
             self.Ms, self.a, self.k, self.c, self.alpha, self.variant, self.output, self.mu0

@@ -240,7 +240,7 @@ class LinearDynamics(Operator):
         """Give x0, then a delay line of zeros, shape (n + delay,)."""
         return np.concatenate([self.x0, np.zeros(self.delay)])
 
-    def inverse(self) -> LinearDynamics:
+    def exact_inverse(self) -> LinearDynamics:
         """Give the causal inverse ``(A - B C/D, B/D, -C/D, 1/D)``.
 
         Raises

@@ -165,7 +165,7 @@ class LuGre(Operator):
         """Give position, force of the bristles, its rest, and that there is no last sample."""
         return np.zeros(4)
 
-    def inverse(self) -> Operator:
+    def exact_inverse(self) -> Operator:
         """Refuse: a force says how fast friction slides, if that, and not where it is.
 
         Raises

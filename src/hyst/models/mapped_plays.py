@@ -94,7 +94,7 @@ class MappedPlays:
         NotInvertibleError
             If a part has none; its message says why.
         """
-        return MappedPlays(self.after.inverse(), self.plays.inverse(), self.before.inverse())
+        return MappedPlays(self.after.inverse(), self.plays.exact_inverse(), self.before.inverse())
 
 
 def _maps(leaves: tuple[Operator, ...], name: str) -> PiecewiseMap:

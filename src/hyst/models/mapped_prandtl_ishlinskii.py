@@ -62,7 +62,7 @@ class GeneralizedPrandtlIshlinskii(Chained):
         """The envelope, then the plays."""
         return (self.envelope, self.pi)
 
-    def inverse(self) -> ModifiedPrandtlIshlinskii:
+    def exact_inverse(self) -> ModifiedPrandtlIshlinskii:
         """Give the exact inverse: the inverse plays, then the inverse envelope (S1 eq. 5).
 
         Raises
@@ -70,7 +70,7 @@ class GeneralizedPrandtlIshlinskii(Chained):
         NotInvertibleError
             If plays or envelope have none; the message names the condition that fails.
         """
-        return ModifiedPrandtlIshlinskii(self.pi.inverse(), self.envelope.inverse())
+        return ModifiedPrandtlIshlinskii(self.pi.exact_inverse(), self.envelope.exact_inverse())
 
     def _with_parts(self, parts: tuple[Operator, ...]) -> Operator:
         return GeneralizedPrandtlIshlinskii(*parts)
@@ -143,7 +143,7 @@ class ModifiedPrandtlIshlinskii(Chained):
         """The plays, then the map."""
         return (self.pi, self.output_map)
 
-    def inverse(self) -> GeneralizedPrandtlIshlinskii:
+    def exact_inverse(self) -> GeneralizedPrandtlIshlinskii:
         """Give the exact inverse: the inverse map, then the inverse plays (S4 eqs. 28-33).
 
         Raises
@@ -151,7 +151,9 @@ class ModifiedPrandtlIshlinskii(Chained):
         NotInvertibleError
             If map or plays have none; the message names the condition that fails.
         """
-        return GeneralizedPrandtlIshlinskii(self.output_map.inverse(), self.pi.inverse())
+        return GeneralizedPrandtlIshlinskii(
+            self.output_map.exact_inverse(), self.pi.exact_inverse()
+        )
 
     def _with_parts(self, parts: tuple[Operator, ...]) -> Operator:
         return ModifiedPrandtlIshlinskii(*parts)

@@ -195,7 +195,7 @@ class MasingOperator(Operator):
         """
         return bool(np.asarray(state)[..., _OVERFLOW].any())
 
-    def inverse(self) -> MasingOperator:
+    def exact_inverse(self) -> MasingOperator:
         """Give the exact inverse: the operator of the inverse loading curve.
 
         Raises

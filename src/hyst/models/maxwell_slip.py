@@ -107,7 +107,7 @@ class MaxwellSlip(Operator):
         """Give the positions of the sliders, shape (n,)."""
         return self.z0.copy()
 
-    def inverse(self) -> PrandtlIshlinskii:
+    def exact_inverse(self) -> PrandtlIshlinskii:
         """Give the exact inverse, from forces to positions: a Prandtl-Ishlinskii model.
 
         Raises
@@ -121,7 +121,7 @@ class MaxwellSlip(Operator):
                 f"k0 is 0: when all elements slide the force stays at {float(self.f.sum()):.6g}, "
                 "so that many positions have one force; give a spring k0 > 0 beside them"
             )
-        return self.as_plays().inverse()
+        return self.as_plays().exact_inverse()
 
     def parameters(self) -> Parameters:
         """Give k0, the stiffnesses, then the forces."""

@@ -174,7 +174,7 @@ class MemoryElement(_Element):
 
     kind = "memory-element"
 
-    def inverse(self) -> InverseMemoryElement:
+    def exact_inverse(self) -> InverseMemoryElement:
         """Give the exact inverse ``u = y / M(p)`` (S3 theorem 8)."""
         return InverseMemoryElement(
             self.function, self.dt, self.momentum, self.reset, self.start, self.reset_to
@@ -211,7 +211,7 @@ class InverseMemoryElement(_Element):
 
     kind = "inverse-memory-element"
 
-    def inverse(self) -> MemoryElement:
+    def exact_inverse(self) -> MemoryElement:
         """Give the memory element."""
         return MemoryElement(
             self.function, self.dt, self.momentum, self.reset, self.start, self.reset_to

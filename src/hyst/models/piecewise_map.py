@@ -56,7 +56,7 @@ class PiecewiseMap:
         NotInvertibleError
             If a stage has none.
         """
-        return PiecewiseMap(tuple(stage.inverse() for stage in reversed(self.stages)))
+        return PiecewiseMap(tuple(stage.exact_inverse() for stage in reversed(self.stages)))
 
     def slope(self, x: Array) -> Array:
         """Give the slopes at points that are no corners.

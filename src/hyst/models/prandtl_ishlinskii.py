@@ -96,7 +96,7 @@ class PrandtlIshlinskii(Operator):
         """Give the initial play outputs, shape (n,)."""
         return self.z0.copy()
 
-    def inverse(self) -> PrandtlIshlinskii:
+    def exact_inverse(self) -> PrandtlIshlinskii:
         """Give the exact inverse, again a Prandtl-Ishlinskii model.
 
         With ``c_j = p0 + p_1 + .. + p_j``: weights ``g0 = 1/p0``, ``g_j = -p_j / (c_j c_{j-1})``,

@@ -250,7 +250,7 @@ class Preisach(_Relays):
         state[0] = self.u0
         return state
 
-    def inverse(self) -> InversePreisach:
+    def exact_inverse(self) -> InversePreisach:
         """Give the exact inverse: the input on the branch that has an output, in closed form.
 
         With p0 = 0 the output is limited to ``-sum(weights)`` to ``sum(weights)``; beyond, ``run``
@@ -360,7 +360,7 @@ class InversePreisach(_Relays):
         state[1] = self.u0
         return state
 
-    def inverse(self) -> Preisach:
+    def exact_inverse(self) -> Preisach:
         """Give the model."""
         return Preisach(self.weights, self.thresholds, self.p0, *self._rest())
 

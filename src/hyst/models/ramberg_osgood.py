@@ -238,14 +238,14 @@ class RambergOsgood(Operator):
         """
         return self._as_masing().overflowed(state)
 
-    def inverse(self) -> MasingOperator:
+    def exact_inverse(self) -> MasingOperator:
         """Give the exact inverse in the same memory: the operator of the inverse loading curve.
 
         Notes
         -----
         S3 theorem 10, without the differential equation.
         """
-        return self._as_masing().inverse()
+        return self._as_masing().exact_inverse()
 
     def parameters(self) -> Parameters:
         """Give c1, c2, c3."""

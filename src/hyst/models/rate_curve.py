@@ -11,6 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 from hyst.checks.arrays import as_constants
 from hyst.checks.numbers import as_number
 from hyst.errors import InputError
+from hyst.models.rate_law_tables import (
+    RATIONAL,
+    require_form,
+    saturating_table,
+    square_root_table,
+)
 from hyst.operators.parameters import Parameters, numbered
 
 Array = NDArray[np.float64]
@@ -139,6 +145,79 @@ class RateCurve:
         slopes = np.diff(g) / np.diff(x)
         return cls(float(slopes[0]), (), np.diff(slopes), x[1:-1])
 
+    @classmethod
+    def square_root(cls, coefficient: float, fastest: float) -> RateCurve:
+        """Give ``g(x) = coefficient sqrt(x)`` as a table of straight pieces.
+
+        The pieces are off by less than 0.1 % of ``g(fastest)`` anywhere up to ``fastest``, and
+        steepest at rest, with a finite slope; beyond ``fastest`` the last one goes on.
+
+        Parameters
+        ----------
+        coefficient
+            >= 0, input units times the root of (seconds per input unit).
+        fastest
+            Rate up to which the table follows the law, > 0, input units per second.
+
+        Returns
+        -------
+        RateCurve
+
+        Raises
+        ------
+        InputError
+            If the coefficient is negative, ``fastest`` is not positive, or one is not finite.
+
+        Examples
+        --------
+        >>> bool(abs(RateCurve.square_root(0.5, 1e4)(2500.0) - 25.0) < 0.03)
+        True
+        """
+        c, end = _as_growing(coefficient, "coefficient"), _as_rate(fastest, "fastest")
+        x, g = square_root_table()
+        return cls.table(end * x, c * np.sqrt(end) * g)
+
+    @classmethod
+    def saturating(
+        cls, slope: float, rate: float, fastest: float, form: str = RATIONAL
+    ) -> RateCurve:
+        """Give a widening that approaches ``slope rate`` at high rates, as a table.
+
+        ``"rational"``: ``g(x) = slope x / (1 + x / rate)``; ``"exponential"``:
+        ``g(x) = slope rate (1 - exp(-x / rate))``. The pieces are off by less than 0.2 % of
+        ``slope rate`` anywhere up to ``fastest``; beyond it the last one goes on.
+
+        Parameters
+        ----------
+        slope
+            Of g at rest, >= 0, seconds.
+        rate
+            At which the curve has bent, > 0, input units per second.
+        fastest
+            Rate up to which the table follows the law, > 0, input units per second.
+        form
+            ``"rational"`` or ``"exponential"``.
+
+        Returns
+        -------
+        RateCurve
+
+        Raises
+        ------
+        InputError
+            If the slope is negative, a rate is not positive, or the form is unknown.
+
+        Examples
+        --------
+        >>> curve = RateCurve.saturating(0.002, 100.0, 1e3)
+        >>> bool(abs(curve(1e3) - 0.2 / 1.1) < 4e-4)
+        True
+        """
+        a, b = _as_growing(slope, "slope"), _as_rate(rate, "rate")
+        end = _as_rate(fastest, "fastest")
+        x, g = saturating_table(end / b, require_form(form))
+        return cls.table(b * x, a * b * g)
+
     def __call__(self, rate: ArrayLike) -> Array:
         """Give the widening.
 
@@ -220,3 +299,20 @@ class RateCurve:
         """Give the entries of a model file; those that are empty are left out."""
         more = {"powers": self.powers, "slopes": self.slopes, "knees": self.knees}
         return {"beta": self.beta} | {key: v.tolist() for key, v in more.items() if v.size}
+
+
+def _as_growing(value: float, name: str) -> float:
+    number = as_number(value, name)
+    if number < 0.0:
+        raise InputError(
+            f"{name} is {number}; thresholds cannot shrink with the rate, so give zero or a "
+            "positive number"
+        )
+    return number
+
+
+def _as_rate(value: float, name: str) -> float:
+    number = as_number(value, name)
+    if number <= 0.0:
+        raise InputError(f"{name} is {number}; give a positive rate, input units per second")
+    return number

@@ -15,11 +15,12 @@ from hyst.checks.thresholds import as_weights_and_thresholds
 from hyst.errors import InputError, NotInvertibleError
 from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii
 from hyst.models.rate_curve import RateCurve
+from hyst.models.rate_preview import MOST_PLANNED, RateDependentPreview
 from hyst.operators.base import Operator
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
 from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
 from hyst.operators.portrait import Portrait
-from hyst.operators.registry import entries, register
+from hyst.operators.registry import delayed, entries, register
 from hyst.operators.stage import Stage
 from hyst.operators.traits import Degree, Traits
 
@@ -184,7 +185,7 @@ class RateDependentPrandtlIshlinskii(Operator):
         """Give the initial play outputs and that there is no previous input, shape (n + 2,)."""
         return np.concatenate([self.z0, np.zeros(2)])
 
-    def inverse(self) -> Operator:
+    def exact_inverse(self) -> Operator:
         """Give the exact inverse where there is one: for beta = 0.
 
         Raises
@@ -196,10 +197,42 @@ class RateDependentPrandtlIshlinskii(Operator):
         if not self.rate_curve.is_zero:
             raise NotInvertibleError(
                 f"beta is {self.beta:.6g}: the thresholds follow the rate of the drive, which an "
-                "inverse does not know before it has found the drive; use "
+                "inverse does not know before it has found the drive; use inverse(preview=20), "
                 "hyst.compensation.invert_trajectory, or explicit_inverse() and its error"
             )
         return self.at_rest().inverse()
+
+    def preview_range(self) -> tuple[int, int]:
+        """Give 1 to 60 samples, or none for beta = 0.
+
+        Raises
+        ------
+        NotInvertibleError
+            If p0 or a cumulative weight is not positive.
+        """
+        if self.rate_curve.is_zero:
+            return super().preview_range()
+        self.explicit_inverse()
+        return 1, MOST_PLANNED
+
+    def preview_inverse(self, samples: int) -> Operator:
+        """Give commands planned ahead, which is no exact inverse, unless beta is 0.
+
+        Raises
+        ------
+        NotInvertibleError
+            If p0 or a cumulative weight is not positive, or the preview is 0.
+        """
+        if self.rate_curve.is_zero:
+            return super().preview_inverse(samples)
+        if samples == 0:
+            raise NotInvertibleError(
+                f"beta is {self.beta:.6g}: an inverse has to know at least 1 of the next samples, "
+                "better 20; without a preview there is explicit_inverse() and its error"
+            )
+        used = min(samples, MOST_PLANNED)
+        inverse = RateDependentPreview(self, used)
+        return inverse if used == samples else delayed(inverse, samples - used)
 
     def explicit_inverse(self) -> RateDependentPrandtlIshlinskii:
         """Give the explicit inverse: exact only where both see the same thresholds over time.

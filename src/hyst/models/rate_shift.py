@@ -123,7 +123,7 @@ class RateShift(Operator):
         """Give output and input before the first sample, and that there is none, shape (3,)."""
         return np.array([self.z0, 0.0, 0.0])
 
-    def inverse(self) -> Operator:
+    def exact_inverse(self) -> Operator:
         """Give the exact inverse where there is one: for c = 0.
 
         Raises

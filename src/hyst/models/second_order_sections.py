@@ -127,7 +127,7 @@ class SecondOrderSections(Operator):
         """Give zeros, two for each section."""
         return np.zeros(2 * len(self.coefficients))
 
-    def inverse(self) -> SecondOrderSections:
+    def exact_inverse(self) -> SecondOrderSections:
         """Give the causal inverse: numerators and denominators change places.
 
         Raises

@@ -241,7 +241,7 @@ class TwoEnvelopePrandtlIshlinskii(_TwoEnvelope):
         """Give the play outputs before the first sample, zeros, shape (n,)."""
         return np.zeros(self.p.size)
 
-    def inverse(self) -> InverseTwoEnvelope:
+    def exact_inverse(self) -> InverseTwoEnvelope:
         """Give the exact inverse, sample by sample: a search over the knots and a closed form.
 
         With K knots of both envelopes a sample takes at most ``log2(K) + 2`` evaluations of a
@@ -333,7 +333,7 @@ class InverseTwoEnvelope(_TwoEnvelope):
         slope = self.p0 * self.envelopes.mean_slope_at_zero()
         return np.concatenate([np.zeros(self.p.size + 2), [slope]])
 
-    def inverse(self) -> TwoEnvelopePrandtlIshlinskii:
+    def exact_inverse(self) -> TwoEnvelopePrandtlIshlinskii:
         """Give the plays."""
         return TwoEnvelopePrandtlIshlinskii(self.p, self.r, self.rising, self.falling, self.p0)
 

@@ -69,7 +69,7 @@ class Affine(Operator):
         """Give an empty array: there is no memory."""
         return np.empty(0)
 
-    def inverse(self) -> Affine:
+    def exact_inverse(self) -> Affine:
         """Give ``u = (y - offset) / gain``.
 
         Raises

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from typing import Any, final
 
 import numpy as np
@@ -13,10 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from hyst import _engine
 from hyst.checks.arrays import as_signal, as_state, refuse_sample
-from hyst.errors import InputError, NotInvertibleError
+from hyst.errors import InputError
 from hyst.operators.constants import Constants
-from hyst.operators.description import Described, ModelDescription
+from hyst.operators.description import ModelDescription
 from hyst.operators.engine_name import EngineName, as_engine, as_threads
+from hyst.operators.inverses import Inverses
 from hyst.operators.model_file import MODEL, write_file
 from hyst.operators.portrait import LOOP, Portrait
 from hyst.operators.registry import compose
@@ -27,17 +27,12 @@ from hyst.operators.traits import Traits
 Array = NDArray[np.float64]
 
 
-class Operator(Described, Constants, ABC):
+class Operator(Inverses, Constants, ABC):
     """A causal operator with a finite state; ``y = operator(u)``.
 
     Concrete operators are frozen dataclasses that say what they are (constants, traits, state,
     inverse); how records, samples and derivatives are computed is written here, once, for all.
     """
-
-    def __init_subclass__(cls) -> None:
-        # An inverse means what its operator means, the signals changed; no class has to say so.
-        if "inverse" in vars(cls):
-            cls.inverse = _described_inverse(cls.inverse)  # type: ignore[method-assign]
 
     @abstractmethod
     def traits(self) -> Traits:
@@ -96,15 +91,25 @@ class Operator(Described, Constants, ABC):
         self.require_sample_time(dt)
         return self
 
-    @abstractmethod
-    def inverse(self) -> Operator:
-        """Give the exact inverse, with its initial state, so that both cancel from sample 0 on.
+    def require_possible_time(self, dt: float, what: str = "the record") -> None:
+        """Refuse a record of a sample time that the operator cannot be brought to.
+
+        Parameters
+        ----------
+        dt
+            Sample time of the record, seconds.
+        what
+            What messages call the record.
 
         Raises
         ------
-        NotInvertibleError
-            If there is none; the message names the condition that fails.
+        InputError
+            If its constants, or those of a part, hold for another sample time only.
         """
+        try:
+            self.at_sample_time(dt)
+        except InputError:
+            self.require_sample_time(dt, what)
 
     def keeps_unit(self) -> bool:
         """Tell whether a signal keeps its unit, as what is only bent, shifted or delayed does."""
@@ -352,15 +357,6 @@ class Operator(Described, Constants, ABC):
         about = self.description if description is None else description
         write_file(path, MODEL, {"model": self.to_dict()}, about)
 
-    @final
-    def is_invertible(self) -> bool:
-        """Tell whether ``inverse()`` gives an exact inverse."""
-        try:
-            self.inverse()
-        except NotInvertibleError:
-            return False
-        return True
-
     @functools.cached_property
     def _chain(self) -> _engine.Chain:
         return _engine.Chain(self.stages())
@@ -381,12 +377,3 @@ class Operator(Described, Constants, ABC):
     def __reduce__(self) -> tuple[Any, ...]:
         # The compiled chain is rebuilt, not carried, when an operator goes to another process.
         return type(self).from_dict, (self.to_dict(),), self._carried()
-
-
-def _described_inverse(inverse: Callable[..., Operator]) -> Callable[..., Operator]:
-    @functools.wraps(inverse)
-    def described(self: Operator) -> Operator:
-        found, about = inverse(self), self.description
-        return found if about == ModelDescription() else found.with_description(about.of_inverse())
-
-    return described

@@ -10,10 +10,10 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.errors import InputError
+from hyst.errors import InputError, NotInvertibleError
 from hyst.operators.base import Operator
 from hyst.operators.parameters import Parameters, as_parameter_vector
-from hyst.operators.registry import entries, operator_from_dict, register
+from hyst.operators.registry import delayed, entries, operator_from_dict, register
 from hyst.operators.stage import Stage
 from hyst.operators.traits import Traits
 
@@ -70,7 +70,7 @@ class Chained(Operator):
         """Give the states of the parts, one after the other."""
         return np.concatenate([part.initial_state() for part in self.parts])
 
-    def inverse(self) -> Operator:
+    def exact_inverse(self) -> Operator:
         """Give the inverses of the parts in reversed order.
 
         Raises
@@ -78,7 +78,48 @@ class Chained(Operator):
         NotInvertibleError
             If a part has none; its own message says why.
         """
-        return Composition(tuple(part.inverse() for part in reversed(self.parts)))
+        return Composition(tuple(part.exact_inverse() for part in reversed(self.parts)))
+
+    def preview_range(self) -> tuple[int, int]:
+        """Give none where there is an exact inverse; else the sums over the parts.
+
+        Raises
+        ------
+        NotInvertibleError
+            If a part has no inverse, with preview neither; its own message says why.
+        """
+        if self.is_invertible():
+            return 0, 0
+        ranges = [part.preview_range() for part in self.parts]
+        return sum(least for least, _ in ranges), sum(most for _, most in ranges)
+
+    def preview_inverse(self, samples: int) -> Operator:
+        """Give the inverses of the parts in reversed order, each with its share of the preview.
+
+        Parts with exact inverses need none. What is left over makes those better that can use it,
+        and delays the command in the end.
+
+        Raises
+        ------
+        NotInvertibleError
+            If the preview is too short for the parts together, or a part has no inverse.
+        """
+        if self.is_invertible():
+            return super().preview_inverse(samples)
+        ranges = [part.preview_range() for part in self.parts]
+        spare = samples - sum(least for least, _ in ranges)
+        if spare < 0:
+            raise NotInvertibleError(
+                f"a preview of {samples} is too short: the parts of this model need "
+                f"{samples - spare} samples of the reference beyond the present one"
+            )
+        shares = []
+        for least, most in ranges:
+            shares.append(least + min(spare, most - least))
+            spare -= shares[-1] - least
+        pairs = zip(reversed(self.parts), reversed(shares), strict=True)
+        inverse = Composition(tuple(part.preview_inverse(share) for part, share in pairs))
+        return inverse if spare == 0 else delayed(inverse, spare)
 
     def parameters(self) -> Parameters:
         """Give the parameters of the parts, one after the other, named by part."""
@@ -254,11 +295,23 @@ def _scales_of_stages(
         not all(leaf.is_map or leaf.keeps_unit() for leaf in leaves_of(stage)) for stage in stages
     ]
     if not any(turning):
-        turning = [not all(leaf.is_map for leaf in leaves_of(stage)) for stage in stages]
+        turning = [
+            not all(leaf.is_map for leaf in leaves_of(stage)) and _may_turn_units(stage)
+            for stage in stages
+        ]
     at = turning.index(True) if any(turning) else len(stages) - 1
     before, after = (input_scale, input_scale), (output_scale, output_scale)
     count = len(stages)
     return [before] * at + [(input_scale, output_scale)] + [after] * (count - at - 1)
+
+
+def _may_turn_units(stage: Operator) -> bool:
+    """Tell whether a stage has a gain of its own, which creep has not."""
+    try:
+        stage.parameter_scales(1.0, 2.0)
+    except InputError:
+        return False
+    return True
 
 
 def _prefixes(leaves: tuple[Operator, ...]) -> list[str]:

@@ -134,7 +134,7 @@ class DeadZone(Operator):
         """Give an empty array, or for the form by direction the previous input, 0."""
         return np.zeros(0 if self.variant == "two-sided" else 1)
 
-    def inverse(self) -> DeadZone:
+    def exact_inverse(self) -> DeadZone:
         """Give the exact inverse, again a dead-zone map.
 
         Thresholds are the images of the thresholds, weights

@@ -53,7 +53,7 @@ class Play(ThresholdOperator):
             invertible=False,
         )
 
-    def inverse(self) -> NoReturn:
+    def exact_inverse(self) -> NoReturn:
         """Refuse: while the play rests, the output does not tell where the input is.
 
         Raises

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from hyst.errors import InputError
+from hyst.errors import InputError, NotInvertibleError
 
 if TYPE_CHECKING:
     from hyst.operators.base import Operator
@@ -63,6 +63,34 @@ def compose(stages: tuple[Operator, ...]) -> Operator:
     composition: Any = _CLASSES["composition"]
     made: Operator = composition(stages)
     return made
+
+
+def delayed(operator: Operator, samples: int) -> Operator:
+    """Make an operator that gives its output some samples later.
+
+    Parameters
+    ----------
+    operator
+        Any operator.
+    samples
+        At least 1.
+
+    Returns
+    -------
+    Operator
+
+    Raises
+    ------
+    NotInvertibleError
+        While there is no operator that delays.
+    """
+    if "delay" not in _CLASSES:
+        raise NotInvertibleError(
+            "there is no operator that delays a command by whole samples; use inverse() without a "
+            "preview, which answers at once"
+        )
+    delay: Any = _CLASSES["delay"]
+    return compose((operator, delay(samples, operator.dt)))
 
 
 def operator_from_dict(data: Any) -> Operator:

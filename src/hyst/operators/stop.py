@@ -54,7 +54,7 @@ class Stop(ThresholdOperator):
             invertible=False,
         )
 
-    def inverse(self) -> NoReturn:
+    def exact_inverse(self) -> NoReturn:
         """Refuse: on its limit the output does not tell where the input is.
 
         Raises

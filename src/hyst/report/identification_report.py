@@ -24,6 +24,7 @@ from hyst.report.tables import (
     Table,
     candidates_table,
     metrics_table,
+    motion_table,
     number,
     parameters_table,
     per_record_table,
@@ -189,6 +190,8 @@ def _page(findings: _Findings, figures: dict[str, bytes]) -> str:
 def _how_good(page: Page, findings: _Findings, figures: dict[str, bytes]) -> None:
     page.heading("How good it is")
     page.table(metrics_table(findings.identified))
+    if findings.identified.motion:
+        page.table(motion_table(findings.identified))
     by_record = per_record_table(findings.identified)
     if by_record.rows:
         page.table(by_record)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from hyst.compensation import Compensation, error_parts
 from hyst.identification import Identified, RecordErrors
+from hyst.identification.result.record_errors import run_at_several_rates
 from hyst.operators import Operator
 from hyst.operators.traits import Degree
 
@@ -113,6 +114,34 @@ def metrics_table(identified: Identified) -> Table:
     )
 
 
+def motion_table(identified: Identified) -> Table:
+    """Give what moves the output, part by part; no rows where nothing came up but hysteresis.
+
+    Parameters
+    ----------
+    identified
+        The result.
+
+    Returns
+    -------
+    Table
+    """
+    unit = identified.description.output_unit
+    return Table(
+        "What moves the output, and what of it the model has",
+        ("part", with_unit("rms", unit and f"[{unit}]"), "rms [% of range]", "in the model"),
+        tuple(
+            (
+                each.name,
+                "not told by these records" if math.isnan(each.rms) else number(each.rms),
+                "-" if math.isnan(each.percent) else f"{each.percent:.3f}",
+                "yes" if each.in_model else "no",
+            )
+            for each in identified.motion
+        ),
+    )
+
+
 def per_record_table(identified: Identified) -> Table:
     """Errors over each of the records it was identified from.
 
@@ -128,6 +157,7 @@ def per_record_table(identified: Identified) -> Table:
     """
     unit = identified.description.output_unit
     several = identified.per_record if len(identified.per_record) > 1 else ()
+    rates = run_at_several_rates(several)
     return Table(
         "Error by record (percent of its own output range)",
         (
@@ -137,8 +167,17 @@ def per_record_table(identified: Identified) -> Table:
             with_unit("max", unit and f"[{unit}]"),
             "max [%]",
             "samples used",
+            *(("frequency [Hz]", "hysteresis [%]", "of the model [%]") if rates else ()),
         ),
-        tuple(_record_row(each) for each in several),
+        tuple(_record_row(each) + (_loop_cells(each) if rates else ()) for each in several),
+    )
+
+
+def _loop_cells(each: RecordErrors) -> tuple[str, ...]:
+    return (
+        "-" if each.frequency is None else number(each.frequency),
+        "-" if each.hysteresis is None else f"{each.hysteresis:.2f}",
+        "-" if each.modelled_hysteresis is None else f"{each.modelled_hysteresis:.2f}",
     )
 
 

@@ -19,6 +19,15 @@ from hyst.report.delay_words import delay_sentence, lag_in_words
 from hyst.report.tables import number, with_unit
 from hyst.signals import Record
 
+CREEP_EQUATION = (
+    "with creep z + \u03a3 w_i x_i in the place of z, the output above without its offset; "
+    "\u03c4_i dx_i/dt = z - x_i"
+)
+CREEP_TEXT = (
+    "After a step of z the output goes on by the share w_i of the step, with the time constant "
+    "\u03c4_i; the lags x_i answer one sample later, so that the inverse stays exact."
+)
+
 
 def words_of(identified: Identified) -> Words:
     """Give the words of a result, its equations with the sign of its output.
@@ -45,7 +54,13 @@ def words_of(identified: Identified) -> Words:
     ]
     sign = "-" if gains and gains[-1] < 0.0 else ""
     equations = tuple(each.format(sign=sign) for each in words.equations)
-    return Words(words.full_name, equations, words.explanations)
+    if not any(each.kind == "creep" for each in leaves_of(identified.model)):
+        return Words(words.full_name, equations, words.explanations)
+    return Words(
+        f"{words.full_name} with creep",
+        (*equations, CREEP_EQUATION),
+        (*words.explanations, CREEP_TEXT),
+    )
 
 
 def command_method(identified: Identified) -> str:
@@ -134,6 +149,7 @@ def in_short(identified: Identified, records: tuple[Record, ...]) -> tuple[str, 
             "No validation record was given, so how well it predicts another drive is not measured."
         )
     sentences.append(lag_sentence(identified))
+    sentences += stage_of_lag(identified)
     if identified.verdict.level != UNFIT:
         sentences.append(invertible_sentence(identified.model))
     return tuple(sentences)
@@ -166,6 +182,31 @@ def lag_sentence(identified: Identified) -> str:
         return "The dynamics have no delay beside their own lag."
     time = number(delay * inside[0].dt)
     return f"The dynamics contain a delay of {delay} sample{'s' * (delay > 1)} ({time} s)."
+
+
+def stage_of_lag(identified: Identified) -> tuple[str, ...]:
+    """Say what first-order lag of the drive is a stage of the model; nothing without one.
+
+    Parameters
+    ----------
+    identified
+        The result.
+
+    Returns
+    -------
+    tuple of str
+    """
+    tau, interval = identified.lag, identified.lag_interval
+    if tau is None:
+        return ()
+    how = ""
+    if interval is not None:
+        low, high = interval
+        how = " (held)" if low == high else f" ({number(low, 3)} to {number(high, 3)} s)"
+    return (
+        f"Before the hysteresis the drive passes a first-order lag of {number(tau, 3)} s{how}; it "
+        "is a stage of the model, and the inverse undoes it.",
+    )
 
 
 def verdict_lines(verdict: Verdict) -> str:

@@ -207,7 +207,7 @@ def figures() -> dict[str, bytes]:
 
 def inverse_constants() -> Table:
     """Compare the printed constants of the inverse plays with eqs. 7-8."""
-    exact = PLAYS.inverse()
+    exact = PLAYS.exact_inverse()
     rows = [("g0", f"{PRINTED_G[0]:g}", f"{exact.p0:.4f}", "0.0")]
     for name, printed, computed in (("s", PRINTED_S, exact.r), ("g", PRINTED_G[1:], exact.p)):
         rows += [
@@ -223,7 +223,7 @@ def inverse_constants() -> Table:
 
 def envelope_constants() -> Table:
     """Compare the printed constants of the inverse envelope with eqs. 52-55."""
-    inverse = DeadZone.odd(XI, RHO).inverse()
+    inverse = DeadZone.odd(XI, RHO).exact_inverse()
     right = inverse.thresholds > 0.0
     psi, epsilon = inverse.thresholds[right], inverse.weights[right]
     linear = float(inverse.weights[inverse.thresholds == 0.0][0])

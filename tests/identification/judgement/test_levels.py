@@ -279,3 +279,25 @@ def test_levels_and_causes_do_not_depend_on_units(what: str, scales: tuple[float
         assert [part.split()[-1] for part in one.split(" %")[:-1]] == [
             part.split()[-1] for part in two.split(" %")[:-1]
         ]
+
+
+def test_an_error_along_a_constant_on_its_bound_is_not_called_noise() -> None:
+    """The force of sliding is at its bound: the model cannot move as its derivative there says."""
+    u = drive("triangle", 5.0, 1)
+    y = u + 0.1 * hyst.PrandtlIshlinskii([1.0], [1.0], 0.0)(u)
+    verdict = verdict_on(record(u, y, 0.002), "dahl")
+    assert verdict.level == "fair"
+    # 0.2 % of noise of some 11, where the model leaves five times that.
+    assert "noise of 0.02" in verdict.sentences[0]
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_model_with_memory_that_is_worse_than_a_line_is_unfit(sign: float) -> None:
+    """Far from where it starts, friction has slid; a line leaves hardly 1 % of the range."""
+    t = np.linspace(0.0, 10.0, 4000)
+    u = 50.0 - 50.0 * np.cos(2.0 * np.pi * t) * np.linspace(1.0, 0.15, t.size)
+    y = sign * (0.5 * u - 0.04 * hyst.PrandtlIshlinskii([1.0], [15.0], 0.0)(u))
+    assert verdict_on(record(u, y, 0.001), "linear").level != "unfit"
+    verdict = verdict_on(record(u, y, 0.001), "dahl")
+    assert verdict.level == "unfit"
+    assert "A straight line describes the record better" in verdict.sentences[0]

@@ -36,7 +36,7 @@ def refuse_or_tell(task: RateDependentTask, clipped: NDArray[np.bool_]) -> tuple
     """
     if not clipped.any():
         return ()
-    low, high = np.sort(task.input_of(np.array([task.low, task.high]))).tolist()
+    low, high = task.input_range()
     k, count = int(np.argmax(clipped)), int(clipped.sum())
     if not task.clip:
         raise InputError(
@@ -48,6 +48,40 @@ def refuse_or_tell(task: RateDependentTask, clipped: NDArray[np.bool_]) -> tuple
         f"{count} of {clipped.size} samples were clipped to the range {low:.6g} to {high:.6g}, the "
         f"first is sample {k}; what this method promises does not hold there",
     )
+
+
+def held_in_range(task: RateDependentTask, u: Array) -> tuple[Array, int]:
+    """Hold a command within its range that a lag before the plays takes beyond it.
+
+    Parameters
+    ----------
+    task
+        With the range of the drive, and whether clipping is allowed.
+    u
+        Command, shape (N,).
+
+    Returns
+    -------
+    held : numpy.ndarray
+    beyond : int
+        Samples that were held.
+
+    Raises
+    ------
+    InputError
+        If there are any and the task does not allow clipping.
+    """
+    low, high = task.input_range()
+    # A map's inverse gives the ends back to rounding.
+    slack = 1e-9 * (high - low) if np.isfinite(high - low) else 0.0
+    outside = (u < low - slack) | (u > high + slack)
+    if outside.any() and not task.clip:
+        raise InputError(
+            f"the stages before the plays ask for a command from {u.min():.6g} to {u.max():.6g}, "
+            f"{int(outside.sum())} samples outside its range {low:.6g} to {high:.6g}; slow the "
+            "reference down, or choose to clip it"
+        )
+    return np.clip(u, low, high), int(outside.sum())
 
 
 def judge_rate_limit(

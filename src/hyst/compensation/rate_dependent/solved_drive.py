@@ -28,9 +28,15 @@ class SolvedDrive:
         Steps tried.
     notes
         What the user should know, in sentences.
+    unpolished
+        The drive before it was polished, shape (N,), or None if nothing was.
+    roughness
+        Which error a second difference of one input unit was worth to the polish.
     """
 
     drive: Array
     status: str
     iterations: int
     notes: tuple[str, ...]
+    unpolished: Array | None = None
+    roughness: float = 0.0

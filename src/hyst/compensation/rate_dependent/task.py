@@ -1,7 +1,8 @@
 """What all inversions of a rate-dependent model start from: its plays, their state, their target.
 
-A model may have maps without memory before and after its plays. The wanted output is taken back
-through those after, the drive found for the plays is taken back through those before.
+A model may have other stages before and after its plays: maps without memory, and a lag, a delay or
+creep. The wanted output is taken back through those after, the drive found for the plays is taken
+back through those before, by their exact inverses with the memory that belongs to the history.
 """
 
 from __future__ import annotations
@@ -36,6 +37,10 @@ class RateDependentTask:
         What stands before the plays, or None.
     start
         State of the whole model before the first sample.
+    plays_state
+        That of the plays.
+    before_state
+        That of the inverse of what stands before the plays; empty if nothing does.
     y_ref
         Wanted output of the model, shape (N,).
     target
@@ -50,6 +55,8 @@ class RateDependentTask:
     plays: RateDependentPrandtlIshlinskii
     before: Operator | None
     start: Array
+    plays_state: Array
+    before_state: Array
     y_ref: Array
     target: Array
     low: float
@@ -58,8 +65,7 @@ class RateDependentTask:
 
     def state(self) -> Array:
         """Give the state of the plays before the first sample, a fresh array."""
-        # Maps without memory have no state of their own.
-        return self.start.copy()
+        return self.plays_state.copy()
 
     def chain(self) -> _engine.Chain:
         """Give the plays as the engine's chain of one stage."""
@@ -67,7 +73,14 @@ class RateDependentTask:
 
     def input_of(self, drive: Array) -> Array:
         """Give the model's input for a drive of the plays."""
-        return drive if self.before is None else self.before.inverse()(drive)
+        if self.before is None:
+            return drive
+        return self.before.inverse().run(drive, self.before_state)[0]
+
+    def input_range(self) -> tuple[float, float]:
+        """Give the range of the model's input that the range of the drive was made of."""
+        low, high = _resting(self.before, np.array([self.low, self.high]), back=True).tolist()
+        return min(low, high), max(low, high)
 
     def explicit_inverse(self) -> tuple[Operator, Array]:
         """Give the explicit inverse and its state before the first sample."""
@@ -106,26 +119,54 @@ def prepare_task(
     Raises
     ------
     InputError
-        If the model has no rate-dependent plays, more than one bank of them, or other stages with
-        memory; or if the reference is out of reach within the range of the input.
+        If the model has no rate-dependent plays, more than one bank of them, or other stages that
+        cannot be taken back; or if the reference is out of reach within the range of the input.
     NotInvertibleError
-        If a map before or after the plays cannot be inverted, or p0 is not positive.
+        If a stage before or after the plays has no exact inverse, or p0 is not positive.
     """
     before, plays, after = stages_around_plays(model)
     reference = finite_vector(y_ref, "y_ref")
-    target = reference if after is None else after.inverse()(reference)
-    start = (
-        model.initial_state()
-        if history is None
-        else model.run(finite_vector(history, "history"))[1]
-    )
+    past = None if history is None else finite_vector(history, "history")
+    start = model.initial_state() if past is None else model.run(past)[1]
+    before_state, past = _memory_of_inverse(before, past)
+    plays_state = plays.initial_state()
+    if past is not None:
+        past, plays_state = plays.run(past, plays_state)
+    target = reference
+    if after is not None:
+        target = after.inverse().run(reference, _memory_of_inverse(after, past)[0])[0]
     low, high = -np.inf, np.inf
     if input_range is not None:
         ends = np.array(range_of_input(input_range))
-        low, high = np.sort(ends if before is None else before(ends)).tolist()
+        low, high = np.sort(_resting(before, ends, back=False)).tolist()
         if not clip:
             _require_reach(plays, target, low, high)
-    return RateDependentTask(model, plays, before, start, reference, target, low, high, clip)
+    return RateDependentTask(
+        model, plays, before, start, plays_state, before_state, reference, target, low, high, clip
+    )
+
+
+def _memory_of_inverse(stages: Operator | None, past: Array | None) -> tuple[Array, Array | None]:
+    """Memory of the inverse of some stages after a past of their input, and their output then."""
+    if stages is None:
+        return np.empty(0), past
+    inverse = stages.inverse()
+    if past is None:
+        return inverse.initial_state(), None
+    output, _ = stages.run(past)
+    return inverse.run(output)[1], output
+
+
+def _resting(stages: Operator | None, values: Array, back: bool) -> Array:
+    """Take values at rest through the maps of some stages, or back; lags and delays leave them."""
+    maps = [] if stages is None else [each for each in leaves_of(stages) if _is_map(each)]
+    if not maps or not np.isfinite(values).all():
+        return values
+    return Composition(maps).inverse()(values) if back else Composition(maps)(values)
+
+
+def _is_map(stage: Operator) -> bool:
+    return stage.traits().memoryless
 
 
 def stages_around_plays(
@@ -141,23 +182,27 @@ def stages_around_plays(
     Returns
     -------
     before, plays, after
-        The maps before and after the plays are None where there are none.
+        What stands before and after the plays is None where nothing does.
 
     Raises
     ------
     InputError
-        If there is not exactly one bank, or another stage has memory.
+        If there is not exactly one bank, or another stage is neither a map nor a lag, a delay or
+        creep.
     NotInvertibleError
         If p0 is not positive.
     """
     leaves = leaves_of(model)
     banks = [i for i, each in enumerate(leaves) if isinstance(each, RateDependentPrandtlIshlinskii)]
     others = [each for i, each in enumerate(leaves) if i not in banks]
-    if len(banks) != 1 or not all(each.traits().memoryless for each in others):
+    # A linear memory that keeps the unit of its signal: what it does to a signal is undone exactly.
+    strange = [each.kind for each in others if not (_is_map(each) or each.keeps_unit())]
+    if len(banks) != 1 or strange:
+        named = f" ({', '.join(strange)})" if strange else ""
         raise InputError(
             f"the model is a {model.kind} with {len(banks)} banks of rate-dependent plays and "
-            f"{sum(not each.traits().memoryless for each in others)} other stages with memory; "
-            "this method is for one bank with maps before and after it, use method='exact' for "
+            f"{len(strange)} other stages with memory{named}; this method is for one bank with "
+            "maps, a lag, a delay or creep before and after it, use method='exact' for "
             "rate-independent models"
         )
     plays = leaves[banks[0]]

@@ -1,10 +1,9 @@
 """Inversion of a rate-dependent model along a whole known trajectory.
 
-The simulated tracking error and a small roughness penalty are minimised over the whole drive. The
-plays make this problem kinked and full of local minima, so it is solved smoothed first: corners
-rounded and roughness weighted, both taken back stage by stage. Several courses from smooth to
-sharp are tried, and the drive that follows best, as simulated without any smoothing, is kept: that
-is how the roughness weight is chosen.
+The plays make the simulated tracking error kinked and full of local minima, so it is first
+minimised smoothed over the whole drive: corners rounded and second differences weighted, both taken
+back stage by stage. Several courses from smooth to sharp are tried; the drive that follows best, as
+simulated without any smoothing, is where the polish starts.
 """
 
 from __future__ import annotations
@@ -15,7 +14,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.compensation.rate_dependent.preview import drive_with_preview
 from hyst.compensation.rate_dependent.scales import Scales, scales_of
 from hyst.compensation.rate_dependent.solved_drive import (
     CONVERGED,
@@ -25,15 +23,16 @@ from hyst.compensation.rate_dependent.solved_drive import (
 )
 from hyst.compensation.rate_dependent.task import RateDependentTask
 from hyst.compensation.rate_dependent.trajectory_descent import Descent, Stage, within_limits
+from hyst.compensation.rate_dependent.trajectory_polish import Aim, polish_drive
+from hyst.compensation.rate_dependent.unit_size import in_unit_size
 
 Array = NDArray[np.float64]
 
 # A drive that moves more than this over the best one so far is not worth a smaller error.
 _MOST_VARIATION = 1.15
 
-# The preview's drive is one more start while it costs no more than a few seconds.
-_MOST_SAMPLES_FOR_PREVIEW = 2000
-_PREVIEW = 20
+# Share of the time that the courses take.
+_SHARE_OF_COURSES = 0.3
 
 
 @dataclass(frozen=True)
@@ -54,17 +53,17 @@ class _Course:
 
 
 # Which course ends lowest depends on the signal: see docs/rate_dependent.md.
-_FROM_EXPLICIT = (
+_COURSES = (
     _Course(1.4, 0.3, 0.04, 3.0, 11),
     _Course(1.4, 0.03, 0.04, 2.0, 11),
     _Course(1.4, 0.3, 0.01, 2.0, 11),
 )
-_FROM_PREVIEW = _Course(0.1, 0.01, 0.001, 3.0, 5)
 
 
 def drive_along_trajectory(
     task: RateDependentTask,
     change: float,
+    aim: Aim,
     max_iterations: int,
     progress: Callable[[float], None],
 ) -> SolvedDrive:
@@ -76,36 +75,50 @@ def drive_along_trajectory(
         Plays, state and target.
     change
         Largest change of the drive per sample; infinite if there is no limit.
+    aim
+        What the drive is polished for.
     max_iterations
-        Of each stage.
+        Of each stage of a course, and in each window of the polish.
     progress
         Told the share done.
 
     Returns
     -------
     SolvedDrive
-        The best drive met, never worse than the explicit one.
+        Better than the explicit one held within the limits.
     """
-    inverse, memory = task.explicit_inverse()
-    explicit, _ = inverse.run(task.target, memory)
-    scales = scales_of(task, explicit)
-    search = _Search(task, change, max_iterations)
-    search.offer(explicit, 0.0, False)
+    # The explicit inverse takes the reference's rate for the drive's: it, too, needs like sizes.
+    unit, by_input, by_output = in_unit_size(task)
+    inverse, memory = unit.explicit_inverse()
+    explicit, _ = inverse.run(unit.target, memory)
+    search = _Search(unit, change * by_input, max_iterations)
+    search.offer(explicit)
+    scales = scales_of(unit, explicit)
     if scales is None:
-        return SolvedDrive(search.drive, SOLVED, 1, ())
-    short = explicit.size <= _MOST_SAMPLES_FOR_PREVIEW
-    courses = [(explicit, each) for each in _FROM_EXPLICIT]
-    if short:
-        planned = drive_with_preview(task, _PREVIEW, change, lambda share: progress(0.5 * share))
-        courses.append((planned.drive, _FROM_PREVIEW))
-    first = 0.5 if short else 0.0
-    for number, (drive, course) in enumerate(courses):
-        search.follow(drive, course, scales)
-        progress(first + (1.0 - first) * (number + 1) / len(courses))
-    note = (f"roughness weight {search.roughness:.3g}",)
-    # A first guess that no course has bettered is an answer if all courses have come to their end.
-    status = CONVERGED if search.converged or search.all_converged else ITERATION_LIMIT
-    return SolvedDrive(search.drive, status, search.steps, note)
+        return SolvedDrive(search.drive / by_input, SOLVED, 1, ())
+    for number, course in enumerate(_COURSES):
+        search.follow(explicit, course, scales)
+        progress(_SHARE_OF_COURSES * (number + 1) / len(_COURSES))
+    rest = 1.0 - _SHARE_OF_COURSES
+    gain = task.plays.p0 + float(np.abs(task.plays.p).sum())
+    roughness = aim.weight(gain)
+    polished = polish_drive(
+        unit,
+        search.drive,
+        change * by_input,
+        aim.objective,
+        roughness * by_output / by_input,
+        max_iterations,
+        lambda share: progress(_SHARE_OF_COURSES + rest * share),
+    )
+    return SolvedDrive(
+        polished.drive / by_input,
+        CONVERGED if polished.converged else ITERATION_LIMIT,
+        search.steps + polished.rounds,
+        (),
+        search.drive / by_input,
+        roughness,
+    )
 
 
 class _Search:
@@ -113,10 +126,9 @@ class _Search:
 
     def __init__(self, task: RateDependentTask, change: float, max_iterations: int) -> None:
         self.task, self.change, self.max_iterations = task, change, max_iterations
-        started = task.start[-1] > 0.0
-        self.before = float(task.start[-2]) if started else None
-        self.score, self.roughness, self.steps = np.inf, 0.0, 0
-        self.converged, self.all_converged = False, True
+        started = task.plays_state[-1] > 0.0
+        self.before = float(task.plays_state[-2]) if started else None
+        self.score, self.steps = np.inf, 0
         self.drive, self.variation = task.target, np.inf
         self.extent = float(np.ptp(task.target)) or 1.0
         self.chain = task.chain()
@@ -127,15 +139,13 @@ class _Search:
         limited = np.isfinite([task.low, task.high, self.change]).any()
         limits = (task.low, task.high, self.change, scales.penalty if limited else 0.0)
         problem = Descent(self.chain, task.state(), task.target, *limits)
-        self.offer(drive, 0.0, False)
         for number in range(course.stages):
             stage = course.stage(number, scales)
-            drive, _, tried, converged = problem.descend(drive, stage, self.max_iterations)
+            drive, _, tried, _ = problem.descend(drive, stage, self.max_iterations)
             self.steps += tried
-            self.all_converged = self.all_converged and converged
-            self.offer(drive, stage.roughness, converged)
+            self.offer(drive)
 
-    def offer(self, drive: Array, roughness: float, converged: bool) -> None:
+    def offer(self, drive: Array) -> None:
         """Keep a drive if it is the best."""
         task = self.task
         held = within_limits(drive, self.before, task.low, task.high, self.change)
@@ -145,4 +155,3 @@ class _Search:
         variation = float(np.abs(np.diff(held)).sum())
         if score < self.score and variation <= _MOST_VARIATION * self.variation:
             self.score, self.drive, self.variation = score, held, variation
-            self.roughness, self.converged = roughness, converged

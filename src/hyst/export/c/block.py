@@ -13,14 +13,18 @@ from hyst.control.tracking_controller import KIND, TrackingController
 from hyst.errors import InputError
 from hyst.export.c.core_stage import CoreStage, core_stages
 from hyst.export.c.numbers import Precision
+from hyst.export.c.scheduled import OFF_SCHEDULE, scheduled_code, second_values
 from hyst.export.c.stage_code import StageCode
+from hyst.models.schedule_run import ScheduledSystem
+from hyst.models.scheduled import Scheduled
+from hyst.models.scheduled_inverse import ScheduledInverse
 from hyst.models.stable_inverse import StableInverse
 from hyst.online import JointEstimator
 from hyst.operators import Affine, ModelDescription, Operator
 from hyst.operators.registry import compose
 from hyst.operators.verdict import refuse_if_unfit
 
-Model = Operator | TrackingController | StableInverse | JointEstimator
+Model = Operator | ScheduledSystem | TrackingController | StableInverse | JointEstimator
 
 
 @final
@@ -62,6 +66,12 @@ class Block:
         Whether it takes in samples and gives commands instead of one output a sample.
     more
         What else the templates of an estimator need.
+    second
+        Values of a second signal for the self-test; empty where there is none.
+    second_meaning
+        Its name and unit.
+    faults
+        C that defines further bits of the fault.
     """
 
     kind: str
@@ -80,6 +90,9 @@ class Block:
     single_stepper: Callable[[], Callable[..., float]] | None = None
     is_estimator: bool = False
     more: Mapping[str, str] = field(default_factory=dict)
+    second: tuple[float, ...] = ()
+    second_meaning: tuple[str, str] = ("", "")
+    faults: str = ""
 
     def sha256(self) -> str:
         """Give the hash of the model."""
@@ -125,7 +138,8 @@ def block_of(model: Model, precision: Precision) -> Block:
     Parameters
     ----------
     model
-        Any operator, or a tracking controller; a stable inverse is refused with the reason.
+        Any operator, a scheduled model or its inverse, or a tracking controller; a stable inverse
+        is refused with the reason.
     precision
         Of the target.
 
@@ -140,6 +154,8 @@ def block_of(model: Model, precision: Precision) -> Block:
     """
     if isinstance(model, TrackingController):
         return _controller(model, precision)
+    if isinstance(model, Scheduled | ScheduledInverse):
+        return _scheduled(model, precision)
     if isinstance(model, StableInverse):
         raise InputError(
             f"a stable inverse looks {model.preview} samples ahead, which a target cannot; compute "
@@ -193,6 +209,36 @@ def refuse_unfit(model: Model, description: ModelDescription | None, despite_ver
     for about in (getattr(model, "description", None), description):
         verdict = about.verdict if isinstance(about, ModelDescription) else None
         refuse_if_unfit(verdict, "nothing is exported", despite_verdict)
+
+
+def _scheduled(model: Scheduled | ScheduledInverse, precision: Precision) -> Block:
+    code = scheduled_code(model, precision)
+    start = tuple(model.initial_state().tolist())
+
+    def single_stepper() -> Callable[..., float]:
+        knots = [[_told(stage) for stage in each] for each in code.knots]
+        return _single.MovingStepper(model.values.tolist(), knots, start)
+
+    first = model.models[0] if isinstance(model, Scheduled) else model.scheduled.models[0].inverse()
+    return Block(
+        kind=model.kind,
+        inputs=("u", "s"),
+        output="y",
+        head=code.head,
+        body=code.body,
+        signal="u",
+        headers=code.headers,
+        start=start,
+        dt=model.dt,
+        model=model.to_dict(),
+        stages=code.knots[0],
+        chain=first,
+        stepper=model.stepper,
+        single_stepper=single_stepper,
+        second=second_values(model),
+        second_meaning=(model.name, model.unit),
+        faults=OFF_SCHEDULE,
+    )
 
 
 def _controller(model: TrackingController, precision: Precision) -> Block:

@@ -8,7 +8,7 @@ from hyst.export.c.drive import PERIOD, SAMPLES
 from hyst.export.c.names import plain_text
 from hyst.export.c.numbers import Precision, literal, table
 from hyst.export.c.readme import signals
-from hyst.export.c.selftest import BAD, SEEDS, SelfTest
+from hyst.export.c.selftest import BAD, SECOND_RESTS, SEEDS, SelfTest
 from hyst.export.c.templating import filled, indented
 from hyst.operators import ModelDescription
 
@@ -62,6 +62,10 @@ def places(
         "elements": ", ".join(f"{each}[k]" for each in block.inputs),
         "samples": str(SAMPLES),
         "signals": _signals(block, about),
+        "more_faults": block.faults.replace("@{NAME}", name.upper()),
+        "raised": f"({name.upper()}_NOT_FINITE | {name.upper()}_OFF_SCHEDULE)"
+        if block.second
+        else f"{name.upper()}_NOT_FINITE",
         "sample_time": _sample_time(block, name),
         # What a refused sample leaves in an estimator's scratch area is of no use.
         "saved_number": "hyst_is_finite(state->memory[i]) ? state->memory[i] : HYST_REAL(0.0)"
@@ -86,7 +90,7 @@ def source(block: Block, places: dict[str, str], precision: Precision) -> str:
         "declarations": _start_table(block, precision) + block.head,
         "start": indented(_start(block)),
         "memory": "    hyst_real *const memory = state->memory;\n" if uses_memory else "",
-        "calls": indented(block.body),
+        "calls": indented(block.body.replace("@{NAME}", places["NAME"])),
         "signal": block.signal,
     }
     return filled(f"{_template(block)}.c", places | more) + filled("state.c", places)
@@ -98,15 +102,21 @@ def selftest_source(block: Block, places: dict[str, str]) -> str:
     if block.is_estimator:
         bad = {"bad_u": str(BAD[0]), "bad_y": str(BAD[1])}
         return filled("estimator_selftest.c", shared | bad)
-    drives = [f"drive_{each}" for each in block.inputs]
+    driven = block.inputs[:1] if block.second else block.inputs
+    drives = [f"drive_{each}" for each in driven]
     lines = [
         f"static drive {each} = {{{seed}u, DRIVE_LOW, DRIVE_LOW, 1}};"
         for each, seed in zip(drives, SEEDS, strict=False)
     ]
     drawn = [
         f"const hyst_real {name} = next_sample(&{each}, k, {bad}u);"
-        for name, each, bad in zip(block.inputs, drives, BAD, strict=False)
+        for name, each, bad in zip(driven, drives, BAD, strict=False)
     ]
+    if block.second:
+        drawn.append(
+            f"const hyst_real s = k % DRIVE_PERIOD == {BAD[1]}u ? (hyst_real)NAN : "
+            f"second[(k / {SECOND_RESTS}u) % {len(block.second)}u];"
+        )
     more = {
         "ones": ", ".join("1" for _ in block.inputs),
         "drives": indented("\n".join(lines)) + "\n",
@@ -116,8 +126,18 @@ def selftest_source(block: Block, places: dict[str, str]) -> str:
     return filled("selftest.c", shared | more)
 
 
-def vectors(test: SelfTest, places: dict[str, str], precision: Precision) -> str:
-    """Give the header with what a ``test`` expects in a ``precision``, filled with ``places``."""
+def vectors(block: Block, test: SelfTest, places: dict[str, str], precision: Precision) -> str:
+    """Give the header with what a self-test expects.
+
+    Parameters
+    ----------
+    block, test
+        What is exported, and its self-test.
+    places
+        What stands at every place.
+    precision
+        Of the target.
+    """
     drive = test.drive
     more = {
         "low": f"({drive.low})",
@@ -125,7 +145,7 @@ def vectors(test: SelfTest, places: dict[str, str], precision: Precision) -> str
         "stride": str(drive.stride),
         "period": str(PERIOD),
         "unit": literal(drive.unit, precision, "unit"),
-        "measured": _measured(test, precision),
+        "measured": _measured(test, precision) + _second(block, precision),
         "expected": table(test.expected.tolist(), precision, "expected"),
     }
     return filled("selftest_vectors.h", places | more)
@@ -140,6 +160,13 @@ def _measured(test: SelfTest, precision: Precision) -> str:
         return ""
     values = table(test.measured.tolist(), precision, "measured")
     return f"static const hyst_real measured[SAMPLES] = {values};\n"
+
+
+def _second(block: Block, precision: Precision) -> str:
+    if not block.second:
+        return ""
+    values = table(block.second, precision, "second")
+    return f"static const hyst_real second[{len(block.second)}] = {values};\n"
 
 
 def _signals(block: Block, about: ModelDescription) -> str:

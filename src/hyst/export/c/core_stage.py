@@ -6,12 +6,13 @@ back from there; so an export has the engine's bits.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, final
 
 from hyst import _engine
 from hyst.operators.base import Operator
+from hyst.operators.stage import Stage
 
 
 @final
@@ -81,7 +82,18 @@ def core_stages(operator: Operator) -> tuple[CoreStage, ...]:
     >>> [stage.kind for stage in core_stages(Affine(2.0) @ Play(0.5))]
     ['play', 'affine']
     """
-    chain = _engine.Chain(operator.stages())
+    return stages_as_core(operator.stages())
+
+
+def stages_as_core(stages: Sequence[Stage]) -> tuple[CoreStage, ...]:
+    """Give stages as the core takes them; those inside another one stand before it.
+
+    Parameters
+    ----------
+    stages
+        In the order the signal passes them.
+    """
+    chain = _engine.Chain(stages)
     return tuple(stage for i in range(len(chain)) for stage in _with_inside(chain.constants(i)))
 
 

@@ -77,8 +77,9 @@ def c_project(
     Parameters
     ----------
     model
-        Any operator; a tracking controller, whose step takes y_ref and y; or a joint estimator,
-        which takes in samples and gives commands, from the estimate and the memory it has now.
+        Any operator; a scheduled model, whose step takes the second signal too; a tracking
+        controller, whose step takes y_ref and y; or a joint estimator, which takes in samples and
+        gives commands, from the estimate and the memory it has now.
     folder
         What to create: a folder, or a zip if it ends in ``.zip``.
     precision
@@ -184,7 +185,7 @@ def project_files(
         f"{name}.h": head,
         f"{name}.c": main,
         "selftest.c": selftest_source(block, common),
-        "selftest_vectors.h": vectors(test, common, precision),
+        "selftest_vectors.h": vectors(block, test, common, precision),
         "CMakeLists.txt": filled("CMakeLists.txt", common | cmake),
         "LICENSE": filled("LICENSE", {}),
         "README.md": readme(block, common, about, test, len(sources) > 1),

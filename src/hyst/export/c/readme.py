@@ -54,7 +54,9 @@ def readme(
     more = {
         "rows": "\n".join(f"| {key} | {value} |" for key, value in rows.items()),
         "usage": _ESTIMATOR_USAGE if block.is_estimator else _USAGE,
-        "faults": _ESTIMATOR_FAULTS if block.is_estimator else _FAULTS,
+        "faults": _ESTIMATOR_FAULTS
+        if block.is_estimator
+        else _FAULTS + (_SCHEDULE_FAULTS if block.second else ""),
         "in_precision": " in single precision" if places["precision"] == "single" else "",
         "elements": ", ".join(block.inputs),
     }
@@ -72,6 +74,9 @@ def signals(block: Block, about: ModelDescription) -> dict[str, tuple[str, str]]
         return dict(zip(block.inputs, named, strict=True))
     if len(block.inputs) == 1:
         return dict(zip((block.inputs[0], block.output), named, strict=True))
+    if block.second:
+        meant = (named[0], block.second_meaning, named[1])
+        return dict(zip((*block.inputs, block.output), meant, strict=True))
     return {}
 
 
@@ -114,6 +119,10 @@ _FAULTS = """\
 A sample that is NaN or infinite, or that overflows inside, is answered with the last output; the
 memory it did not reach stays as it was, and `@{name}_fault` gives `@{NAME}_NOT_FINITE` until
 `@{name}_clear_fault`. A step before `@{name}_init` gives 0 and `@{NAME}_NOT_READY`.
+"""
+_SCHEDULE_FAULTS = """\
+Constants follow the second signal by straight lines; outside the values they are known at they are
+held at the nearer end, and `@{name}_fault` gives `@{NAME}_OFF_SCHEDULE` too.
 """
 _ESTIMATOR_USAGE = """\
     u = @{name}_command(&state, y_ref);               /* the input for the output that is wanted */

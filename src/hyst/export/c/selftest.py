@@ -17,6 +17,9 @@ SEEDS = (1, 2)
 BAD = (500, 750)
 """Seed of every input, and which sample of every period is not finite."""
 
+SECOND_RESTS = 8
+"""Samples for which a second signal rests at each of its values."""
+
 
 @final
 @dataclass(frozen=True, eq=False)
@@ -44,7 +47,8 @@ class SelfTest:
     def of(cls, block: Block, precision: Precision, about: ModelDescription) -> SelfTest:
         """Run a ``block`` in a ``precision``, over the input range that ``about`` tells, if any."""
         low, high = about.input_low, about.input_high
-        if len(block.inputs) == 1 and low is not None and high is not None and low < high:
+        driven = len(block.inputs) == 1 or block.second
+        if driven and low is not None and high is not None and low < high:
             drive = Drive.between(low, high)
         else:
             drive = drive_for(block.chain)
@@ -61,6 +65,11 @@ def _outputs(block: Block, drive: Drive, precision: Precision, measured: Array |
         with_bad = measured.copy()
         with_bad[BAD[1] :: PERIOD] = np.nan
         signals += [with_bad, measured]
+    elif block.second:
+        places = (np.arange(signals[0].size) // SECOND_RESTS) % len(block.second)
+        second = np.array(block.second)[places]
+        second[BAD[1] :: PERIOD] = np.nan
+        signals.append(second)
     elif len(block.inputs) == 2:
         signals.append(drive.samples(SEEDS[1], BAD[1]))
     samples = [each.tolist() for each in signals]

@@ -7,8 +7,9 @@ can be parameters; ``held_by`` then says how that structure is reached, as "mode
 
 from __future__ import annotations
 
+import dataclasses
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from textwrap import wrap
 from typing import final
@@ -57,6 +58,8 @@ class StageCode:
     held_by
         How the structure that holds the constants is reached, as "model->"; None for constants
         that are fixed in the file.
+    now
+        For stages whose constants move: where they begin in the array ``now`` of the step.
 
     Raises
     ------
@@ -67,6 +70,7 @@ class StageCode:
     stages: tuple[CoreStage, ...]
     precision: Precision
     held_by: str | None = None
+    now: Mapping[int, int] = dataclasses.field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for constant in self.constants():
@@ -99,6 +103,8 @@ class StageCode:
         """
         lines: list[str] = []
         for index, stage in enumerate(self.stages):
+            if index in self.now:
+                continue
             for constant in _constants(stage, index):
                 lines += self._declaration(constant)
             if self.held_by is None and _stands_alone(stage):
@@ -147,7 +153,7 @@ class StageCode:
         structure = self._written(stage.structure, stage, index)
         if not _stands_alone(stage):
             yield from _STATEMENT.findall(structure)
-        elif self.held_by is not None:
+        elif self.held_by is not None or index in self.now:
             yield from _in_lines(f"const {structure}")
         yield self._written(stage.call, stage, index, signal, place)
 
@@ -177,6 +183,8 @@ class StageCode:
     def _reference(self, stage: CoreStage, index: int) -> Callable[[str], str]:
         """Give what C writes for a constant of a stage."""
         name = _name(stage, index)
+        if index in self.now:
+            return _in_array(stage, self.now[index])
 
         def reference(field: str) -> str:
             if field in stage.tables and not stage.tables[field]:
@@ -213,6 +221,20 @@ def _first_inside(stages: tuple[CoreStage, ...]) -> dict[int, list[int]]:
         if "$input" in stage.call:
             result.setdefault(start, []).insert(0, index)
     return result
+
+
+def values_of(stage: CoreStage) -> tuple[float, ...]:
+    """Give all constants of a stage in the order in which an array holds them."""
+    return tuple(value for each in _constants(stage, 0) for value in each.values)
+
+
+def _in_array(stage: CoreStage, first: int) -> Callable[[str], str]:
+    """Give what C writes for a constant of a stage whose constants stand in an array."""
+    places: dict[str, str] = dict.fromkeys(stage.tables, "NULL")
+    for each in _constants(stage, 0):
+        places[each.field] = f"now + {first}" if each.is_table else f"now[{first}]"
+        first += len(each.values)
+    return places.__getitem__
 
 
 def _input(stage: CoreStage, index: int) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
 
+from hyst.errors import InputError
 from hyst.export.c.block import Model
 from hyst.export.c.c_sources import header, places, source
 from hyst.export.c.core_sources import core_files
@@ -23,6 +24,7 @@ from hyst.export.fmi.variables import (
     parameter_variables,
 )
 from hyst.export.tool_block import ToolBlock, tool_block
+from hyst.models.schedule_run import ScheduledSystem
 from hyst.operators import ModelDescription
 
 _TEMPLATES = Path(__file__).resolve().parents[1] / "templates" / "fmu"
@@ -83,6 +85,11 @@ def fmu_model(model: Model) -> FmuModel:
     InputError
         If it cannot be exported.
     """
+    if isinstance(model, ScheduledSystem):
+        raise InputError(
+            "a scheduled model is no FMU yet: its constants follow a second input, where an FMU "
+            "offers them as parameters; export it as C or MEX, or the model at(value) as an FMU"
+        )
     tool = tool_block(model)
     block = tool.block
     fixed = StageCode(block.stages, "double").calls(block.signal)

@@ -166,7 +166,27 @@ def settled_by_family(data: Data, fit: Fit, evidence: DelayEvidence) -> float:
             if error >= least:
                 break
             best, least, delay = delay, error, delay + step
-    return best if least <= NOISE_ALIKE * evidence.noise_rms else data.lag
+    most = NOISE_ALIKE * evidence.noise_rms
+    if least <= most:
+        return best
+    return _between_whole(data, fit, evidence, best, most) if evidence.rate_or_lag else data.lag
+
+
+def _between_whole(data: Data, fit: Fit, evidence: DelayEvidence, about: int, most: float) -> float:
+    """Give a delay next to a whole one with which nothing but noise is left; else the one so far.
+
+    Where records at several rates show a lag, general loops have taken none.
+    """
+    ends = (max(evidence.low, about - 1.0), min(evidence.high, about + 1.0))
+    if ends[1] - ends[0] < NARROW:
+        return data.lag
+    found = scipy.optimize.minimize_scalar(
+        lambda lag: _rms(data, fit, float(lag)),
+        bounds=ends,
+        method="bounded",
+        options={"xatol": 0.02, "maxiter": 10},
+    )
+    return round(float(found.x), 3) if found.fun <= most else data.lag
 
 
 def _settled_by_rates(data: Data, fit: Fit, evidence: DelayEvidence) -> float:

@@ -124,7 +124,7 @@ def _refuse_other_signals(named: Mapping[str, Operator], records: Sequence[Recor
     for name, model in named.items():
         about = model.description
         for number, record in enumerate(records, 1):
-            model.require_sample_time(record.dt, f"record {number}, for {name},")
+            model.require_possible_time(record.dt, f"record {number}, for {name},")
             for what in ("input", "output"):
                 unit, own = (getattr(each, f"{what}_unit") for each in (record, about))
                 if units_differ(unit, own):

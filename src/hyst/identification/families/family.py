@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, final
+from typing import TYPE_CHECKING, ClassVar, Literal, Self, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,6 +80,10 @@ class Family(ABC):
     """Whether the delay of the output is part of the model, so that none is looked for before."""
     depends_on_rate: ClassVar[bool] = False
     """Whether samples left out of a record would change the model."""
+    about_rates: ClassVar[str] = ""
+    """Advice where its error depends on the rate, if another than a family that does."""
+    rate_between_samples: ClassVar[bool] = False
+    """Whether it takes a rate from one sample to the next, of which a plant has one in between."""
     explains: ClassVar[tuple[str, ...]] = ()
     """Findings that make no record doubtful of which it leaves nothing but noise."""
     describes: ClassVar[tuple[str, ...]] = ()
@@ -101,6 +105,10 @@ class Family(ABC):
     def can_wrap(cls, other: type[Family]) -> bool:
         """Tell whether a family can be the one inside this one."""
         return False
+
+    def refused_before_dynamics(self) -> str:
+        """Say which option cannot be served where dynamics come after; nothing if all can."""
+        return ""
 
     def records_to_use(
         self, records: tuple[Record, ...], start: Literal["auto"] | int
@@ -367,27 +375,6 @@ def require_this_version(family: Family) -> None:
         )
 
 
-def require_choice(value: Any, choices: tuple[str, ...], name: str) -> None:
-    """Refuse a word that is none of the choices.
-
-    Parameters
-    ----------
-    value
-        What was given.
-    choices
-        What may be.
-    name
-        What the message calls it.
-
-    Raises
-    ------
-    InputError
-        If it is another one.
-    """
-    if value not in choices:
-        raise InputError(f"{name} is {value!r}; choose one of {', '.join(choices)}")
-
-
 __all__ = [
     "AUTO",
     "Estimates",
@@ -395,6 +382,5 @@ __all__ = [
     "Fit",
     "Start",
     "Words",
-    "require_choice",
     "require_this_version",
 ]

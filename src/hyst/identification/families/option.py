@@ -31,12 +31,15 @@ class Option:
         cannot read it gives as it is, to be refused with the rest.
     metavar
         What stands for the value in the help.
+    typed
+        The name on the command line without its dashes, where that of the field is taken there.
     """
 
     check: Callable[[Any, str], Any]
     help: str
     read: Callable[[str, str], Any]
     metavar: str
+    typed: str = ""
 
 
 def option(default: Any, what: Option) -> Any:
@@ -88,7 +91,7 @@ def whole_number(least: int, most: int, help: str) -> Option:
     return Option(check, help, read_whole, "N")
 
 
-def choice(choices: tuple[str, ...], help: str) -> Option:
+def choice(choices: tuple[str, ...], help: str, typed: str = "") -> Option:
     """Give an option that is one of a few words.
 
     Parameters
@@ -97,6 +100,8 @@ def choice(choices: tuple[str, ...], help: str) -> Option:
         The words.
     help
         One sentence.
+    typed
+        As of ``Option``.
     """
 
     def check(value: Any, name: str) -> str:
@@ -104,7 +109,7 @@ def choice(choices: tuple[str, ...], help: str) -> Option:
             raise InputError(f"{name} is {value!r}; choose one of {', '.join(choices)}")
         return value
 
-    return Option(check, help, lambda text, _: text, "|".join(choices))
+    return Option(check, help, lambda text, _: text, "|".join(choices), typed)
 
 
 def as_numbers(values: Any, name: str, what: str, least: float = -np.inf) -> NDArray[np.float64]:

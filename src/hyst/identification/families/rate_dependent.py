@@ -11,63 +11,90 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Self, final
+from typing import TYPE_CHECKING, Any, Literal, Self, final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
-from hyst.identification.families.family import Family, Start, Words
+from hyst.identification.families.drive_noise import errors_by_drives, told_of_drives
+from hyst.identification.families.estimates import Estimates
+from hyst.identification.families.family import Family, Fit, Start, Words
+from hyst.identification.families.mapped_plays import KNOTS_OPTION
 from hyst.identification.families.option import (
     AUTO,
-    Option,
-    as_numbers,
     choice,
     option,
-    read_numbers,
     whole_number_or_auto,
 )
 from hyst.identification.families.plays import PLAY_TEXT, SIZES, radii_option
-from hyst.identification.fit.non_negative import non_negative
-from hyst.identification.fit.parametrization import SMALLEST_SLOPE, Parametrization, unchanged
-from hyst.identification.fit.problem import model_jacobian
+from hyst.identification.families.rate_dependent_layout import (
+    DEAD_ZONE,
+    ENVELOPE,
+    EVEN,
+    FREE,
+    GIVEN,
+    NO_MAP,
+    radius_count,
+)
+from hyst.identification.families.rate_dependent_options import (
+    EQUAL,
+    FILTER_OPTION,
+    HYSTERESIS,
+    NO_FILTER,
+    RECORD_WEIGHTS_OPTION,
+)
+from hyst.identification.families.rate_dependent_starts import FirstGuesses
+from hyst.identification.families.rate_dependent_words import words_of
+from hyst.identification.families.rate_law import (
+    LAWS,
+    LINEAR,
+    MOST_PIECES,
+    PIECEWISE,
+    SATURATING,
+    SQRT,
+    RateLaw,
+    forms_of,
+    law_for,
+)
+from hyst.identification.families.rate_law_choice import (
+    has_dynamics,
+    layout_of,
+    simplest_law,
+    solved,
+    with_law,
+)
+from hyst.identification.families.rate_law_told import (
+    law_that_does_not_fit,
+    notes_of_law,
+    with_constants_of_law,
+)
+from hyst.identification.fit.bounded_least_squares import Solution
 from hyst.identification.record_use.overview import Overview
-from hyst.identification.record_use.used_samples import Data
-from hyst.models import RateDependentPrandtlIshlinskii
-from hyst.operators import Affine, Composition
-from hyst.signals import hysteresis_percent, reversals
+from hyst.identification.record_use.smoothed_drive import (
+    Smoother,
+    driven_by,
+    without_noise,
+)
+from hyst.identification.record_use.used_samples import Data, prepare
+from hyst.signals import Record, hysteresis_percent, reversals
+
+if TYPE_CHECKING:
+    from hyst.identification.result.identified import Identified
 
 Array = NDArray[np.float64]
 
-EVEN, FREE, GIVEN = "even", "free", "given"
-EQUAL, HYSTERESIS = "equal", "hysteresis"
 MOST_PLAYS = 50
 
-_SPANS = (0.3, 0.5, 0.7, 0.9)
-"""Largest radius of first guesses, over the largest the records can show."""
+_PLAYS_FOR_THE_LAW = 6
+"""Evenly spaced, with which a law is chosen before their number is known."""
 
-_WIDENINGS = (0.0, 0.1, 0.25, 0.5, 0.9)
-"""Widening at the fastest sample of first guesses, over the largest radius."""
+_ITERATIONS_FOR_THE_LAW = 25
 
 _STARTS = 3
 
 _ONE_FREQUENCY = 1.2
 """Half swings whose durations differ by less than this factor all belong to one frequency."""
-
-
-def _as_record_weights(given: Any, name: str) -> str | tuple[float, ...]:
-    if isinstance(given, str):
-        if given in (EQUAL, HYSTERESIS):
-            return given
-        raise InputError(
-            f"{name} is {given!r}; choose {EQUAL!r}, {HYSTERESIS!r} or a number a record"
-        )
-    what = f"positive numbers, one a record, or {EQUAL!r} or {HYSTERESIS!r}"
-    return tuple(as_numbers(given, name, what, 0.0).tolist())
-
-
-def _read_record_weights(text: str, name: str) -> Any:
-    return read_numbers(text, name) if "," in text else text
 
 
 @final
@@ -86,6 +113,22 @@ class RateDependent(Family):
     record_weights
         A_p: ``"equal"``, which is best for noise of equal size; ``"hysteresis"``: the hysteresis
         percent of the record over that of the first one; or a number for each record.
+    rate
+        How the radii grow with the rate x: ``"linear"``: ``beta x``; ``"sqrt"``: ``c sqrt(x)``;
+        ``"saturating"``: ``a x / (1 + x / b)`` or ``a b (1 - exp(-x / b))``, whichever fits better;
+        ``"piecewise"``: straight between rates that the records hold; or ``"auto"``: the simplest
+        of these that is not worse.
+    map
+        ``"none"``; ``"dead-zone"``: a piecewise linear map after the plays (S4 sec. III-D);
+        ``"envelope"``: one before them, of whose output the rate is taken.
+    knots
+        Number of knots of the map, 1 to 50, evenly spaced over the signal it acts on; of an
+        envelope also their places, input units.
+    rate_filter
+        What is done about noise of the measured drive, whose differences are no rates of the
+        actuator: ``"auto"``: where there is some, it is smoothed out of the whole record, as
+        strongly as cross-validation says; a time constant, s: of a low-pass without lag; or
+        ``"none"``. The model has no filter: it is for the commanded drive.
     """
 
     name = "rdpi"
@@ -103,6 +146,11 @@ class RateDependent(Family):
     )
     methods = ("trajectory", "sample-exact", "explicit")
     depends_on_rate = True
+    about_rates = (
+        "Let the radii grow by another law of the rate (--rate-law auto), or use family "
+        "hammerstein where there is a resonance."
+    )
+    rate_between_samples = True
     explains = ("rate dependence", "dynamics")  # its output falls behind as the rate grows
 
     plays: Any = option(AUTO, whole_number_or_auto(1, MOST_PLAYS, "Number of plays."))
@@ -110,15 +158,16 @@ class RateDependent(Family):
     spacing: Any = option(
         EVEN, choice((EVEN, FREE), "Radii even (multiples of the first) or free.")
     )
-    record_weights: Any = option(
-        EQUAL,
-        Option(
-            _as_record_weights,
-            "equal, hysteresis, or a number a record, as 1,1.56,2.",
-            _read_record_weights,
-            "WEIGHTS",
-        ),
+    record_weights: Any = option(EQUAL, RECORD_WEIGHTS_OPTION)
+    rate: Any = option(
+        LINEAR, choice((*LAWS, AUTO), "How radii grow with the rate.", typed="rate-law")
     )
+    map: Any = option(
+        NO_MAP,
+        choice((NO_MAP, DEAD_ZONE, ENVELOPE), "A map after the plays, before them, or none."),
+    )
+    knots: Any = option(6, KNOTS_OPTION)
+    rate_filter: Any = option(AUTO, FILTER_OPTION)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -126,6 +175,40 @@ class RateDependent(Family):
             raise InputError(
                 f"plays is {self.plays} but {len(self.radii)} radii are given; leave out plays"
             )
+        if self.map != ENVELOPE and not isinstance(self.knots, int):
+            raise InputError(
+                f"knots are {list(self.knots)}; give their number, for only the places of an "
+                "envelope's knots are known before the fit"
+            )
+
+    def refused_before_dynamics(self) -> str:
+        """Refuse laws that more than scale, and a filter of the drive."""
+        if self.rate in (SATURATING, AUTO):
+            return (
+                f"rate is {self.rate!r}, but before dynamics only laws that one or more factors "
+                f"scale are identified; give {LINEAR!r}, {SQRT!r} or {PIECEWISE!r}"
+            )
+        if not isinstance(self.rate_filter, str):
+            return (
+                f"rate_filter is {self.rate_filter} s, but before dynamics the drive is taken as "
+                "it is; leave out rate_filter, or smooth the drive of the records"
+            )
+        return ""
+
+    def records_to_use(
+        self, records: tuple[Record, ...], start: Literal["auto"] | int
+    ) -> tuple[Data, tuple[str, ...]]:
+        """Take the noise out of measured drives, and say so."""
+        smoothers = tuple(self._smoother(each) for each in records)
+        if not any(smoothers):
+            return prepare(records, start), ()
+        smooth = tuple(map(driven_by, records, smoothers))
+        return replace(prepare(smooth, start), smoothers=smoothers), told_of_drives(smoothers)
+
+    def _smoother(self, record: Record) -> Smoother | None:
+        if self.rate_filter == NO_FILTER:
+            return None
+        return without_noise(record, None if self.rate_filter == AUTO else self.rate_filter)
 
     def suited(self, data: Data) -> tuple[Self, tuple[str, ...]]:
         """Refuse radii out of reach and a wrong number of weights; say if no rate shows."""
@@ -142,13 +225,16 @@ class RateDependent(Family):
                 f"record_weights are {list(self.record_weights)}; give {count} positive numbers, "
                 "one a record"
             )
-        return self, _frequency_note(data)
+        return self, _frequency_note(data) + _sample_times_note(data)
 
     def in_units(self, input_scale: float, output_scale: float) -> Self:
-        """Give the family with scaled radii."""
-        if self.radii is None:
-            return self
-        return replace(self, radii=[r * input_scale for r in self.radii])
+        """Give the family with scaled radii and knots."""
+        given: dict[str, Any] = {}
+        if self.radii is not None:
+            given["radii"] = [r * input_scale for r in self.radii]
+        if not isinstance(self.knots, int):
+            given["knots"] = [each * input_scale for each in self.knots]
+        return replace(self, **given) if given else self
 
     def sizes(self) -> tuple[int, ...]:
         """Give the numbers of plays to compare."""
@@ -157,122 +243,134 @@ class RateDependent(Family):
         return SIZES if self.plays == AUTO else (self.plays,)
 
     def least_parameters(self, size: int) -> int:
-        """Give the number of weights, radii, beta and the offset."""
-        return size + self._radius_count(size) + 3
+        """Give the number of weights, radii, constants of law and map, and the offset."""
+        of_law = {SATURATING: 2, PIECEWISE: MOST_PIECES}.get(self.rate, 1)
+        return size + self._radius_count(size) + of_law + self._knot_count + 2
 
     def root_weights(self, data: Data) -> Array | None:
         """Give sqrt(A_p) at the samples of record p (S4 eq. 44)."""
         if self.record_weights == EQUAL:
             return None
-        weights = self.record_weights
-        if weights == HYSTERESIS:
-            percent = np.array(
-                [
-                    hysteresis_percent(r.u[w], y)
-                    for r, w, y in zip(data.records, data.windows(), data.outputs(), strict=True)
-                ]
-            )
-            if percent[0] == 0.0:
-                raise InputError("the first record shows no hysteresis; give record_weights")
-            weights = percent / percent[0]
-        return np.repeat(np.sqrt(np.asarray(weights)), data.lengths())
+        return np.repeat(np.sqrt(self._record_weights(data)), data.lengths())
+
+    def _record_weights(self, data: Data) -> Array:
+        """Give A_p, one a record (S4 eq. 45)."""
+        if self.record_weights != HYSTERESIS:
+            return np.asarray(self.record_weights)
+        percent = np.array(
+            [
+                hysteresis_percent(r.u[w], y)
+                for r, w, y in zip(data.records, data.windows(), data.outputs(), strict=True)
+            ]
+        )
+        if percent[0] == 0.0:
+            raise InputError("the first record shows no hysteresis; give record_weights")
+        return np.asarray(percent / percent[0])
+
+    def _told_weights(self, data: Data) -> tuple[str, ...]:
+        if self.record_weights != HYSTERESIS:
+            return ()
+        weights = ", ".join(f"{each:.3g}" for each in self._record_weights(data))
+        return (f"the records weigh {weights}: their hysteresis percent over that of the first",)
 
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
-        """Give the best points of a grid over radii and beta, weights by least squares."""
-        data = overview.data
-        fastest = max(float(np.abs(np.diff(each.u)).max()) / each.dt for each in data.records)
-        has_rate = not _frequency_note(data)
-        parametrization = self._parametrize(overview, size, has_rate)
-        guesses = [
-            self._guess(overview, parametrization, radii, widening, fastest)
-            for radii in self._radius_guesses(size, data.largest_radius)
-            for widening in (_WIDENINGS if has_rate else (0.0,))
+        """Give the best points of a grid over radii and widening, weights by least squares."""
+        if not self._shows_rate(overview.data):
+            laws = [law_for(LINEAR, "", overview.data)]
+        elif self.rate == AUTO:
+            key = ("rate law", self)
+            name, form = overview.once(key, lambda: self._first_choice(overview))
+            laws = [law_for(name, form, overview.data)]
+        else:
+            laws = self._laws(overview.data)
+        return self._first_guesses(overview).best(size, laws, _STARTS)
+
+    def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Renew the tangent of the law; choose the law once more where it is open."""
+        if not layout_of(fit).has_rate or has_dynamics(fit):
+            return fit
+        fit = solved(fit, overview, fit.solution.theta, max_iterations)
+        own = layout_of(fit).law
+        fits = [
+            fit
+            if (law.name, law.form) == (own.name, own.form)
+            else with_law(fit, law, overview, min(max_iterations, _ITERATIONS_FOR_THE_LAW))
+            for law in self._laws(overview.data)
         ]
-        guesses.sort(key=lambda each: each[0])
-        return [(parametrization, theta) for _, theta in guesses[:_STARTS]]
+        chosen = simplest_law(fits, overview) if len(fits) > 1 else fit
+        if chosen is fit:
+            return fit
+        return solved(chosen, overview, chosen.solution.theta, max_iterations)
+
+    def estimates(self, fit: Fit) -> Estimates:
+        """Give the constants that are free; of a law its own and not those of its table."""
+        return with_constants_of_law(super().estimates(fit), fit)
+
+    def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
+        """Say which law was found, and what the records weigh."""
+        return notes_of_law(fit) + self._told_weights(data)
+
+    def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
+        """Say where the law does not fit, and count the drive's noise in the standard errors."""
+        data, root = overview.data, self.root_weights(overview.data)
+        by_drives = errors_by_drives(fit, data, root)
+        errors = identified.standard_errors.copy()
+        # Constants of further stages come last.
+        errors[: by_drives.size] = np.hypot(errors[: by_drives.size], by_drives)
+        whole = len(fit.operator.parameters()) == len(identified.model.parameters())
+        told = law_that_does_not_fit(fit, data, root) if whole else ()
+        return replace(
+            identified,
+            undetermined=(*identified.undetermined, *told),
+            standard_errors=errors,
+        )
+
+    def words_for(self, identified: Identified) -> Words:
+        """Give the words for the law and the map that were found."""
+        return words_of(self.words, identified.model)
+
+    def _shows_rate(self, data: Data) -> bool:
+        return not _frequency_note(data)
+
+    def _laws(self, data: Data) -> list[RateLaw]:
+        """Give the laws that the option allows, from the simplest to the richest."""
+        names = LAWS if self.rate == AUTO else (self.rate,)
+        return [law_for(name, form, data) for name in names for form in forms_of(name)]
+
+    def _first_choice(self, overview: Overview) -> tuple[str, str]:
+        """Choose a law with a fixed number of plays, evenly spaced."""
+        size = self.sizes()[0] if len(self.sizes()) == 1 else _PLAYS_FOR_THE_LAW
+        fits, guesses = [], self._first_guesses(overview)
+        for law in self._laws(overview.data):
+            [(parametrization, theta)] = guesses.best(size, [law], 1)
+            unsolved = Fit(self, size, parametrization, Solution(theta, np.inf, 0, ""))
+            fits.append(solved(unsolved, overview, theta, _ITERATIONS_FOR_THE_LAW))
+        law = layout_of(simplest_law(fits, overview)).law
+        return law.name, law.form
 
     def _radius_count(self, size: int) -> int:
-        """How many parameters say where the radii are."""
-        return {EVEN: min(size, 1), FREE: size, GIVEN: 0}[self._spacing]
+        return radius_count(self._spacing, size)
+
+    @property
+    def _knot_count(self) -> int:
+        if self.map == NO_MAP:
+            return 0
+        return self.knots if isinstance(self.knots, int) else len(self.knots)
 
     @property
     def _spacing(self) -> str:
         return GIVEN if self.radii is not None else self.spacing
 
-    def _radius_guesses(self, size: int, largest: float) -> list[Array]:
-        if self.radii is not None:
-            return [np.array(self.radii)]
-        even = [share * largest * np.arange(1, size + 1) / size for share in _SPANS]
-        if self.spacing == EVEN:
-            return even
-        return even + [each**2 / each[-1] for each in even if size > 1]
-
-    def _parametrize(self, overview: Overview, n: int, has_rate: bool) -> Parametrization:
-        """Lay out theta = (p0, p_1 .. p_n, spacing or radii or nothing, beta, offset)."""
-        m, largest = self._radius_count(n), overview.data.largest_radius
-        radii = np.array(self.radii) if self.radii is not None else np.arange(1.0, n + 1.0)
-        plays = RateDependentPrandtlIshlinskii(
-            np.zeros(n), radii, 0.0, overview.data.records[0].dt, overview.mean_slope
+    def _first_guesses(self, overview: Overview) -> FirstGuesses:
+        return FirstGuesses(
+            overview,
+            self._spacing,
+            self.radii,
+            self.map,
+            self.knots,
+            self._shows_rate(overview.data),
+            self.root_weights(overview.data),
         )
-        spread = np.arange(1.0, n + 1.0)[:, None] if self._spacing == EVEN else np.eye(n)
-        transform = np.zeros((2 * n + 4, n + m + 3))
-        transform[: n + 1, : n + 1] = np.eye(n + 1)
-        transform[n + 1 : 2 * n + 1, n + 1 : n + 1 + m] = spread[:, :m]
-        transform[2 * n + 1, n + m + 1] = transform[-1, -1] = 1.0
-        fixed = np.zeros(2 * n + 4)
-        fixed[-2] = overview.sign
-        if self._spacing == GIVEN:
-            fixed[n + 1 : 2 * n + 1] = radii
-        lower, upper = np.zeros(n + m + 3), np.full(n + m + 3, np.inf)
-        lower[0] = SMALLEST_SLOPE * overview.mean_slope
-        lower[n + 1 : n + 1 + m] = 1e-3 * largest
-        lower[-1] = -np.inf
-        upper[n + 1 : n + 1 + m] = largest / n if self._spacing == EVEN else largest
-        upper[n + m + 1] = np.inf if has_rate else 0.0
-        return Parametrization(
-            Composition((plays, Affine(overview.sign, 0.0))),
-            transform,
-            fixed,
-            lower,
-            upper,
-            _sorted_plays(n) if self._spacing == FREE else unchanged,
-        )
-
-    def _guess(
-        self,
-        overview: Overview,
-        parametrization: Parametrization,
-        radii: Array,
-        widening: float,
-        fastest: float,
-    ) -> tuple[float, Array]:
-        """Residual norm and theta for given radii, and widening at the fastest sample."""
-        data, n = overview.data, radii.size
-        beta = widening * data.largest_radius / fastest
-        root = self.root_weights(data)
-        root = np.ones(data.measured().size) if root is None else root
-        bank = RateDependentPrandtlIshlinskii(np.zeros(n), radii, beta, data.records[0].dt)
-        # The derivative by p0 and p is the input and the play outputs.
-        columns = overview.sign * model_jacobian(data, bank)[:, : n + 1] * root[:, None]
-        matrix = np.column_stack([columns, root, -root])
-        weights, miss = non_negative(matrix, root * data.measured())
-        # A weight that starts on its bound would give its radius no derivative.
-        slopes = np.maximum(weights[: n + 1], 0.01 * overview.mean_slope)
-        places = radii[: self._radius_count(n)]
-        return miss, np.concatenate([slopes, places, [beta, float(weights[-2] - weights[-1])]])
-
-
-def _sorted_plays(n: int) -> Any:
-    """Give what sorts the plays by radius, each with its weight: their order means nothing."""
-
-    def canonical(theta: Array) -> Array:
-        order = np.argsort(theta[n + 1 : 2 * n + 1], kind="stable")
-        result = theta.copy()
-        result[1 : n + 1] = theta[1 : n + 1][order]
-        result[n + 1 : 2 * n + 1] = theta[n + 1 : 2 * n + 1][order]
-        return result
-
-    return canonical
 
 
 def _frequency_note(data: Data) -> tuple[str, ...]:
@@ -287,4 +385,16 @@ def _frequency_note(data: Data) -> tuple[str, ...]:
         f"all records turn at one frequency, {frequency:.4g} Hz: beta and a linear lag cannot be "
         "told apart; beta was left at 0, so the model holds at that frequency only; add records at "
         "other frequencies",
+    )
+
+
+def _sample_times_note(data: Data) -> tuple[str, ...]:
+    """Say for which of several sample times the model is written."""
+    times = [each.dt for each in data.records]
+    if max(times) <= (1.0 + 1e-6) * min(times):
+        return ()
+    return (
+        f"the records have sample times from {min(times):.4g} to {max(times):.4g} s; the model is "
+        f"written for that of the first, {times[0]:.4g} s; as its rates are per second, "
+        "model.at_sample_time(dt) gives it for any other",
     )

@@ -14,6 +14,7 @@ from typing import Self, final
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.identification.fit.nuisance import Nuisances
 from hyst.operators import Operator
 
 Array = NDArray[np.float64]
@@ -54,6 +55,9 @@ class Parametrization:
         its square is added to the cost. None where nothing is known before.
     is_linear
         Whether the constants only weight what the operator answers, so that one step solves it.
+    nuisances
+        Columns that records have beside the model, as a drift: fitted with it and none of it. None
+        where there are none.
     """
 
     template: Operator
@@ -67,6 +71,7 @@ class Parametrization:
     is_allowed: Callable[[Array], bool] | None = None
     prior: Array | None = None
     is_linear: bool = False
+    nuisances: Nuisances | None = None
 
     @property
     def size(self) -> int:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hyst import _engine
 from hyst.identification.fit.bounded_least_squares import Problem
+from hyst.identification.fit.nuisance import Beside
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.record_use.used_samples import Data
 from hyst.operators import Operator
@@ -188,6 +189,11 @@ def problem_of(
     Returns
     -------
     Problem
+
+    Notes
+    -----
+    Columns beside the model are projected out of residual and Jacobian: L. Kaufman, A variable
+    projection method for solving separable nonlinear least squares problems, BIT 15 (1975), 49-57.
     """
     y = data.measured()
     rows: NDArray[np.bool_] | slice = slice(None) if chosen is None else chosen
@@ -197,18 +203,26 @@ def problem_of(
     spread = float(np.linalg.norm(y - y.mean()))
     is_allowed = parametrization.is_allowed
     beside = _beside_the_records(parametrization, spread)
+    nuisances = parametrization.nuisances
+    columns = None if nuisances is None else Beside(data, nuisances, chosen, root_weights)
+
+    def errors_of(theta: Array) -> Array:
+        errors = evaluation.output(theta)[rows] - target
+        return errors if root is None else root * errors
 
     def residual(theta: Array) -> Array:
         more = [values for values, _ in beside(theta)]
         if is_allowed is not None and not is_allowed(theta):
             return np.full(target.size + sum(each.size for each in more), NO_STEP_TO * spread)
-        errors = evaluation.output(theta)[rows] - target
-        errors = errors if root is None else root * errors
+        errors = errors_of(theta)
+        errors = errors if columns is None else columns.at(theta).out_of(errors)
         return np.concatenate([errors, *more]) if more else errors
 
     def linearize(theta: Array) -> tuple[Array, Array]:
         jacobian = evaluation.jacobian(theta)[rows]
         jacobian = jacobian if root is None else root[:, None] * jacobian
+        if columns is not None:
+            jacobian = projected(columns, theta, errors_of(theta), jacobian)
         more = [by_theta for _, by_theta in beside(theta)]
         return residual(theta), np.concatenate([jacobian, *more]) if more else jacobian
 
@@ -221,6 +235,23 @@ def problem_of(
         negligible=float(target.size * (ROUNDING * np.ptp(y)) ** 2),
         is_linear=parametrization.is_linear,
     )
+
+
+def projected(columns: Beside, theta: Array, errors: Array, jacobian: Array) -> Array:
+    """Give the derivative of a residual without its columns, which move with theta, too.
+
+    Parameters
+    ----------
+    columns
+        Beside the model.
+    theta
+        Where.
+    errors, jacobian
+        Shapes (samples,) and (samples, m): residual beside no columns, and its derivative.
+    """
+    projection = columns.at(theta)
+    slopes = columns.slopes(theta, projection.coefficients(errors))
+    return projection.out_of(jacobian - slopes)
 
 
 def _beside_the_records(

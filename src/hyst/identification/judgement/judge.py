@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from hyst.diagnosis import Diagnosis
 from hyst.identification.families.family import Fit
+from hyst.identification.judgement.causes.rate import RATE
 from hyst.identification.judgement.found_before import FoundBefore, found_before
 from hyst.identification.judgement.left_over import Told, causes_of, is_too_short, told_of
 from hyst.identification.judgement.remainder import Remainder, remainder_of
@@ -55,9 +57,15 @@ def judge(data: Data, fit: Fit, diagnosis: Diagnosis, metrics: Mapping[str, Metr
         found = taken_apart(remainder)
         level, first, told = _levelled(remainder, found, error)
         noise = found.noise
+    told = replace(told, advice=tuple(_for_family(each, fit) for each in told.advice))
     seen = validated(metrics, noise * remainder.output_scale, remainder.output_unit)
     before = found_before(diagnosis, data, fit.family, leaves_noise=level == "good")
     return _capped(level, first, told, before, seen)
+
+
+def _for_family(advice: str, fit: Fit) -> str:
+    """Give other advice to a family that depends on the rate as it is."""
+    return fit.family.about_rates or advice if advice == RATE.advice else advice
 
 
 def level_of(data: Data, fit: Fit) -> Level:

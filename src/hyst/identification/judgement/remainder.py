@@ -72,7 +72,8 @@ class Remainder:
     parts
         One for each record that has samples in use.
     tangent
-        Shape (samples, m), by which the model's output moves with its free constants.
+        Shape (samples, m), by which the model's output moves with its free constants, those on a
+        bound left out.
     output_range
         What percentages refer to.
     input_scale, output_scale
@@ -182,7 +183,9 @@ def remainder_of(data: Data, fit: Fit, output_range: float) -> Remainder:
             )
     tangent = np.empty((measured.size, 0))
     if measured.size * theta.size <= LARGEST_TANGENT:
-        tangent = _without_unit(Evaluation(data, parametrization).jacobian(theta))
+        # What lies on a bound does not move: an error along it is none the model makes up for.
+        moving = parametrization.inside(theta)
+        tangent = _without_unit(Evaluation(data, parametrization).jacobian(theta)[:, moving])
     record = data.records[0]
     held = 1.0 - float(np.mean(parametrization.inside(theta))) if theta.size else 0.0
     has_memory = fit.family.has_memory

@@ -21,6 +21,9 @@ LIKE_A_LINE = 0.7
 OPEN_LOOP = 0.02
 """Of the output's range, what a line must leave beside noise for a loop to be missed."""
 
+WORSE = 1.2
+"""Of what a straight line leaves beside noise: with more, no memory makes up for what is missed."""
+
 LIKE_THE_MEAN = 0.9
 """Of the deviation from the mean: a model that leaves more knows nothing of the output."""
 
@@ -94,6 +97,11 @@ def _reason(remainder: Remainder, found: TakenApart) -> str:
     if remainder.has_memory and line > OPEN_LOOP * span and left > LIKE_A_LINE * line:
         return (
             f"It is hardly better than a straight line: {leaves}, a line "
+            f"{remainder.said(found.line)}."
+        )
+    if remainder.has_memory and left > max(WORSE * line, OPEN_LOOP * span):
+        return (
+            f"A straight line describes the record better: {leaves}, a line "
             f"{remainder.said(found.line)}."
         )
     if left > OFF * span and follows_the_speed(remainder):

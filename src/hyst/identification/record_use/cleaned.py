@@ -42,11 +42,39 @@ class Cleaned:
         Shape (N,) for each record: which output samples count; None for all.
     disturbances
         Shape (N,) for each record: what was taken out; None where there was nothing.
+    drifts
+        Shape (N,) for each record: the slow drift among it.
     """
 
     records: tuple[Record, ...]
     kept: tuple[NDArray[np.bool_] | None, ...]
     disturbances: tuple[Array | None, ...]
+    drifts: tuple[Array | None, ...]
+
+    def with_drift(self) -> Cleaned:
+        """Give the records with their slow drift left in; ``drifts`` still tells it."""
+        back = [None if each is None else -each for each in self.drifts]
+        records, disturbances = [], []
+        for record, taken, more in zip(self.records, self.disturbances, back, strict=True):
+            rest = taken if more is None or taken is None else taken + more
+            nothing = rest is None or not rest.any()
+            disturbances.append(None if nothing else rest)
+            records.append(record if more is None else replace(record, y=record.y - more))
+        return replace(self, records=tuple(records), disturbances=tuple(disturbances))
+
+    def without(self, parts: Sequence[Array]) -> Cleaned:
+        """Give the records without some part of each, which becomes a disturbance.
+
+        Parameters
+        ----------
+        parts
+            Shape (N,) for each record, output units.
+        """
+        records, disturbances = [], []
+        for record, taken, part in zip(self.records, self.disturbances, parts, strict=True):
+            records.append(replace(record, y=record.y - part))
+            disturbances.append(part if taken is None else taken + part)
+        return replace(self, records=tuple(records), disturbances=tuple(disturbances))
 
     def marked(self, data: Data) -> Data:
         """Give data made of these records with what was taken from them.
@@ -114,13 +142,13 @@ def cleaned(
         error = REFUSED_AS.get(finding.name, InputError)
         raise error(f"{where}{finding.sentence} {finding.advice}".strip())
     taken = [_cleaned(r, i, diagnosis, drift) for i, r in enumerate(records, 1)]
-    kept, given, disturbances = zip(*taken, strict=True)
-    return Cleaned(given, kept, disturbances)
+    kept, given, disturbances, drifts = zip(*taken, strict=True)
+    return Cleaned(given, kept, disturbances, drifts)
 
 
 def _cleaned(
     record: Record, number: int, diagnosis: Diagnosis, drift: Literal["auto", False]
-) -> tuple[NDArray[np.bool_] | None, Record, Array | None]:
+) -> tuple[NDArray[np.bool_] | None, Record, Array | None, Array | None]:
     kept = None
     left_out = diagnosis.left_out(number)
     if left_out.size:
@@ -128,21 +156,26 @@ def _cleaned(
         kept[left_out] = False
         places = np.flatnonzero(kept)
         record = replace(record, y=np.interp(np.arange(len(record)), places, record.y[places]))
-    disturbance = _disturbance(record, number, diagnosis) if drift == "auto" else None
+    if drift != "auto":
+        return kept, record, None, None
+    disturbance, slow = _disturbance(record, number, diagnosis)
     if disturbance is None:
-        return kept, record, None
-    return kept, replace(record, y=record.y - disturbance), disturbance
+        return kept, record, None, None
+    return kept, replace(record, y=record.y - disturbance), disturbance, slow
 
 
-def _disturbance(record: Record, number: int, diagnosis: Diagnosis) -> Array | None:
-    """Give the drift and the sines that a diagnosis found in an output; None without any."""
+def _disturbance(
+    record: Record, number: int, diagnosis: Diagnosis
+) -> tuple[Array | None, Array | None]:
+    """Give drift and sines together that a diagnosis found in an output, and the drift alone."""
     parts = []
     if any(each.record in (number, 0) for each in diagnosis.named(DRIFT)):
         found = slow_drift(record)
         if found is not None:
             parts.append(found.curve)
+    slow = parts[0] if parts else None
     lines = [e.amounts["frequency"] for e in diagnosis.named(FOREIGN_LINE) if e.record == number]
     if lines:
         rest = replace(record, y=record.y - parts[0]) if parts else record
         parts.append(foreign_sines(rest, lines))
-    return np.sum(parts, axis=0) if parts else None
+    return (np.sum(parts, axis=0), slow) if parts else (None, None)

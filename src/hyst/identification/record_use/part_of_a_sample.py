@@ -22,7 +22,7 @@ def lag_in_samples(lag: float, dt: float, own_dt: float) -> float:
     return lag if math.isclose(dt, own_dt, rel_tol=1e-6) else lag * dt / own_dt
 
 
-def later(u: Array, part: float) -> Array:
+def later(u: Array, part: float, keeps_corners: bool = True) -> Array:
     """Give a signal as it would be sampled if it came later by a part of a sample.
 
     Cubic interpolation between the four samples around, kept between the two next to it. The corner
@@ -34,6 +34,9 @@ def later(u: Array, part: float) -> Array:
         Shape (N,).
     part
         Of a sample, 0 to below 1.
+    keeps_corners
+        Whether corners stay and nothing goes beyond its neighbours. Not where rates matter: a
+        corner kept is a wrong rate at the samples about it.
     """
     if part == 0.0 or u.size < 2:
         return u
@@ -46,6 +49,8 @@ def later(u: Array, part: float) -> Array:
         - (s + 1.0) * s * (s - 2.0) / 2.0 * right
         + (s + 1.0) * s * (s - 1.0) / 6.0 * after
     )
+    if not keeps_corners:
+        return np.asarray(moved)
     moved = np.clip(moved, np.minimum(left, right), np.maximum(left, right))
     turns = reversals(u, SMALLEST_TURN * float(np.ptp(u)))
     corners = turns if part < 0.5 else np.minimum(turns + 1, u.size - 1)
@@ -66,3 +71,27 @@ def by_whole_samples(y: NDArray[Value], late: int) -> NDArray[Value]:
     if late == 0:
         return y
     return np.asarray(y[np.clip(np.arange(y.size) - late, 0, y.size - 1)])
+
+
+def earlier(y: Array, samples: float) -> Array:
+    """Give a signal some samples earlier, on the line between two; its ends are held.
+
+    Parameters
+    ----------
+    y
+        Shape (N,).
+    samples
+        Parts of one included; negative for later.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (N,).
+
+    Examples
+    --------
+    >>> earlier(np.array([0.0, 1.0, 4.0]), 0.5)
+    array([0.5, 2.5, 4. ])
+    """
+    places = np.arange(y.size, dtype=float)
+    return np.asarray(np.interp(places + samples, places, y))

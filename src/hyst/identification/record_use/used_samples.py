@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from hyst.checks.numbers import whole_number
 from hyst.errors import InputError, NotIdentifiableError
-from hyst.identification.record_use.part_of_a_sample import lag_in_samples, later
+from hyst.identification.record_use.part_of_a_sample import by_whole_samples, lag_in_samples, later
+from hyst.identification.record_use.smoothed_drive import Smoother
 from hyst.signals import Record, reversals, units_differ
 
 Array = NDArray[np.float64]
@@ -69,6 +70,11 @@ class Data:
         where there were none.
     measured_inputs
         The inputs as they were measured, where those of ``records`` are later by part of a sample.
+    smoothers
+        For each record what took the noise out of its input; None where nothing did.
+    keeps_corners
+        Whether an input that is later by part of a sample keeps its corners, as memory needs them;
+        not where rates matter.
     """
 
     records: tuple[Record, ...]
@@ -79,6 +85,8 @@ class Data:
     kept: tuple[NDArray[np.bool_] | None, ...] = ()
     disturbances: tuple[Array | None, ...] = ()
     measured_inputs: tuple[Array, ...] = ()
+    smoothers: tuple[Smoother | None, ...] = ()
+    keeps_corners: bool = True
 
     @property
     def largest_radius(self) -> float:
@@ -179,10 +187,31 @@ class Data:
         late = [lag_in_samples(lag, self.records[0].dt, record.dt) for record in self.records]
         parts = [each - math.floor(each) for each in late]
         records = tuple(
-            record if record.u is u and not part else replace(record, u=later(u, part))
+            record if record.u is u and not part else replace(record, u=self._later(u, part))
             for record, u, part in zip(self.records, inputs, parts, strict=True)
         )
         return replace(self, records=records, lag=lag, measured_inputs=inputs if any(parts) else ())
+
+    def a_little_later(self, more: float) -> Data:
+        """Give the same windows with inputs that come later by a little, at the same lag.
+
+        Parameters
+        ----------
+        more
+            Samples of the first record, less than one; negative for earlier.
+        """
+        inputs = self.measured_inputs or tuple(record.u for record in self.records)
+        records = []
+        for number, (record, u) in enumerate(zip(self.records, inputs, strict=True)):
+            own = self.lag_of(number)
+            moved = own - math.floor(own) + lag_in_samples(more, self.records[0].dt, record.dt)
+            whole = math.floor(moved)
+            shifted = by_whole_samples(self._later(u, moved - whole), whole)
+            records.append(replace(record, u=shifted))
+        return replace(self, records=tuple(records))
+
+    def _later(self, u: Array, part: float) -> Array:
+        return later(u, part, self.keeps_corners)
 
     def lengths(self) -> list[int]:
         """Give the number of samples of each record that count."""
@@ -210,6 +239,10 @@ class Data:
                 None if each is None else each * output_scale for each in self.disturbances
             ),
             measured_inputs=tuple(u * input_scale for u in self.measured_inputs),
+            smoothers=tuple(
+                None if each is None else replace(each, noise=each.noise * input_scale)
+                for each in self.smoothers
+            ),
         )
 
     def with_disturbances(self) -> Data:

@@ -11,7 +11,11 @@ Array = NDArray[np.float64]
 
 
 def robust_covariance(
-    jacobian: Array, residual: Array, lengths: Sequence[int], prior: Array | None = None
+    jacobian: Array,
+    residual: Array,
+    lengths: Sequence[int],
+    prior: Array | None = None,
+    taken_out: int = 0,
 ) -> Array:
     """Estimate the covariance of least squares estimates with autocorrelated residuals.
 
@@ -30,6 +34,8 @@ def robust_covariance(
         Samples of each record, in order; correlation does not reach across records.
     prior
         Shape (q, m).
+    taken_out
+        Directions that were projected out of both: they are estimates as well.
 
     Returns
     -------
@@ -60,7 +66,7 @@ def robust_covariance(
         inverse = np.linalg.inv(gram + held)
         count = float(np.sum(inverse * gram))
         middle += float(residual @ residual) / residual.size * held
-    correction = residual.size / max(residual.size - count, 1.0)
+    correction = residual.size / max(residual.size - count - taken_out, 1.0)
     covariance = inverse @ middle @ inverse * correction
     return np.asarray(covariance / np.outer(scale, scale))
 

@@ -7,9 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.identification.families.family import Estimates, Fit
-from hyst.identification.fit.problem import Evaluation
+from hyst.identification.fit.nuisance import Beside
+from hyst.identification.fit.problem import Evaluation, projected
 from hyst.identification.record_use.used_samples import Data
+from hyst.identification.result.lateness import moves_of
 from hyst.identification.result.standard_errors import (
     Spread,
     spread_of_estimates,
@@ -40,6 +43,7 @@ class FitSpread:
     inside: NDArray[np.bool_]
     noise_rms: float
     bounds_hold: bool = False
+    moves: Array | None = None
 
     def of(self, by_theta: Array) -> Array:
         """Give the standard errors of functions of theta.
@@ -58,7 +62,8 @@ class FitSpread:
         errors = np.full(len(by_theta), np.nan)
         moves = by_theta[:, self.inside].any(axis=1)
         known = moves & (self.bounds_hold | ~by_theta[:, ~self.inside].any(axis=1))
-        errors[known] = self.spread.of(by_theta[np.ix_(known, self.inside)])
+        rows = by_theta[np.ix_(known, self.inside)]
+        errors[known] = self._moved(self.spread.of(rows), rows)
         return errors
 
     def of_what_is_determined(self, by_theta: Array) -> Array:
@@ -74,7 +79,15 @@ class FitSpread:
         numpy.ndarray
             Shape (q,).
         """
-        return self.spread.if_determined(by_theta[:, self.inside])
+        rows = by_theta[:, self.inside]
+        return self._moved(self.spread.if_determined(rows), rows)
+
+    def _moved(self, errors: Array, rows: Array) -> Array:
+        """Add what the things beside the model may move."""
+        if self.moves is None:
+            return errors
+        # Constants have units of their own: squares of what is tiny would underflow.
+        return np.asarray(np.hypot(errors, np.hypot.reduce(rows @ self.moves, axis=1)))
 
     def not_told_apart(self, estimates: Estimates) -> tuple[str, ...]:
         """Name the estimates in every combination that the records do not determine.
@@ -116,7 +129,7 @@ def _joined(disturbed: NDArray[np.bool_]) -> list[NDArray[np.bool_]]:
     return groups
 
 
-def spread_of_fit(data: Data, fit: Fit) -> FitSpread:
+def spread_of_fit(data: Data, fit: Fit, delay: DelayEvidence | None = None) -> FitSpread:
     """Find how sure the free parameters of a fit are.
 
     Parameters
@@ -125,6 +138,9 @@ def spread_of_fit(data: Data, fit: Fit) -> FitSpread:
         The records.
     fit
         The final fit, in their units.
+    delay
+        What the records say of their delay where it was estimated: then it is part of what is not
+        known exactly.
 
     Returns
     -------
@@ -134,20 +150,29 @@ def spread_of_fit(data: Data, fit: Fit) -> FitSpread:
     theta, parametrization = fit.solution.theta, fit.parametrization
     evaluation = Evaluation(data, parametrization)
     inside = parametrization.inside(theta)
-    jacobian = evaluation.jacobian(theta)[:, inside]
+    jacobian = evaluation.jacobian(theta)
     residual = evaluation.output(theta) - data.measured()
     root = fit.family.root_weights(data)
     if root is not None:
         jacobian, residual = root[:, None] * jacobian, root * residual
+    taken_out = 0
+    if parametrization.nuisances is not None:
+        beside = Beside(data, parametrization.nuisances, None, root)
+        jacobian = projected(beside, theta, residual, jacobian)
+        residual, taken_out = beside.at(theta).out_of(residual), beside.at(theta).directions
+    jacobian = jacobian[:, inside]
     if parametrization.prior is not None:
         y = data.measured()
         held_by = float(np.linalg.norm(y - y.mean())) * parametrization.prior[:, inside]
-        under = spread_under_prior(jacobian, residual, data.lengths(), held_by)
-        freedom = max(residual.size - parametrization.free_count, 1)
+        under = spread_under_prior(jacobian, residual, data.lengths(), held_by, taken_out)
+        freedom = max(residual.size - parametrization.free_count - taken_out, 1)
         rms = float(np.linalg.norm(residual) / np.sqrt(freedom))
         return FitSpread(under, inside, rms, bounds_hold=True)
     gauges = parametrization.gauges
     held = np.empty((0, theta.size)) if gauges is None else gauges(theta)[1]
-    spread = spread_of_estimates(jacobian, residual, data.lengths(), theta[inside], held[:, inside])
-    freedom = max(residual.size - int(inside.sum()) + len(held), 1)
-    return FitSpread(spread, inside, float(np.linalg.norm(residual) / np.sqrt(freedom)))
+    spread = spread_of_estimates(
+        jacobian, residual, data.lengths(), theta[inside], held[:, inside], taken_out
+    )
+    freedom = max(residual.size - int(inside.sum()) + len(held) - taken_out, 1)
+    rms = float(np.linalg.norm(residual) / np.sqrt(freedom))
+    return FitSpread(spread, inside, rms, moves=moves_of(data, fit, delay))

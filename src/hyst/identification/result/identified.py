@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.arrays import finite_vector
 from hyst.diagnosis import Diagnosis
+from hyst.errors import InputError
 from hyst.identification.record_use.part_of_a_sample import (
     by_whole_samples,
     lag_in_samples,
@@ -19,12 +20,18 @@ from hyst.identification.record_use.part_of_a_sample import (
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.bands import NEW, Bands, as_level
 from hyst.identification.result.late_output import late_output
-from hyst.identification.result.record_errors import RecordErrors
+from hyst.identification.result.motion import OutputPart, motion_lines
+from hyst.identification.result.record_errors import RecordErrors, run_at_several_rates
+from hyst.models import Delay, Lag
 from hyst.operators import ModelDescription, Operator, Verdict
+from hyst.operators.composition import leaves_of
 from hyst.operators.plain_data import as_number
 from hyst.signals import Metrics
 
 Array = NDArray[np.float64]
+
+LAG = "lag.time_constant"
+"""Name of the parameter that is the time constant of a lag of the drive."""
 
 
 @dataclass(frozen=True)
@@ -102,6 +109,9 @@ class Identified:
         What ``band`` is made of.
     per_record
         Errors over each of the records it was identified from, in their order.
+    motion
+        What moves the output, part by part: hysteresis, creep, drift and what is left; empty where
+        neither creep nor drift came up.
     """
 
     model: Operator
@@ -122,6 +132,7 @@ class Identified:
     diagnosis: Diagnosis
     bands: Bands = field(repr=False)
     per_record: tuple[RecordErrors, ...]
+    motion: tuple[OutputPart, ...]
 
     def __repr__(self) -> str:
         what = self.family or self.model.kind
@@ -131,6 +142,56 @@ class Identified:
             f"{type(self).__name__}({self.verdict.level}: {self.verdict.sentences[0]!r}; "
             f"{what}{missed}, delay {self.delay:.4g} samples, {self.status})"
         )
+
+    @property
+    def lag(self) -> float | None:
+        """Time constant of the first-order lag of the drive in the model, s; None without one."""
+        lags = [each for each in leaves_of(self.model) if isinstance(each, Lag)]
+        return lags[0].time_constant if lags else None
+
+    @property
+    def lag_interval(self) -> tuple[float, float] | None:
+        """Two standard errors either side of ``lag``, s; both the lag itself where it was given."""
+        if self.lag is None or LAG not in self.parameter_names:
+            return None if self.lag is None else (self.lag, self.lag)
+        error = 2.0 * float(self.standard_errors[self.parameter_names.index(LAG)])
+        return None if math.isnan(error) else (max(self.lag - error, 0.0), self.lag + error)
+
+    def with_delay(self) -> Operator:
+        """Give the model with its delay as a stage of its drive.
+
+        An inverse that answers late undoes it: ``with_delay().inverse(preview=N)``. The part of a
+        sample is taken from the line between two samples.
+
+        Returns
+        -------
+        Operator
+            The model itself where the delay is 0. Its description has no delay beside it any more.
+
+        Raises
+        ------
+        InputError
+            If the delay is negative: no stage answers before its input.
+
+        Examples
+        --------
+        >>> import numpy as np, hyst
+        >>> u = np.sin(np.linspace(0.0, 20.0, 2000)) * np.linspace(1.0, 0.5, 2000)
+        >>> y = hyst.PrandtlIshlinskii(p=[0.5], r=[0.2], p0=1.0)(u)
+        >>> found = hyst.identify(hyst.Record(u, y, dt=1e-3), family="pi", plays=1, delay=2)
+        >>> found.with_delay().inverse(preview=3)(u).shape
+        (2000,)
+        """
+        if self.delay == 0:
+            return self.model
+        if self.delay < 0:
+            raise InputError(
+                f"the output is {-self.delay:.4g} samples ahead of the input, which no stage is; "
+                "align the channels and identify again"
+            )
+        about = replace(self.model.description, delay=0, delay_interval=None)
+        late = self.model @ Delay(float(self.delay), self.description.dt)
+        return late.with_description(about)
 
     def predict(self, u: ArrayLike, dt: float | None = None) -> Array:
         """Give the output as it would be measured: the model's output, delayed.
@@ -211,10 +272,18 @@ class Identified:
         new = self.bands.distances(self._input(u, None)) > NEW
         return by_whole_samples(new, math.floor(self.delay))
 
+    def _lag_line(self) -> list[str]:
+        if self.lag is None:
+            return []
+        low, high = self.lag_interval or (math.nan, math.nan)
+        how = f" ({low:.3g} to {high:.3g})" if low < high else " (held)" if low == high else ""
+        return [f"first-order lag of the drive, a stage of the model: {self.lag:.4g}{how} s"]
+
     def _input(self, u: ArrayLike, dt: float | None) -> Array:
         """Give an input later by the part of a sample that the delay has beyond whole ones."""
         delay = self._delay_at(dt)
-        return later(finite_vector(u, "u"), delay - math.floor(delay))
+        keeps = bool(self.model.traits().rate_independent)
+        return later(finite_vector(u, "u"), delay - math.floor(delay), keeps)
 
     def _delay_at(self, dt: float | None) -> float:
         own = self.description.dt
@@ -239,8 +308,11 @@ class Identified:
             "iterations": self.iterations,
             "delay": as_number("delay", self.delay),
             "delay_interval": [as_number("delay_interval", each) for each in self.delay_interval],
+            "lag": self.lag,
+            "lag_interval": None if self.lag_interval is None else list(self.lag_interval),
             "metrics": {name: each.to_dict() for name, each in self.metrics.items()},
             "per_record": [each.to_dict() for each in self.per_record],
+            **({"motion": [each.to_dict() for each in self.motion]} if self.motion else {}),
             "parameters": [
                 {"name": name, "value": float(value), "standard_error": error}
                 for name, value, error in zip(
@@ -265,14 +337,18 @@ class Identified:
         lines = [self.verdict.told()]
         low, high = self.delay_interval
         open_to = "" if low == high else f" ({low:.3g} to {high:.3g})"
-        lines += [f"{what}, delay {self.delay:.4g}{open_to} samples, {self.status}", ""]
+        lines += [f"{what}, delay {self.delay:.4g}{open_to} samples, {self.status}"]
+        lines += [*self._lag_line(), ""]
         for name, each in self.metrics.items():
             lines.append(
                 f"{name:28s} rms {each.rms:.4g}{unit} ({each.rms_percent:.3f} % of range)   "
                 f"max {each.max_abs:.4g}{unit}   fit {each.nrmse_fit_percent:.2f} %"
             )
         if len(self.per_record) > 1:
-            lines += [_record_line(each, unit) for each in self.per_record]
+            several = run_at_several_rates(self.per_record)
+            lines += [_record_line(each, unit, several) for each in self.per_record]
+        if self.motion:
+            lines += ["", *motion_lines(self.motion, unit)]
         lines += ["", f"{'parameter':36s} {'value':>13s} {'standard error':>15s}"]
         for name, value, error in zip(
             self.parameter_names, self.parameter_values, self.standard_errors, strict=True
@@ -285,11 +361,21 @@ class Identified:
         return "\n".join(lines)
 
 
-def _record_line(each: RecordErrors, unit: str) -> str:
+def _record_line(each: RecordErrors, unit: str, several_rates: bool) -> str:
     named = f"record {each.number}" + (f", {each.name}" if each.name else "")
     if each.metrics is None:
         return f"{named:28s} no sample that moves was used"
     return (
         f"{named:28s} rms {each.metrics.rms:.4g}{unit} ({each.metrics.rms_percent:.3f} % of its "
         f"own range)   max {each.metrics.max_abs:.4g}{unit}   {each.samples} samples"
+        f"{_loop_in_words(each) if several_rates else ''}"
+    )
+
+
+def _loop_in_words(each: RecordErrors) -> str:
+    if each.frequency is None or each.hysteresis is None or each.modelled_hysteresis is None:
+        return ""
+    return (
+        f"   at {each.frequency:.4g} Hz: hysteresis {each.hysteresis:.3g} %, of the model "
+        f"{each.modelled_hysteresis:.3g} %"
     )

@@ -15,6 +15,7 @@ from hyst.identification.families.family import Fit
 from hyst.identification.fit.problem import model_output
 from hyst.identification.judgement.judge import judge
 from hyst.identification.record_use.part_of_a_sample import lag_in_samples
+from hyst.identification.record_use.smoothed_drive import driven_by, without_noise
 from hyst.identification.record_use.used_samples import Data, prepare
 from hyst.identification.result.bands import bands_of
 from hyst.identification.result.fit_spread import spread_of_fit
@@ -66,7 +67,7 @@ def identified_from_fit(
     """
     operator, estimates = fit.operator, fit.family.estimates(fit)
     errors, not_told_apart = np.full(len(estimates.names), np.nan), tuple[str, ...]()
-    spread = spread_of_fit(data, fit)
+    spread = spread_of_fit(data, fit, delay)
     if fit.family.estimates_noise:
         errors = spread.of(estimates.by_theta)
         not_told_apart = spread.not_told_apart(estimates)
@@ -90,6 +91,7 @@ def identified_from_fit(
         diagnosis=diagnosis,
         bands=bands_of(data, fit, spread, rivals),
         per_record=errors_by_record(data, operator),
+        motion=(),
     )
 
 
@@ -149,9 +151,13 @@ def metrics_by_record(
 
 
 def _validation_data(record: Record, data: Data) -> Data:
-    """Prepare a record that takes no part: it lags by the same time as the others."""
+    """Prepare a record that takes no part: it lags as the others, and its drive is as smooth."""
+    smoother = next((each for each in data.smoothers if each is not None), None)
+    if smoother is not None:
+        record = driven_by(record, without_noise(record, smoother.time_constant))
     lag = lag_in_samples(data.lag, data.records[0].dt, record.dt)
-    return prepare(record, "auto", lag)
+    own = replace(prepare(record, "auto"), keeps_corners=data.keeps_corners)
+    return own.delayed(lag)
 
 
 def _pair(name: str, data: Data, operator: Operator) -> dict[str, Metrics]:

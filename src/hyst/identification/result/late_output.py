@@ -44,4 +44,6 @@ def late_output(model: Operator, u: ArrayLike, delay: float) -> Array:
     array([0., 0., 2., 4.])
     """
     whole = math.floor(delay)
-    return by_whole_samples(model(later(finite_vector(u, "u"), delay - whole)), whole)
+    keeps_corners = bool(model.traits().rate_independent)
+    moved = later(finite_vector(u, "u"), delay - whole, keeps_corners)
+    return by_whole_samples(model(moved), whole)

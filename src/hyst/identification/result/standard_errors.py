@@ -108,6 +108,7 @@ def spread_of_estimates(
     lengths: Sequence[int],
     theta: Array,
     gauges: Array | None = None,
+    taken_out: int = 0,
 ) -> Spread:
     """Estimate how sure least squares estimates are.
 
@@ -125,6 +126,8 @@ def spread_of_estimates(
     gauges
         Shape (g, m): rows that a change of theta must not move, for scales that are held because no
         record can determine them; none if left out.
+    taken_out
+        Directions that were projected out of Jacobian and residual.
 
     Returns
     -------
@@ -146,7 +149,7 @@ def spread_of_estimates(
     inner = np.zeros((count, count))
     while known.any():
         basis = vectors[:, known]
-        inner = robust_covariance(scaled @ basis, errors, lengths)
+        inner = robust_covariance(scaled @ basis, errors, lengths, taken_out=taken_out)
         lost = np.sqrt(np.diag(inner)) * noise > size
         if not lost.any():
             inner = basis @ inner @ basis.T
@@ -158,7 +161,7 @@ def spread_of_estimates(
 
 
 def spread_under_prior(
-    jacobian: Array, residual: Array, lengths: Sequence[int], prior: Array
+    jacobian: Array, residual: Array, lengths: Sequence[int], prior: Array, taken_out: int = 0
 ) -> Spread:
     """Estimate how sure estimates are that a prior holds where the records do not.
 
@@ -168,6 +171,8 @@ def spread_under_prior(
         As of ``spread_of_estimates``.
     prior
         Shape (q, m): rows whose square was added to the cost.
+    taken_out
+        Directions that were projected out of Jacobian and residual.
 
     Returns
     -------
@@ -177,7 +182,9 @@ def spread_under_prior(
     size = np.linalg.norm(np.concatenate([jacobian, prior]), axis=0)
     unit = np.where(size > 0.0, size, 1.0)
     noise = float(np.ldexp(1.0, np.frexp(np.abs(residual).max(initial=0.0))[1]))
-    covariance = robust_covariance(jacobian / unit, residual / noise, lengths, prior / unit)
+    covariance = robust_covariance(
+        jacobian / unit, residual / noise, lengths, prior / unit, taken_out
+    )
     return Spread(unit, noise, covariance, np.empty((unit.size, 0)))
 
 

@@ -144,6 +144,9 @@ class Hammerstein(Family):
         self, records: tuple[Record, ...], start: Literal["auto"] | int
     ) -> tuple[Data, tuple[str, ...]]:
         """Average periods; leave out what the unknown state of the dynamics may have disturbed."""
+        refused = self.front.refused_before_dynamics()
+        if refused:
+            raise InputError(refused)
         if self.period is not None:
             if start != AUTO:
                 raise InputError(

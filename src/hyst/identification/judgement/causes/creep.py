@@ -47,7 +47,8 @@ CREEP = Cause(
     _columns,
     _sentence,
     "Creep is none of the model: expect that much more error after a long rest or a change of the "
-    "mean, and leave it to a controller.",
+    "mean. Creep that follows the drive is identified with creep (--creep 2) from records that "
+    "hold the input at several levels; else leave it to a controller.",
     beyond_loops=True,
     disturbs=True,
     counts=0.9,

@@ -43,7 +43,8 @@ LAG = Cause(
     "lag",
     _columns,
     _sentence,
-    "Align the channels (filters, triggers, converters that are read one after the other) and "
-    "record again, or record with more samples.",
+    "If an amplifier or a filter lags, make that part of the model (lag='auto', or --lag auto); "
+    "else align the channels (triggers, converters that are read one after the other) and record "
+    "again, or record with more samples.",
     beyond_loops=True,
 )

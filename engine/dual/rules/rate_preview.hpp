@@ -1,0 +1,2 @@
+// The plan of a preview; the file that holds the kind does not hold it.
+#include "rate_preview_plan.c"
