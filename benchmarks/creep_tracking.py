@@ -66,7 +66,7 @@ def tracked(actuator: CreepingActuator, model: hyst.Operator, reference: Array) 
 
 
 def main() -> None:
-    print("| plant | creep fitted | fit, s | weights | time constants, s | triangle | sine | mixed |")
+    print("| plant | creep | fit, s | weights | time constants, s | triangle | sine | mixed |")
     print("|---|---|---|---|---|---|---|---|")
     for name, actuator in PLANTS.items():
         u = record_of_a_lab(dt=actuator.dt)

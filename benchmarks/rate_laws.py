@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -73,11 +74,13 @@ def print_laws() -> None:
 
 def print_inverses() -> None:
     """Print the error of the trajectory inverse over that of the true model."""
-    print("\ntrajectory inverse of the model found over that of the true one, of 25, five runs")
-    print("  plant          f [Hz]   rms: true   found (median, worst)   max: true   found")
-    for name in ("sqrt", "rational", "exponential"):
+    print(
+        "\ntrajectory inverse of models found and of the true one, of 25, five runs of each noise"
+    )
+    print("  plant         noise   f [Hz]   rms: true   found (median, worst)   max: true   found")
+    for name, noise in product(("sqrt", "rational", "exponential"), (0.05, 0.005)):
         models = [
-            identify(plants.records(plants.LAWS[name], seed), rate="auto").model
+            identify(plants.records(plants.LAWS[name], seed, noise=noise), rate="auto").model
             for seed in range(5)
         ]
         plays = RateDependentPrandtlIshlinskii(
@@ -95,7 +98,8 @@ def print_inverses() -> None:
             rms = [float(np.std(each)) for each in errors]
             most = [float(np.abs(each).max()) for each in errors]
             print(
-                f"  {name:12s} {frequency:8.0f} {rms[0]:11.4f} {np.median(rms[1:]):10.4f} "
+                f"  {name:12s} {noise:6g} {frequency:8.0f} {rms[0]:11.4f} "
+                f"{np.median(rms[1:]):10.4f} "
                 f"{max(rms[1:]):10.4f} {most[0]:13.4f} {np.median(most[1:]):9.4f}"
             )
 

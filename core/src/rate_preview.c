@@ -9,16 +9,20 @@
 static const hyst_real preview_stages[3][3] = {
     {HYST_REAL(0.5), HYST_REAL(0.3), HYST_REAL(0.04)},
     {HYST_REAL(0.1), HYST_REAL(0.05), HYST_REAL(0.007)},
-    {HYST_REAL(0.1), HYST_REAL(0.01), HYST_REAL(0.001)}};
+    {HYST_REAL(0.05), HYST_REAL(0.01), HYST_REAL(0.001)}};
 
 /* The rival's stage by its age. */
-static const size_t preview_stage_of_age[HYST_PREVIEW_LIFE] = {0u, 0u, 1u, 2u};
+static const size_t preview_stage_of_age[HYST_PREVIEW_LIFE] = {0u, 0u, 1u, 1u, 2u};
 
-static hyst_real preview_held(const hyst_rate_preview *model, const hyst_real *last, hyst_real u)
+/* A command within its limits; where there is none before it, it starts from that of the explicit
+ * inverse. */
+static hyst_real preview_held(const hyst_rate_preview *model, const hyst_real *last, hyst_real start,
+                              hyst_real u)
 {
     hyst_real held = u;
-    if (model->slowed != 0 && last[1] > HYST_REAL(0.0)) {
-        held = hyst_clamp(last[0] - model->change, last[0] + model->change, held);
+    if (model->slowed != 0) {
+        const hyst_real from = last[1] > HYST_REAL(0.0) ? last[0] : start;
+        held = hyst_clamp(from - model->change, from + model->change, held);
     }
     return model->ranged != 0 ? hyst_clamp(model->low, model->high, held) : held;
 }
@@ -163,7 +167,8 @@ hyst_real hyst_rate_preview_step(const hyst_rate_preview *model, hyst_real *stat
     if (first != 0) {
         scalars[HYST_PREVIEW_DAMPING] = HYST_REAL(1e-4);
         if (!(scalars[HYST_PREVIEW_BEGUN] > HYST_REAL(0.0))) {
-            (void)hyst_rate_dependent_pi_step(&model->plays, state, preview_held(model, last, start));
+            const hyst_real held = preview_held(model, last, start, start);
+            (void)hyst_rate_dependent_pi_step(&model->plays, state, held);
         }
     }
     hyst_preview_stage scales;
@@ -174,10 +179,10 @@ hyst_real hyst_rate_preview_step(const hyst_rate_preview *model, hyst_real *stat
             state[at.plan + k] = state[at.start + k];
         }
     }
+    const hyst_real u = preview_held(model, last, state[at.start], state[at.plan]);
     if (length <= model->preview) {
-        return last[1] > HYST_REAL(0.0) ? last[0] : preview_held(model, last, state[at.plan]);
+        return last[1] > HYST_REAL(0.0) ? last[0] : u;
     }
-    const hyst_real u = preview_held(model, last, state[at.plan]);
     (void)hyst_rate_dependent_pi_step(&model->plays, state, u);
     return u;
 }

@@ -88,6 +88,20 @@ def test_the_explicit_inverse_of_a_rate_dependent_model(run: Run, folder: Path) 
     assert "no rate-dependent plays" in run("export", "stage.json", "--explicit", "-o", "x").err
 
 
+def test_an_inverse_with_preview_says_how_late_it_is(run: Run, folder: Path) -> None:
+    RATE_DEPENDENT.save(folder / "model.json")
+    done = run("export", "model.json", "--inverse", "--preview", 7, "-o", "out")
+    assert done.code == 0, done.err
+    assert "the command for sample k - 7" in done.out
+    assert "7 samples late" in (folder / "out" / "README.md").read_text()
+    python = c_project(RATE_DEPENDENT.inverse(preview=7), folder / "python")
+    for file in ("stage.c", "selftest_vectors.h"):
+        assert (folder / "out" / file).read_bytes() == (python.path / file).read_bytes()
+    assert "add --inverse" in run("export", "model.json", "--preview", 7, "-o", "x").err
+    both = run("export", "model.json", "--inverse", "--explicit", "--preview", 7, "-o", "x")
+    assert "one of the two" in both.err
+
+
 def test_a_tracking_controller_is_exported_from_its_file(run: Run, folder: Path) -> None:
     model = TrackingController.from_continuous(([4.0, 8.0], [1.0, 0.0]), dt=1e-3)
     model.save(folder / "loop.json")

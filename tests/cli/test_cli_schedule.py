@@ -128,6 +128,8 @@ def test_what_does_not_go_together_is_refused(records: list[Path], run: Callable
     identify = ["identify", *records, *COLUMNS, "-o", "out"]
     assert "give it too" in run(*identify, "--schedule-name", "temperature").err
     assert "3 record(s) but 2 values" in run(*identify, "--schedule", "20,35").err
+    assert "--lag is not for --schedule" in run(*identify, *OVER, "--lag", "auto").err
+    assert "--creep is not for --schedule" in run(*identify, *OVER, "--creep", "2").err
     ended = run(*identify, *OVER, "--validate", records[0])
     assert "--validate-schedule belong together" in ended.err
     assert run("export", model, "--target", "fmu", "-o", "x.fmu").code == 2

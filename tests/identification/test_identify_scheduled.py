@@ -114,6 +114,15 @@ def test_values_that_took_no_part_judge_the_straight_lines():
     assert json.loads(json.dumps(result.to_dict(), allow_nan=False))["schedule"]["unit"] == "degC"
 
 
+def test_a_validation_record_at_a_value_of_the_fit_says_nothing_of_straight_lines():
+    result = identified(0, at=(20.0, 50.0), validation=[record(50.0, 77)], validation_at=[50.0])
+    assert "records that took no part" in result.summary()
+    assert "validation" in result.results[1].metrics
+    assert any("do not show whether" in each for each in result.notes)
+    between = identified(0, at=(20.0, 50.0), validation=[record(30.0, 77)], validation_at=[30.0])
+    assert not any("do not show whether" in each for each in between.notes)
+
+
 def test_constants_that_bend_are_told():
     """The gain is a parabola: half way between two values it is 10 % from a straight line."""
     u = moving_plays.sweep(700)

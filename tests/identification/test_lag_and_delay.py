@@ -14,7 +14,7 @@ from reference.rate_dependent_plays import ACTUATOR, DT, output, rate
 
 Array = NDArray[np.float64]
 
-FREQUENCIES = ((10.0, 2.5), (50.0, 10.0), (100.0, 20.0))
+FREQUENCIES = ((10.0, 2.0), (50.0, 6.0), (100.0, 12.0))
 """Hz, and periods of each record."""
 NOISE = 0.3
 """Of a stroke of about 80."""
@@ -134,7 +134,7 @@ def test_a_lag_of_many_samples_is_told_from_a_delay() -> None:
     assert lagging.lag_interval is not None
     low, high = lagging.lag_interval
     assert low <= 8.0 * DT <= high
-    assert high - low < 0.2 * DT
+    assert high - low < 0.6 * DT
     assert lagging.delay == 0
     assert lagging.verdict.level == "good"
     assert any("not a pure delay" in each for each in lagging.undetermined)
@@ -216,6 +216,29 @@ def test_scaled_records_give_the_scaled_lag_bit_for_bit() -> None:
     np.testing.assert_array_equal(scaled.model.parameters().values, expected.values)
 
 
+def test_lag_and_creep_are_fitted_together() -> None:
+    """Simulated in steps of a twentieth of a sample; 7 % of creep beside a lag of 1.5 samples."""
+    dt, fine, count = 1e-3, 20, 6000
+    t = np.arange(count * fine) * dt / fine
+    u = np.sin(8.0 * np.pi * t) * (1.0 - 0.6 * t / t[-1]) + 0.3 * np.sin(2.0 * t)
+    plays = hyst.PrandtlIshlinskii(list(P), list(R), P0)
+    creep = hyst.Creep([0.04, 0.03], [0.05, 0.9], dt / fine)
+    y = creep(plays(hyst.Lag(1.5 * dt, dt / fine)(u)))[::fine]
+    y = y + 0.002 * np.random.default_rng(0).standard_normal(count)
+    record = hyst.Record(u[::fine], y, dt)
+    found = hyst.identify(record, family="pi", plays=2, lag="auto", creep=2)
+    tau, error = told(found, "lag.time_constant")
+    assert abs(tau - 1.5 * dt) <= 3.0 * error
+    assert error < 0.1 * dt
+    # The slower lag is a fraction of the record, so it is known badly; the quicker one well.
+    for name, true in (("weights[1]", 0.04), ("weights[2]", 0.03), ("time_constants[2]", 0.9)):
+        value, error = told(found, f"creep.{name}")
+        assert abs(value - true) <= 3.0 * error
+    assert told(found, "creep.weights[1]")[1] < 0.25 * 0.04
+    assert found.metrics["training"].rms < 1.1 * 0.002
+    assert found.model.is_invertible()
+
+
 def test_a_delay_is_put_into_the_model_on_request() -> None:
     u, y = decaying(1.42)
     noise = 0.002 * np.random.default_rng(0).standard_normal(y.size)
@@ -226,6 +249,11 @@ def test_a_delay_is_put_into_the_model_on_request() -> None:
     assert late.description.delay == 0
     with pytest.raises(NotInvertibleError, match="preview"):
         late.inverse()
+    y_ref = 0.8 * np.sin(np.arange(500) * 0.05)
+    followed = late(late.inverse(preview=12)(y_ref))[12:]
+    # What the part of a sample leaves with ten samples of preview, and 0.07 without any.
+    assert np.abs(followed - y_ref[:-12])[100:].max() < 0.01
+    assert np.abs(found.predict(found.model.inverse()(y_ref)) - y_ref)[100:].max() > 0.05
 
 
 def test_what_is_ahead_has_no_stage() -> None:

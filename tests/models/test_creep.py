@@ -139,3 +139,29 @@ def test_bad_constants_are_named(arguments: tuple, why: str) -> None:
 def test_a_record_of_another_sample_time_is_refused() -> None:
     with pytest.raises(hyst.InputError, match="sample time"):
         DECADES.require_sample_time(2e-3)
+
+
+@pytest.mark.parametrize("lags", [0, 1, 2, 3, 4, 7, 10, 11, 13])
+@pytest.mark.parametrize("inverse", [False, True])
+def test_long_records_have_the_bits_of_single_steps(lags: int, inverse: bool) -> None:
+    """Whole records take a faster way, in blocks of 128 samples."""
+    creep = hyst.Creep(np.full(lags, 0.1 / max(lags, 1)), np.geomspace(2e-3, 1e4, lags), 1e-3, 0.3)
+    model, u = (creep.inverse() if inverse else creep), drive(1000, seed=lags)
+    step = model.stepper()
+    stepped = [step(value) for value in u.tolist()]
+    y, state = model.run(u)
+    assert y.tolist() == stepped
+    assert state.tobytes() == step.state.tobytes()
+    first, middle = model.run(u[:333])
+    second, end = model.run(u[333:], middle)
+    assert np.concatenate([first, second]).tobytes() == y.tobytes()
+    assert end.tobytes() == state.tobytes()
+
+
+@pytest.mark.parametrize("inverse", [False, True])
+def test_what_overflows_in_a_long_record_is_named(inverse: bool) -> None:
+    creep = hyst.Creep([0.5, 0.25], [0.1, 1.0], 1e-3, rest=-1e308)
+    u = np.full(400, -1e308)
+    u[300] = 1.7e308
+    with pytest.raises(hyst.InputError, match=r"u\[300\] = 1\.7e\+308 .* overflows"):
+        (creep.inverse() if inverse else creep)(u)

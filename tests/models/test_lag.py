@@ -142,3 +142,24 @@ def test_records_and_stages_of_another_sample_time_are_refused() -> None:
         hyst.Lag(1.0, DT).require_sample_time(2.0 * DT)
     with pytest.raises(hyst.InputError, match="sample times of"):
         hyst.Lag(1.0, DT) @ hyst.Delay(1.0, 2.0 * DT)
+
+
+@pytest.mark.parametrize("inverse", [False, True])
+@pytest.mark.parametrize("hold", ["first", "zero"])
+def test_long_records_have_the_bits_of_single_steps(hold: str, inverse: bool) -> None:
+    """Whole records take a faster way, in blocks of 128 samples."""
+    lag, u = hyst.Lag(1.7e-3, DT, hold), drive(1000, seed=5)
+    model = lag.inverse() if inverse else lag
+    step = model.stepper()
+    stepped = [step(value) for value in u.tolist()]
+    y, state = model.run(u)
+    assert y.tolist() == stepped
+    assert state.tobytes() == step.state.tobytes()
+
+
+@pytest.mark.parametrize("inverse", [False, True])
+def test_what_overflows_in_a_long_record_is_named(inverse: bool) -> None:
+    lag, u = hyst.Lag(1.7e-3, DT), np.full(400, -1e308)
+    u[300] = 1.7e308
+    with pytest.raises(hyst.InputError, match=r"u\[300\] = 1\.7e\+308 .* overflows"):
+        (lag.inverse() if inverse else lag)(u)

@@ -196,6 +196,12 @@ OTHERS: dict[str, Operator] = {
     "inverse delay": Delay(0.2, dt=0.01).inverse(),
     "delay taken back by preview": Delay(1.7, dt=0.01).inverse(preview=5),
     "inverse of hysteresis behind a delay": (PI @ Delay(3.8, dt=0.01)).inverse(preview=9),
+    "inverse of an actuator that creeps and lags": (
+        Affine(-2.0, 0.5)
+        @ Creep([0.02, 0.03, 0.01], [0.013, 0.17, 2.3], dt=0.01)
+        @ ModifiedPrandtlIshlinskii(PI, DeadZone.odd([1.0, 0.2], [0.0, 0.5]))
+        @ Lag(0.0042, dt=0.01)
+    ).inverse(),
     "hysteresis and creep behind a lag": Creep([0.02, 0.02], [0.1, 1.0], dt=0.01)
     @ PI
     @ Delay(0.25, dt=0.01)

@@ -24,7 +24,7 @@ def fitted_as_given(
     given = (records,) if isinstance(records, Record) else tuple(records)
     nothing = (None,) * len(given)
     options = Options((), silent, 0, "auto", 200, True)
-    found = find(Cleaned(given, nothing, nothing), [family], options)
+    found = find(Cleaned(given, nothing, nothing, nothing), [family], options)
     return found.data, found.fit, metrics_by_record(found.data, found.fit.operator, ())
 
 

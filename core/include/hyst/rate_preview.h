@@ -57,7 +57,7 @@ typedef struct {
 #define HYST_PREVIEW_AGE 2u     /* steps of the rival */
 #define HYST_PREVIEW_DAMPING 3u /* of the plan, then of the rival, over the squared gain */
 
-#define HYST_PREVIEW_LIFE 4u
+#define HYST_PREVIEW_LIFE 5u
 
 /* How smooth a problem is, in its units; gain is p0 + sum |p|. */
 typedef struct {

@@ -18,19 +18,17 @@ from hyst.cli.arguments import (
     require_same_unit,
     sample_time_known,
 )
+from hyst.cli.command_over import compensate_over, tell_virgin, write_command
 from hyst.cli.console import note, progress_bar, show_files, show_table
 from hyst.cli.reading_options import reads_columns
 from hyst.cli.relevant_options import refuse_irrelevant
 from hyst.cli.scheduled import (
     ScheduleColumn,
     ScheduleValue,
-    compensate_over,
     loaded,
     model_at_rest,
     read_signal,
     refuse_what_is_fixed,
-    tell_virgin,
-    write_command,
 )
 from hyst.cli.time_column import time_column
 from hyst.operators.composition import leaves_of
@@ -100,6 +98,7 @@ History = Annotated[
     ),
 ]
 
+_FIXED = ("--method", "--outside", "--with-delay")
 _BY_METHOD = {
     "preview": ("preview",),
     "rate_limit": ("preview", "trajectory"),
@@ -152,23 +151,16 @@ def compensate(
     input_range = _input_range(limits, no_limits, about)
     known = sample_time_known(model_at_rest(model), reference, rate, "the reference", **how)
     if isinstance(model, hyst.Scheduled):
-        refuse_what_is_fixed(
-            {
-                "--method": method != "exact",
-                "--outside": outside == "clip",
-                "--with-delay": with_delay,
-            }
-        )
+        refuse_what_is_fixed(_FIXED, (method != "exact", outside == "clip", with_delay))
         s = read_signal(model, reference, str(schedule_column), y_ref.size, how)
         time = time_column(reference, rate, model.dt, y_ref.size, **how)
         compensate_over(model, y_ref, s, history, input_range, despite_verdict, out, time)
         return
     _require_method_for(model, method)
-    wanted = _as_early(y_ref, about) if with_delay else y_ref
     with progress_bar("inverting") as progress:
         done = hyst.compensation.invert_trajectory(
             model,
-            wanted,
+            _as_early(y_ref, about) if with_delay else y_ref,
             method,
             input_range=input_range,
             outside=outside,
@@ -181,16 +173,29 @@ def compensate(
             despite_verdict=despite_verdict,
             progress=progress,
         )
-    if not known:
-        note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
+    _note_unknown_time(known, model)
     time = time_column(reference, rate, model.dt, done.u.size, **how)
-    predicted, told = done.y_predicted, done.y_ref
-    if with_delay:
-        predicted, told = hyst.identification.earlier(predicted, -about.delay), y_ref
-    write_command(out, about, time, (told, done.u, predicted))
+    write_command(out, about, time, _signals(done, about, y_ref if with_delay else None))
     _tell(done, about, input_range, with_delay)
     tell_virgin(history is None and model.initial_state().size > 0)
     show_files([out])
+
+
+def _note_unknown_time(known: bool, model: Operator) -> None:
+    if not known:
+        note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
+
+
+def _signals(
+    done: hyst.compensation.Compensation,
+    about: ModelDescription,
+    late_reference: NDArray[np.float64] | None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Give reference, command and predicted output, later by the delay where it is as asked for."""
+    if late_reference is None:
+        return done.y_ref, done.u, done.y_predicted
+    late = hyst.identification.earlier(done.y_predicted, -about.delay)
+    return late_reference, done.u, late
 
 
 def _as_early(y_ref: NDArray[np.float64], about: ModelDescription) -> NDArray[np.float64]:

@@ -214,9 +214,12 @@ def export(
     what = "inverse of " if inverse or explicit else ""
     title = f"{what}{model_file.name} as {target}: {out}"
     show_table(hyst.report.Table(title, ("", ""), done.rows))
-    about = model.description
+    _tell_lateness(model.description, preview)
+    print(f"\nnext: {done.next_step}")
+
+
+def _tell_lateness(about: hyst.ModelDescription, preview: int | None) -> None:
     if about.delay:
         print("\n" + hyst.report.delay_sentence(about.delay, about.dt, about.delay_interval))
     if preview:
         print(f"\nthe output at sample k is the command for sample k - {preview} of the reference")
-    print(f"\nnext: {done.next_step}")

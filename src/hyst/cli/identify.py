@@ -116,22 +116,16 @@ def identify(
         **options,
     }
     about = About(schedule, schedule_name, schedule_unit, validate_schedule)
-    if about.is_given():
-        if time_constant is not None:
-            raise hyst.InputError("--lag is not for --schedule; give one of them")
+    if about.is_given(
+        {"--lag": time_constant is not None, "--creep": creep not in ("auto", "none")}
+    ):
         return identify_over(data, validate, folder, files, about, asked)
+    asked |= {"creep": lags, "lag": time_constant}
     with at_work("identifying") as say:
         say("reading")
         measured = files.records(data)
         validation = files.validation(validate)
-        found = hyst.identify(
-            measured,
-            creep=lags,
-            lag=time_constant,
-            validation=validation,
-            progress=say,
-            **asked,
-        )
+        found = hyst.identify(measured, validation=validation, progress=say, **asked)
         say("report")
         found = named_by_files(found, files.sources)
         records = _records_used(found, chosen, measured, first)

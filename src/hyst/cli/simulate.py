@@ -61,7 +61,7 @@ def simulate(
     require_same_unit(unit, about.input_unit, "the input")
     late = about.delay if with_delay else 0
     if isinstance(model, hyst.Scheduled):
-        refuse_what_is_fixed({"--with-delay": with_delay})
+        refuse_what_is_fixed(["--with-delay"], [with_delay])
         y = model.run(u, read_signal(model, data, str(schedule_column), u.size, how)).y
     else:
         y = hyst.identification.late_output(model, u, late)

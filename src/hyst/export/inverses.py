@@ -80,6 +80,11 @@ def inverse_of(
     NotInvertibleError
         If it has no inverse.
     """
+    if isinstance(model, Scheduled) and preview is not None:
+        raise InputError(
+            "a scheduled model has no inverse with a preview; export that of one value of the "
+            "schedule"
+        )
     if isinstance(model, Scheduled) and not explicit:
         return model.inverse()
     if not isinstance(model, Operator):

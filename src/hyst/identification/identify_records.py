@@ -9,7 +9,7 @@ from threadpoolctl import threadpool_limits
 
 from hyst.diagnosis import Diagnosis
 from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
-from hyst.identification.creep.found_creep import as_creep, with_creep
+from hyst.identification.creep.found_creep import as_creep, require_place, with_creep
 from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families, families_in_reserve
 from hyst.identification.lag.found_lag import as_lag, found_with_lag, search_beside_lag
@@ -120,6 +120,7 @@ def identify(
     wanted = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
     families, about_drift = chosen_families(family, options), as_drift(drift)
     lags = as_creep(creep)
+    require_place(families, lags)
     time_constant = as_lag(lag)
     reserve = families_in_reserve(family, options)
     with threadpool_limits(1, user_api="blas"):

@@ -39,7 +39,7 @@ class RateDependentPreview(Operator):
     Fed the wanted output, it holds the command of its first sample for ``preview`` samples, as if
     the reference had rested there; then it gives command after command. At every sample the plan of
     the next ``preview + 1`` commands is improved by one Gauss-Newton step, and beside it a second
-    one that begins anew every four samples and takes over where it is better. It is no exact
+    one that begins anew every five samples and takes over where it is better. It is no exact
     inverse: what is left is simulated, as ``model(command) - y_ref``.
 
     Parameters

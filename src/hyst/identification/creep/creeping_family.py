@@ -75,6 +75,10 @@ class CreepingFamily(Family):
         """Minimise as the family of the hysteresis does."""
         return self.base.solve(problem, theta, max_iterations, tolerance)
 
+    def renewed(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Solve again as the family of the hysteresis does."""
+        return self.base.renewed(fit, overview, max_iterations)
+
     @property
     def estimates_noise(self) -> bool:
         """As of the family of the hysteresis."""

@@ -66,6 +66,8 @@ class Evidence:
     ----------
     shown
         Whether the records show creep beyond drift, noise and loops of another shape.
+    resembled
+        Whether something is left that looks like creep, whatever else it looks like.
     weights, time_constants
         Shape (n,), of the lags that have some weight, time constants ascending, s.
     tau, limits
@@ -76,6 +78,7 @@ class Evidence:
     """
 
     shown: bool
+    resembled: bool
     weights: Array
     time_constants: Array
     tau: Array
@@ -105,9 +108,9 @@ def evidence_of(data: Data, fit: Fit, drifts: bool) -> Evidence:
     beside_loops = look.beside(general_loops(remainder)) if explained > 0.0 else look
     beyond = beside_loops.with_positive_weights()[1]
     n, total = look.error.size, float(look.error @ look.error)
+    resembled = explained >= max(SMALLEST_SHARE * total, n * (SMALLEST_PART * span) ** 2)
     shown = (
-        explained >= SMALLEST_SHARE * total
-        and explained >= n * (SMALLEST_PART * span) ** 2
+        resembled
         and explained >= OF_EITHER_SIGN * either
         and beyond >= BEYOND_LOOPS * explained
         and weights.sum() <= LARGEST
@@ -115,7 +118,7 @@ def evidence_of(data: Data, fit: Fit, drifts: bool) -> Evidence:
     )
     heavy = weights > 0.0
     late = look.lateness(heavy)
-    return Evidence(bool(shown), weights[heavy], tau[heavy], tau, look.limits(), *late)
+    return Evidence(bool(shown), resembled, weights[heavy], tau[heavy], tau, look.limits(), *late)
 
 
 def evenly(data: Data, most: int = MOST_ROWS) -> Rows:

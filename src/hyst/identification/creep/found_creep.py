@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -29,7 +29,7 @@ from hyst.identification.creep.told import (
     DriftBeside,
     require_told,
 )
-from hyst.identification.families.family import Fit
+from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.option import AUTO
 from hyst.identification.fit.nuisance import (
     Beside,
@@ -51,6 +51,11 @@ Wanted = int | Literal["auto"] | None
 
 ROUNDS = 2
 """Of looking for creep and searching again without it, before all is fitted together."""
+
+DYNAMICS = (
+    "creep is not identified with {}, whose dynamics may be as slow; choose another family, or "
+    "leave creep out"
+)
 
 SURE_OF_DELAY = 2.5
 """Standard errors that a delay beside creep must exceed."""
@@ -79,6 +84,26 @@ def as_creep(creep: Any) -> Wanted:
             f"creep is {creep!r}; give 'auto', a number of lags from 1 to {MOST_LAGS}, or None"
         )
     return whole_number(creep, "creep", 1, MOST_LAGS, ", 'auto' or None")
+
+
+def require_place(families: Sequence[Family], wanted: Wanted) -> None:
+    """Refuse creep that is asked for of families with dynamics of their own alone.
+
+    Parameters
+    ----------
+    families
+        That were chosen.
+    wanted
+        As of ``identify``.
+
+    Raises
+    ------
+    NotIdentifiableError
+        Before anything is searched.
+    """
+    late = [each.name for each in families if each.answers_late]
+    if isinstance(wanted, int) and len(late) == len(families):
+        raise NotIdentifiableError(DYNAMICS.format(", ".join(late)))
 
 
 def with_creep(
@@ -125,13 +150,18 @@ def with_creep(
         return as_it_was
     options.say("creep")
     work = _Work(records, drifts, _scales(found.data))
+    first = found
+    if drifted:
+        # What was taken for drift may be creep, and bends a model where it is taken out.
+        found = search(records, options)
+        if _no_place(found.fit):
+            return as_it_was
     seen = evidence_of(*work.scaled(found), drifts)
     if wanted != AUTO:
         require_told(seen)
     without = replace(as_it_was, evidence=seen, asked=wanted != AUTO)
     if not seen.weights.size or (wanted == AUTO and not seen.shown):
         return without
-    first = found
     for _ in range(ROUNDS):
         known = replace(options, delay=_delay_beside(found, seen, options))
         again = search(records.without(work.creep_and_beside(found, seen)), known)
@@ -301,10 +331,7 @@ def _creeping_rival(fit: Fit, creep: Operator) -> Fit:
 def _no_place(fit: Fit) -> str:
     """Say why a model cannot have creep behind its hysteresis; empty if it can."""
     if fit.family.answers_late:
-        return (
-            f"creep is not identified with {fit.family.name}, whose dynamics may be as slow; "
-            "choose another family, or leave creep out"
-        )
+        return DYNAMICS.format(fit.family.name)
     operator = fit.operator
     last = operator.parts[-1] if isinstance(operator, Composition) else operator
     if isinstance(last, Affine):

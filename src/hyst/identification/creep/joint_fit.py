@@ -17,6 +17,7 @@ from hyst.identification.fit.bounded_least_squares import Solution
 from hyst.identification.fit.nuisance import Basis, Beside, Drift, Nuisances, moments_of
 from hyst.identification.fit.stages import with_stage
 from hyst.identification.judgement.regression import chance, correlation_time
+from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import Creep
 
@@ -138,7 +139,8 @@ class Joint:
             w, times = weights[order][works], tau[order][works]
             fit = self.fit(_hysteresis_of(fit), w, times, w.size, self.kept)
             if not self.idle(fit).any() and bool(np.all(np.diff(lags_of(fit)[1]) > 0.0)):
-                return fit
+                overview = Overview(self.data, rates_matter=True)
+                return fit.family.renewed(fit, overview, self.most)
 
     def idle(self, fit: Fit) -> NDArray[np.bool_]:
         """Tell which lags of a fit do nothing, or nothing but come late.

@@ -225,6 +225,20 @@ class Family(ABC):
         """
         return minimize(problem, theta, max_iterations, tolerance)
 
+    def renewed(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Solve again where free parameters hold near a solution only, with stages or without.
+
+        Parameters
+        ----------
+        fit
+            As it was solved.
+        overview
+            The records.
+        max_iterations
+            Of each further fit.
+        """
+        return fit
+
     def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
         """Improve a fit by what only the family knows, as moving radii across kinks.
 

@@ -30,6 +30,7 @@ from hyst.identification.families.play_layout import (
     PlayParametrization,
     half_swings,
 )
+from hyst.identification.families.seldom_moved_plays import about_seldom_moved
 from hyst.identification.fit.radius_search import search_radii
 from hyst.identification.fit.weight_rules import INVERTIBLE, NON_NEGATIVE, RULES
 from hyst.identification.fit.weights import Weights, fit_weights
@@ -182,14 +183,15 @@ class PlayBank(Family):
         return fit
 
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
-        """Say how many plays came out idle."""
-        kept = layout_of(fit).plays
+        """Say how many plays came out idle, and what those do that hardly moved."""
+        kept, seldom = layout_of(fit).plays, about_seldom_moved(fit.operator, data)
         if kept >= fit.size:
-            return ()
-        return (
-            f"{fit.size - kept} of {fit.size} plays came out with no weight or no radius of their "
-            "own; they were left out",
+            return seldom
+        idle = (
+            f"{fit.size - kept} of {fit.size} plays came out with no weight or no radius "
+            "of their own; they were left out"
         )
+        return (idle, *seldom)
 
     def first_radii(self, overview: Overview, size: int) -> list[Array]:
         """Give the radii to start from, the best guess first.

@@ -44,6 +44,7 @@ from hyst.identification.families.rate_dependent_options import (
     NO_FILTER,
     RECORD_WEIGHTS_OPTION,
 )
+from hyst.identification.families.rate_dependent_rates import frequency_note, sample_times_note
 from hyst.identification.families.rate_dependent_starts import FirstGuesses
 from hyst.identification.families.rate_dependent_words import words_of
 from hyst.identification.families.rate_law import (
@@ -77,7 +78,7 @@ from hyst.identification.record_use.smoothed_drive import (
     without_noise,
 )
 from hyst.identification.record_use.used_samples import Data, prepare
-from hyst.signals import Record, hysteresis_percent, reversals
+from hyst.signals import Record, hysteresis_percent
 
 if TYPE_CHECKING:
     from hyst.identification.result.identified import Identified
@@ -92,9 +93,6 @@ _PLAYS_FOR_THE_LAW = 6
 _ITERATIONS_FOR_THE_LAW = 25
 
 _STARTS = 3
-
-_ONE_FREQUENCY = 1.2
-"""Half swings whose durations differ by less than this factor all belong to one frequency."""
 
 
 @final
@@ -225,7 +223,7 @@ class RateDependent(Family):
                 f"record_weights are {list(self.record_weights)}; give {count} positive numbers, "
                 "one a record"
             )
-        return self, _frequency_note(data) + _sample_times_note(data)
+        return self, frequency_note(data) + sample_times_note(data)
 
     def in_units(self, input_scale: float, output_scale: float) -> Self:
         """Give the family with scaled radii and knots."""
@@ -285,6 +283,12 @@ class RateDependent(Family):
             laws = self._laws(overview.data)
         return self._first_guesses(overview).best(size, laws, _STARTS)
 
+    def renewed(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Renew the tangent of the law."""
+        if layout_of(fit).law.renewed is None or has_dynamics(fit):
+            return fit
+        return solved(fit, overview, fit.solution.theta, max_iterations)
+
     def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
         """Renew the tangent of the law; choose the law once more where it is open."""
         if not layout_of(fit).has_rate or has_dynamics(fit):
@@ -330,7 +334,7 @@ class RateDependent(Family):
         return words_of(self.words, identified.model)
 
     def _shows_rate(self, data: Data) -> bool:
-        return not _frequency_note(data)
+        return not frequency_note(data)
 
     def _laws(self, data: Data) -> list[RateLaw]:
         """Give the laws that the option allows, from the simplest to the richest."""
@@ -371,30 +375,3 @@ class RateDependent(Family):
             self._shows_rate(overview.data),
             self.root_weights(overview.data),
         )
-
-
-def _frequency_note(data: Data) -> tuple[str, ...]:
-    """Say what it means if the records hold one frequency only; nothing if they hold more."""
-    durations = np.concatenate(
-        [r.dt * np.diff(reversals(r.u, 0.05 * float(np.ptp(r.u)))) for r in data.records]
-    )
-    if durations.size and durations.max() > _ONE_FREQUENCY * durations.min():
-        return ()
-    frequency = 0.5 / float(np.median(durations)) if durations.size else 0.0
-    return (
-        f"all records turn at one frequency, {frequency:.4g} Hz: beta and a linear lag cannot be "
-        "told apart; beta was left at 0, so the model holds at that frequency only; add records at "
-        "other frequencies",
-    )
-
-
-def _sample_times_note(data: Data) -> tuple[str, ...]:
-    """Say for which of several sample times the model is written."""
-    times = [each.dt for each in data.records]
-    if max(times) <= (1.0 + 1e-6) * min(times):
-        return ()
-    return (
-        f"the records have sample times from {min(times):.4g} to {max(times):.4g} s; the model is "
-        f"written for that of the first, {times[0]:.4g} s; as its rates are per second, "
-        "model.at_sample_time(dt) gives it for any other",
-    )

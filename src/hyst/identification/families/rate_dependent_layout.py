@@ -187,7 +187,14 @@ class RatedParametrization(Parametrization):
         law = self.layout.law
         curve = RateCurve(0.0, (), np.zeros(law.curve.knees.size), law.curve.knees * input_scale)
         law = replace(law, fastest=law.fastest * input_scale, curve=curve)
-        return replace(scaled, layout=self.layout.with_law(law))
+        of_knots = output_scale if self.layout.map_is == DEAD_ZONE else input_scale
+        layout = replace(
+            self.layout,
+            law=law,
+            knots=self.layout.knots * of_knots,
+            radii=self.layout.radii * input_scale,
+        )
+        return replace(scaled, layout=layout)
 
 
 def radius_count(spacing: str, plays: int) -> int:

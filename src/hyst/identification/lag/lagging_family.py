@@ -16,6 +16,7 @@ from hyst.identification.fit.stages import StagedParametrization
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.identified import LAG, Identified
+from hyst.models import Lag
 
 Array = NDArray[np.float64]
 
@@ -82,6 +83,10 @@ class LaggingFamily(Family):
         """Minimise as all families do: the time constant is one more free parameter."""
         return super().solve(problem, theta, max_iterations, tolerance)
 
+    def renewed(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Solve again as the family of the hysteresis does."""
+        return self.base.renewed(fit, overview, max_iterations)
+
     @property
     def estimates_noise(self) -> bool:
         """As of the family of the hysteresis."""
@@ -89,7 +94,7 @@ class LaggingFamily(Family):
 
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
         """Say what the family of the hysteresis says."""
-        return self.base.notes(behind_lag(fit), data)
+        return self.base.notes(behind_lag(fit), _behind(data, fit))
 
     def estimates(self, fit: Fit) -> Estimates:
         """Give the constants of the hysteresis, and the time constant where it is free."""
@@ -108,7 +113,15 @@ class LaggingFamily(Family):
 
     def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
         """Add what the family of the hysteresis adds."""
-        return self.base.result(identified, behind_lag(fit), overview)
+        behind = Overview(_behind(overview.data, fit), overview.delay, overview.rates_matter)
+        return self.base.result(identified, behind_lag(fit), behind)
+
+
+def _behind(data: Data, fit: Fit) -> Data:
+    """Give the records with the drive as it leaves the lag, for what knows of no lag."""
+    tau = float(fit.solution.theta[-1])
+    records = tuple(replace(each, u=Lag(tau, each.dt)(each.u)) for each in data.records)
+    return replace(data, records=records, measured_inputs=())
 
 
 def lagged_of(fit: Fit) -> StagedParametrization:

@@ -43,17 +43,18 @@ class Cleaned:
     disturbances
         Shape (N,) for each record: what was taken out; None where there was nothing.
     drifts
-        Shape (N,) for each record: the slow drift among it.
+        Shape (N,) for each record: the slow drift among it; empty where there is none.
     """
 
     records: tuple[Record, ...]
     kept: tuple[NDArray[np.bool_] | None, ...]
     disturbances: tuple[Array | None, ...]
-    drifts: tuple[Array | None, ...]
+    drifts: tuple[Array | None, ...] = ()
 
     def with_drift(self) -> Cleaned:
         """Give the records with their slow drift left in; ``drifts`` still tells it."""
-        back = [None if each is None else -each for each in self.drifts]
+        drifts = self.drifts or (None,) * len(self.records)
+        back = [None if each is None else -each for each in drifts]
         records, disturbances = [], []
         for record, taken, more in zip(self.records, self.disturbances, back, strict=True):
             rest = taken if more is None or taken is None else taken + more

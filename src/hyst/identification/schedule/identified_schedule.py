@@ -204,6 +204,8 @@ def told_of(checked: Checked, name: str, unit: str, output_unit: str) -> str:
     """
     low, high = checked.between
     error = f"rms {checked.rms:.4g}{output_unit} ({checked.rms_percent:.3f} % of range)"
+    if checked.value in checked.between:
+        return f"{name} {checked.value:.6g}{unit}, records that took no part: {error}"
     if checked.outside:
         return (
             f"{name} {checked.value:.6g}{unit}, outside {low:.6g} to {high:.6g}, constants held at "

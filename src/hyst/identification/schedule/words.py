@@ -41,7 +41,7 @@ def verdict_of(
     sentences = list(worst.verdict.sentences)
     if level != "good":
         sentences[0] = f"At {name} = {at:.6g}: {sentences[0]}"
-    bent = [each for each in held_out if not each.outside and _is_bent(each)]
+    bent = [each for each in held_out if _is_between(each) and _is_bent(each)]
     if level == "good" and bent:
         each = max(bent, key=lambda one: one.interpolation)
         return Verdict(
@@ -79,7 +79,7 @@ def notes_of(
             "radii of neighbouring plays would pass each other if what does not change were "
             "shared, so every value has constants of its own; give fewer plays"
         ]
-    if not left_out:
+    if not left_out and not any(_is_between(each) for each in held_out):
         notes.append(
             f"{model.values.size} values of {model.name} do not show whether constants follow "
             "straight lines in between; record at one more value between them, to fit or to judge "
@@ -128,6 +128,10 @@ def _about_running(model: Scheduled) -> list[str]:
     except NotInvertibleError as refusal:
         return [f"it has no inverse that follows {model.name}: {refusal}"]
     return []
+
+
+def _is_between(each: Checked) -> bool:
+    return not each.outside and each.value not in each.between
 
 
 def _is_bent(each: Checked) -> bool:
