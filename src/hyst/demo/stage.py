@@ -26,7 +26,7 @@ _LARGEST_RADIUS = 60.0
 _DECAY = 18.0
 _LINEAR_SHARE = 0.62
 
-_CREEP_TIMES = tuple(0.03 * math.exp(0.9 * i) for i in range(11))
+_CREEP_TIMES = tuple(0.03 * math.exp(0.9 * i) for i in range(6))
 """s; so close that their sum is a straight line over the logarithm of time."""
 
 
@@ -45,7 +45,7 @@ class SimulatedStage:
     lag
         Time constant of the amplifier, s.
     creep
-        Share of a step by which the stage goes on in every decade of time, from 0.03 s to 4 min.
+        Share of a step by which the stage goes on in every decade of time, up to some seconds.
     noise
         Standard deviation of the sensor's noise, um.
     count
