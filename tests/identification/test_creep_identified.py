@@ -92,6 +92,49 @@ def test_what_does_not_follow_the_drive_is_no_creep(what: str) -> None:
     assert found.verdict == without.verdict
 
 
+def _ramps(seed: int, n: int = 6000, ramps: int = 60) -> Array:
+    """Give ramps of many rates between random levels."""
+    levels = np.random.default_rng(seed).uniform(-1.0, 1.0, ramps)
+    return np.interp(np.arange(n), np.linspace(0.0, n - 1.0, ramps), levels)
+
+
+def _widening(u: Array, dt: float) -> Array:
+    """Give plays whose radii grow with the rate of the drive."""
+    rate, y = np.abs(np.gradient(u, dt)), u.copy()
+    for weight, radius in ((0.5, 0.1), (0.4, 0.3)):
+        z = 0.0
+        for k in range(1, u.size):
+            r = radius + 0.05 * rate[k]
+            z = min(u[k] + r, max(u[k] - r, z))
+            y[k] += weight * z
+    return y
+
+
+@pytest.mark.parametrize("seed", [5, 8])
+def test_loops_that_widen_with_the_rate_are_no_creep(seed: int) -> None:
+    u = _ramps(seed)
+    found = hyst.identify(record(_widening(u, 5e-3), u, seed, dt=5e-3), family="pi")
+    assert "creep" not in _kinds(found)
+
+
+def test_a_lag_of_many_samples_is_no_creep() -> None:
+    levels = np.repeat(np.random.default_rng(0).uniform(-1.0, 1.0, 20), 300)
+    u = np.convolve(np.pad(levels, 25, mode="edge"), np.ones(51) / 51.0, mode="valid")
+    plant = hyst.PrandtlIshlinskii([0.4, 0.3, 0.2], [0.05, 0.2, 0.4], 1.0)
+    y = plant(hyst.Lag(0.1, 5e-3)(u))
+    found = hyst.identify(record(y, u, 100, dt=5e-3), family="pi")
+    assert "creep" not in _kinds(found)
+
+
+@pytest.mark.parametrize("tau", [0.11, 0.3])
+def test_creep_as_fast_as_a_fifth_of_a_stroke_is_still_found(tau: float) -> None:
+    u = _ramps(5)
+    y = crept(u, (0.06,), (tau,), dt=5e-3)
+    (weights, errors), (times, _) = _creep_of(_identify(record(y, u, 5, dt=5e-3)))
+    assert np.all(np.abs(weights - 0.06) < 4.0 * errors)
+    assert times == pytest.approx([tau], rel=0.15)
+
+
 @pytest.mark.parametrize("amplitude", [1.0, 30.0])
 def test_no_creep_is_told_as_none_where_it_is_asked_for(amplitude: float) -> None:
     u = amplitude * U

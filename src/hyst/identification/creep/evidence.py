@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.creep.lags import answers, grid_of, in_use, signals_that_creep
+from hyst.identification.creep.rate_dependence import widening_loops
 from hyst.identification.families.family import Fit
 from hyst.identification.fit.non_negative import non_negative
 from hyst.identification.fit.nuisance import (
@@ -30,7 +31,7 @@ from hyst.identification.fit.nuisance import (
 from hyst.identification.fit.problem import Evaluation, model_output
 from hyst.identification.judgement.general_loops import general_loops
 from hyst.identification.judgement.regression import chance, correlation_time
-from hyst.identification.judgement.remainder import remainder_of
+from hyst.identification.judgement.remainder import Remainder, remainder_of
 from hyst.identification.record_use.used_samples import Data
 
 Array = NDArray[np.float64]
@@ -48,6 +49,11 @@ SMALLEST_PART = 5e-4
 BEYOND_LOOPS = 0.5
 """Share of what creep explains that general loops must not explain as well, or of all they leave
 that creep must explain: they are so general that they take a part of any creep."""
+
+BEYOND_RATE = 0.25
+"""Share of what creep explains beside general loops that loops which widen with the rate must not
+explain as well: beside them lags of a true creep explain 0.36 to 0.96 of it, those that imitate
+thresholds that grow with the rate 0.03 to 0.17."""
 
 OF_EITHER_SIGN = 0.5
 """Share of what lags of either sign explain that lags of positive weight must explain."""
@@ -106,7 +112,8 @@ def evidence_of(data: Data, fit: Fit, drifts: bool) -> Evidence:
     remainder = remainder_of(data, fit, span)
     weights, explained = look.with_positive_weights()
     either = look.by_either_sign()
-    beside_loops = look.beside(general_loops(remainder)) if explained > 0.0 else look
+    loops = general_loops(remainder) if explained > 0.0 else look.raw_own[:, :0]
+    beside_loops = look.beside(loops)
     beyond = beside_loops.with_positive_weights()[1]
     n, total = look.error.size, float(look.error @ look.error)
     resembled = explained >= max(SMALLEST_SHARE * total, n * (SMALLEST_PART * span) ** 2)
@@ -117,10 +124,17 @@ def evidence_of(data: Data, fit: Fit, drifts: bool) -> Evidence:
         and beyond >= BEYOND_LOOPS * min(explained, float(beside_loops.error @ beside_loops.error))
         and weights.sum() <= LARGEST
         and beside_loops.chance_of(beyond, int((weights > 0.0).sum())) <= UNLIKELY
+        and _beyond_rate(look, remainder, loops) >= BEYOND_RATE * beyond
     )
     heavy = weights > 0.0
     late = look.lateness(heavy)
     return Evidence(bool(shown), resembled, weights[heavy], tau[heavy], tau, look.limits(), *late)
+
+
+def _beyond_rate(look: Look, remainder: Remainder, loops: Array) -> float:
+    """Give what lags explain beside general loops and such as widen with the rate."""
+    both = np.column_stack([loops, widening_loops(remainder)])
+    return look.beside(both).with_positive_weights()[1]
 
 
 def evenly(data: Data, most: int = MOST_ROWS) -> Rows:

@@ -15,6 +15,7 @@ from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.creep.creeping import Creeping, by_name, over_windows, taken_out
 from hyst.identification.creep.creeping_family import CreepingFamily, staged_of
 from hyst.identification.creep.evidence import (
+    LARGEST,
     Evidence,
     Look,
     evenly,
@@ -173,7 +174,9 @@ def with_creep(
     options.say("creep: all constants together")
     found = replace(found, delay=first.delay)
     found, joint, fit = work.fitted(found, seen, wanted, options)
-    return without if fit is None else work.told(found, joint, options.converged(fit))
+    if fit is None or (wanted == AUTO and float(lags_of(fit)[0].sum()) > LARGEST):
+        return without  # free lags may come to be dynamics, too
+    return work.told(found, joint, options.converged(fit))
 
 
 @dataclass(frozen=True, eq=False)
