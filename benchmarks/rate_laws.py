@@ -122,37 +122,32 @@ def print_maps() -> None:
         for where in ("after", "before"):
             made = plants.records(plants.LAWS["linear"], 1, **{where: map_})
             left = [
-                identify(made, map=each, knots=9).metrics["training"].rms_percent
+                identify(made, map=each, map_knots=9).metrics["training"].rms_percent
                 for each in ("none", "dead-zone", "envelope")
             ]
             print(f"  {name:10s} {where:8s} " + "".join(f"{each:11.3f}" for each in left))
 
 
 def print_drive_noise() -> None:
-    """Print the scatter of constants with noise on the measured drive."""
-    print(f"\nnoise of 0.06 % on the drive, {RUNS} runs: rms error / s.e. (mean in brackets)")
+    """Print the errors of constants with noise on the measured drive."""
+    print(f"\nnoise of 0.06 % on the drive, {RUNS} runs: rms error, % (over its standard error)")
     print("  drive      filter   " + "".join(f"{name:>15s}" for name in NAMES))
     runs = [(1.0, 1.7, 1e-4), (50.0, 10.0, 1e-4), (100.0, 10.0, 1e-4)]
     shapes: tuple[Callable[..., Array], ...] = (plants.sine, plants.triangle)
-    for shape in shapes:
-        for rate_filter in ("none", "auto"):
-            z = []
-            for seed in range(RUNS):
-                made = plants.records(
-                    plants.LAWS["linear"], seed, drive_noise=0.05, shape=shape, runs=runs
-                )
-                told = plants.estimates(identify(made, rate_filter=rate_filter))
-                z.append(
-                    [(told[n][0] - v) / told[n][1] for n, v in zip(NAMES, VALUES, strict=True)]
-                )
-            rms, mean = np.sqrt(np.mean(np.square(z), axis=0)), np.mean(z, axis=0)
-            cells = [f"{a:7.2f} ({b:+5.2f})" for a, b in zip(rms, mean, strict=True)]
-            inside = np.mean(np.abs(np.array(z)[:, -1]) <= 2.0)
-            print(
-                f"  {shape.__name__:10s} {rate_filter:8s} "
-                + "".join(cells)
-                + f"   beta within 2 s.e. {inside:.2f}"
+    for shape, rate_filter in product(shapes, ("none", "auto")):
+        misses, errors = [], []
+        for seed in range(RUNS):
+            made = plants.records(
+                plants.LAWS["linear"], seed, drive_noise=0.05, shape=shape, runs=runs
             )
+            told = plants.estimates(identify(made, rate_filter=rate_filter))
+            misses.append([told[n][0] - v for n, v in zip(NAMES, VALUES, strict=True)])
+            errors.append([told[n][1] for n in NAMES])
+        z = np.array(misses) / np.array(errors)
+        percent = 100.0 * np.sqrt(np.mean(np.square(misses), axis=0)) / np.array(VALUES)
+        rms, inside = np.sqrt(np.mean(np.square(z), axis=0)), np.mean(np.abs(z[:, -1]) <= 2.0)
+        cells = "".join(f"{a:8.2f} ({b:4.2f})" for a, b in zip(percent, rms, strict=True))
+        print(f"  {shape.__name__:10s} {rate_filter:8s} {cells}   beta within 2 s.e. {inside:.2f}")
 
 
 if __name__ == "__main__":

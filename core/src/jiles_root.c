@@ -4,10 +4,10 @@
 /* A step this small is the last: the next would be its square, or a part in 1e9 of it. */
 #ifdef HYST_SINGLE
 #define JILES_NEAR HYST_REAL(1e-5)
-#define JILES_NEARER HYST_REAL(1e-3)
+#define JILES_NEARER HYST_REAL(1e-2)
 #else
 #define JILES_NEAR HYST_REAL(3e-11)
-#define JILES_NEARER HYST_REAL(1e-6)
+#define JILES_NEARER HYST_REAL(1e-5)
 #endif
 
 static hyst_real jiles_size(hyst_real x)

@@ -1,4 +1,4 @@
-"""Draw the figures of two pages of magnets: `python docs/figures/draw_magnets.py`."""
+"""Draw the figures of the pages of magnets: `python docs/figures/draw_magnets.py`."""
 
 from __future__ import annotations
 

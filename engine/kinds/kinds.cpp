@@ -7,6 +7,7 @@
     ROW(bouc_wen)                   \
     ROW(coleman_hodgdon)            \
     ROW(creep)                      \
+    ROW(creeping_plays)             \
     ROW(dahl)                       \
     ROW(dead_zone)                  \
     ROW(dead_zone_solved)           \

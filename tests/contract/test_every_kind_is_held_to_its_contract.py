@@ -87,6 +87,8 @@ DECLARED = {
     "creep": "-----I",
     "creep that goes back": "-----I",
     "inverse creep": "-----I",
+    "creeping plays": "-----I",
+    "inverse of creeping plays": "-----I",
     "lag": "-----I",
     "lag of a held signal": "-----I",
     "inverse lag": "-----I",

@@ -113,7 +113,7 @@ def test_what_a_target_cannot_take_is_refused(tmp_path: Path) -> None:
     dahl = hyst.Scheduled([hyst.Dahl(5.0, f, 1.0) for f in (1.0, 2.0)], [0.0, 1.0])
     with pytest.raises(hyst.InputError, match="its memory does not tell"):
         c_project(dahl, tmp_path / "out")
-    with pytest.raises(hyst.InputError, match="needs no preview"):
+    with pytest.raises(hyst.InputError, match="no inverse with a preview"):
         hyst.export.inverse_of(scheduled(), preview=5)
     with pytest.raises(hyst.InputError, match="has no inverse"):
         hyst.export.inverse_of(scheduled(), explicit=True)

@@ -132,8 +132,8 @@ def bent(y: Array) -> Array:
 @pytest.mark.parametrize(
     ("where", "options"),
     [
-        ("after", {"map": "dead-zone", "knots": 7}),
-        ("before", {"map": "envelope", "knots": [-10.0, 10.0]}),
+        ("after", {"map": "dead-zone", "map_knots": 7}),
+        ("before", {"map": "envelope", "map_knots": [-10.0, 10.0]}),
     ],
 )
 def test_maps_are_found_with_rates(where: str, options: dict[str, Any]) -> None:
@@ -154,7 +154,10 @@ def test_maps_are_found_with_rates(where: str, options: dict[str, Any]) -> None:
 
 def test_a_map_and_a_law_together() -> None:
     found = identify(
-        records(LAWS["sqrt"], seed=7, before=bent), rate="auto", map="envelope", knots=[-10.0, 10.0]
+        records(LAWS["sqrt"], seed=7, before=bent),
+        rate="auto",
+        map="envelope",
+        map_knots=[-10.0, 10.0],
     )
     told = estimates(found)
     assert abs(told["square_root"][0] - SQUARE_ROOT) < 4.0 * told["square_root"][1]
@@ -212,7 +215,7 @@ def test_record_weights_by_hysteresis_are_told() -> None:
     [
         ({"rate": "cubic"}, "rate is 'cubic'"),
         ({"map": "spline"}, "map is 'spline'"),
-        ({"map": "dead-zone", "knots": [1.0, 2.0]}, "give their number"),
+        ({"map": "dead-zone", "map_knots": [1.0, 2.0]}, "give their number"),
         ({"rate_filter": "loud"}, "rate_filter is 'loud'"),
         ({"rate_filter": -1.0}, "rate_filter is -1.0"),
         ({"rate_filter": 10.0}, "rate_filter is 10 s"),

@@ -228,6 +228,23 @@ def test_creep_whose_weights_move_is_inverted_with_its_memory():
         x += gain * (v - x)
 
 
+def test_a_lag_before_and_creep_behind_do_not_hinder_what_moves_between():
+    def stage(x: float) -> hyst.Operator:
+        plays = hyst.PrandtlIshlinskii([0.4 + 0.1 * x, 0.3], [0.1 + 0.1 * x, 0.4], p0=1.0)
+        creep = hyst.Creep([0.02, 0.01], [0.05, 1.0], dt=1e-2)
+        return hyst.Affine(1.0 + 0.2 * x, 0.1) @ creep @ plays @ hyst.Lag(4e-3, 1e-2)
+
+    model = hyst.Scheduled([stage(x) for x in (0.0, 0.5, 1.0)], KNOTS)
+    u, t = drive()
+    y = model.run(u, t).y
+    # The lag's inverse is an ordinary one: its feed-through of 0.64 enlarges rounding by half.
+    np.testing.assert_allclose(model.inverse().run(y, t).y, u, rtol=0, atol=2 * ROUNDING)
+    assert model.run(u, 27.0).y.tolist() == model.at(27.0)(u).tolist()
+    lags = hyst.Scheduled([hyst.Lag(time, 1e-2) for time in (4e-3, 5e-3)], [0.0, 1.0])
+    with pytest.raises(InputError, match="'lag' differ"):
+        lags.run(u, 0.5)
+
+
 def test_inverses_that_would_not_exist_somewhere_are_refused_by_name():
     def pair(*models: hyst.Operator) -> hyst.Scheduled:
         return hyst.Scheduled(models, [20.0, 40.0], "temperature")

@@ -14,6 +14,7 @@ WITHOUT_OWN = {
     "bouc_wen",
     "coleman_hodgdon",
     "creep",
+    "creeping_plays",
     "dahl",
     "degrading_bouc_wen",
     "delay",

@@ -19,6 +19,7 @@ from hyst.models import (
     Butterfly,
     ColemanHodgdon,
     Creep,
+    CreepingPlays,
     Dahl,
     DegradingBoucWen,
     Delay,
@@ -47,6 +48,9 @@ from hyst.models import (
 )
 
 PI = PrandtlIshlinskii([0.5, 0.25, 0.7], [0.5, 1.5, 4.0], p0=0.3)
+CREEPING_PLAYS = CreepingPlays(
+    [0.5, 0.3], [0.5, 2.0], 1.0, [[0.05, 0.02], [-0.01, 0.08]], [0.05, 0.5], dt=0.01
+)
 WAVY = PrandtlIshlinskii([0.5, -0.6, 0.4, -0.1], [0.5, 1.0, 2.5, 3.0], p0=0.3)
 ENVELOPE = DeadZone.odd([0.65, 0.2, 0.3], [0.0, 2.0, 5.0])
 LOPSIDED = DeadZone([0.8, 0.6, -0.5, 0.4], [0.0, 1.5, -2.5, 4.0])
@@ -187,6 +191,8 @@ OTHERS: dict[str, Operator] = {
     "creep that goes back": Creep([0.3, -0.2], [0.1, 1.0], dt=0.01),
     "inverse creep": Creep([0.2, 0.1], [0.03, 0.4], dt=0.01).inverse(),
     "creep of hysteresis": Creep([0.02, 0.02], [0.1, 1.0], dt=0.01) @ PI,
+    "creeping plays": CREEPING_PLAYS,
+    "inverse of creeping plays": CREEPING_PLAYS.inverse(),
     "lag": Lag(0.013, dt=0.01),
     "lag of a held signal": Lag(0.004, dt=0.01, hold="zero"),
     "inverse lag": Lag(0.006, dt=0.01).inverse(),

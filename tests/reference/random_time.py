@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import strategies as st
 
 from hyst import Operator
-from hyst.models import Creep, Delay, Lag, RateCurve, RateDependentPreview
+from hyst.models import Creep, CreepingPlays, Delay, Lag, RateCurve, RateDependentPreview
 from hyst.models import RateDependentPrandtlIshlinskii as RateDependentPlays
 from hyst.models.previewed_delay import PreviewedDelay
 from reference.random_numbers import numbers
@@ -33,6 +33,17 @@ def previews(draw: st.DrawFn) -> RateDependentPreview:
 
 
 few = st.floats(0.1, 2.0)
+
+
+@st.composite
+def creeping_plays(draw: st.DrawFn) -> CreepingPlays:
+    r = sorted(draw(st.lists(numbers(0.0, 5.0), min_size=1, max_size=3)))
+    p = [draw(numbers(0.0, 2.0)) for _ in r]
+    times = draw(st.lists(st.floats(1e-3, 1e3), max_size=2))
+    weights = [[draw(st.floats(-0.05, 0.05)) for _ in times] for _ in r]
+    return CreepingPlays(p, r, draw(numbers(1.0, 2.0)), weights, times, 0.01)
+
+
 first_order = st.builds(
     Lag, st.floats(1e-5, 0.2), st.just(0.01), st.sampled_from(("first", "zero"))
 )
@@ -42,6 +53,8 @@ WITH_TIME: dict[str, st.SearchStrategy[Operator]] = {
     "inverse-creep": creeps(0.5)
     .filter(lambda creep: creep.is_invertible())
     .map(lambda creep: creep.inverse()),
+    "creeping-plays": creeping_plays(),
+    "inverse-creeping-plays": creeping_plays().map(lambda plays: plays.inverse()),
     "delay": st.builds(Delay, numbers(0.0, 5.0), st.sampled_from((0.01, 1.0))),
     "inverse-delay": st.builds(Delay, st.floats(0.0, 0.24), st.just(0.01)).map(
         lambda delay: delay.inverse()

@@ -1,8 +1,8 @@
 """A simulated piezo stage that is, on purpose, none of the models hyst identifies.
 
-Its hysteresis has forty plays with an exponential density, followed by a cubic; its frame has a
-lightly damped resonance; its sensor adds noise and counts in 16 bits. So what hyst finds is an
-approximation, as it is with a real stage.
+Its amplifier lags; its hysteresis has forty plays with an exponential density, followed by a cubic;
+it creeps by the logarithm of time; its frame has a lightly damped resonance; its sensor adds noise
+and counts in 16 bits. So what hyst finds is an approximation, as it is with a real stage.
 """
 
 from __future__ import annotations
@@ -26,6 +26,9 @@ _LARGEST_RADIUS = 60.0
 _DECAY = 18.0
 _LINEAR_SHARE = 0.62
 
+_CREEP_TIMES = tuple(0.03 * math.exp(0.9 * i) for i in range(6))
+"""s; so close that their sum is a straight line over the logarithm of time."""
+
 
 @dataclass(frozen=True, eq=False)
 class SimulatedStage:
@@ -39,6 +42,10 @@ class SimulatedStage:
         Frequency of the frame's resonance, Hz.
     damping
         Its damping ratio.
+    lag
+        Time constant of the amplifier, s.
+    creep
+        Share of a step by which the stage goes on in every decade of time, up to some seconds.
     noise
         Standard deviation of the sensor's noise, um.
     count
@@ -57,6 +64,8 @@ class SimulatedStage:
     dt: float = 1e-3
     resonance: float = 150.0
     damping: float = 0.03
+    lag: float = 4e-4
+    creep: float = 0.012
     noise: float = 0.02
     count: float = 80.0 / 2**16
     seed: int = 1
@@ -80,9 +89,10 @@ class SimulatedStage:
         numpy.ndarray
             Shape (N,), um.
         """
-        bank = self._hysteresis
-        state = bank.initial_state() if history is None else bank.run(history)[1]
-        return self._frame(_saturating(bank.run(u, state)[0]))
+        before = np.empty(0) if history is None else history
+        drive = self._amplifier(np.concatenate([before, u]))
+        force = self._crept(_saturating(self._hysteresis(drive)))
+        return self._frame(force[before.size :])
 
     def measure(self, position: Array) -> Array:
         """Give what the sensor says about a position.
@@ -101,12 +111,29 @@ class SimulatedStage:
         counts: Array = np.round((position + noise) / self.count) * self.count
         return counts
 
+    def _amplifier(self, u: Array) -> Array:
+        """First-order lag of a held command, seen as the hold ends; at rest before the first."""
+        return _lagging(u, self.lag, self.dt, rest=float(u[0]))
+
+    def _crept(self, force: Array) -> Array:
+        """Add lags at many time constants, all at rest at 0 in a new stage."""
+        share = self.creep * math.log(_CREEP_TIMES[1] / _CREEP_TIMES[0]) / math.log(10.0)
+        lags = [_lagging(force, tau, self.dt) for tau in _CREEP_TIMES]
+        return np.asarray(force + share * np.sum(lags, axis=0))
+
     def _frame(self, force: Array) -> Array:
         """Second-order resonance with unit static gain, held input, at rest at the first sample."""
         numerator, denominator = _resonance(self.resonance, self.damping, self.dt)
         start = lfiltic(numerator, denominator, [force[0]] * 2, [force[0]] * 2)
         filtered: Array = lfilter(numerator, denominator, force, zi=start)[0]
         return filtered
+
+
+def _lagging(signal: Array, tau: float, dt: float, rest: float = 0.0) -> Array:
+    """Follow a held signal with a first-order lag."""
+    kept = math.exp(-dt / tau)
+    followed: Array = lfilter([1.0 - kept], [1.0, -kept], signal, zi=[kept * rest])[0]
+    return followed
 
 
 def _bank() -> PrandtlIshlinskii:

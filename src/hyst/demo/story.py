@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from hyst.compensation import Compensation, invert_trajectory
 from hyst.demo.stage import HIGHEST_DRIVE, SimulatedStage
-from hyst.demo.trajectories import staircase_and_sines, through
-from hyst.identification import Identified, identify
+from hyst.demo.trajectories import staircase_and_sines, through, with_holds
+from hyst.identification import Identified, earlier, identify
 from hyst.operators import Affine
 from hyst.signals import Metrics, Record, error_metrics
 
@@ -25,6 +25,11 @@ _TRAINING_LEVELS = (
 )
 _VALIDATION_LEVELS = (0.0, 100.0, 0.0, 65.0, 25.0, 95.0, 45.0, 80.0, 5.0, 35.0, 0.0)
 _SPEED = 160.0
+_HOLDS = {15.0: 3.0, 85.0: 3.0, 42.0: 2.0, 20.0: 3.0, 90.0: 3.0}
+_VALIDATION_HOLDS = {65.0: 2.5, 45.0: 2.0}
+"""s, by level: while the drive rests the stage shows its creep."""
+
+_LOW, _HIGH = 8.0, 48.0
 _SWEEP = (0.0, HIGHEST_DRIVE, 0.0)
 
 
@@ -102,14 +107,16 @@ def tell(stage: SimulatedStage | None = None, say: Callable[[str], None] | None 
     rig = stage or SimulatedStage()
     say = say or _say_nothing
     say("driving the stage")
-    training = _record(rig, _TRAINING_LEVELS)
-    validation = _record(rig, _VALIDATION_LEVELS)
+    training = _record(rig, _TRAINING_LEVELS, _HOLDS)
+    validation = _record(rig, _VALIDATION_LEVELS, _VALIDATION_HOLDS)
     identified = identify(training, validation=validation, progress=say)
     say("tracking")
     history = through(_SWEEP, _SPEED, rig.dt)
-    y_ref = staircase_and_sines(8.0, 48.0, rig.dt)
+    y_ref = _reference(float(identified.model(history)[-1]), rig.dt)
     limits = (0.0, HIGHEST_DRIVE)
-    done = invert_trajectory(identified.model, y_ref, input_range=limits, history=history)
+    # The command is given earlier by what the output lags.
+    wanted = earlier(y_ref, identified.delay)
+    done = invert_trajectory(identified.model, wanted, input_range=limits, history=history)
     line = _straight_line(training)
     plain = np.clip(line.inverse()(y_ref), *limits)
     tracking = (
@@ -123,8 +130,17 @@ def _say_nothing(_: str) -> None:
     """Tell nobody."""
 
 
-def _record(stage: SimulatedStage, levels: tuple[float, ...]) -> Record:
-    u = through(levels, _SPEED, stage.dt)
+def _reference(start: float, dt: float) -> Array:
+    """Go from where the stage rests to the stairs, and up and down them."""
+    return np.concatenate(
+        [through([start, _LOW], _HIGH - _LOW, dt), staircase_and_sines(_LOW, _HIGH, dt)]
+    )
+
+
+def _record(
+    stage: SimulatedStage, levels: tuple[float, ...], holds: Mapping[float, float]
+) -> Record:
+    u = with_holds(levels, holds, _SPEED, stage.dt)
     y = stage.measure(stage.position(u))
     names = {"input_name": "drive", "output_name": "position"}
     units = {"input_unit": "V", "output_unit": "um"}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -63,6 +63,33 @@ def hold(level: float, seconds: float, dt: float) -> Array:
     array([2., 2., 2.])
     """
     return np.full(round(seconds / dt), level)
+
+
+def with_holds(
+    levels: Sequence[float], holds: Mapping[float, float], speed: float, dt: float
+) -> Array:
+    """Go from level to level and stay at some of them.
+
+    Parameters
+    ----------
+    levels, speed, dt
+        As of ``through``.
+    holds
+        For how long, s, by level.
+
+    Returns
+    -------
+    numpy.ndarray
+
+    Examples
+    --------
+    >>> with_holds([0.0, 1.0, 0.5], {1.0: 0.5}, 1.0, 0.25).round(3)
+    array([0.   , 0.146, 0.5  , 0.854, 1.   , 1.   , 1.   , 0.75 , 0.5  ])
+    """
+    pieces = [np.array([levels[0]])]
+    for start, stop in pairwise(levels):
+        pieces += [through([start, stop], speed, dt)[1:], hold(stop, holds.get(stop, 0.0), dt)]
+    return np.concatenate(pieces)
 
 
 def staircase_and_sines(low: float, high: float, dt: float) -> Array:

@@ -46,7 +46,7 @@ class _Lags(Operator):
                 f"there are {shares.size} weights and {times.size} time constants; give one weight "
                 "for each time constant"
             )
-        _require_time_constants(times, sample)
+        require_time_constants(times, sample)
         names = ("weights", "time_constants", "sample_time", "rest")
         for name, value in zip(
             names, (shares, times, sample, as_number(rest, "rest")), strict=True
@@ -159,8 +159,21 @@ def times_of(values: ArrayLike) -> Array:
     return as_constants(values, "time_constants")
 
 
-def _require_time_constants(times: Array, dt: float) -> None:
-    """Refuse time constants that are no times, or so long that no lag moves."""
+def require_time_constants(times: Array, dt: float) -> None:
+    """Refuse time constants that are no times, or so long that no lag moves.
+
+    Parameters
+    ----------
+    times
+        Time constants, s.
+    dt
+        Sample time, s.
+
+    Raises
+    ------
+    InputError
+        If one is not of 1e-6 to 1e15 samples.
+    """
     for i, tau in enumerate(times):
         if not tau > 0.0:
             raise InputError(f"time_constants[{i}] is {tau}; give a time above 0, in seconds")

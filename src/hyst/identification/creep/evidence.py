@@ -46,7 +46,8 @@ SMALLEST_PART = 5e-4
 """Of the output's range: creep of less rms is not looked for."""
 
 BEYOND_LOOPS = 0.5
-"""Share of what creep explains that general loops must not explain as well."""
+"""Share of what creep explains that general loops must not explain as well, or of all they leave
+that creep must explain: they are so general that they take a part of any creep."""
 
 OF_EITHER_SIGN = 0.5
 """Share of what lags of either sign explain that lags of positive weight must explain."""
@@ -112,7 +113,8 @@ def evidence_of(data: Data, fit: Fit, drifts: bool) -> Evidence:
     shown = (
         resembled
         and explained >= OF_EITHER_SIGN * either
-        and beyond >= BEYOND_LOOPS * explained
+        and beyond >= SMALLEST_SHARE * total
+        and beyond >= BEYOND_LOOPS * min(explained, float(beside_loops.error @ beside_loops.error))
         and weights.sum() <= LARGEST
         and beside_loops.chance_of(beyond, int((weights > 0.0).sum())) <= UNLIKELY
     )

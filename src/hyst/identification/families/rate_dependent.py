@@ -119,7 +119,7 @@ class RateDependent(Family):
     map
         ``"none"``; ``"dead-zone"``: a piecewise linear map after the plays (S4 sec. III-D);
         ``"envelope"``: one before them, of whose output the rate is taken.
-    knots
+    map_knots
         Number of knots of the map, 1 to 50, evenly spaced over the signal it acts on; of an
         envelope also their places, input units.
     rate_filter
@@ -164,7 +164,7 @@ class RateDependent(Family):
         NO_MAP,
         choice((NO_MAP, DEAD_ZONE, ENVELOPE), "A map after the plays, before them, or none."),
     )
-    knots: Any = option(6, KNOTS_OPTION)
+    map_knots: Any = option(6, KNOTS_OPTION)
     rate_filter: Any = option(AUTO, FILTER_OPTION)
 
     def __post_init__(self) -> None:
@@ -173,9 +173,9 @@ class RateDependent(Family):
             raise InputError(
                 f"plays is {self.plays} but {len(self.radii)} radii are given; leave out plays"
             )
-        if self.map != ENVELOPE and not isinstance(self.knots, int):
+        if self.map != ENVELOPE and not isinstance(self.map_knots, int):
             raise InputError(
-                f"knots are {list(self.knots)}; give their number, for only the places of an "
+                f"map_knots are {list(self.map_knots)}; give their number, for only the places of an "
                 "envelope's knots are known before the fit"
             )
 
@@ -230,8 +230,8 @@ class RateDependent(Family):
         given: dict[str, Any] = {}
         if self.radii is not None:
             given["radii"] = [r * input_scale for r in self.radii]
-        if not isinstance(self.knots, int):
-            given["knots"] = [each * input_scale for each in self.knots]
+        if not isinstance(self.map_knots, int):
+            given["map_knots"] = [each * input_scale for each in self.map_knots]
         return replace(self, **given) if given else self
 
     def sizes(self) -> tuple[int, ...]:
@@ -359,7 +359,7 @@ class RateDependent(Family):
     def _knot_count(self) -> int:
         if self.map == NO_MAP:
             return 0
-        return self.knots if isinstance(self.knots, int) else len(self.knots)
+        return self.map_knots if isinstance(self.map_knots, int) else len(self.map_knots)
 
     @property
     def _spacing(self) -> str:
@@ -371,7 +371,7 @@ class RateDependent(Family):
             self._spacing,
             self.radii,
             self.map,
-            self.knots,
+            self.map_knots,
             self._shows_rate(overview.data),
             self.root_weights(overview.data),
         )

@@ -28,8 +28,8 @@ from hyst.operators.composition import leaves_of
 
 Array = NDArray[np.float64]
 
-ROUNDING = 1e-20
-"""Of the squared output: a smaller residual is rounding."""
+MATTERS = 3e-4
+"""Of the output's range (rms): less than that the straight pieces of tables may leave."""
 
 UNLIKELY = 1e-6
 """Probability that chance lowers the residual so much."""
@@ -182,7 +182,8 @@ def law_that_does_not_fit(fit: Fit, data: Data, root: Array | None) -> tuple[str
     )
     return (
         f"the law of the rate does not fit: with radii that do not grow {name} the squared error "
-        f"would be some {100.0 * seen.share:.2g} % smaller; try rate 'auto' (--rate-law auto)",
+        f"would be some {100.0 * seen.share:.2g} % smaller; try rate 'auto' (--rate-law auto), or "
+        "'piecewise' where it was chosen so",
     )
 
 
@@ -194,7 +195,7 @@ def _slopes_missed(fit: Fit, data: Data, root: Array | None) -> _Seen | None:
     weight = np.ones(1) if root is None else root
     by_slopes, by_theta = (each * weight[:, None] for each in _derivatives(fit, data, law))
     error = (model_output(data, fit.operator) - data.measured()) * weight
-    if float(error @ error) <= ROUNDING * float(np.sum(np.square(data.measured() * weight))):
+    if float(error @ error) == 0.0:
         return None
     grows = layout.law.widening(fit.solution.theta[layout.law_places]) > 0.0
     own = by_theta if grows else by_theta[:, fit.parametrization.inside(fit.solution.theta)]
@@ -203,6 +204,9 @@ def _slopes_missed(fit: Fit, data: Data, root: Array | None) -> _Seen | None:
     more = by_slopes if grows else by_slopes.sum(axis=1)[:, None]
     left = _left(np.column_stack([own, more]), error)
     cost, rest = float(before @ before), float(left @ left)
+    least = MATTERS * float(np.ptp(data.measured()))
+    if cost - rest <= least**2 * float(np.sum(np.square(np.broadcast_to(weight, error.shape)))):
+        return None
     freedom = max(error.size / correlation_time(left) - own.shape[1] - law.size, 1.0)
     directions = law.size - 1 if grows else 1
     narrows = not grows and float(_left(own, more[:, 0]) @ before) > 0.0

@@ -60,7 +60,13 @@ class Tried:
 
     @classmethod
     def of(cls, fit: Fit, data: Data) -> Tried:
-        """Find what a fit leaves."""
+        """Find what a fit leaves.
+
+        Parameters
+        ----------
+        fit, data
+            The fit and what it was made to.
+        """
         residual = fit.problem(data).residual(fit.solution.theta)
         return cls(fit, data, residual[: sum(data.lengths())])
 
@@ -103,7 +109,13 @@ class LagOrDelay:
 
     @classmethod
     def of(cls, found: Found, options: Options) -> LagOrDelay:
-        """Bring what was found into the units that are worked in."""
+        """Bring what was found into the units that are worked in.
+
+        Parameters
+        ----------
+        found, options
+            As of the class.
+        """
         data = found.data
         scales = (
             _power_of_two(2.0 * data.half_range),
@@ -114,7 +126,15 @@ class LagOrDelay:
 
     @staticmethod
     def scaled(fit: Fit, scales: tuple[float, float]) -> Fit:
-        """Give a fit in units smaller by these factors."""
+        """Give a fit in units smaller by these factors.
+
+        Parameters
+        ----------
+        fit
+            In larger units.
+        scales
+            Of input and output.
+        """
         into = (1.0 / scales[0], 1.0 / scales[1])
         parametrization = fit.parametrization.in_units(fit.solution.theta, *into)
         return replace(fit, family=fit.family.in_units(*into), parametrization=parametrization)
@@ -129,6 +149,13 @@ class LagOrDelay:
 
         A lag of many samples makes loops that are unlike those of any family, so no delay tells of
         it.
+
+        Parameters
+        ----------
+        search
+            Identifies without a lag.
+        records
+            What from.
         """
         evidence = self.found.delay
         if evidence is None or evidence.high <= 0.0 or self._describes():
