@@ -270,6 +270,14 @@ def test_a_plant_that_creeps_is_followed_by_the_inverse() -> None:
     assert missed[None] > 4.0 * missed["auto"]
 
 
+def test_a_fit_with_creep_that_does_not_converge_leaves_what_was_found_without() -> None:
+    given = record(Y, U, 1)
+    found = _identify(given, max_iterations=15)
+    without = _identify(given, max_iterations=15, creep=None)
+    assert found.parameter_values.tolist() == without.parameter_values.tolist()
+    assert "creep" not in _kinds(found)
+
+
 @pytest.mark.parametrize("creep", ["two", 0, 6, 1.5, True])
 def test_what_is_no_number_of_lags_is_refused(creep: object) -> None:
     with pytest.raises(InputError, match="creep is"):

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import whole_number
-from hyst.errors import InputError, NotIdentifiableError
+from hyst.errors import InputError, NotIdentifiableError, SolverError
 from hyst.identification.creep.creeping import Creeping, by_name, over_windows, taken_out
 from hyst.identification.creep.creeping_family import CreepingFamily, staged_of
 from hyst.identification.creep.evidence import (
@@ -154,29 +154,28 @@ def with_creep(
     first = found
     if drifted:
         # What was taken for drift may be creep, and bends a model where it is taken out.
-        found = search(records, options)
+        try:
+            found = search(records, options)
+        except SolverError:
+            if wanted != AUTO:
+                raise
+            return as_it_was
         if _no_place(found.fit):
             return as_it_was
     seen = evidence_of(*work.scaled(found), drifts)
     if wanted != AUTO:
         require_told(seen)
-    without = replace(as_it_was, evidence=seen, asked=wanted != AUTO)
+    without = replace(as_it_was, evidence=replace(seen, shown=False), asked=wanted != AUTO)
     if not seen.weights.size or (wanted == AUTO and not seen.shown):
         return without
-    for _ in range(ROUNDS):
-        known = replace(options, delay=_delay_beside(found, seen, options))
-        again = search(records.without(work.creep_and_beside(found, seen)), known)
-        if _no_place(again.fit):
-            break
-        found, seen = again, evidence_of(*work.scaled(again), drifts)
-        if not seen.weights.size:
-            return without
-    options.say("creep: all constants together")
-    found = replace(found, delay=first.delay)
-    found, joint, fit = work.fitted(found, seen, wanted, options)
-    if fit is None or (wanted == AUTO and float(lags_of(fit)[0].sum()) > LARGEST):
-        return without  # free lags may come to be dynamics, too
-    return work.told(found, joint, options.converged(fit))
+    try:
+        creeping = work.creeping(first, found, seen, wanted, search, options)
+    except SolverError:
+        if wanted != AUTO:
+            raise
+        # Nobody asked for it: what was found before stands, and says so.
+        return replace(without, evidence=seen, asked=True)
+    return without if creeping is None else creeping
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,6 +203,31 @@ class _Work:
         parametrization = found.fit.parametrization.in_units(found.fit.solution.theta, into, out)
         family = found.fit.family.in_units(into, out)
         return data, replace(found.fit, family=family, parametrization=parametrization)
+
+    def creeping(
+        self,
+        first: Found,
+        found: Found,
+        seen: Evidence,
+        wanted: Wanted,
+        search: Callable[[Cleaned, Options], Found],
+        options: Options,
+    ) -> Creeping | None:
+        """Search again without what lags explain, then fit all together; None if none is left."""
+        for _ in range(ROUNDS):
+            known = replace(options, delay=_delay_beside(found, seen, options))
+            again = search(self.records.without(self.creep_and_beside(found, seen)), known)
+            if _no_place(again.fit):
+                break
+            found, seen = again, evidence_of(*self.scaled(again), self.drifts)
+            if not seen.weights.size:
+                return None
+        options.say("creep: all constants together")
+        found = replace(found, delay=first.delay)
+        found, joint, fit = self.fitted(found, seen, wanted, options)
+        if fit is None or (wanted == AUTO and float(lags_of(fit)[0].sum()) > LARGEST):
+            return None  # free lags may come to be dynamics, too
+        return self.told(found, joint, options.converged(fit))
 
     def _given(self, data: Data) -> Data:
         pairs = zip(data.records, self.records.records, strict=True)

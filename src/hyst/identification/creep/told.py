@@ -78,6 +78,11 @@ def sentence_without(seen: Evidence) -> str:
     seen
         What was seen of creep.
     """
+    if seen.shown:
+        return (
+            "the records show creep, but the fit with it did not converge, so no creep was taken; "
+            "raise max_iterations, or ask for one lag (--creep 1)"
+        )
     if seen.resembled:
         return (
             "what the model leaves looks like creep, but also like loops of another shape or "
