@@ -73,7 +73,13 @@ class Nuisance(ABC):
         """
 
     def count(self, moments: Moments, theta: Array) -> int:
-        """Give their number q."""
+        """Give their number q.
+
+        Parameters
+        ----------
+        moments, theta
+            As of ``columns``.
+        """
         return int(self.columns(moments, theta).shape[1])
 
     def slopes(self, moments: Moments, theta: Array, coefficients: Array) -> Array | None:
@@ -177,11 +183,23 @@ class Nuisances:
     parts: tuple[Nuisance, ...]
 
     def columns(self, moments: Moments, theta: Array) -> Array:
-        """Give the columns of all parts, shape (n, q)."""
+        """Give the columns of all parts, shape (n, q).
+
+        Parameters
+        ----------
+        moments, theta
+            As of ``Nuisance.columns``.
+        """
         return np.concatenate([each.columns(moments, theta) for each in self.parts], axis=1)
 
     def slopes(self, moments: Moments, theta: Array, coefficients: Array) -> Array:
-        """Give the derivative of ``columns @ coefficients`` by theta, shape (n, m)."""
+        """Give the derivative of ``columns @ coefficients`` by theta, shape (n, m).
+
+        Parameters
+        ----------
+        moments, theta, coefficients
+            As of ``Nuisance.slopes``.
+        """
         total = np.zeros((moments.places.size, theta.size))
         first = 0
         for each in self.parts:
