@@ -100,6 +100,21 @@ def test_radii_that_shrink_are_told() -> None:
     assert any("radii that shrink with the rate are no model" in n for n in found.undetermined)
 
 
+@pytest.mark.parametrize("rate", ["linear", "auto", "piecewise"])
+@pytest.mark.parametrize("scales", [(1.0, 0.7, 0.3), (1.0, 0.95, 0.9)])
+def test_plays_that_shrink_by_their_share_are_told(rate: str, scales: tuple[float, ...]) -> None:
+    """What no common widening describes, with errors so smooth that few of them count."""
+    taken = []
+    for frequency, scale in zip((1.0, 50.0, 100.0), scales, strict=True):
+        u = sine(frequency, 2.0, 1.0 / (200.0 * frequency), 20.0)
+        plays = hyst.PrandtlIshlinskii([0.5, 0.3, 0.2], np.array([3.0, 6.0, 9.0]) * scale, 0.6)
+        taken.append(hyst.Record(u, plays(u), dt=1.0 / (200.0 * frequency)))
+    found = identify(taken, rate=rate)
+    assert curve_of(found)(1e4) == 0.0
+    assert any("radii that shrink with the rate are no model" in n for n in found.undetermined)
+    assert found.verdict.level != "good"
+
+
 def test_a_plant_without_rate_gets_none() -> None:
     for seed in range(3):
         beta, error = estimates(identify(records(lambda x: 0.0 * x, seed), rate="auto"))["beta"]

@@ -67,6 +67,7 @@ from hyst.identification.families.rate_law_choice import (
 )
 from hyst.identification.families.rate_law_told import (
     law_that_does_not_fit,
+    loops_that_narrow,
     notes_of_law,
     with_constants_of_law,
 )
@@ -175,8 +176,8 @@ class RateDependent(Family):
             )
         if self.map != ENVELOPE and not isinstance(self.map_knots, int):
             raise InputError(
-                f"map_knots are {list(self.map_knots)}; give their number, for only the places of an "
-                "envelope's knots are known before the fit"
+                f"map_knots are {list(self.map_knots)}; give their number, for only the places of "
+                "an envelope's knots are known before the fit"
             )
 
     def refused_before_dynamics(self) -> str:
@@ -323,6 +324,8 @@ class RateDependent(Family):
         errors[: by_drives.size] = np.hypot(errors[: by_drives.size], by_drives)
         whole = len(fit.operator.parameters()) == len(identified.model.parameters())
         told = law_that_does_not_fit(fit, data, root) if whole else ()
+        if whole and not told:
+            told = loops_that_narrow(fit, identified.diagnosis)
         return replace(
             identified,
             undetermined=(*identified.undetermined, *told),
