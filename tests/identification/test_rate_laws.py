@@ -217,6 +217,21 @@ def test_records_of_200_points_a_loop_are_taken_together() -> None:
     assert "hysteresis" in found.summary()
 
 
+def test_records_that_turn_once_show_their_rates() -> None:
+    """A rise and a fall each: there is no time from turn to turn, but each takes its own."""
+    taken = []
+    for seed, duration in enumerate((1.0, 0.02, 0.01)):
+        u = 40.0 * (1.0 - np.abs(np.linspace(-1.0, 1.0, 600)))
+        y = plant(u, duration / 600.0, LAWS["linear"])
+        y += NOISE * np.random.default_rng(seed).normal(size=u.size)
+        taken.append(hyst.Record(u, y, dt=duration / 600.0))
+    found = identify(taken)
+    beta, error = estimates(found)["beta"]
+    assert abs(beta - BETA) < 4.0 * error
+    assert not any("one frequency" in note for note in found.undetermined)
+    assert any("one frequency, 1." in note for note in identify(taken[:1]).undetermined)
+
+
 def test_record_weights_by_hysteresis_are_told() -> None:
     found = identify(records(LAWS["linear"], seed=11), record_weights="hysteresis")
     note = next(each for each in found.undetermined if "the records weigh" in each)

@@ -133,7 +133,7 @@ def identify(
             return find(records, families, asked_of, reserve)
 
         found = found_with_lag(without_lag, clean, time_constant, wanted, families)
-        again, how = search_beside_lag(without_lag, found, time_constant, wanted)
+        again, how = search_beside_lag(without_lag, found, time_constant, wanted, families)
         drifts = about_drift == "auto"
         creeping = with_creep(found, clean.with_drift(), lags, drifts, again, how)
         found = creeping.found

@@ -150,7 +150,7 @@ _NARROWS = (
 
 
 def loops_that_narrow(fit: Fit, diagnosis: Diagnosis) -> tuple[str, ...]:
-    """Say that loops narrow with the rate where growth came out 0 and the records show that they do.
+    """Say that loops narrow with the rate where growth came out 0 and the diagnosis shows it.
 
     Where the error that is left is smooth, regression on it leaves this open.
 
