@@ -229,7 +229,7 @@ def test_records_that_turn_once_show_their_rates() -> None:
     beta, error = estimates(found)["beta"]
     assert abs(beta - BETA) < 4.0 * error
     assert not any("one frequency" in note for note in found.undetermined)
-    assert any("one frequency, 1." in note for note in identify(taken[:1]).undetermined)
+    assert any("one frequency, 1 Hz" in note for note in identify(taken[:1]).undetermined)
 
 
 def test_record_weights_by_hysteresis_are_told() -> None:
