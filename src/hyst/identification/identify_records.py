@@ -143,6 +143,10 @@ def identify(
         if reserve and lags is not None and not creeping.leaves_noise():
             # Creep is more common than what plays cannot follow, and other families take it up.
             creeping = creeping.or_better(searched(reserve))
+        found = found_with_lag(without_lag, clean, time_constant, wanted, families)
+        again, how = search_beside_lag(without_lag, found, time_constant, wanted, families)
+        drifts = about_drift == "auto"
+        creeping = with_creep(found, clean.with_drift(), lags, drifts, again, how)
         found = creeping.found
         diagnosis = creeping.judged(diagnosis, given)
         for number, record in enumerate(judged, 1):

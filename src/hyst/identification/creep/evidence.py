@@ -245,6 +245,9 @@ class Look:
             Of the squared error.
         lags
             Their number.
+            Of the residual's sum of squares.
+        lags
+            How many lags explain it.
         """
         left = Basis.of(self.lags).out_of(self.error)
         before = float(self.error @ self.error)
