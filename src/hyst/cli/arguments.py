@@ -85,6 +85,26 @@ def numbers(text: str, name: str) -> list[float]:
         ) from None
 
 
+def history_of(text: str) -> list[float]:
+    """Read the drive before the first sample: turns with commas between them, or FILE:COLUMN.
+
+    Parameters
+    ----------
+    text
+        As it was typed.
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+    """
+    file, colon, column = text.rpartition(":")
+    if not (colon and Path(file).exists()):
+        return numbers(text, "history")
+    values: list[float] = hyst.io.read_column(file, column)[0].tolist()
+    return values
+
+
 def sample_time_known(
     model: hyst.operators.Operator, file: Path, rate: float | None, what: str, **how: Any
 ) -> bool:

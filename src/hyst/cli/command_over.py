@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import hyst
-from hyst.cli.arguments import numbers
+from hyst.cli.arguments import history_of
 from hyst.cli.console import show_files
 
 if TYPE_CHECKING:
@@ -109,7 +109,7 @@ def compensate_over(
     time
         Headers and columns that come first.
     """
-    turns = () if history is None else numbers(history, "history")
+    turns = () if history is None else history_of(history)
     done = command_over(model, y_ref, s, turns, input_range, despite_verdict)
     write_command(out, model.description, time, (y_ref, *done))
     show_files([out])

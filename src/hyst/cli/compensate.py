@@ -14,6 +14,7 @@ from hyst.cli.arguments import (
     DespiteVerdict,
     ModelFile,
     SampleRate,
+    history_of,
     numbers,
     require_same_unit,
     sample_time_known,
@@ -92,9 +93,9 @@ NoLimits = Annotated[bool, typer.Option("--no-limits", help="Let the input go wh
 History = Annotated[
     str | None,
     typer.Option(
-        metavar="U,U,...",
+        metavar="U,U,...|FILE:COLUMN",
         show_default=False,
-        help="Inputs the actuator passed just before; they set its memory.",
+        help="Inputs just before, which set the memory: turns, or a record where time counts.",
     ),
 ]
 
@@ -164,7 +165,7 @@ def compensate(
             method,
             input_range=input_range,
             outside=outside,
-            history=None if history is None else numbers(history, "history"),
+            history=None if history is None else history_of(history),
             rate_limit=rate_limit,
             objective=objective,
             roughness=roughness,
@@ -174,11 +175,25 @@ def compensate(
             progress=progress,
         )
     _note_unknown_time(known, model)
+    _note_short_history(history, model)
     time = time_column(reference, rate, model.dt, done.u.size, **how)
     write_command(out, about, time, _signals(done, about, y_ref if with_delay else None))
     _tell(done, about, input_range, with_delay)
     tell_virgin(history is None and model.initial_state().size > 0)
     show_files([out])
+
+
+def _note_short_history(history: str | None, model: Operator) -> None:
+    """Say that typed turns last a sample each, where what fades tells how long ago they were."""
+    if (
+        history is not None
+        and ":" not in history
+        and any(e.kind == "creep" for e in leaves_of(model))
+    ):
+        note(
+            "the turns of --history last one sample each, too short for creep to follow; give the "
+            "drive before as a record, --history FILE:COLUMN"
+        )
 
 
 def _note_unknown_time(known: bool, model: Operator) -> None:

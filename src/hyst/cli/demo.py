@@ -48,7 +48,7 @@ def demo(
         f"  hyst identify {folder / 'record.csv'} --input drive --output position --time time "
         f"-o {folder / 'again'}\n"
         f"  hyst compensate {folder / 'model.json'} {folder / 'reference.csv'} --column reference "
-        f"--history 0,100,0 -o {folder / 'command.csv'}"
+        f"--history {folder / 'history.csv'}:drive --with-delay -o {folder / 'command.csv'}"
     )
 
 
@@ -92,24 +92,26 @@ def _tracking_section(story: Story) -> Section:
         png=hyst.report.draw_tracking(
             story.training.dt, story.y_ref, outputs, name, unit, hyst.demo.BANNER
         ),
-        caption="The simulated stage with both commands; what is left is its resonance, its lag, "
-        "and what the model does not capture.",
+        caption="The simulated stage with both commands; what is left is its resonance and "
+        "what the model does not capture.",
     )
 
 
 def _write_signals(story: Story, folder: Path) -> tuple[Path, ...]:
-    record, reference, command = (
-        folder / name for name in ("record.csv", "reference.csv", "command.csv")
+    record, reference, history, command = (
+        folder / name for name in ("record.csv", "reference.csv", "history.csv", "command.csv")
     )
     training = story.training
     hyst.io.write_columns(
         record, ("time [s]", "drive [V]", "position [um]"), (training.time, training.u, training.y)
     )
     hyst.io.write_columns(reference, ("reference [um]",), (story.y_ref,))
+    hyst.io.write_columns(history, ("drive [V]",), (story.history,))
     done = story.compensation
+    predicted = hyst.identification.earlier(done.y_predicted, -story.identified.delay)
     hyst.io.write_columns(
         command,
         ("reference [um]", "command [V]", "predicted [um]"),
-        (done.y_ref, done.u, done.y_predicted),
+        (story.y_ref, done.u, predicted),
     )
-    return record, reference, command
+    return record, reference, history, command

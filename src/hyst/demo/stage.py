@@ -61,7 +61,7 @@ class SimulatedStage:
     True
     """
 
-    dt: float = 1e-3
+    dt: float = 2e-3
     resonance: float = 150.0
     damping: float = 0.03
     lag: float = 4e-4

@@ -25,7 +25,10 @@ _TRAINING_LEVELS = (
 )
 _VALIDATION_LEVELS = (0.0, 100.0, 0.0, 65.0, 25.0, 95.0, 45.0, 80.0, 5.0, 35.0, 0.0)
 _SPEED = 160.0
-_HOLDS = {15.0: 3.0, 85.0: 3.0, 42.0: 2.0, 20.0: 3.0, 90.0: 3.0}
+_HOLDS = dict.fromkeys((0.0, 100.0, 15.0, 85.0, 42.0, 90.0, 70.0, 30.0), 1.0) | {
+    20.0: 6.0,
+    55.0: 5.0,
+}
 _VALIDATION_HOLDS = {65.0: 2.5, 45.0: 2.0}
 """s, by level: while the drive rests the stage shows its creep."""
 

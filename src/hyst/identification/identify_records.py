@@ -9,6 +9,7 @@ from threadpoolctl import threadpool_limits
 
 from hyst.diagnosis import Diagnosis
 from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
+from hyst.identification.creep.creeping import Creeping
 from hyst.identification.creep.found_creep import as_creep, require_place, with_creep
 from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families, families_in_reserve
@@ -129,13 +130,19 @@ def identify(
         reserve = tuple(each for each in reserve if _is_called_for(each, diagnosis))
         clean = cleaned(given, diagnosis, about_drift)
 
-        def without_lag(records: Cleaned, asked_of: Options) -> Found:
-            return find(records, families, asked_of, reserve)
+        def searched(more: Sequence[Family]) -> Creeping:
+            def without_lag(records: Cleaned, asked_of: Options) -> Found:
+                return find(records, families, asked_of, more)
 
-        found = found_with_lag(without_lag, clean, time_constant, wanted, families)
-        again, how = search_beside_lag(without_lag, found, time_constant, wanted)
-        drifts = about_drift == "auto"
-        creeping = with_creep(found, clean.with_drift(), lags, drifts, again, how)
+            found = found_with_lag(without_lag, clean, time_constant, wanted, families)
+            again, how = search_beside_lag(without_lag, found, time_constant, wanted)
+            drifts = about_drift == "auto"
+            return with_creep(found, clean.with_drift(), lags, drifts, again, how)
+
+        creeping = searched(reserve if lags is None else ())
+        if reserve and lags is not None and not creeping.leaves_noise():
+            # Creep is more common than what plays cannot follow, and other families take it up.
+            creeping = creeping.or_better(searched(reserve))
         found = creeping.found
         diagnosis = creeping.judged(diagnosis, given)
         for number, record in enumerate(judged, 1):

@@ -19,6 +19,8 @@ from hyst.identification.creep.told import (
     sentence_without,
 )
 from hyst.identification.fit.nuisance import Drift, Nuisances, moments_of, over_whole_records
+from hyst.identification.fit.problem import model_output
+from hyst.identification.judgement.judge import level_of
 from hyst.identification.record_use.cleaned import Cleaned
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.identified import Identified
@@ -27,6 +29,9 @@ from hyst.identification.search import Found
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
+
+CLEARLY = 0.9
+"""Share of the error that a model of a rarer kind must leave to be preferred to creep."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +62,26 @@ class Creeping:
     def creeps(self) -> bool:
         """Whether the model has creep."""
         return isinstance(self.found.fit.family, CreepingFamily)
+
+    def leaves_noise(self) -> bool:
+        """Tell whether what the model leaves is noise."""
+        return level_of(self.found.data, self.found.fit) == "good"
+
+    def or_better(self, other: Creeping) -> Creeping:
+        """Give this search if it found creep, unless another one leaves clearly less.
+
+        Parameters
+        ----------
+        other
+            Made among more families.
+        """
+        if not self.creeps or other._misses() < CLEARLY * self._misses():
+            return other
+        return self
+
+    def _misses(self) -> float:
+        data = self.found.data
+        return float(np.std(data.measured() - model_output(data, self.found.fit.operator)))
 
     def judged(self, diagnosis: Diagnosis, records: Sequence[Record]) -> Diagnosis:
         """Give a diagnosis that knows of the creep.

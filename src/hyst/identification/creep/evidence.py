@@ -223,7 +223,15 @@ class Look:
         return float(self.error @ self.error - left @ left)
 
     def chance_of(self, explained: float, lags: int) -> float:
-        """Give how likely noise alone would let some lags explain so much."""
+        """Give how likely noise alone would let some lags explain so much.
+
+        Parameters
+        ----------
+        explained
+            Of the squared error.
+        lags
+            Their number.
+        """
         left = Basis.of(self.lags).out_of(self.error)
         before = float(self.error @ self.error)
         freedom = (self.error.size - self.directions - lags) / correlation_time(left)

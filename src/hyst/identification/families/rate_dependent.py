@@ -175,8 +175,8 @@ class RateDependent(Family):
             )
         if self.map != ENVELOPE and not isinstance(self.map_knots, int):
             raise InputError(
-                f"map_knots are {list(self.map_knots)}; give their number, for only the places of an "
-                "envelope's knots are known before the fit"
+                f"map_knots are {list(self.map_knots)}; give their number, for only the places of "
+                "an envelope's knots are known before the fit"
             )
 
     def refused_before_dynamics(self) -> str:

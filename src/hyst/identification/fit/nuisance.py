@@ -73,7 +73,15 @@ class Nuisance(ABC):
         """
 
     def count(self, moments: Moments, theta: Array) -> int:
-        """Give their number q."""
+        """Give their number q.
+
+        Parameters
+        ----------
+        moments
+            When the samples were taken.
+        theta
+            Shape (m,), the free parameters of the model.
+        """
         return int(self.columns(moments, theta).shape[1])
 
     def slopes(self, moments: Moments, theta: Array, coefficients: Array) -> Array | None:
@@ -177,11 +185,29 @@ class Nuisances:
     parts: tuple[Nuisance, ...]
 
     def columns(self, moments: Moments, theta: Array) -> Array:
-        """Give the columns of all parts, shape (n, q)."""
+        """Give the columns of all parts, shape (n, q).
+
+        Parameters
+        ----------
+        moments
+            When the samples were taken.
+        theta
+            Shape (m,), the free parameters of the model.
+        """
         return np.concatenate([each.columns(moments, theta) for each in self.parts], axis=1)
 
     def slopes(self, moments: Moments, theta: Array, coefficients: Array) -> Array:
-        """Give the derivative of ``columns @ coefficients`` by theta, shape (n, m)."""
+        """Give the derivative of ``columns @ coefficients`` by theta, shape (n, m).
+
+        Parameters
+        ----------
+        moments
+            When the samples were taken.
+        theta
+            Shape (m,), the free parameters of the model.
+        coefficients
+            Shape (q,).
+        """
         total = np.zeros((moments.places.size, theta.size))
         first = 0
         for each in self.parts:
