@@ -242,9 +242,6 @@ class Look:
         Parameters
         ----------
         explained
-            Of the squared error.
-        lags
-            Their number.
             Of the residual's sum of squares.
         lags
             How many lags explain it.

@@ -81,8 +81,6 @@ class Nuisance(ABC):
             When the samples were taken.
         theta
             Shape (m,), the free parameters of the model.
-        moments, theta
-            As of ``columns``.
         """
         return int(self.columns(moments, theta).shape[1])
 
@@ -195,8 +193,6 @@ class Nuisances:
             When the samples were taken.
         theta
             Shape (m,), the free parameters of the model.
-        moments, theta
-            As of ``Nuisance.columns``.
         """
         return np.concatenate([each.columns(moments, theta) for each in self.parts], axis=1)
 
@@ -211,8 +207,6 @@ class Nuisances:
             Shape (m,), the free parameters of the model.
         coefficients
             Shape (q,).
-        moments, theta, coefficients
-            As of ``Nuisance.slopes``.
         """
         total = np.zeros((moments.places.size, theta.size))
         first = 0
