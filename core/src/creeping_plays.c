@@ -52,9 +52,9 @@ hyst_real hyst_creeping_plays_step(const hyst_creeping_plays *model, hyst_real *
         return zero;
     }
     if (model->inverse != 0) {
-        hyst_pi_step(&model->back, back, left);
+        (void)hyst_pi_step(&model->back, back, left);
     }
-    hyst_pi_step(&model->plays, z, u);
+    (void)hyst_pi_step(&model->plays, z, u);
     follow_plays(model, z, lag);
     return output;
 }

@@ -5,6 +5,9 @@
 #include "hyst/finite.h"
 #include "hyst/power.h"
 
+#define DEGRADING_LENGTH 7u
+#define DEGRADING_INVERSE_LENGTH 9u
+
 /* Places in the state. */
 enum {
     DEGRADING_U,
@@ -14,10 +17,8 @@ enum {
     DEGRADING_WAY_NODE,
     DEGRADING_Z_NODE,
     DEGRADING_E_NODE,
-    DEGRADING_LENGTH,
-    DEGRADING_Y = DEGRADING_LENGTH,
-    DEGRADING_Y_TURN,
-    DEGRADING_INVERSE_LENGTH
+    DEGRADING_Y, /* this and the next in the inverse alone */
+    DEGRADING_Y_TURN
 };
 
 /* Along a branch: the last node, how far it is from the turn, and how far the sample is from it. */
@@ -114,7 +115,7 @@ hyst_real hyst_degrading_bouc_wen_step(const hyst_degrading_bouc_wen *model, hys
     if (hyst_is_finite(input) == 0) {
         return input;
     }
-    hyst_real u = input;
+    hyst_real u;
     if (input < turn || input > turn) {
         if (degrading_follow(model, &on, input) == 0) {
             return hyst_exp2(HYST_REAL(1e6)); /* an infinity: too far for one sample */
@@ -142,7 +143,7 @@ hyst_real hyst_degrading_bouc_wen_step(const hyst_degrading_bouc_wen *model, hys
 static size_t degrading_bouc_wen_length(const void *model)
 {
     const hyst_degrading_bouc_wen *of = (const hyst_degrading_bouc_wen *)model;
-    return of->inverse ? (size_t)DEGRADING_INVERSE_LENGTH : (size_t)DEGRADING_LENGTH;
+    return of->inverse != 0 ? DEGRADING_INVERSE_LENGTH : DEGRADING_LENGTH;
 }
 
 static hyst_real degrading_bouc_wen_step(const void *model, hyst_real *state, hyst_real u)

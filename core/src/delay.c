@@ -15,10 +15,10 @@ hyst_real hyst_delay_step(const hyst_delay *model, hyst_real *state, hyst_real i
     hyst_real *ring = state + 2;
     const size_t place = counted(state[0], n), held = counted(state[1], n + 1u);
     const size_t next = place == n ? 0u : place + 1u;
-    hyst_real older = input, newer = input, u = input, y = input;
+    hyst_real u = input, y = input;
     if (held > 0u) {
-        older = held > n ? ring[place] : ring[0];
-        newer = n == 0u ? input : held > n ? ring[next] : ring[0];
+        const hyst_real older = held > n ? ring[place] : ring[0];
+        const hyst_real newer = n == 0u ? input : held > n ? ring[next] : ring[0];
         y = newer + model->fraction * (older - newer);
         u = model->inverse != 0 ? input + model->lead * (input - older) : input;
     }

@@ -314,6 +314,17 @@ static void preview_solve(const preview_scratch *own, size_t length, hyst_real d
     }
 }
 
+/* Empties the sums of a walk, and all that lies between slope and the end of the normal matrix. */
+static void preview_clear(const preview_scratch *own, size_t count, size_t length)
+{
+    for (size_t i = 0; i < count * length; ++i) {
+        own->held[i] = HYST_REAL(0.0);
+    }
+    for (size_t i = 0; i < 3u * length + (length * (length + 1u)) / 2u; ++i) {
+        own->slope[i] = HYST_REAL(0.0);
+    }
+}
+
 hyst_real hyst_preview_improve(const hyst_rate_preview *model, const hyst_preview_places *at,
                                hyst_real *state, size_t length, const hyst_preview_stage *stage,
                                hyst_real *plan, hyst_real *damping)
@@ -324,12 +335,7 @@ hyst_real hyst_preview_improve(const hyst_rate_preview *model, const hyst_previe
         preview_scratch_of(state + at->scratch, model->plays.pi.count, length);
     const preview_problem of = {model, stage, state, state + at->target,
                                 state[at->start + length - 1u], length};
-    for (hyst_real *each = own.held; each < own.row; ++each) {
-        *each = HYST_REAL(0.0);
-    }
-    for (hyst_real *each = own.slope; each < preview_column(&own, length); ++each) {
-        *each = HYST_REAL(0.0);
-    }
+    preview_clear(&own, model->plays.pi.count, length);
     const hyst_real cost = preview_walk(&of, &own, plan, 1);
     preview_solve(&own, length, *damping * (stage->gain * stage->gain));
     hyst_real share = HYST_REAL(1.0);

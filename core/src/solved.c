@@ -127,7 +127,7 @@ hyst_real hyst_pi_solved_step(const hyst_pi *pi, hyst_real *z, hyst_real y)
     while (solved_next(&search, &piece, y) == 0) {
         piece = piece_of_plays(pi, z, &search);
     }
-    if (hyst_is_finite(search.at)) {
+    if (hyst_is_finite(search.at) != 0) {
         for (size_t i = 0; i < pi->count; ++i) {
             z[i] = hyst_play(search.at, pi->r[i], z[i]);
         }
@@ -145,7 +145,9 @@ static solved_piece piece_of_map(const hyst_dead_zone *map, const solved_search 
         int acts = 1;
         if (rho > zero || rho < zero) {
             const int passed = solved_passed(search, &piece, rho);
-            acts = rho > zero ? passed : !passed;
+            if (rho > zero ? passed == 0 : passed != 0) {
+                acts = 0;
+            }
         }
         if (acts != 0) {
             piece.slope += weight;

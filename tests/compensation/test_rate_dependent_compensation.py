@@ -173,6 +173,23 @@ def test_a_refusal_names_the_range_of_the_input_before_a_map() -> None:
 
 
 @pytest.mark.parametrize("method", ["preview", "trajectory"])
+@pytest.mark.parametrize("rate_limit", [1.0, 1e5])
+@pytest.mark.parametrize("y_ref", [[3.0], [3.0, 3.0], np.zeros(50)], ids=len)
+def test_a_rate_limit_that_never_holds_the_drive_is_kept(
+    method: str, y_ref: Array, rate_limit: float
+) -> None:
+    done = invert_trajectory(MODEL, y_ref, method, rate_limit=rate_limit)
+    assert done.max_abs < 1e-12  # one sample of a drive from no history has no step
+    assert np.ptp(done.u) == 0.0
+
+
+@pytest.mark.parametrize("method", ["preview", "trajectory"])
+def test_the_step_from_the_history_is_held_by_the_rate_limit_too(method: str) -> None:
+    with pytest.raises(InputError, match="holds the drive at 1 of 1 steps"):
+        invert_trajectory(MODEL, [3.0], method, rate_limit=10.0, history=[20.0])
+
+
+@pytest.mark.parametrize("method", ["preview", "trajectory"])
 @pytest.mark.parametrize("rate_limit", [1.0, 100.0, 1000.0])
 def test_a_rate_limit_out_of_reach_is_refused_or_told(method: str, rate_limit: float) -> None:
     y_ref = reference_signal(60.0)

@@ -229,6 +229,8 @@ def test_other_hysteresis_beside_the_plays_is_refused() -> None:
         ("trajectory", {"objective": "mean"}, "objective is 'mean'"),
         ("trajectory", {"roughness": -1.0}, "roughness is -1"),
         ("trajectory", {"roughness": np.nan}, "roughness"),
+        ("trajectory", {"roughness": 1e300}, "roughness is 1e.300, but the gain .* give at most"),
+        ("trajectory", {"roughness": 1e300, "objective": "largest"}, "give at most"),
         ("preview", {"objective": "largest"}, "no objective"),
         ("explicit", {"roughness": 0.1}, "no objective and no roughness"),
     ],

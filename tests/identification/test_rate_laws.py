@@ -100,6 +100,21 @@ def test_radii_that_shrink_are_told() -> None:
     assert any("radii that shrink with the rate are no model" in n for n in found.undetermined)
 
 
+@pytest.mark.parametrize("rate", ["linear", "auto", "piecewise"])
+@pytest.mark.parametrize("scales", [(1.0, 0.7, 0.3), (1.0, 0.95, 0.9)])
+def test_plays_that_shrink_by_their_share_are_told(rate: str, scales: tuple[float, ...]) -> None:
+    """What no common widening describes, with errors so smooth that few of them count."""
+    taken = []
+    for frequency, scale in zip((1.0, 50.0, 100.0), scales, strict=True):
+        u = sine(frequency, 2.0, 1.0 / (200.0 * frequency), 20.0)
+        plays = hyst.PrandtlIshlinskii([0.5, 0.3, 0.2], np.array([3.0, 6.0, 9.0]) * scale, 0.6)
+        taken.append(hyst.Record(u, plays(u), dt=1.0 / (200.0 * frequency)))
+    found = identify(taken, rate=rate)
+    assert curve_of(found)(1e4) == 0.0
+    assert any("radii that shrink with the rate are no model" in n for n in found.undetermined)
+    assert found.verdict.level != "good"
+
+
 def test_a_plant_without_rate_gets_none() -> None:
     for seed in range(3):
         beta, error = estimates(identify(records(lambda x: 0.0 * x, seed), rate="auto"))["beta"]
@@ -200,6 +215,21 @@ def test_records_of_200_points_a_loop_are_taken_together() -> None:
     assert found.per_record[0].modelled_hysteresis == pytest.approx(13.6, abs=0.1)
     assert found.per_record[2].modelled_hysteresis == pytest.approx(28.0, abs=0.3)
     assert "hysteresis" in found.summary()
+
+
+def test_records_that_turn_once_show_their_rates() -> None:
+    """A rise and a fall each: there is no time from turn to turn, but each takes its own."""
+    taken = []
+    for seed, duration in enumerate((1.0, 0.02, 0.01)):
+        u = 40.0 * (1.0 - np.abs(np.linspace(-1.0, 1.0, 600)))
+        y = plant(u, duration / 600.0, LAWS["linear"])
+        y += NOISE * np.random.default_rng(seed).normal(size=u.size)
+        taken.append(hyst.Record(u, y, dt=duration / 600.0))
+    found = identify(taken)
+    beta, error = estimates(found)["beta"]
+    assert abs(beta - BETA) < 4.0 * error
+    assert not any("one frequency" in note for note in found.undetermined)
+    assert any("one frequency, 1 Hz" in note for note in identify(taken[:1]).undetermined)
 
 
 def test_record_weights_by_hysteresis_are_told() -> None:

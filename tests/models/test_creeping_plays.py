@@ -87,8 +87,20 @@ def test_what_is_not_shown_to_settle_is_refused(stage: hyst.Operator, why: str) 
         ([[0.1, 0.2]], [1.0], r"weights has shape \(1, 2\)"),
         ([[0.1]], [-1.0], r"time_constants\[0\] is -1"),
         ([[float("nan")]], [1.0], "weights"),
+        ([["a", 0.1]], [1.0, 10.0], "weights has dtype"),
+        ([[0.1], [0.2, 0.3]], [1.0, 10.0], "weights is not a rectangular array"),
+        (None, [1.0, 10.0], "weights has dtype object"),
     ],
 )
 def test_bad_constants_are_named(weights: list, times: list, why: str) -> None:
     with pytest.raises(hyst.InputError, match=why):
         hyst.CreepingPlays([0.5], [0.1], 1.0, weights, times, DT)
+
+
+@pytest.mark.parametrize("times", [[], [1.0, 10.0]])
+def test_no_plays_at_all_are_saved_and_loaded(times: list[float], tmp_path) -> None:
+    stage = hyst.models.CreepingPlays([], [], 2.0, np.empty((0, len(times))), times, 1.0)
+    stage.save(tmp_path / "stage.json")
+    assert hyst.load(tmp_path / "stage.json") == stage
+    assert stage([1.0, 2.0]).tolist() == [2.0, 4.0]
+    assert stage.inverse()([2.0, 4.0]).tolist() == [1.0, 2.0]

@@ -226,6 +226,19 @@ def test_composition_with_a_dead_zone_map() -> None:
     assert model.dt == DT
 
 
+def test_the_lipschitz_constant_counts_a_widening_that_falls() -> None:
+    curve = RateCurve(1.0, (), [-5.0], [30.0])
+    model = RateDependentPrandtlIshlinskii([1.0, 0.5], [1.0, 2.0], curve, 1.0, 0.5)
+    random, worst = np.random.default_rng(0), 0.0
+    for _ in range(1000):
+        u = np.cumsum(random.uniform(-40.0, 40.0, 6))
+        v = u + random.uniform(-1.0, 1.0, 6) * 10.0 ** random.uniform(-4.0, 1.0)
+        worst = max(worst, float(np.abs(model(u) - model(v)).max() / np.abs(u - v).max()))
+    # 0.5 + 1.5 (1 + 2 4) by the slope of -4 beyond the knee; 5 by that of 1 before it.
+    assert model.lipschitz_constant() == 14.0
+    assert 12.0 < worst <= 14.0
+
+
 def test_serialisation_is_exact(tmp_path) -> None:
     curve = RateCurve(0.1, [0.2, 0.3], [0.4, -0.1], [1.0 / 3.0, 2.0])
     for model in (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import pickle
 from pathlib import Path
 
@@ -311,6 +312,17 @@ def test_files_and_pickles_give_the_model_back(tmp_path: Path):
         assert found.inverse().description.input_unit == "um"
     with pytest.raises(InputError, match="unknown entry"):
         hyst.Scheduled.from_dict(model.to_dict() | {"knots": 3})
+
+
+def test_an_inverse_that_has_run_can_be_copied_and_pickled():
+    inverse = scheduled(moving_radii=0.4).inverse()
+    inverse = inverse.with_description(hyst.ModelDescription(input_unit="um"))
+    y = inverse.run([0.0, 1.0, 0.5], 30.0).y
+    for found in (copy.deepcopy(inverse), pickle.loads(pickle.dumps(inverse))):
+        assert found == inverse
+        assert hash(found) == hash(inverse)
+        assert found.description.input_unit == "um"
+        assert found.run([0.0, 1.0, 0.5], 30.0).y.tolist() == y.tolist()
 
 
 def test_a_model_that_is_unfit_anywhere_is_unfit():

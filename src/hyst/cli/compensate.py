@@ -174,8 +174,7 @@ def compensate(
             despite_verdict=despite_verdict,
             progress=progress,
         )
-    _note_unknown_time(known, model)
-    _note_short_history(history, model)
+    _note_times(known, history, model)
     time = time_column(reference, rate, model.dt, done.u.size, **how)
     write_command(out, about, time, _signals(done, about, y_ref if with_delay else None))
     _tell(done, about, input_range, with_delay)
@@ -183,22 +182,16 @@ def compensate(
     show_files([out])
 
 
-def _note_short_history(history: str | None, model: Operator) -> None:
-    """Say that typed turns last a sample each, where what fades tells how long ago they were."""
-    if (
-        history is not None
-        and ":" not in history
-        and any(e.kind == "creep" for e in leaves_of(model))
-    ):
+def _note_times(known: bool, history: str | None, model: Operator) -> None:
+    """Say what is taken for a sample time, and that typed turns last a sample each."""
+    if not known:
+        note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
+    typed = history is not None and ":" not in history
+    if typed and any(each.kind == "creep" for each in leaves_of(model)):
         note(
             "the turns of --history last one sample each, too short for creep to follow; give the "
             "drive before as a record, --history FILE:COLUMN"
         )
-
-
-def _note_unknown_time(known: bool, model: Operator) -> None:
-    if not known:
-        note(f"the reference is taken to have the model's sample time, {model.dt:.6g} s")
 
 
 def _signals(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any, Literal
 
 from threadpoolctl import threadpool_limits
@@ -10,9 +11,11 @@ from threadpoolctl import threadpool_limits
 from hyst.diagnosis import Diagnosis
 from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
 from hyst.identification.creep.creeping import Creeping
+from hyst.identification.creep.found_creep import Wanted as Creeps
 from hyst.identification.creep.found_creep import as_creep, require_place, with_creep
 from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families, families_in_reserve
+from hyst.identification.lag.found_lag import Wanted as Lagging
 from hyst.identification.lag.found_lag import as_lag, found_with_lag, search_beside_lag
 from hyst.identification.options import Options, listed, silent
 from hyst.identification.record_use.cleaned import Cleaned, as_drift, cleaned
@@ -122,7 +125,6 @@ def identify(
     families, about_drift = chosen_families(family, options), as_drift(drift)
     lags = as_creep(creep)
     require_place(families, lags)
-    time_constant = as_lag(lag)
     reserve = families_in_reserve(family, options)
     with threadpool_limits(1, user_api="blas"):
         diagnosis = diagnose_all_but_delay(given)
@@ -130,19 +132,8 @@ def identify(
         reserve = tuple(each for each in reserve if _is_called_for(each, diagnosis))
         clean = cleaned(given, diagnosis, about_drift)
 
-        def searched(more: Sequence[Family]) -> Creeping:
-            def without_lag(records: Cleaned, asked_of: Options) -> Found:
-                return find(records, families, asked_of, more)
-
-            found = found_with_lag(without_lag, clean, time_constant, wanted, families)
-            again, how = search_beside_lag(without_lag, found, time_constant, wanted)
-            drifts = about_drift == "auto"
-            return with_creep(found, clean.with_drift(), lags, drifts, again, how)
-
-        creeping = searched(reserve if lags is None else ())
-        if reserve and lags is not None and not creeping.leaves_noise():
-            # Creep is more common than what plays cannot follow, and other families take it up.
-            creeping = creeping.or_better(searched(reserve))
+        search = _Search(clean, families, as_lag(lag), lags, about_drift == "auto", wanted)
+        creeping = search.best(reserve)
         found = creeping.found
         diagnosis = creeping.judged(diagnosis, given)
         for number, record in enumerate(judged, 1):
@@ -163,6 +154,37 @@ def identify(
         identified = creeping.told(identified)
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
     return traced(told, given, asked)
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """One way to search records: for families, with lag, creep and drift as asked for."""
+
+    records: Cleaned
+    families: Sequence[Family]
+    lag: Lagging
+    creep: Creeps
+    drifts: bool
+    wanted: Options
+
+    def best(self, reserve: Sequence[Family]) -> Creeping:
+        """Give the best, with creep before families in reserve: they take up what is creep."""
+        if self.creep is None or not reserve:
+            return self.among(reserve)
+        first = self.among(())
+        return first if first.leaves_noise() else first.or_better(self.among(reserve))
+
+    def among(self, reserve: Sequence[Family]) -> Creeping:
+        """Give the best with these families in reserve."""
+
+        def without_lag(records: Cleaned, asked_of: Options) -> Found:
+            return find(records, self.families, asked_of, reserve)
+
+        with_lag = self.lag, self.wanted, self.families
+        found = found_with_lag(without_lag, self.records, *with_lag)
+        again, how = search_beside_lag(without_lag, found, *with_lag)
+        drifting = self.records.with_drift()
+        return with_creep(found, drifting, self.creep, self.drifts, again, how)
 
 
 def _is_called_for(family: Family, diagnosis: Diagnosis) -> bool:

@@ -10,7 +10,7 @@ from typing import Any, Self, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst.checks.arrays import as_constants
+from hyst.checks.arrays import as_constants, as_reals
 from hyst.checks.numbers import as_sample_time
 from hyst.errors import InputError, NotInvertibleError
 from hyst.models.creep import LONGEST, require_time_constants, times_of
@@ -44,15 +44,17 @@ class _CreepingBank(Operator):
     ) -> None:
         plays, step = PrandtlIshlinskii(p, r, p0), as_sample_time(dt)
         times = times_of(time_constants)
-        shares = as_constants(np.ravel(np.asarray(weights, dtype=np.float64)), "weights")
-        if np.shape(weights) != (plays.p.size, times.size):
+        given, shape = as_reals(weights, "weights"), (plays.p.size, times.size)
+        # A file holds the rows: none of no plays, whatever the number of time constants.
+        if given.shape != shape and not (shape[0] == 0 and given.shape == (0,)):
             raise InputError(
-                f"weights has shape {np.shape(weights)}; give a row for each of {plays.p.size} "
-                f"plays, with a weight for each of {times.size} time constants"
+                f"weights has shape {given.shape}; give a row for each of {shape[0]} plays, with a "
+                f"weight for each of {shape[1]} time constants"
             )
+        shares = as_constants(given.ravel(), "weights")
         require_time_constants(times, step)
         object.__setattr__(self, "plays", plays)
-        object.__setattr__(self, "weights", shares.reshape(plays.p.size, times.size))
+        object.__setattr__(self, "weights", shares.reshape(shape))
         object.__setattr__(self, "time_constants", times)
         object.__setattr__(self, "sample_time", step)
 

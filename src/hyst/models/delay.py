@@ -67,7 +67,7 @@ class Delay(Late):
         return samples <= LARGEST_DELAY
 
     def _refusal(self, samples: float) -> str:
-        return f"samples is {samples:.6g}; a delay is of at most {LARGEST_DELAY} samples"
+        return f"samples is {samples:.10g}; a delay is of at most {LARGEST_DELAY} samples"
 
     def parameters(self) -> Parameters:
         """Give the delay, samples, which may move within its whole sample."""

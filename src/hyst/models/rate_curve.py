@@ -29,7 +29,8 @@ class RateCurve:
 
         g(x) = beta x + c_2 x^2 + c_3 x^3 + .. + sum_j b_j max(x - x_j, 0)
 
-    Where the sum is negative, g is 0.
+    Where the sum is negative, g is 0. Slopes may be such that it falls, which no physical law does;
+    tables are refused if they fall.
 
     Parameters
     ----------
@@ -252,8 +253,16 @@ class RateCurve:
         """Give the largest slope at any rate, seconds; infinity for a curve with powers."""
         if self.powers.any():
             return float("inf")
+        return float(self._slopes().max())
+
+    def lipschitz_constant(self) -> float:
+        """Give the largest size of a slope, falling or not; infinity for a curve with powers."""
+        return float("inf") if self.powers.any() else float(np.abs(self._slopes()).max())
+
+    def _slopes(self) -> Array:
+        """Give the slopes of the pieces of a curve without powers, shape (j + 1,)."""
         order = np.argsort(self.knees, kind="stable")
-        return float(max(self.beta, (self.beta + np.cumsum(self.slopes[order])).max(initial=0.0)))
+        return np.cumsum(np.concatenate([[self.beta], self.slopes[order]]))
 
     def scaled(self, factor: float) -> RateCurve:
         """Give ``factor g``.

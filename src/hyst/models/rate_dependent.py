@@ -330,9 +330,9 @@ class RateDependentPrandtlIshlinskii(Operator):
         return self.at_rest().portrait()
 
     def lipschitz_constant(self) -> float:
-        """Give ``|p0| + sum |p_i| (1 + 2 g'/dt)``, g' the steepest slope of the rate curve."""
+        """Give ``|p0| + sum |p_i| (1 + 2 g'/dt)``, g' the largest slope of g in size."""
         size = float(np.abs(self.p).sum())
-        widening = 2.0 * self.rate_curve.steepest() / self.dt
+        widening = 2.0 * self.rate_curve.lipschitz_constant() / self.dt
         return abs(self.p0) + size * (1.0 + widening) if size else abs(self.p0)
 
     def to_dict(self) -> dict[str, Any]:

@@ -92,6 +92,18 @@ class ScheduledInverse(ScheduledSystem):
         """Give kind and model."""
         return {"kind": self.kind, "scheduled": self.scheduled.to_dict()}
 
+    def __eq__(self, other: object) -> bool:
+        """Tell whether it is the inverse of the same model."""
+        return isinstance(other, ScheduledInverse) and self.scheduled == other.scheduled
+
+    def __hash__(self) -> int:
+        """Give the hash of kind and model."""
+        return hash((self.kind, self.scheduled))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Carry what it is made of, not the compiled chains."""
+        return ScheduledInverse, (self.scheduled,), self._carried()
+
     @functools.cached_property
     def _stages(self) -> tuple[tuple[Stage, ...], ...]:
         return tuple(

@@ -96,8 +96,8 @@ class Chained(Operator):
     def preview_inverse(self, samples: int) -> Operator:
         """Give the inverses of the parts in reversed order, each with its share of the preview.
 
-        Parts with exact inverses need none. What is left over makes those better that can use it,
-        and delays the command in the end.
+        Parts with exact inverses need none. What is left over is shared evenly by those that get
+        better by it, so that none starves another, and delays the command in the end.
 
         Raises
         ------
@@ -113,10 +113,7 @@ class Chained(Operator):
                 f"a preview of {samples} is too short: the parts of this model need "
                 f"{samples - spare} samples of the reference beyond the present one"
             )
-        shares = []
-        for least, most in ranges:
-            shares.append(least + min(spare, most - least))
-            spare -= shares[-1] - least
+        shares, spare = _shared_evenly(ranges, spare)
         pairs = zip(reversed(self.parts), reversed(shares), strict=True)
         inverse = Composition(tuple(part.preview_inverse(share) for part, share in pairs))
         return inverse if spare == 0 else delayed(inverse, spare)
@@ -251,6 +248,17 @@ class Composition(Chained):
         if not isinstance(stages, list):
             raise InputError("composition: 'stages' must be a list of operators")
         return cls([operator_from_dict(stage) for stage in stages])
+
+
+def _shared_evenly(ranges: list[tuple[int, int]], spare: int) -> tuple[list[int], int]:
+    """Give every part its least and a sample in turn, up to its most; and what nobody can use."""
+    shares = [least for least, _ in ranges]
+    while spare and any(share < most for share, (_, most) in zip(shares, ranges, strict=True)):
+        for i, (_, most) in enumerate(ranges):
+            if spare and shares[i] < most:
+                shares[i] += 1
+                spare -= 1
+    return shares, spare
 
 
 def _parts(operator: Operator) -> tuple[Operator, ...]:

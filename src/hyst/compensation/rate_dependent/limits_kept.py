@@ -114,9 +114,10 @@ def judge_rate_limit(
         return found
     rest = _at_rest(task)
     left, left_at_rest = _rms(task, found.drive), _rms(task, rest)
-    moves = np.abs(np.diff(found.drive))
+    moves = _moves(task, found.drive)
     active = int(np.count_nonzero(moves >= change * (1.0 - 1e-6)))
-    worse = left >= left_at_rest
+    # A drive that the limit never holds is not the limit's fault.
+    worse = active > 0 and left >= left_at_rest
     if not worse and 2 * active <= moves.size:
         return found
     if not task.clip:
@@ -136,7 +137,7 @@ def _rate_out_of_reach(
     task: RateDependentTask, change: float, held: tuple[int, int], left: float, at_rest: float
 ) -> str:
     inverse, memory = task.explicit_inverse()
-    needed = float(np.abs(np.diff(inverse.run(task.target, memory)[0])).max())
+    needed = float(_moves(task, inverse.run(task.target, memory)[0]).max())
     dt = task.plays.dt
     return (
         f"rate_limit = {change / dt:.6g} is out of reach for this reference, which needs up to "
@@ -144,6 +145,13 @@ def _rate_out_of_reach(
         f"the plays' output is {left:.4g}, that of a drive at rest {at_rest:.4g}; raise the limit, "
         f"slow the reference down {needed / change:.3g} times, or choose to clip it"
     )
+
+
+def _moves(task: RateDependentTask, drive: Array) -> Array:
+    """Give the sizes of all steps of a drive, also that from where its history ends."""
+    state = task.state()
+    before = state[-2:-1] if state[-1] > 0.0 else drive[:1]
+    return np.abs(np.diff(np.concatenate([before, drive])))
 
 
 def _at_rest(task: RateDependentTask) -> Array:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from hyst import _engine
 from hyst.compensation.rate_dependent.task import RateDependentTask
+from hyst.errors import InputError
 
 Array = NDArray[np.float64]
 Objective = Literal["rms", "largest"]
@@ -32,6 +33,7 @@ _STEPS_OF_A_TRIAL = 100
 # Rounds over all windows as they are, and the share of the error that one must gain to go on.
 _MOST_ROUNDS = 100
 _SMALL_GAIN = 0.005
+_LARGEST_ROUGHNESS = 1e9  # over the gain of the plays
 _NOTHING = 1e-6  # an error that is not worth a round, over the largest output
 
 # A window is some times as long as the plays carry an error along, in samples.
@@ -73,8 +75,20 @@ class Aim:
         Returns
         -------
         float
+
+        Raises
+        ------
+        InputError
+            If it is so large that nothing else counts.
         """
-        return _ROUGHNESS[self.objective] * gain if self.roughness is None else self.roughness
+        if self.roughness is None:
+            return _ROUGHNESS[self.objective] * gain
+        if self.roughness > _LARGEST_ROUGHNESS * gain:
+            raise InputError(
+                f"roughness is {self.roughness:.6g}, but the gain of the plays is {gain:.6g}; give "
+                f"at most {_LARGEST_ROUGHNESS * gain:.6g}, beside which no error counts"
+            )
+        return self.roughness
 
 
 @dataclass(frozen=True, eq=False)

@@ -90,6 +90,8 @@ def find(evidence: Evidence) -> Iterator[Finding]:
         "fastest": fast.rate,
         "difference": size,
         "share": size / height,
+        "slowest width": slow.width,
+        "fastest width": fast.width,
     }
     advice = "A model without rates cannot describe both: try --family rdpi."
     if explained > _LAG_EXPLAINS and lag > 0.0:

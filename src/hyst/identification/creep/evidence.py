@@ -242,9 +242,9 @@ class Look:
         Parameters
         ----------
         explained
-            Of the squared error.
+            Of the residual's sum of squares.
         lags
-            Their number.
+            How many lags explain it.
         """
         left = Basis.of(self.lags).out_of(self.error)
         before = float(self.error @ self.error)

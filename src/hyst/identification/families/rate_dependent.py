@@ -67,6 +67,7 @@ from hyst.identification.families.rate_law_choice import (
 )
 from hyst.identification.families.rate_law_told import (
     law_that_does_not_fit,
+    loops_that_narrow,
     notes_of_law,
     with_constants_of_law,
 )
@@ -323,6 +324,8 @@ class RateDependent(Family):
         errors[: by_drives.size] = np.hypot(errors[: by_drives.size], by_drives)
         whole = len(fit.operator.parameters()) == len(identified.model.parameters())
         told = law_that_does_not_fit(fit, data, root) if whole else ()
+        if whole and not told:
+            told = loops_that_narrow(fit, identified.diagnosis)
         return replace(
             identified,
             undetermined=(*identified.undetermined, *told),

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hyst.identification.record_use.used_samples import Data
-from hyst.signals import reversals
+from hyst.signals import Record, reversals
+
+Array = NDArray[np.float64]
 
 ONE_FREQUENCY = 1.2
 """Half swings whose durations differ by less than this factor all belong to one frequency."""
@@ -19,17 +22,23 @@ def frequency_note(data: Data) -> tuple[str, ...]:
     data
         The records.
     """
-    durations = np.concatenate(
-        [r.dt * np.diff(reversals(r.u, 0.05 * float(np.ptp(r.u)))) for r in data.records]
-    )
-    if durations.size and durations.max() > ONE_FREQUENCY * durations.min():
+    durations = np.concatenate([_half_swings(record) for record in data.records])
+    if durations.max() > ONE_FREQUENCY * durations.min():
         return ()
-    frequency = 0.5 / float(np.median(durations)) if durations.size else 0.0
+    frequency = 0.5 / float(np.median(durations))
     return (
         f"all records turn at one frequency, {frequency:.4g} Hz: beta and a linear lag cannot be "
         "told apart; beta was left at 0, so the model holds at that frequency only; add records at "
         "other frequencies",
     )
+
+
+def _half_swings(record: Record) -> Array:
+    """Give the durations between turns, s; of a record that turns once the longer side of it."""
+    turns = reversals(record.u, 0.05 * float(np.ptp(record.u)))
+    ends = [0, record.u.size - 1]
+    samples = np.diff(turns) if turns.size > 1 else [np.diff(np.insert(ends, 1, turns)).max()]
+    return np.asarray(record.dt * np.asarray(samples, dtype=np.float64))
 
 
 def sample_times_note(data: Data) -> tuple[str, ...]:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.diagnosis import Diagnosis
+from hyst.diagnosis.findings.rate_dependence import NAME as RATE_DEPENDENCE
 from hyst.identification.families.estimates import Estimates
 from hyst.identification.families.family import Fit
 from hyst.identification.families.rate_dependent_layout import RateDependentLayout
@@ -140,6 +142,37 @@ def _reached(layout: RateDependentLayout, fit: Fit) -> str:
     )
 
 
+_NARROWS = (
+    "the loops narrow as the rate grows, and radii that shrink with the rate are no model of this "
+    "family: their growth came out 0, its bound; creep, which widens slow loops, or a lead of the "
+    "output looks like that (--creep auto, --family hammerstein)"
+)
+
+
+def loops_that_narrow(fit: Fit, diagnosis: Diagnosis) -> tuple[str, ...]:
+    """Say that loops narrow with the rate where growth came out 0 and the diagnosis shows it.
+
+    Where the error that is left is smooth, regression on it leaves this open.
+
+    Parameters
+    ----------
+    fit
+        The fit, in the user's units.
+    diagnosis
+        Of its records.
+    """
+    layout, beside = layout_of(fit), fit.parametrization.nuisances is not None
+    if beside or not layout.has_rate:
+        return ()
+    if layout.law.widening(fit.solution.theta[layout.law_places]) > 0.0:
+        return ()
+    narrow = any(
+        each.amounts["fastest width"] < each.amounts["slowest width"]
+        for each in diagnosis.named(RATE_DEPENDENCE)
+    )
+    return (_NARROWS,) if narrow else ()
+
+
 @dataclass(frozen=True, eq=False)
 class _Seen:
     """What other slopes over the rate would take of a residual."""
@@ -172,11 +205,7 @@ def law_that_does_not_fit(fit: Fit, data: Data, root: Array | None) -> tuple[str
     if seen is None or seen.probability > UNLIKELY or seen.share < WORTH_A_NOTE:
         return ()
     if seen.narrows:
-        return (
-            "the loops narrow as the rate grows, and radii that shrink with the rate are no model "
-            "of this family: their growth came out 0, its bound; creep, which widens slow loops, "
-            "or a lead of the output looks like that (--creep auto, --family hammerstein)",
-        )
+        return (_NARROWS,)
     name = {LINEAR: "in proportion to the rate", SQRT: "with the root of the rate"}.get(
         layout.law.name, "by the saturating law"
     )

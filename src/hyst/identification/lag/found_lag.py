@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from hyst.errors import InputError, NotIdentifiableError
+from hyst.identification.families.drive_noise import told_of_drives
 from hyst.identification.families.family import Family
 from hyst.identification.families.option import AUTO
 from hyst.identification.lag.lag_or_delay import LagOrDelay, Search
@@ -17,6 +18,7 @@ from hyst.identification.lag.lagging_family import LaggingFamily
 from hyst.identification.lag.stage import LONGEST, lagged, lagging
 from hyst.identification.options import Options
 from hyst.identification.record_use.cleaned import Cleaned
+from hyst.identification.record_use.smoothed_drive import Smoother, driven_by
 from hyst.identification.search import Found
 from hyst.signals import Record
 
@@ -83,8 +85,7 @@ def found_with_lag(
         return search(records, options)
     if isinstance(wanted, float):
         _require_place(families)
-        found = search(lagged(records, wanted), options)
-        return _held(found, records.records, wanted)
+        return _with_lag_held(search, records, options, wanted, families)
     found = search(records, options)
     if found.fit.family.answers_late:
         return found
@@ -103,7 +104,7 @@ def _require_place(families: Sequence[Family]) -> None:
 
 
 def search_beside_lag(
-    search: Search, found: Found, wanted: Wanted, options: Options
+    search: Search, found: Found, wanted: Wanted, options: Options, families: Sequence[Family] = ()
 ) -> tuple[Search, Options]:
     """Give how to search again for what else there is, as creep, with the lag that was found.
 
@@ -113,7 +114,7 @@ def search_beside_lag(
         Identifies without a lag.
     found
         What was found with a lag, or without.
-    wanted, options
+    wanted, options, families
         As of ``found_with_lag``.
 
     Returns
@@ -128,9 +129,48 @@ def search_beside_lag(
     tau, free = float(found.fit.solution.theta[-1]), wanted == AUTO
 
     def again(records: Cleaned, how: Options) -> Found:
-        return _held(search(lagged(records, tau), how), records.records, tau, free)
+        return _with_lag_held(search, records, how, tau, families, free)
 
     return again, replace(options, delay=found.data.lag) if free else options
+
+
+def _with_lag_held(
+    search: Search,
+    records: Cleaned,
+    options: Options,
+    time_constant: float,
+    families: Sequence[Family],
+    free: bool = False,
+) -> Found:
+    """Search behind a lag that is known.
+
+    Noise of a measured drive is looked for before the lag, behind which it is white no more.
+    """
+    drives, smoothers = _without_noise(records.records, families, options)
+    found = search(lagged(replace(records, records=drives), time_constant), options)
+    if any(smoothers):
+        found = replace(
+            found,
+            data=replace(found.data, smoothers=smoothers),
+            notes=(*told_of_drives(smoothers), *found.notes),
+        )
+    elif any(found.data.smoothers):
+        drives = tuple(map(driven_by, drives, found.data.smoothers))
+    return _held(found, drives, time_constant, free)
+
+
+def _without_noise(
+    records: tuple[Record, ...], families: Sequence[Family], options: Options
+) -> tuple[tuple[Record, ...], tuple[Smoother | None, ...]]:
+    """Smooth drives as the one family does that is named, if it chooses by itself how strongly.
+
+    A low-pass of a given time constant may as well follow the lag.
+    """
+    if len(families) != 1:
+        return records, ()
+    data, _ = families[0].records_to_use(records, options.start)
+    chosen = any(each is not None and each.time_constant is None for each in data.smoothers)
+    return (data.records, data.smoothers) if chosen else (records, ())
 
 
 def _held(
