@@ -20,13 +20,16 @@ from embedded.building import (
 from embedded.cases import Case
 from embedded.emulator import Report, on_processor
 from embedded.rounding_bound import NoBoundError
-from embedded.target import BUILDS, Build
+from embedded.target import BUILDS, SOFT_DOUBLE, Build
 from hyst.export import c_project
 from hyst.export.c.numbers import PRECISIONS
 
 Array = NDArray[np.float64]
 
 NOT_FINITE = 1  # the fault that the records of all cases raise
+
+UNITS_APART = {("degrading bouc-wen without inverse", SOFT_DOUBLE): 2}
+"""Units in the last place by which a build may differ, as docs/embedded.md says; others by none."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +90,9 @@ def measure(case: Case, work: Path, store: ObjectStore) -> Result:
         except (RuntimeError, ValueError) as wrong:
             problems.append(f"{build.name}: {wrong}")
             continue
-        problems += [f"{build.name}: {each}" for each in compare(report, wanted)]
+        apart = UNITS_APART.get((case.name, build), 0)
+        differing = compare(report, wanted, apart)
+        problems += [f"{build.name}: {each}" for each in differing]
         costs[build] = cost_of(report, sizes, build, problems.append)
     error = float(np.abs(expected["single"] - expected["double"]).max())
     bound = bound_of(case)
@@ -110,10 +115,11 @@ def run_build(
     return on_processor(program, build.processor, build.precision), sizes
 
 
-def compare(report: Report, wanted: NDArray[np.floating]) -> list[str]:
-    """Compare outputs bit by bit, and the fault at the end."""
+def compare(report: Report, wanted: NDArray[np.floating], apart: int = 0) -> list[str]:
+    """Compare outputs bit by bit, or to some units in the last place, and the fault at the end."""
     problems = []
-    different = np.flatnonzero(report.y.view(f"u{report.y.itemsize}") != _bits(wanted))
+    ours, theirs = _bits(report.y), _bits(wanted)
+    different = np.flatnonzero(np.maximum(ours, theirs) - np.minimum(ours, theirs) > apart)
     if different.size:
         k = int(different[0])
         problems.append(
