@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from hyst.checks.numbers import whole_number
 from hyst.errors import InputError, NotIdentifiableError, SolverError
 from hyst.identification.creep.creeping import Creeping, by_name, over_windows, taken_out
-from hyst.identification.creep.creeping_family import CreepingFamily, staged_of
+from hyst.identification.creep.creeping_family import CreepingFamily
 from hyst.identification.creep.evidence import (
     LARGEST,
     Evidence,
@@ -32,6 +32,7 @@ from hyst.identification.creep.told import (
 )
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.option import AUTO
+from hyst.identification.families.staged_family import staged_of
 from hyst.identification.fit.nuisance import (
     Beside,
     over_whole_records,

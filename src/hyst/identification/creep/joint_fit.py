@@ -8,11 +8,12 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from hyst.identification.creep.creeping_family import CreepingFamily, staged_of
+from hyst.identification.creep.creeping_family import CreepingFamily
 from hyst.identification.creep.evidence import evenly, nuisances_of
 from hyst.identification.creep.lags import bounds_of, in_use
 from hyst.identification.creep.merging import merged
 from hyst.identification.families.family import Fit
+from hyst.identification.families.staged_family import staged_of, without_stage
 from hyst.identification.fit.bounded_least_squares import Solution
 from hyst.identification.fit.nuisance import Basis, Beside, Drift, Nuisances, moments_of
 from hyst.identification.fit.stages import with_stage
@@ -137,7 +138,7 @@ class Joint:
             if not works.any():
                 return None
             w, times = weights[order][works], tau[order][works]
-            fit = self.fit(_hysteresis_of(fit), w, times, w.size, self.kept)
+            fit = self.fit(without_stage(fit), w, times, w.size, self.kept)
             if not self.idle(fit).any() and bool(np.all(np.diff(lags_of(fit)[1]) > 0.0)):
                 overview = Overview(self.data, rates_matter=True)
                 return fit.family.renewed(fit, overview, self.most)
@@ -226,9 +227,3 @@ def lags_of(fit: Fit) -> tuple[Array, Array]:
     count = fit.parametrization.size - staged_of(fit).base.size
     own = fit.solution.theta[-count:]
     return own[: count // 2], own[count // 2 :]
-
-
-def _hysteresis_of(fit: Fit) -> Fit:
-    family = fit.family
-    assert isinstance(family, CreepingFamily), "a joint fit has creep"
-    return family.hysteresis_of(fit)

@@ -14,9 +14,10 @@ from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.errors import SolverError
 from hyst.identification.choice.joint_delay import BETWEEN_SAMPLES
 from hyst.identification.families.family import Fit
+from hyst.identification.families.staged_family import without_stage
 from hyst.identification.judgement.judge import level_of
 from hyst.identification.judgement.regression import correlation_time
-from hyst.identification.lag.lagging_family import LaggingFamily, behind_lag
+from hyst.identification.lag.lagging_family import LaggingFamily
 from hyst.identification.lag.stage import LONGEST, lagged, lagging
 from hyst.identification.options import Options
 from hyst.identification.record_use.cleaned import Cleaned
@@ -206,7 +207,7 @@ class LagOrDelay:
         late = both.late(self.dt)
         if late > SETTLED or both.far_better(delay):
             # The loops themselves may be others than those found without a lag.
-            alone = behind_lag(both.fit)
+            alone = without_stage(both.fit)
             other = self._with_free_delay(self._solved(alone, self._same_samples(late)))
             delay = other if other.far_better(delay) else delay
         if not both.far_better(lag) and not delay.far_better(lag):
