@@ -49,11 +49,12 @@ class IdentifiedHammerstein(Identified):
     dynamics
         G, DC gain 1, with the delay that was found.
     first_dynamics
-        G as realized from the Markov parameters, before the refinement.
+        G as realized from the Markov parameters, of the order that was found; None where the drive
+        does not determine them.
     markov
-        Step 1.
+        Step 1 of the paper; None where the drive does not determine it.
     singular_values
-        Of the Hankel matrix, descending, for the choice of the order.
+        Of the Hankel matrix, descending; empty without Markov parameters.
     hankel_noise
         Singular values below it are noise.
     poles, pole_standard_errors
@@ -70,8 +71,8 @@ class IdentifiedHammerstein(Identified):
 
     hysteresis: Operator
     dynamics: LinearDynamics
-    first_dynamics: LinearDynamics
-    markov: MarkovParameters
+    first_dynamics: LinearDynamics | None
+    markov: MarkovParameters | None
     singular_values: Array
     hankel_noise: float
     poles: NDArray[np.complex128]
@@ -96,11 +97,6 @@ class IdentifiedHammerstein(Identified):
         inverse = self.inverse_of_dynamics
         more: dict[str, Any] = {
             "hysteresis_family": self.hysteresis_family,
-            "fir_order": self.markov.order,
-            "regressor_condition": self.markov.condition,
-            "markov_parameters": self.markov.values.tolist(),
-            "markov_standard_errors": self.markov.standard_errors.tolist(),
-            "hankel_singular_values": self.singular_values.tolist(),
             "state_order": self.dynamics.order,
             "delay": self.dynamics.delay,
             "poles": [[float(p.real), float(p.imag)] for p in self.poles],
@@ -109,6 +105,14 @@ class IdentifiedHammerstein(Identified):
             ],
             "noise_rms": self.noise_rms,
         }
+        if self.markov is not None:
+            more |= {
+                "fir_order": self.markov.order,
+                "regressor_condition": self.markov.condition,
+                "markov_parameters": self.markov.values.tolist(),
+                "markov_standard_errors": self.markov.standard_errors.tolist(),
+                "hankel_singular_values": self.singular_values.tolist(),
+            }
         if inverse is not None:
             more |= {
                 "preview": inverse.preview,

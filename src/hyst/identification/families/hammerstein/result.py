@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.hammerstein.coefficients import poles_as_numbers, poles_by_theta
 from hyst.identification.families.hammerstein.first_dynamics import inverse_of, realized
@@ -13,7 +14,12 @@ from hyst.identification.families.hammerstein.identified_hammerstein import (
     Loop,
 )
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint_of
-from hyst.identification.families.hammerstein.markov import choose_markov
+from hyst.identification.families.hammerstein.markov import (
+    MarkovParameters,
+    markov_if_excited,
+)
+from hyst.identification.families.hammerstein.realization import Realization
+from hyst.identification.families.option import AUTO
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.result.fit_spread import FitSpread, spread_of_fit
 from hyst.identification.result.identified import Identified
@@ -43,10 +49,10 @@ def identified_with_dynamics(
     """
     records = overview.data.records
     dynamics = dynamics_of(fit)
-    markov, _ = choose_markov(records, fir_order)
-    first = realized(markov, dynamics.delay, dynamics.dt, dynamics.order)
+    markov = markov_if_excited(records, fir_order)
+    first = _realization(markov, dynamics)
     inverse, reason = inverse_of(dynamics)
-    if first.stabilized:
+    if first is not None and first.stabilized and fir_order != AUTO:
         reason += ("the realization was not stable and was replaced by a stable one",)
     spread = spread_of_fit(overview.data, fit)
     poles, pole_errors = _poles(dynamics, fit, spread)
@@ -55,10 +61,10 @@ def identified_with_dynamics(
         **known,
         hysteresis=joint_of(fit).hysteresis(fit.solution.theta),
         dynamics=dynamics,
-        first_dynamics=first.dynamics,
+        first_dynamics=None if first is None else first.dynamics,
         markov=markov,
-        singular_values=first.singular_values,
-        hankel_noise=first.noise_level,
+        singular_values=np.zeros(0) if first is None else first.singular_values,
+        hankel_noise=float("nan") if first is None else first.noise_level,
         poles=poles,
         pole_standard_errors=pole_errors,
         inverse_of_dynamics=inverse,
@@ -66,6 +72,16 @@ def identified_with_dynamics(
         front=front,
         noise_rms=spread.noise_rms,
     )
+
+
+def _realization(markov: MarkovParameters | None, dynamics: LinearDynamics) -> Realization | None:
+    """Give the paper's first dynamics of the order that was found, where there are any."""
+    if markov is None:
+        return None
+    try:
+        return realized(markov, dynamics.delay, dynamics.dt, dynamics.order)
+    except (InputError, NotIdentifiableError):
+        return None
 
 
 def _poles(
