@@ -8,7 +8,7 @@ size and independent for white drives, since powers of 1/z are nearly alike at a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
