@@ -135,7 +135,7 @@ class Hammerstein(Family):
         return not other.answers_late
 
     @property
-    def front(self) -> Family:
+    def hysteresis_family(self) -> Family:
         """The hysteresis."""
         assert isinstance(self.hysteresis, Family), "the registry puts an object for a name"
         return self.hysteresis
@@ -144,7 +144,7 @@ class Hammerstein(Family):
         self, records: tuple[Record, ...], start: Literal["auto"] | int
     ) -> tuple[Data, tuple[str, ...]]:
         """Average periods; leave out what the unknown state of the dynamics may have disturbed."""
-        refused = self.front.refused_before_dynamics()
+        refused = self.hysteresis_family.refused_before_dynamics()
         if refused:
             raise InputError(refused)
         if self.period is not None:
@@ -168,12 +168,12 @@ class Hammerstein(Family):
 
     def suited(self, data: Data) -> tuple[Self, tuple[str, ...]]:
         """Fit the options of the hysteresis to the records."""
-        front, notes = self.front.suited(data)
+        front, notes = self.hysteresis_family.suited(data)
         return replace(self, hysteresis=front), notes
 
     def in_units(self, input_scale: float, output_scale: float) -> Self:
         """Give the family with options of the hysteresis in other units."""
-        return replace(self, hysteresis=self.front.in_units(input_scale, output_scale))
+        return replace(self, hysteresis=self.hysteresis_family.in_units(input_scale, output_scale))
 
     def searched(self, data: Data) -> Data:
         """Give the beginning of long records: the dynamics know of every sample."""
@@ -185,30 +185,31 @@ class Hammerstein(Family):
 
     def sizes(self) -> tuple[int, ...]:
         """Give the sizes of the hysteresis."""
-        return self.front.sizes()
+        return self.hysteresis_family.sizes()
 
     def least_parameters(self, size: int) -> int:
         """Give those of the hysteresis and of dynamics of the least order without feedthrough."""
         order = 1 if self.state_order == AUTO else int(self.state_order)
-        return self.front.least_parameters(size) + 2 * order - 1
+        return self.hysteresis_family.least_parameters(size) + 2 * order - 1
 
     def root_weights(self, data: Data) -> Array | None:
         """Give the weights of the hysteresis' family."""
-        return self.front.root_weights(data)
+        return self.hysteresis_family.root_weights(data)
 
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
         """Start from the dynamics found once, and the hysteresis before them of this size."""
         first = self._first_dynamics(overview)
         fronts = overview.once(
             ("fronts", self, size),
-            lambda: fronts_of(self, self.front, first, overview.data, size),
+            lambda: fronts_of(self, self.hysteresis_family, first, overview.data, size),
         )
         return [joint(each, first.dynamics) for each in fronts[:most]]
 
     def _first_dynamics(self, overview: Overview) -> FirstDynamics:
         orders = (self.fir_order, self.state_order)
         return overview.once(
-            ("first dynamics", self), lambda: first_dynamics(self, self.front, overview, orders)
+            ("first dynamics", self),
+            lambda: first_dynamics(self, self.hysteresis_family, overview, orders),
         )
 
     def solve(
@@ -231,9 +232,11 @@ class Hammerstein(Family):
 
     def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
         """Improve the hysteresis as its own family knows, the dynamics following."""
-        seen = replace(fit, family=self.front, parametrization=joint_of(fit).seen_by_front())
+        seen = replace(
+            fit, family=self.hysteresis_family, parametrization=joint_of(fit).seen_by_front()
+        )
         short = Overview(shortened(overview.data, _WARM_UP), rates_matter=True)
-        improved = self.front.finish(seen, short, _BURST)
+        improved = self.hysteresis_family.finish(seen, short, _BURST)
         if np.array_equal(improved.solution.theta, fit.solution.theta):
             return fit
         problem = fit.problem(overview.data)
@@ -244,7 +247,7 @@ class Hammerstein(Family):
         """Fit again without the parts of the hysteresis that came out idle."""
         dynamics, before = dynamics_of(fit), self._front_fit(fit)
         behind = Overview(signal_behind(overview.data, dynamics), rates_matter=True)
-        simpler = self.front.simplified(before, behind, max_iterations)
+        simpler = self.hysteresis_family.simplified(before, behind, max_iterations)
         if simpler is before:
             return fit
         parametrization, theta = joint((simpler.parametrization, simpler.solution.theta), dynamics)
@@ -260,18 +263,18 @@ class Hammerstein(Family):
         """Give the hysteresis of a fit as a fit of its own family."""
         front = joint_of(fit).front
         solution = replace(fit.solution, theta=fit.solution.theta[: front.size])
-        return Fit(self.front, fit.size, front, solution)
+        return Fit(self.hysteresis_family, fit.size, front, solution)
 
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
         """Say what the hysteresis' family says, and if the dynamics explain nothing."""
-        return self.front.notes(self._front_fit(fit), data) + dynamics_doubts(
-            fit, self.front, self.fitted(data)
+        return self.hysteresis_family.notes(self._front_fit(fit), data) + dynamics_doubts(
+            fit, self.hysteresis_family, self.fitted(data)
         )
 
     def estimates(self, fit: Fit) -> Estimates:
         """Give constants of the hysteresis and coefficients of the dynamics."""
         parametrization, dynamics = joint_of(fit), dynamics_of(fit)
-        front = self.front.estimates(self._front_fit(fit))
+        front = self.hysteresis_family.estimates(self._front_fit(fit))
         n, first = dynamics.order, parametrization.front.size
         by_dynamics = coefficients_by_theta(dynamics, parametrization.feedthrough)
         by_theta = np.zeros((len(front.names) + len(by_dynamics), parametrization.size))
@@ -287,7 +290,9 @@ class Hammerstein(Family):
 
     def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
         """Add the parts, the impulse response, the poles and the loop."""
-        return identified_with_dynamics(identified, fit, self.front, overview, self.fir_order)
+        return identified_with_dynamics(
+            identified, fit, self.hysteresis_family, overview, self.fir_order
+        )
 
     def words_for(self, identified: Identified) -> Words:
         """Give the words of the hysteresis and of the dynamics behind it."""
