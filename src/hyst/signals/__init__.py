@@ -11,6 +11,7 @@ from hyst.signals.first_order_curves import (
     forc_density,
     reversal_curves,
 )
+from hyst.signals.frequency_response import FrequencyResponse
 from hyst.signals.loop_metrics import hysteresis_percent, loop_area
 from hyst.signals.metrics import Metrics, error_metrics
 from hyst.signals.multisines import multisine
@@ -25,6 +26,7 @@ from hyst.signals.units import units_differ
 __all__ = [
     "Drive",
     "ForcDensity",
+    "FrequencyResponse",
     "Limits",
     "Metrics",
     "Persistence",
