@@ -11,8 +11,8 @@ from hyst.signals.first_order_curves import (
     forc_density,
     reversal_curves,
 )
-from hyst.signals.frequency_response import FrequencyResponse
 from hyst.signals.loop_metrics import hysteresis_percent, loop_area
+from hyst.signals.measured_response import MeasuredResponse
 from hyst.signals.metrics import Metrics, error_metrics
 from hyst.signals.multisines import multisine
 from hyst.signals.noise import estimate_noise, suggest_dead_band
@@ -26,8 +26,8 @@ from hyst.signals.units import units_differ
 __all__ = [
     "Drive",
     "ForcDensity",
-    "FrequencyResponse",
     "Limits",
+    "MeasuredResponse",
     "Metrics",
     "Persistence",
     "Record",

@@ -214,6 +214,7 @@ def figures() -> dict[str, bytes]:
         PNG by file name.
     """
     v, record, found = _designed()
+    assert found.markov is not None, "its dynamics were not given"
     printed = printed_input(DT)
     h = G.impulse_response(FIR_ORDER + 1)
     by_printed = fit_markov(simulate(TWO_SIDED, printed)[1], FIR_ORDER).values

@@ -23,16 +23,41 @@ from hyst.identification.families.hammerstein.first_guess import (
     first_dynamics,
     fronts_of,
 )
+from hyst.identification.families.hammerstein.given_dynamics import (
+    GivenDynamics,
+    as_given_dynamics,
+)
+from hyst.identification.families.hammerstein.held_doubts import doubts_about_given
+from hyst.identification.families.hammerstein.held_front import (
+    DEFAULT,
+    HeldFront,
+    as_held_front,
+    require_one_hysteresis,
+    told_of,
+)
+from hyst.identification.families.hammerstein.held_joint import joint_held
 from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
+from hyst.identification.families.hammerstein.known_front import (
+    behind_known,
+    starts_behind_known,
+)
+from hyst.identification.families.hammerstein.known_start import (
+    held_dynamics,
+    settled,
+    starts_of_known,
+    told_of_delay,
+)
 from hyst.identification.families.hammerstein.markov import choose_markov
 from hyst.identification.families.hammerstein.record_checks import flat_tops
 from hyst.identification.families.hammerstein.result import identified_with_dynamics
 from hyst.identification.families.hammerstein.without_dynamics import dynamics_doubts
 from hyst.identification.families.hammerstein.words import WORDS, words_behind
+from hyst.identification.families.linear import Linear
 from hyst.identification.families.option import (
     AUTO,
     Option,
+    as_text,
     option,
     read_whole,
     whole_number_or_auto,
@@ -99,6 +124,16 @@ class Hammerstein(Family):
         Number of states of G, 1 to 64, or ``"auto"``: as many as lower the error noticeably.
     period
         Samples of a period of the drive: all but the first are averaged. None: there is none.
+    dynamics
+        G where it is known, which is held at a gain of 1 at rest: a ``LinearDynamics``, a model
+        with it at its output, a system of python-control or scipy.signal (continuous ones with
+        their input held between samples), or a frequency response, to which dynamics are fitted
+        first (``hyst.read_frequency_response``). The drive need not excite an impulse response
+        then. None: it is identified.
+    front
+        The hysteresis where it is known, which is held but for a gain and an offset after it: an
+        operator, a result of ``hyst.identify``, or a model that ``hyst.load`` read. None: it is
+        identified.
     """
 
     name = "hammerstein"
@@ -110,7 +145,7 @@ class Hammerstein(Family):
     wraps = "hysteresis"
 
     hysteresis: Any = option(
-        "mpi",
+        DEFAULT,
         Option(_as_hysteresis, "Family in front of the dynamics.", lambda text, _: text, "FAMILY"),
     )
     fir_order: Any = option(
@@ -128,6 +163,18 @@ class Hammerstein(Family):
             "N",
         ),
     )
+    dynamics: Any = option(
+        None, Option(as_given_dynamics, "Linear dynamics that are known, held.", as_text, "FILE")
+    )
+
+    front: Any = option(
+        None, Option(as_held_front, "Hysteresis that is known, held.", as_text, "FILE")
+    )
+
+    def __post_init__(self) -> None:
+        """Check the options, and that a hysteresis is not given and asked for."""
+        super().__post_init__()
+        require_one_hysteresis(self.front, self.hysteresis)
 
     @classmethod
     def can_wrap(cls, other: type[Family]) -> bool:
@@ -136,7 +183,10 @@ class Hammerstein(Family):
 
     @property
     def hysteresis_family(self) -> Family:
-        """The hysteresis."""
+        """The hysteresis; the one that is given, if one is."""
+        if self.front is not None:
+            given: HeldFront = self.front
+            return given
         assert isinstance(self.hysteresis, Family), "the registry puts an object for a name"
         return self.hysteresis
 
@@ -157,22 +207,31 @@ class Hammerstein(Family):
             start = int(self.period)
         data = prepare(records, start)
         _require_one_sample_time(data)
-        markov, doubts = choose_markov(data.records, self.fir_order)
+        if self.dynamics is not None:
+            dt = data.records[0].dt
+            data = settled(data, self.dynamics.at(dt)) if start == AUTO else data
+            return data, flat_tops(data.records) + self.dynamics.told(dt) + told_of(self.front)
+        seen = data if self.front is None else self.front.behind(data)
+        markov, doubts = choose_markov(seen.records, self.fir_order)
         if start == AUTO:
             starts = tuple(
                 max(each, min(markov.order, len(record) // 4))
                 for each, record in zip(data.starts, data.records, strict=True)
             )
             data = replace(data, starts=starts)
-        return data, flat_tops(data.records) + doubts
+        return data, flat_tops(data.records) + doubts + told_of(self.front)
 
     def suited(self, data: Data) -> tuple[Self, tuple[str, ...]]:
         """Fit the options of the hysteresis to the records."""
+        if self.front is not None:
+            return self, ()
         front, notes = self.hysteresis_family.suited(data)
         return replace(self, hysteresis=front), notes
 
     def in_units(self, input_scale: float, output_scale: float) -> Self:
         """Give the family with options of the hysteresis in other units."""
+        if self.front is not None:
+            return replace(self, front=self.front.in_units(input_scale, output_scale))
         return replace(self, hysteresis=self.hysteresis_family.in_units(input_scale, output_scale))
 
     def searched(self, data: Data) -> Data:
@@ -189,6 +248,8 @@ class Hammerstein(Family):
 
     def least_parameters(self, size: int) -> int:
         """Give those of the hysteresis and of dynamics of the least order without feedthrough."""
+        if self.dynamics is not None:
+            return self.hysteresis_family.least_parameters(size)
         order = 1 if self.state_order == AUTO else int(self.state_order)
         return self.hysteresis_family.least_parameters(size) + 2 * order - 1
 
@@ -198,7 +259,15 @@ class Hammerstein(Family):
 
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
         """Start from the dynamics found once, and the hysteresis before them of this size."""
+        if self.dynamics is not None:
+            held = overview.once(
+                ("held", self.dynamics), lambda: held_dynamics(self.dynamics, overview)
+            )
+            of_known = self.hysteresis_family, held, overview.data, size
+            return overview.once(("known", self, size), lambda: starts_of_known(*of_known))[:most]
         first = self._first_dynamics(overview)
+        if self.front is not None:
+            return starts_behind_known(self.front, first.dynamics, overview.data)[:most]
         fronts = overview.once(
             ("fronts", self, size),
             lambda: fronts_of(self, self.hysteresis_family, first, overview.data, size),
@@ -207,9 +276,10 @@ class Hammerstein(Family):
 
     def _first_dynamics(self, overview: Overview) -> FirstDynamics:
         orders = (self.fir_order, self.state_order)
+        front = self.hysteresis_family if self.front is None else Linear()
         return overview.once(
             ("first dynamics", self),
-            lambda: first_dynamics(self, self.hysteresis_family, overview, orders),
+            lambda: first_dynamics(self, front, behind_known(self.front, overview), orders),
         )
 
     def solve(
@@ -250,7 +320,8 @@ class Hammerstein(Family):
         simpler = self.hysteresis_family.simplified(before, behind, max_iterations)
         if simpler is before:
             return fit
-        parametrization, theta = joint((simpler.parametrization, simpler.solution.theta), dynamics)
+        beside = joint_held if joint_of(fit).held else joint
+        parametrization, theta = beside((simpler.parametrization, simpler.solution.theta), dynamics)
         family = replace(self, hysteresis=simpler.family)  # which may have fewer terms, too
         left = replace(fit, family=family, parametrization=parametrization)
         problem = left.problem(overview.data)
@@ -267,14 +338,19 @@ class Hammerstein(Family):
 
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
         """Say what the hysteresis' family says, and if the dynamics explain nothing."""
-        return self.hysteresis_family.notes(self._front_fit(fit), data) + dynamics_doubts(
-            fit, self.hysteresis_family, self.fitted(data)
-        )
+        notes = self.hysteresis_family.notes(self._front_fit(fit), data)
+        if joint_of(fit).held:
+            given: GivenDynamics = self.dynamics
+            notes += told_of_delay(given, dynamics_of(fit), data)
+            return notes + doubts_about_given(fit, self.fitted(data))
+        return notes + dynamics_doubts(fit, self.hysteresis_family, self.fitted(data))
 
     def estimates(self, fit: Fit) -> Estimates:
         """Give constants of the hysteresis and coefficients of the dynamics."""
         parametrization, dynamics = joint_of(fit), dynamics_of(fit)
         front = self.hysteresis_family.estimates(self._front_fit(fit))
+        if parametrization.held:
+            return front
         n, first = dynamics.order, parametrization.front.size
         by_dynamics = coefficients_by_theta(dynamics, parametrization.feedthrough)
         by_theta = np.zeros((len(front.names) + len(by_dynamics), parametrization.size))

@@ -51,7 +51,7 @@ class IdentifiedHammerstein(Identified):
     first_dynamics
         G as realized from the Markov parameters, before the refinement.
     markov
-        Step 1.
+        Step 1; None where the dynamics were given.
     singular_values
         Of the Hankel matrix, descending, for the choice of the order.
     hankel_noise
@@ -66,12 +66,14 @@ class IdentifiedHammerstein(Identified):
         Family of the hysteresis, with its options.
     noise_rms
         Residual after the refinement, output units.
+    dynamics_are_given
+        Whether G was known before and held: then the errors of its poles are 0.
     """
 
     hysteresis: Operator
     dynamics: LinearDynamics
     first_dynamics: LinearDynamics
-    markov: MarkovParameters
+    markov: MarkovParameters | None
     singular_values: Array
     hankel_noise: float
     poles: NDArray[np.complex128]
@@ -80,6 +82,7 @@ class IdentifiedHammerstein(Identified):
     loop: Loop
     front: Family
     noise_rms: float
+    dynamics_are_given: bool = False
 
     @property
     def hysteresis_family(self) -> str:
@@ -96,10 +99,7 @@ class IdentifiedHammerstein(Identified):
         inverse = self.inverse_of_dynamics
         more: dict[str, Any] = {
             "hysteresis_family": self.hysteresis_family,
-            "fir_order": self.markov.order,
-            "regressor_condition": self.markov.condition,
-            "markov_parameters": self.markov.values.tolist(),
-            "markov_standard_errors": self.markov.standard_errors.tolist(),
+            "given": self.dynamics_are_given,
             "hankel_singular_values": self.singular_values.tolist(),
             "state_order": self.dynamics.order,
             "delay": self.dynamics.delay,
@@ -109,6 +109,13 @@ class IdentifiedHammerstein(Identified):
             ],
             "noise_rms": self.noise_rms,
         }
+        if self.markov is not None:
+            more |= {
+                "fir_order": self.markov.order,
+                "regressor_condition": self.markov.condition,
+                "markov_parameters": self.markov.values.tolist(),
+                "markov_standard_errors": self.markov.standard_errors.tolist(),
+            }
         if inverse is not None:
             more |= {
                 "preview": inverse.preview,
@@ -124,12 +131,11 @@ class IdentifiedHammerstein(Identified):
         -------
         str
         """
-        lines = [super().summary(), "", f"poles of G (order {self.dynamics.order}):"]
+        given = ", given" if self.dynamics_are_given else ""
+        lines = [super().summary(), "", f"poles of G (order {self.dynamics.order}{given}):"]
         for pole, error in zip(self.poles, self.pole_standard_errors, strict=True):
-            lines.append(
-                f"  {pole.real:+.6g} {pole.imag:+.6g}j   standard error "
-                f"{error.real:.2g}, {error.imag:.2g}"
-            )
+            sure = "" if given else f"   standard error {error.real:.2g}, {error.imag:.2g}"
+            lines.append(f"  {pole.real:+.6g} {pole.imag:+.6g}j{sure}")
         inverse = self.inverse_of_dynamics
         if inverse is not None:
             lines.append(

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from hyst.errors import NotIdentifiableError
 from hyst.models import LinearDynamics
-from hyst.signals import FrequencyResponse
+from hyst.signals import MeasuredResponse
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -34,6 +34,7 @@ _ENOUGH = 1e-5  # relative error: no analyser measures better
 _A_PARAMETER = 3.0  # times the criterion's penalty: poles go where noise helps most
 _MOST_DELAYS = 10  # tried at once, evenly between 0 and the longest
 _PATIENCE = 2  # orders that may pay nothing before the search ends
+_BEYOND = 512  # frequencies between the last that was measured and half the sample rate
 _OUTERMOST = 1.0 - 1e-9
 
 
@@ -80,12 +81,13 @@ class _Candidate:
     cost: float
 
 
-def fitted_response(measured: FrequencyResponse, dt: float) -> FittedResponse:
+def fitted_response(measured: MeasuredResponse, dt: float) -> FittedResponse:
     """Fit stable sampled dynamics to a frequency response, of the least order that pays.
 
-    ``G(z) = z^-delay (D + sum_i c_i / (z - p_i))`` is fitted to relative errors, values
-    below a fiftieth of the largest counting as if they were that. The order is that of the least Bayesian
-    criterion.
+    ``G(z) = z^-delay (D + sum_i c_i / (z - p_i))`` is fitted to relative errors, values below a
+    fiftieth of the largest counting as if they were that. The order is that of the least Bayesian
+    criterion, with three times its penalty; no order is taken whose response is larger beyond the
+    frequencies given than at them.
 
     Parameters
     ----------
@@ -152,6 +154,8 @@ def _best(points: _Points, longest: int) -> _Candidate:
             break
         found = _with_delay(points, order, longest, found)
         mean = max(found.cost / count, _ENOUGH**2)
+        if best is not None and _rises_beyond(points, found):
+            continue
         criterion = count * np.log(mean) + _A_PARAMETER * (2 * order + 1) * np.log(count)
         if criterion < least:
             best, least, without_gain = found, criterion, 0
@@ -163,9 +167,16 @@ def _best(points: _Points, longest: int) -> _Candidate:
     return best
 
 
-def _with_delay(
-    points: _Points, order: int, longest: int, before: _Candidate | None
-) -> _Candidate:
+def _rises_beyond(points: _Points, found: _Candidate) -> bool:
+    """Tell whether dynamics are larger where nothing was measured than where something was."""
+    highest = float(np.angle(points.z).max())
+    beyond = np.exp(1j * np.linspace(min(1.05 * highest, np.pi), np.pi, _BEYOND))
+    own = _residues(points, found)
+    with_constant = np.column_stack([_basis(beyond, found.poles), np.ones(beyond.size)])
+    return bool(np.abs(with_constant @ own).max() > np.abs(points.values).max())
+
+
+def _with_delay(points: _Points, order: int, longest: int, before: _Candidate | None) -> _Candidate:
     """Give the best delay of an order: a coarse search, then its neighbours, until none is less."""
     tried: dict[int, _Candidate] = {}
 
@@ -235,7 +246,7 @@ def _basis(z: Complex, poles: Complex) -> Complex:
     return columns
 
 
-def _stacked(rows: Complex) -> Array:
+def _stacked(rows: Complex | Array) -> Array:
     return np.concatenate([rows.real, rows.imag])
 
 
@@ -262,7 +273,7 @@ def _moved(points: _Points, values: Complex, poles: Complex) -> Complex:
     own = scipy.linalg.lstsq(left / scale, target - q @ (q.T @ target))[0] / scale
     assert basis.shape[1] == own.size, "one residue for each pole"
     A, B = _real_form(poles)
-    return _mirrored(np.linalg.eigvals(A - np.outer(B, own)))
+    return _mirrored(np.linalg.eigvals(A - np.outer(B, own)).astype(np.complex128))
 
 
 def _real_form(poles: Complex) -> tuple[Array, Array]:
@@ -292,9 +303,14 @@ def _mirrored(poles: Complex) -> Complex:
     return np.concatenate([np.ravel(np.column_stack([upper, upper.conj()])), real])
 
 
-def _dynamics(points: _Points, found: _Candidate, dt: float) -> LinearDynamics:
+def _residues(points: _Points, found: _Candidate) -> Array:
+    """Give the numerators of the basis, then the constant."""
     columns, target = _weighted(points, points.advanced(found.delay), found.poles)
     scale = np.linalg.norm(columns, axis=0)
-    residues = scipy.linalg.lstsq(columns / scale, target)[0] / scale
+    return np.asarray(scipy.linalg.lstsq(columns / scale, target)[0] / scale)
+
+
+def _dynamics(points: _Points, found: _Candidate, dt: float) -> LinearDynamics:
+    residues = _residues(points, found)
     A, B = _real_form(found.poles)
     return LinearDynamics(A, B, residues[:-1], float(residues[-1]), dt, found.delay)

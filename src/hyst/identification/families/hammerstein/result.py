@@ -14,6 +14,7 @@ from hyst.identification.families.hammerstein.identified_hammerstein import (
 )
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint_of
 from hyst.identification.families.hammerstein.markov import choose_markov
+from hyst.identification.families.hammerstein.realization import Realization
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.result.fit_spread import FitSpread, spread_of_fit
 from hyst.identification.result.identified import Identified
@@ -43,9 +44,11 @@ def identified_with_dynamics(
     """
     records = overview.data.records
     dynamics = dynamics_of(fit)
-    markov, _ = choose_markov(records, fir_order)
-    first = realized(markov, dynamics.delay, dynamics.dt, dynamics.order)
     inverse, reason = inverse_of(dynamics)
+    markov, first = None, Realization(dynamics, np.empty(0), 0.0, False)
+    if not joint_of(fit).held:
+        markov, _ = choose_markov(records, fir_order)
+        first = realized(markov, dynamics.delay, dynamics.dt, dynamics.order)
     if first.stabilized:
         reason += ("the realization was not stable and was replaced by a stable one",)
     spread = spread_of_fit(overview.data, fit)
@@ -61,6 +64,7 @@ def identified_with_dynamics(
         hankel_noise=first.noise_level,
         poles=poles,
         pole_standard_errors=pole_errors,
+        dynamics_are_given=joint_of(fit).held,
         inverse_of_dynamics=inverse,
         loop=_loop(records[0], inverse, spread.noise_rms),
         front=front,
@@ -72,10 +76,7 @@ def _poles(
     dynamics: LinearDynamics, fit: Fit, spread: FitSpread
 ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
     parametrization, n = joint_of(fit), dynamics.order
-    by_theta = np.zeros((2 * n, parametrization.size))
-    by_theta[:, parametrization.front.size :] = poles_by_theta(
-        dynamics, parametrization.feedthrough
-    )
+    by_theta = parametrization.over_theta(poles_by_theta(dynamics, parametrization.feedthrough))
     values, errors = poles_as_numbers(dynamics), spread.of(by_theta)
     errors[~by_theta.any(axis=1)] = 0.0  # a real pole stays real
     return values[:n] + 1j * values[n:], errors[:n] + 1j * errors[n:]

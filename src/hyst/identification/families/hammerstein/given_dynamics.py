@@ -15,29 +15,29 @@ from hyst.identification.families.hammerstein.first_dynamics import of_gain_one
 from hyst.identification.families.hammerstein.response_fit import FittedResponse, fitted_response
 from hyst.models import LinearDynamics
 from hyst.operators import Composition, Operator
-from hyst.signals import FrequencyResponse
+from hyst.signals import MeasuredResponse
 
 Array = NDArray[np.float64]
 
 WHAT = (
     "give a LinearDynamics, what hyst.load reads of a model file with one, a system of "
-    "python-control or scipy.signal, or a frequency response (hyst.signals.FrequencyResponse, "
+    "python-control or scipy.signal, or a frequency response (hyst.signals.MeasuredResponse, "
     "hyst.read_frequency_response, FRD)"
 )
 
 
 @final
 @dataclass(frozen=True, eq=False)
-class KnownDynamics:
+class GivenDynamics:
     """Dynamics as they were given: at a sample time they are sampled, or fitted.
 
     Parameters
     ----------
     given
-        A LinearDynamics, a FrequencyResponse, or the matrices (A, B, C, D) of continuous time.
+        A LinearDynamics, a MeasuredResponse, or the matrices (A, B, C, D) of continuous time.
     """
 
-    given: LinearDynamics | FrequencyResponse | tuple[Array, Array, Array, float]
+    given: LinearDynamics | MeasuredResponse | tuple[Array, Array, Array, float]
 
     @property
     def dt(self) -> float | None:
@@ -62,6 +62,11 @@ class KnownDynamics:
         """
         return _at(self, dt)[0]
 
+    @property
+    def says_delay(self) -> bool:
+        """Whether what was given knows its delay: rational functions of s have none."""
+        return not isinstance(self.given, tuple)
+
     def told(self, dt: float) -> tuple[str, ...]:
         """Say what was made of what was given.
 
@@ -77,12 +82,12 @@ class KnownDynamics:
             "hysteresis has the gain of both, and standard errors are those of the hysteresis alone"
         ]
         if fitted is not None:
-            assert isinstance(self.given, FrequencyResponse), "it was fitted"
+            assert isinstance(self.given, MeasuredResponse), "it was fitted"
             notes.append(_fit_in_words(self.given, fitted))
         return tuple(notes)
 
 
-def as_known_dynamics(value: Any, name: str) -> KnownDynamics | None:
+def as_given_dynamics(value: Any, name: str) -> GivenDynamics | None:
     """Check dynamics that are given; None where there are none.
 
     Parameters
@@ -95,19 +100,21 @@ def as_known_dynamics(value: Any, name: str) -> KnownDynamics | None:
     InputError
         If it is no linear dynamics with one input and one output.
     """
-    if value is None or isinstance(value, KnownDynamics):
+    if value is None or isinstance(value, GivenDynamics):
         return value
-    if isinstance(value, FrequencyResponse):
-        return KnownDynamics(value)
+    if isinstance(value, MeasuredResponse):
+        return GivenDynamics(value)
     operator = getattr(value, "dynamics", value)  # of a result with dynamics
     if isinstance(operator, Operator):
-        return KnownDynamics(_linear_part(operator, name))
+        return GivenDynamics(_linear_part(operator, name))
     if hasattr(value, "omega") and hasattr(value, "frdata"):
-        return KnownDynamics(_frd(value, name))
+        return GivenDynamics(_frd(value, name))
+    if hasattr(value, "frequency") and hasattr(value, "response"):  # as identification tells it
+        return GivenDynamics(MeasuredResponse(value.frequency, value.response))
     if not isinstance(value, type) and (hasattr(value, "num") or hasattr(value, "A")):
-        return KnownDynamics(_system(value, name))
+        return GivenDynamics(_system(value, name))
     if not isinstance(value, type) and hasattr(value, "to_ss"):
-        return KnownDynamics(_system(value, name))
+        return GivenDynamics(_system(value, name))
     said = repr(value) if isinstance(value, str) else f"of type {type(value).__name__}"
     raise InputError(f"{name} is {said}; {WHAT}")
 
@@ -116,18 +123,16 @@ def _linear_part(operator: Operator, name: str) -> LinearDynamics:
     """Give the dynamics of an operator: itself, or its last stage."""
     last = operator.parts[-1] if isinstance(operator, Composition) else operator
     if not isinstance(last, LinearDynamics):
-        raise InputError(
-            f"{name} is a {last.kind} at its output, not linear-dynamics; {WHAT}"
-        )
+        raise InputError(f"{name} is a {last.kind} at its output, not linear-dynamics; {WHAT}")
     return last
 
 
-def _frd(value: Any, name: str) -> FrequencyResponse:
+def _frd(value: Any, name: str) -> MeasuredResponse:
     """Read frequency response data of python-control: rad/s, shape (1, 1, m)."""
     data = np.asarray(value.frdata)
     if data.ndim == 3 and data.shape[:2] != (1, 1):
         raise InputError(f"{name} has several inputs or outputs; give the response of one pair")
-    return FrequencyResponse(np.asarray(value.omega) / (2.0 * np.pi), data.ravel())
+    return MeasuredResponse(np.asarray(value.omega) / (2.0 * np.pi), data.ravel())
 
 
 def _system(value: Any, name: str) -> LinearDynamics | tuple[Array, Array, Array, float]:
@@ -163,12 +168,10 @@ def _matrices(system: Any) -> tuple[Any, Any, Any, Any]:
 
 
 @functools.lru_cache(maxsize=8)
-def _at(
-    known: KnownDynamics, dt: float
-) -> tuple[LinearDynamics, float, FittedResponse | None]:
+def _at(known: GivenDynamics, dt: float) -> tuple[LinearDynamics, float, FittedResponse | None]:
     """Give the dynamics at a sample time, the gain they had, and the fit they are of."""
     given, fitted = known.given, None
-    if isinstance(given, FrequencyResponse):
+    if isinstance(given, MeasuredResponse):
         fitted = fitted_response(given, dt)
         dynamics = fitted.dynamics
     elif isinstance(given, LinearDynamics):
@@ -199,7 +202,7 @@ def _held_input(matrices: tuple[Array, Array, Array, float], dt: float) -> Linea
     return LinearDynamics(sampled[:n, :n], sampled[:n, n], C, D, dt)
 
 
-def _fit_in_words(given: FrequencyResponse, fitted: FittedResponse) -> str:
+def _fit_in_words(given: MeasuredResponse, fitted: FittedResponse) -> str:
     low, high = given.frequency[0], given.frequency[fitted.used - 1]
     beyond = "" if low == 0.0 else f"; what it is at rest is continued from {low:.6g} Hz"
     return (

@@ -14,8 +14,8 @@ Array = NDArray[np.float64]
 
 
 @final
-@dataclass(frozen=True, eq=False, init=False)
-class FrequencyResponse:
+@dataclass(frozen=True, eq=False, init=False, repr=False)
+class MeasuredResponse:
     """Output over input at some frequencies, as an analyser measures it.
 
     Parameters
@@ -33,7 +33,7 @@ class FrequencyResponse:
 
     Examples
     --------
-    >>> measured = FrequencyResponse([20.0, 10.0], [0.5 - 0.5j, 1.0 + 0.0j])
+    >>> measured = MeasuredResponse([20.0, 10.0], [0.5 - 0.5j, 1.0 + 0.0j])
     >>> measured.frequency.tolist(), measured.response[0]
     ([10.0, 20.0], np.complex128(1+0j))
     """
@@ -70,3 +70,7 @@ class FrequencyResponse:
         values.setflags(write=False)
         object.__setattr__(self, "frequency", f)
         object.__setattr__(self, "response", values)
+
+    def __repr__(self) -> str:
+        f = self.frequency
+        return f"<MeasuredResponse of {f.size} frequencies from {f[0]:.6g} to {f[-1]:.6g} Hz>"
