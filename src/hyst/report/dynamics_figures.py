@@ -121,7 +121,15 @@ def _loop_row(found: IdentifiedHammerstein) -> tuple[str, str]:
 
 @drawn
 def draw_impulse_response(found: IdentifiedHammerstein, markov: MarkovParameters) -> Figure:
-    """Draw step 1 and the singular values of step 2, as PNG."""
+    """Draw step 1 and the singular values of step 2, as PNG.
+
+    Parameters
+    ----------
+    found
+        The result.
+    markov
+        Step 1.
+    """
     figure, (response, singular) = blank(2, 1, 10.0, 3.9)
     scale = _scale(found, markov)
     lags = np.arange(markov.order + 1)

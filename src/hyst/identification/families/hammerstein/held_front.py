@@ -75,13 +75,30 @@ class HeldFront(Family):
         return [self.start_from(data, data.joined(self.outputs(data)))]
 
     def outputs(self, data: Data) -> list[Array]:
-        """Give the output of the hysteresis over the window of each record."""
+        """Give the output of the hysteresis over the window of each record.
+
+        Parameters
+        ----------
+        data
+            The records.
+        """
         return [
             v.u[window] for v, window in zip(self.behind(data).records, data.windows(), strict=True)
         ]
 
     def behind(self, data: Data) -> Data:
-        """Give the records with what is behind the hysteresis as their drive."""
+        """Give the records with what is behind the hysteresis as their drive.
+
+        Parameters
+        ----------
+        data
+            The records.
+
+        Raises
+        ------
+        NotIdentifiableError
+            If nothing in the hysteresis moves in one of them.
+        """
         records = []
         for number, record in enumerate(data.records, 1):
             self.operator.require_possible_time(record.dt, f"record {number}")
@@ -115,7 +132,15 @@ class HeldFront(Family):
         return self.parametrization(data.records[0].dt, share), theta
 
     def parametrization(self, dt: float, share: float = 1.0) -> HeldParametrization:
-        """Give gain, over a share, and offset as free parameters, at a sample time."""
+        """Give gain, over a share, and offset as free parameters, at a sample time.
+
+        Parameters
+        ----------
+        dt
+            Sample time, s.
+        share
+            Gain of a theta of 1.
+        """
         held = self.operator.at_sample_time(dt)
         constants = held.parameters().values
         transform = np.zeros((constants.size + 2, 2))
@@ -197,6 +222,11 @@ def require_one_hysteresis(front: HeldFront | None, hysteresis: Any) -> None:
         What was given; None where nothing was.
     hysteresis
         The family in front as it was asked for; the default asks for none.
+
+    Raises
+    ------
+    InputError
+        If both are.
     """
     name = getattr(hysteresis, "name", hysteresis)
     options = isinstance(hysteresis, Family) and hysteresis != type(hysteresis)()
@@ -208,7 +238,13 @@ def require_one_hysteresis(front: HeldFront | None, hysteresis: Any) -> None:
 
 
 def told_of(front: HeldFront | None) -> tuple[str, ...]:
-    """Say that a hysteresis was given."""
+    """Say that a hysteresis was given.
+
+    Parameters
+    ----------
+    front
+        What was given; None where nothing was.
+    """
     return () if front is None else (TOLD,)
 
 
