@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from hyst.identification import Identified
 from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
+from hyst.identification.families.hammerstein.markov import MarkovParameters
 from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn, with_unit
 from hyst.report.identification_report import Section
 from hyst.report.tables import Table, number
@@ -33,14 +34,14 @@ def dynamics_sections(found: Identified) -> tuple[Section, ...]:
     """
     if not isinstance(found, IdentifiedHammerstein):
         return ()
-    sections = [_response(found), _dynamics(found)]
+    first = [] if found.markov is None else [_response(found, found.markov)]
+    sections = [*first, _dynamics(found)]
     if found.loop.valid.stop > found.loop.valid.start:
         sections.append(_loop(found))
     return tuple(sections)
 
 
-def _response(found: IdentifiedHammerstein) -> Section:
-    markov = found.markov
+def _response(found: IdentifiedHammerstein, markov: MarkovParameters) -> Section:
     return Section(
         heading="First step: the impulse response",
         texts=(
@@ -63,7 +64,7 @@ def _response(found: IdentifiedHammerstein) -> Section:
             ),
         ),
         picture="impulse_response.png",
-        png=draw_impulse_response(found),
+        png=draw_impulse_response(found, markov),
         caption="Markov parameters, and singular values of their Hankel matrix.",
     )
 
@@ -119,11 +120,18 @@ def _loop_row(found: IdentifiedHammerstein) -> tuple[str, str]:
 
 
 @drawn
-def draw_impulse_response(found: IdentifiedHammerstein) -> Figure:
-    """Draw step 1 and the singular values of step 2, as PNG."""
+def draw_impulse_response(found: IdentifiedHammerstein, markov: MarkovParameters) -> Figure:
+    """Draw step 1 and the singular values of step 2, as PNG.
+
+    Parameters
+    ----------
+    found
+        The result.
+    markov
+        Step 1.
+    """
     figure, (response, singular) = blank(2, 1, 10.0, 3.9)
-    markov = found.markov
-    scale = _scale(found)
+    scale = _scale(found, markov)
     lags = np.arange(markov.order + 1)
     response.errorbar(
         lags,
@@ -159,6 +167,8 @@ def draw_dynamics(found: IdentifiedHammerstein) -> Figure:
         (found.first_dynamics, MEASURED, "realized"),
         (found.dynamics, MODELLED, "refined"),
     ):
+        if G is None:
+            continue
         response = G.frequency_response(frequency)
         gain.loglog(frequency, np.abs(response), color=color, label=label)
         phase.semilogx(frequency, np.degrees(np.unwrap(np.angle(response))), color=color)
@@ -234,8 +244,8 @@ def _shown_range(v: Array, fitted: Array) -> tuple[float, float]:
     return float(low - margin), float(high + margin)
 
 
-def _scale(found: IdentifiedHammerstein) -> float:
+def _scale(found: IdentifiedHammerstein, markov: MarkovParameters) -> float:
     """Factor that brings the first step to DC gain 1, by least squares on the refined response."""
-    h = found.dynamics.impulse_response(found.markov.order + 1)
-    m = found.markov.values
+    h = found.dynamics.impulse_response(markov.order + 1)
+    m = markov.values
     return float(m @ h) / float(m @ m)

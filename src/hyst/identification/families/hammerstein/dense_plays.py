@@ -42,7 +42,7 @@ def dense_plays(data: Data, dynamics: LinearDynamics) -> Operator:
     used = shortened(data, _MOST_SAMPLES // len(data.records))
     radii = data.half_range * np.linspace(0.0, _WIDEST, _PLAYS + 1)[1:]
     columns, target = _beside_ringing(used, radii, dynamics)
-    triangle = np.linalg.qr(np.column_stack([columns, target]), mode="r")
+    triangle: Array = np.linalg.qr(np.column_stack([columns, target]))[1]
     matrix, wanted, rest = triangle[:-1, :-1], triangle[:-1, -1], float(triangle[-1, -1]) ** 2
     free = solve_scaled(matrix.T @ matrix, matrix.T @ wanted, _RIDGE)
     sign = 1.0 if float(wanted @ matrix[:, 0]) >= 0.0 else -1.0

@@ -22,6 +22,7 @@ from hyst.identification.families.hammerstein.first_dynamics import (
     shortened,
     signal_behind,
 )
+from hyst.identification.families.hammerstein.held_front import HeldFront
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
 from hyst.identification.families.hammerstein.markov import choose_markov
 from hyst.identification.families.hammerstein.order_search import Search, search_order
@@ -36,6 +37,7 @@ from hyst.identification.fit.problem import problem_of
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics
+from hyst.operators import Operator
 
 MOST_STARTS = 3
 """Of the hysteresis."""
@@ -69,7 +71,10 @@ class FirstDynamics:
 
 
 def first_dynamics_of_plays(
-    overview: Overview, state_order: int | str, delay: int | None
+    overview: Overview,
+    state_order: int | str,
+    delay: int | None,
+    known: HeldFront | None = None,
 ) -> FirstDynamics:
     """Choose delay and order with plays on a grid of radii before the dynamics.
 
@@ -81,6 +86,8 @@ def first_dynamics_of_plays(
         Number of states, or ``"auto"``.
     delay
         Samples, or None.
+    known
+        The hysteresis, where it is known: then it is what drives the dynamics.
 
     Raises
     ------
@@ -89,19 +96,26 @@ def first_dynamics_of_plays(
     """
     data = overview.data
     orders = None if state_order == AUTO else (int(state_order),)
-    found = search_order(Search.of(data, delay), orders, float(data.measured().var()))
-    dynamics = of_gain_one(found.dynamics)
-    looked = orders is not None
+    searched = Search.of(data, delay) if known is None else Search.of(known.behind(data), delay, 0)
+    found = search_order(searched, orders, float(data.measured().var()))
+    dynamics, looked = of_gain_one(found.dynamics), orders is not None
     for _ in range(_ROUNDS):
-        hysteresis, before = dense_plays(data, dynamics), dynamics
+        hysteresis, before = _hysteresis(data, dynamics, known), dynamics
         dynamics = settled_dynamics(data, hysteresis, before, delay, orders=False)
         if numbers_of(dynamics) == numbers_of(before):
             if looked:
                 break
             dynamics = settled_dynamics(data, hysteresis, dynamics, delay, orders=True)
             looked = True
-    behind = Overview(behind_operator(data, dense_plays(data, dynamics)), rates_matter=True)
-    return FirstDynamics(dynamics, behind, None)
+    behind = behind_operator(data, _hysteresis(data, dynamics, known))
+    return FirstDynamics(dynamics, Overview(behind, rates_matter=True), None)
+
+
+def _hysteresis(data: Data, dynamics: LinearDynamics, known: HeldFront | None) -> Operator:
+    """Give the hysteresis before dynamics: many plays, or what is known."""
+    if known is None:
+        return dense_plays(data, dynamics)
+    return known.operator.at_sample_time(data.records[0].dt)
 
 
 def first_dynamics(

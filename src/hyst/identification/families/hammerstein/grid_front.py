@@ -1,4 +1,4 @@
-"""A hysteresis of plays on a grid of radii, as the front of a joint fit: any weights, any offset."""
+"""A hysteresis of plays on a grid of radii before dynamics: any weights, any offset."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ class IdentifiedHammerstein(Identified):
         G as realized from the Markov parameters, of the order that was found; None where the drive
         does not determine them.
     markov
-        Step 1 of the paper; None where the drive does not determine it.
+        Step 1 of the paper; None where the drive does not determine it, or G was given.
     singular_values
         Of the Hankel matrix, descending; empty without Markov parameters.
     hankel_noise
@@ -67,6 +67,8 @@ class IdentifiedHammerstein(Identified):
         Family of the hysteresis, with its options.
     noise_rms
         Residual after the refinement, output units.
+    dynamics_are_given
+        Whether G was known before and held: then the errors of its poles are 0.
     """
 
     hysteresis: Operator
@@ -81,6 +83,7 @@ class IdentifiedHammerstein(Identified):
     loop: Loop
     front: Family
     noise_rms: float
+    dynamics_are_given: bool = False
 
     @property
     def hysteresis_family(self) -> str:
@@ -97,6 +100,7 @@ class IdentifiedHammerstein(Identified):
         inverse = self.inverse_of_dynamics
         more: dict[str, Any] = {
             "hysteresis_family": self.hysteresis_family,
+            "given": self.dynamics_are_given,
             "state_order": self.dynamics.order,
             "delay": self.dynamics.delay,
             "poles": [[float(p.real), float(p.imag)] for p in self.poles],
@@ -128,12 +132,11 @@ class IdentifiedHammerstein(Identified):
         -------
         str
         """
-        lines = [super().summary(), "", f"poles of G (order {self.dynamics.order}):"]
+        given = ", given" if self.dynamics_are_given else ""
+        lines = [super().summary(), "", f"poles of G (order {self.dynamics.order}{given}):"]
         for pole, error in zip(self.poles, self.pole_standard_errors, strict=True):
-            lines.append(
-                f"  {pole.real:+.6g} {pole.imag:+.6g}j   standard error "
-                f"{error.real:.2g}, {error.imag:.2g}"
-            )
+            sure = "" if given else f"   standard error {error.real:.2g}, {error.imag:.2g}"
+            lines.append(f"  {pole.real:+.6g} {pole.imag:+.6g}j{sure}")
         inverse = self.inverse_of_dynamics
         if inverse is not None:
             lines.append(

@@ -38,11 +38,14 @@ class JointParametrization(Parametrization):
         Realization whose coordinates are kept; stable.
     feedthrough
         Whether D is free; it is 0 otherwise.
+    held
+        Whether the dynamics are known: then none of their parameters is free.
     """
 
     front: Parametrization = None  # type: ignore[assignment]  # the fields before have defaults
     base: LinearDynamics = None  # type: ignore[assignment]
     feedthrough: bool = True
+    held: bool = False
 
     def hysteresis(self, theta: Array) -> Operator:
         """Give the hysteresis."""
@@ -51,8 +54,17 @@ class JointParametrization(Parametrization):
     def dynamics(self, theta: Array) -> LinearDynamics:
         """Give the dynamics."""
         base = self.base
+        if self.held:
+            return base
         A, C, D = _matrices(theta[self.front.size :], base, self.feedthrough)
         return LinearDynamics(A, base.B, C, D, base.dt, base.delay)
+
+    def over_theta(self, by_dynamics: Array) -> Array:
+        """Give a derivative by k, C and D as one by theta; nothing moves dynamics that are held."""
+        result = np.zeros((len(by_dynamics), self.size))
+        if not self.held:
+            result[:, self.front.size :] = by_dynamics
+        return result
 
     def seen_by_front(self) -> Parametrization:
         """Give the same free parameters for the family of the hysteresis: its own come first."""

@@ -49,9 +49,9 @@ def identified_with_dynamics(
     """
     records = overview.data.records
     dynamics = dynamics_of(fit)
-    markov = markov_if_excited(records, fir_order)
-    first = _realization(markov, dynamics)
     inverse, reason = inverse_of(dynamics)
+    markov = None if joint_of(fit).held else markov_if_excited(records, fir_order)
+    first = _realization(markov, dynamics)
     if first is not None and first.stabilized and fir_order != AUTO:
         reason += ("the realization was not stable and was replaced by a stable one",)
     spread = spread_of_fit(overview.data, fit)
@@ -67,6 +67,7 @@ def identified_with_dynamics(
         hankel_noise=float("nan") if first is None else first.noise_level,
         poles=poles,
         pole_standard_errors=pole_errors,
+        dynamics_are_given=joint_of(fit).held,
         inverse_of_dynamics=inverse,
         loop=_loop(records[0], inverse, spread.noise_rms),
         front=front,
@@ -88,10 +89,7 @@ def _poles(
     dynamics: LinearDynamics, fit: Fit, spread: FitSpread
 ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
     parametrization, n = joint_of(fit), dynamics.order
-    by_theta = np.zeros((2 * n, parametrization.size))
-    by_theta[:, parametrization.front.size :] = poles_by_theta(
-        dynamics, parametrization.feedthrough
-    )
+    by_theta = parametrization.over_theta(poles_by_theta(dynamics, parametrization.feedthrough))
     values, errors = poles_as_numbers(dynamics), spread.of(by_theta)
     errors[~by_theta.any(axis=1)] = 0.0  # a real pole stays real
     return values[:n] + 1j * values[n:], errors[:n] + 1j * errors[n:]
