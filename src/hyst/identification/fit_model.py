@@ -15,13 +15,14 @@ from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.selection import settled
 from hyst.identification.dynamics_estimates import chain_of, estimates_of_chain
 from hyst.identification.families.family import Estimates, Family, Fit, Start, Words
+from hyst.identification.families.hammerstein.first_dynamics import shortened
 from hyst.identification.fit.bounded_least_squares import Solution
+from hyst.identification.fit.chain_fit import fit_chain
 from hyst.identification.fit.chain_parametrization import (
     ChainParametrization,
     chain,
     links_of,
 )
-from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.fit.scales_between import Link
 from hyst.identification.options import Options, as_delay, listed, silent
 from hyst.identification.record_use.cleaned import as_drift, cleaned
@@ -37,6 +38,9 @@ from hyst.signals import Record
 
 Array = NDArray[np.float64]
 Bound = tuple[float, float]
+
+MOST_SAMPLES = 50_000
+"""On which a start of hysteresis with dynamics is improved before the last step takes all."""
 
 MOST_NAMES = 12
 """In a message; beyond, the first ones are named."""
@@ -58,7 +62,7 @@ class OwnModel(Family):
     depends_on_rate = True  # nothing is known of it
     explains = ("rate dependence", "dynamics", "run direction")
 
-    parametrization: Parametrization
+    parametrization: ChainParametrization
     theta: Array
 
     def __post_init__(self) -> None:
@@ -220,7 +224,11 @@ def _fitted(family: OwnModel, data: Data, options: Options) -> Fit:
     options.say("fit")
     unsolved = Fit(family, 0, family.parametrization, Solution(family.theta, np.inf, 0, ""))
     most = options.max_iterations
-    solution = family.solve(unsolved.problem(data), family.theta, most)
+    if family.parametrization.dynamics:
+        beginning = shortened(data, max(MOST_SAMPLES // len(data.records), 1))
+        solution = fit_chain(family.parametrization, family.theta, data, most, beginning)
+    else:
+        solution = family.solve(unsolved.problem(data), family.theta, most)
     found = Fit(family, 0, family.parametrization, solution)
     return options.converged(settled(found, Overview(data), most))
 

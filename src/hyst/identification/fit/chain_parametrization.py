@@ -1,4 +1,4 @@
-"""Free constants of a chain of stages, linear dynamics among them by as few numbers as there are."""
+"""Free constants of a chain of stages, linear dynamics by as few numbers as there are."""
 
 from __future__ import annotations
 
@@ -12,12 +12,29 @@ from hyst.errors import InputError
 from hyst.identification.fit.free_dynamics import FreeDynamics, has_gain_at_rest
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.fit.scales_between import Link, hidden_scales, neighbours
-from hyst.models import LinearDynamics
+from hyst.models import LinearDynamics, PrandtlIshlinskii
 from hyst.operators import Operator
 from hyst.operators.composition import leaves_of
 from hyst.operators.parameters import Parameters
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PlayBank:
+    """Plays of one stage, any of which may move.
+
+    Parameters
+    ----------
+    stage
+        Which stage of the chain.
+    weights, radii
+        Places in theta, play by play.
+    """
+
+    stage: int
+    weights: tuple[int, ...]
+    radii: tuple[int, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +45,8 @@ class ChainParametrization(Parametrization):
     ----------
     single
         Places of the constants that are free one by one: theta begins with them.
+    banks
+        The plays whose weights and radii are all free.
     dynamics
         The stages that are free as a whole, in the order of the signal.
     sizes_held
@@ -37,6 +56,7 @@ class ChainParametrization(Parametrization):
     """
 
     single: tuple[int, ...] = ()
+    banks: tuple[PlayBank, ...] = ()
     dynamics: tuple[FreeDynamics, ...] = ()
     sizes_held: tuple[bool, ...] = ()
     sentences: tuple[str, ...] = ()
@@ -84,6 +104,7 @@ def chain(
     taken = {place for i in whole for place in _constants_of(links[i])} | holds.constants
     single = [each for each in places if each not in taken]
     dynamics = _dynamics(links, whole, len(single))
+    banks = _banks(links, single, lower, upper)
     fixed = own.values.copy()
     fixed[single] = 0.0
     count = len(single) + sum(each.size for each in dynamics)
@@ -101,11 +122,12 @@ def chain(
         fixed,
         np.concatenate([lower[single], -endless]),
         np.concatenate([upper[single], endless]),
-        canonical=_canonical(model, fixed, transform, single, (lower, upper)),
+        canonical=_canonical(model, fixed, transform, single, (lower, upper), banks),
         gauges=_gauges(held),
         gauge_count=len(held),
         is_allowed=_is_allowed(model, fixed, transform, dynamics),
         single=tuple(single),
+        banks=banks,
         dynamics=dynamics,
         sizes_held=sizes_held,
         sentences=holds.sentences,
@@ -153,6 +175,44 @@ def _dynamics(links: Sequence[Link], whole: Sequence[int], first: int) -> tuple[
     return tuple(made)
 
 
+def _banks(
+    links: Sequence[Link], single: Sequence[int], lower: Array, upper: Array
+) -> tuple[PlayBank, ...]:
+    """Find plays that are all free within the same bounds, so that their order means nothing."""
+    theta, banks = {place: at for at, place in enumerate(single)}, list[PlayBank]()
+    for i, each in enumerate(links):
+        if not isinstance(each.stage, PrandtlIshlinskii) or each.stage.z0.any():
+            continue
+        n = each.stage.p.size
+        weights, radii = (
+            list(range(first, first + n)) for first in (each.constant + 1, each.constant + 1 + n)
+        )
+        alike = (
+            all(
+                (ends[of] == ends[of[0]]).all()
+                for of in (weights, radii)
+                for ends in (lower, upper)
+            )
+            if n
+            else False
+        )
+        if n and alike and theta.keys() >= {*weights, *radii}:
+            of_theta = (tuple(theta[place] for place in places) for places in (weights, radii))
+            banks.append(PlayBank(i, *of_theta))
+    return tuple(banks)
+
+
+def _sorted(theta: Array, banks: Sequence[PlayBank]) -> Array:
+    """Give plays in the order of their radii, each with its weight."""
+    for bank in banks:
+        weights, radii = list(bank.weights), list(bank.radii)
+        order = np.argsort(theta[radii], kind="stable")
+        if (order[1:] < order[:-1]).any():
+            theta = theta.copy()
+            theta[weights], theta[radii] = theta[weights][order], theta[radii][order]
+    return theta
+
+
 def _holds(links: Sequence[Link], whole: Sequence[int], own: Parameters) -> _Holds:
     """Hold one side of every scale between stages: dynamics once each, else a constant."""
     sizes, constants, sentences = set[int](), set[int](), list[str]()
@@ -197,11 +257,13 @@ def _canonical(
     transform: Array,
     single: Sequence[int],
     bounds: tuple[Array, Array],
+    banks: Sequence[PlayBank],
 ) -> Callable[[Array], Array]:
     places, count = list(single), len(single)
     lower, upper = bounds[0][places], bounds[1][places]
 
     def canonical(theta: Array) -> Array:
+        theta = _sorted(theta, banks)
         nearest = model.nearest_parameters(fixed + transform @ theta)[places]
         return np.concatenate([np.clip(nearest, lower, upper), theta[count:]])
 
@@ -211,7 +273,7 @@ def _canonical(
 def _is_allowed(
     model: Operator, fixed: Array, transform: Array, dynamics: Sequence[FreeDynamics]
 ) -> Callable[[Array], bool]:
-    """What is free as a whole stays stable."""
+    """Keep stable what is free as a whole."""
 
     def is_allowed(theta: Array) -> bool:
         try:

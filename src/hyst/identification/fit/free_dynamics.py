@@ -150,6 +150,9 @@ class FreeDynamics:
         """Give by how much its size differs from that of the base, and the derivative by theta.
 
         The size is the gain at rest; where that is nothing, the part of C and D along the base's.
+        With ``(I - A0 - B k')^-1 B = x / (1 - k' x)``, ``x = (I - A0)^-1 B``, a gain g at rest is
+        ``c' x + (D - g) (1 - k' x) = 0``, which without D is a plane: a fit goes along it with
+        steps as long as it likes.
 
         Parameters
         ----------
@@ -162,9 +165,13 @@ class FreeDynamics:
             along[: self.base.order] = 0.0
             row[self.own] = along / float(along @ along)
             return float(row @ theta) - 1.0, row
-        value, by_own = self.gain(theta)
-        row[self.own] = by_own / self.base.dc_gain()
-        return value / self.base.dc_gain() - 1.0, row
+        n, size = self.base.order, self.base.dc_gain()
+        x = np.linalg.solve(np.eye(n) - self.base.A, self.base.B) if n else np.zeros(0)
+        k, c, d = np.split(theta[self.own], [n, 2 * n])
+        x = x @ self.basis
+        rest, D = 1.0 - float(k @ x), float(d.sum())
+        row[self.own] = np.concatenate([(size - D) * x, x, np.full(d.size, rest)]) / size
+        return (float(c @ x) + (D - size) * rest) / size, row
 
     def gain(self, theta: Array) -> tuple[float, Array]:
         """Give the gain at rest and its derivative by the stage's own numbers."""
@@ -196,8 +203,8 @@ def _require_reachable(what: str, base: LinearDynamics) -> None:
     if shares.min() < UNSEEN:
         pole = poles[int(shares.argmin())]
         raise InputError(
-            f"{what} has the pole {pole:.6g}, which its input does not move, so no fit could either;"
-            " give dynamics of a lower order"
+            f"{what} has the pole {pole:.6g}, which its input does not move, so no fit could "
+            "either; give dynamics of a lower order"
         )
 
 

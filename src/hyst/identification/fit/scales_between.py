@@ -6,6 +6,7 @@ constants of both can do that, one of them has to be held; which one is a conven
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -115,7 +116,7 @@ def neighbours(links: Sequence[Link], free: Iterable[int]) -> tuple[tuple[int, i
     linear = (Affine, Delay, Lag, LinearDynamics)
     return tuple(
         (one, other)
-        for one, other in zip(places, places[1:], strict=False)
+        for one, other in itertools.pairwise(places)
         if all(isinstance(each.stage, linear) for each in links[one + 1 : other])
     )
 
