@@ -24,6 +24,9 @@ SHARES = (-0.5, -0.25, -0.1, -0.03, 0.03, 0.1, 0.25, 0.5)
 TRIAL_WEIGHT = 5e-2
 """Of all weights: what a play without any is tried with."""
 
+PLACES = 24
+"""Tried for every play, from 0 to the largest radius that moves."""
+
 MOST_ROUNDS = 6
 
 WORTH = 3.0
@@ -83,47 +86,54 @@ def with_plays_moved(
 
 def _trials(problem: Problem, theta: Array, bank: PlaysInChain) -> Iterator[tuple[float, Array]]:
     """Give the squared error to expect of every move, and the theta after it."""
-    weights, radii = list(bank.weights), list(bank.radii)
-    total = float(np.abs(theta[weights]).sum())
-    reach = bank.reach(theta)
+    weights, radii = np.array(bank.weights), np.array(bank.radii)
     _, jacobian = problem.linearize(theta)
-    for i, (weight, radius) in enumerate(zip(weights, radii, strict=True)):
-        if not problem.lower[radius] < problem.upper[radius]:
-            continue
-        others = np.delete(np.arange(theta.size), [weight, radius])
-        basis = _basis(jacobian[:, others])
+    reach = bank.reach(theta)
+    everywhere = reach * np.arange(1, PLACES + 1) / (PLACES + 1)
+    weakest = int(np.argmin(np.abs(theta[weights])))
+    known = list(_columns(problem, theta, bank, weakest, everywhere))
+    for i in np.flatnonzero(problem.lower[radii] < problem.upper[radii]):
+        weight, radius = weights[i], radii[i]
+        basis = _basis(np.delete(jacobian, [weight, radius], axis=1))
         without = theta.copy()
         without[weight] = 0.0
         left = problem.residual(without)
-        plain = left - basis @ (basis.T @ left)
-        for place in _places(theta[radii], i, reach, abs(theta[weight]) > 1e-3 * total):
-            moved = theta.copy()
-            moved[weight] = max(abs(theta[weight]), TRIAL_WEIGHT * total)
-            moved[radius] = place
-            column = (problem.residual(problem.canonical(moved)) - left) / moved[weight]
-            column -= basis @ (basis.T @ column)
-            size = float(column @ column)
-            if size <= 0.0:
-                continue
-            best = -float(column @ plain) / size
-            if problem.lower[weight] <= best <= problem.upper[weight]:
-                moved[weight] = best
-                yield float(plain @ plain) - best**2 * size, problem.canonical(moved)
+        left -= basis @ (basis.T @ left)
+        near = _columns(problem, theta, bank, int(i), _near(theta[radii], int(i), reach))
+        for place, column in (*known, *near):
+            seen = column - basis @ (basis.T @ column)
+            size = float(seen @ seen)
+            best = -float(seen @ left) / size if size > 0.0 else -np.inf
+            if problem.lower[weight] <= best <= problem.upper[weight] and size > 0.0:
+                moved = theta.copy()
+                moved[weight], moved[radius] = best, place
+                yield float(left @ left) - best**2 * size, problem.canonical(moved)
 
 
-def _places(radii: Array, i: int, reach: float, has_weight: bool) -> Array:
-    """Give where to put a play: near where it is, and in every gap if it does nothing there."""
+def _columns(
+    problem: Problem, theta: Array, bank: PlaysInChain, i: int, places: Array
+) -> Iterator[tuple[float, Array]]:
+    """Give what a play adds to the output at other places, as play i tells when put there."""
+    weight, radius = bank.weights[i], bank.radii[i]
+    without, there = theta.copy(), theta.copy()
+    without[weight] = 0.0
+    there[weight] = max(
+        float(np.abs(theta[weight])), TRIAL_WEIGHT * float(np.abs(theta[list(bank.weights)]).sum())
+    )
+    left = problem.residual(without)
+    for place in places:
+        there[radius] = place
+        change = problem.residual(problem.canonical(there)) - left
+        yield float(place), change / there[weight]
+
+
+def _near(radii: Array, i: int, reach: float) -> Array:
+    """Give places on the way from a play to its neighbours."""
     others = np.sort(np.delete(radii, i))
     fence = np.concatenate([[0.0], others[others < reach], [reach]])
-    gaps = 0.5 * (fence[1:] + fence[:-1])
-    if not has_weight or radii[i] >= reach:
-        return np.asarray(gaps)
-    r = float(radii[i])
-    at = int(np.searchsorted(fence, r))
-    below, above = fence[max(at - 1, 0)], fence[min(at, fence.size - 1)]
-    shares = np.array(SHARES)
-    near = r + shares * np.where(shares > 0.0, above - r, r - below)
-    return np.concatenate([near, gaps])
+    r, shares = float(min(radii[i], reach)), np.array(SHARES)
+    at = int(np.clip(np.searchsorted(fence, r), 1, fence.size - 1))
+    return np.asarray(r + shares * np.where(shares > 0.0, fence[at] - r, r - fence[at - 1]))
 
 
 def _basis(columns: Array) -> Array:
