@@ -26,13 +26,14 @@ class PlayBank:
 
     Parameters
     ----------
-    stage
-        Which stage of the chain.
+    stage, constant
+        Which stage of the chain, and the place of its first constant.
     weights, radii
         Places in theta, play by play.
     """
 
     stage: int
+    constant: int
     weights: tuple[int, ...]
     radii: tuple[int, ...]
 
@@ -198,7 +199,7 @@ def _banks(
         )
         if n and alike and theta.keys() >= {*weights, *radii}:
             of_theta = (tuple(theta[place] for place in places) for places in (weights, radii))
-            banks.append(PlayBank(i, *of_theta))
+            banks.append(PlayBank(i, each.constant, *of_theta))
     return tuple(banks)
 
 
