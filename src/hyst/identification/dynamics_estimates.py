@@ -86,6 +86,8 @@ def told_of(stage: FreeDynamics, theta: Array, size_is_held: bool) -> Told:
         told.append(("gain", *stage.gain(theta)))
     dynamics = stage.dynamics(theta)
     n = dynamics.order
+    if n == 0:  # the gain says it all
+        return told
     values = coefficients(dynamics)
     rows = stage.by_own(coefficients_by_theta(dynamics, stage.feedthrough))
     names = [f"a[{i}]" for i in range(1, n + 1)] + [f"b[{i}]" for i in range(n + 1)]
