@@ -219,18 +219,21 @@ def _holds(links: Sequence[Link], whole: Sequence[int], own: Parameters) -> _Hol
     sizes, constants, sentences = set[int](), set[int](), list[str]()
     for one, other in hidden_scales(links, whole):
         open_ones = [each for each in (one, other) if each in whole and each not in sizes]
-        at = open_ones[0] if open_ones else one if one not in whole else other
-        beside = links[other if at == one else one].name
         if open_ones:
+            at = open_ones[0]
             sizes.add(at)
             what = _size_held(links[at])
         else:
-            ends = (2.0, 1.0) if at == other else (1.0, 2.0)
-            moved = links[at].moved(*ends)
-            assert moved is not None, "it takes the scale"
-            constant = links[at].constant + int(np.flatnonzero(moved)[0])
+            moved = {
+                each: _moved(links[each], ends)
+                for each, ends in ((one, (1.0, 2.0)), (other, (2.0, 1.0)))
+                if each not in whole
+            }
+            at = min(moved, key=lambda each: moved[each].size)
+            constant = int(moved[at][0])
             constants.add(constant)
             what = f"{own.names[constant]} is held at {own.values[constant]:.6g}"
+        beside = links[other if at == one else one].name
         sentences.append(
             f"{what}: records show only its product with the scale of {beside}, whose constants "
             "hold for it"
@@ -242,6 +245,13 @@ def _holds(links: Sequence[Link], whole: Sequence[int], own: Parameters) -> _Hol
             "of which is as it was in the start"
         )
     return _Holds(frozenset(sizes), frozenset(constants), tuple(sentences))
+
+
+def _moved(link: Link, ends: tuple[float, float]) -> NDArray[np.intp]:
+    """Give the places of the constants of a stage that take a scale."""
+    moved = link.moved(*ends)
+    assert moved is not None, "it takes the scale"
+    return link.constant + np.flatnonzero(moved)
 
 
 def _size_held(link: Link) -> str:

@@ -87,7 +87,7 @@ def hidden_scales(links: Sequence[Link], free: Iterable[int]) -> tuple[tuple[int
     links
         The chain, in the order of the signal.
     free
-        Which of them are linear dynamics that are free as a whole: every pair holds one.
+        Which of them are linear dynamics that are free as a whole; without any there is no pair.
 
     Returns
     -------
@@ -95,13 +95,12 @@ def hidden_scales(links: Sequence[Link], free: Iterable[int]) -> tuple[tuple[int
         In the order of the signal.
     """
     whole = frozenset(free)
-    pairs = set[tuple[int, int]]()
-    for at in whole:
-        behind = _absorber(links, range(at + 1, len(links)), whole, behind=True)
-        before = _absorber(links, range(at - 1, -1, -1), whole, behind=False)
-        pairs |= {(at, behind)} if behind is not None else set()
-        pairs |= {(before, at)} if before is not None else set()
-    return tuple(sorted(pairs))
+    pairs = list[tuple[int, int]]()
+    for at in range(len(links) - 1 if whole else 0):
+        if at in whole or links[at].takes(1.0, _FACTOR):
+            behind = _absorber(links, at, whole)
+            pairs += [(at, behind)] if behind is not None else []
+    return tuple(pairs)
 
 
 def neighbours(links: Sequence[Link], free: Iterable[int]) -> tuple[tuple[int, int], ...]:
@@ -121,15 +120,12 @@ def neighbours(links: Sequence[Link], free: Iterable[int]) -> tuple[tuple[int, i
     )
 
 
-def _absorber(
-    links: Sequence[Link], way: Iterable[int], whole: frozenset[int], behind: bool
-) -> int | None:
-    """Go from stage to stage that lets a factor pass, to the first that takes it back."""
-    for at in way:
-        ends = (_FACTOR, 1.0) if behind else (1.0, _FACTOR)
-        if at in whole or links[at].takes(*ends):
-            return at
-        if not links[at].passes():
+def _absorber(links: Sequence[Link], at: int, whole: frozenset[int]) -> int | None:
+    """Go behind a stage, through others that let a factor pass, to the first that takes it back."""
+    for behind in range(at + 1, len(links)):
+        if behind in whole or links[behind].takes(_FACTOR, 1.0):
+            return behind
+        if not links[behind].passes():
             return None
     return None
 
