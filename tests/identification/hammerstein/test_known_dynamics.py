@@ -348,25 +348,29 @@ def test_the_table_reads_back() -> None:
 # The band of a drive
 
 
+def of(u: np.ndarray) -> Record:
+    return Record(u, np.zeros(u.size), DT)
+
+
 def test_a_band_is_where_lines_rise_above_the_noise() -> None:
     flat = LinearDynamics.from_transfer_function([1.0], [1.0], DT)
     u = np.sin(2.0 * np.pi * 100.0 * T)
-    ((low, high),) = drive_band([u], flat, 1.0, 0.1).bands()
+    ((low, high),) = drive_band([of(u)], flat, 1.0, 0.1).bands()
     # One line: an octave to either side, and some of the taper's own width.
     assert 40.0 < low < 51.0
     assert 199.0 < high < 220.0
     # A line known to a tenth: amplitude^2 N / (4 noise^2) = 100, less a tenth of it for the taper.
     least = np.sqrt(0.9 * u.size / 400.0)
-    assert drive_band([u], flat, 1.0, 0.9 * least).bands()
-    assert not drive_band([u], flat, 1.0, 1.1 * least).bands()
-    both = drive_band([u, np.sin(2.0 * np.pi * 1000.0 * T)], flat, 1.0, 0.1)
+    assert drive_band([of(u)], flat, 1.0, 0.9 * least).bands()
+    assert not drive_band([of(u)], flat, 1.0, 1.1 * least).bands()
+    both = drive_band([of(u), of(np.sin(2.0 * np.pi * 1000.0 * T))], flat, 1.0, 0.1)
     assert len(both.bands()) == 2
-    assert not drive_band([np.zeros(100)], flat, 1.0, 0.1).bands()
+    assert not drive_band([of(np.zeros(100))], flat, 1.0, 0.1).bands()
 
 
 def test_units_change_no_bit() -> None:
     u = multisine(DT, 2000, amplitude=10.0).u
-    one = drive_band([u], G, 0.7, 0.01)
-    other = drive_band([8.0 * u], G, 0.7 * 4.0, 0.01 * 32.0)
+    one = drive_band([of(u)], G, 0.7, 0.01)
+    other = drive_band([of(8.0 * u)], G, 0.7 * 4.0, 0.01 * 32.0)
     assert np.array_equal(one.evidence, other.evidence)
     assert np.array_equal(one.lines, other.lines)

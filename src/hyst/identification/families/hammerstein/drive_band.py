@@ -16,6 +16,7 @@ import scipy.fft
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.models import LinearDynamics
+from hyst.signals import Record
 
 Array = NDArray[np.float64]
 
@@ -77,14 +78,14 @@ class DriveBand:
 
 
 def drive_band(
-    drives: Sequence[Array], dynamics: LinearDynamics, gain: float, noise_rms: float
+    records: Sequence[Record], dynamics: LinearDynamics, gain: float, noise_rms: float
 ) -> DriveBand:
     """Find where drives show dynamics.
 
     Parameters
     ----------
-    drives
-        Inputs of the records, all of the sample time of the dynamics.
+    records
+        With the drives.
     dynamics
         As identified.
     gain
@@ -97,19 +98,21 @@ def drive_band(
     DriveBand
     """
     nyquist = 0.5 / dynamics.dt
-    parts = [_lines_of(np.asarray(u), dynamics, gain, noise_rms) for u in drives]
+    parts = [_lines_of(each, dynamics, gain, noise_rms) for each in records]
     lines = np.concatenate([np.empty(0), *(each for each, _ in parts)])
     evidence = np.concatenate([np.empty(0), *(each for _, each in parts)])
     order = np.argsort(lines, kind="stable")
     return DriveBand(lines[order], evidence[order], nyquist)
 
 
-def _lines_of(u: Array, G: LinearDynamics, gain: float, noise_rms: float) -> tuple[Array, Array]:
+def _lines_of(
+    record: Record, G: LinearDynamics, gain: float, noise_rms: float
+) -> tuple[Array, Array]:
     """Give lines of a drive, Hz, and what each tells of the dynamics."""
-    window = _window(u.size)
+    u, window = record.u, _window(len(record))
     middle = float(window @ u / max(float(window.sum()), 1.0))
     spectrum = np.square(np.abs(scipy.fft.rfft((u - middle) * window)))
-    frequency = np.arange(spectrum.size) / (u.size * G.dt)
+    frequency = np.arange(spectrum.size) / (u.size * record.dt)
     shown = spectrum > _LEAKAGE**2 * spectrum[1:].max(initial=0.0)
     shown[0] = False
     spectrum, frequency = spectrum[shown], frequency[shown]

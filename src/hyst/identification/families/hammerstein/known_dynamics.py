@@ -137,10 +137,9 @@ def known_dynamics(fit: Fit, data: Data, spread: FitSpread) -> KnownDynamics:
     theta, parametrization = fit.solution.theta, joint_of(fit)
     by_theta = DynamicsByTheta.of(parametrization, theta)
     G, hysteresis = by_theta.dynamics, parametrization.hysteresis(theta)
-    drives = [each.u for each in data.records]
-    u = max(drives, key=np.ptp)
+    u = max((each.u for each in data.records), key=np.ptp)
     gain = float(np.std(hysteresis(u)) / (np.std(u) or 1.0))
-    band = drive_band(drives, G, gain, spread.noise_rms)
+    band = drive_band(data.records, G, gain, spread.noise_rms)
     poles = roots_found("pole", *by_theta.poles(), G.dt, spread, band)
     zeros = roots_found("zero", *by_theta.zeros(), G.dt, spread, band)
     return KnownDynamics(by_theta, spread, band, poles, zeros)
