@@ -33,6 +33,7 @@ _AT_ZERO = 1e-9
 _ON_THE_AXIS = 1e-6  # radians: two equal poles there come out of rounding as a pair beside it
 _NEGLIGIBLE = 1e-12
 _KEPT = 1e-8  # what exp(log(A)) may differ from A by
+_STEEPEST = 7  # of a higher relative degree, D is rounding
 _WHOLE = 1e-9  # samples: what is left of a whole number after a division by dt
 _GRID = 256
 _SAME, _FLAT, _ROUNDING = 1e-9, 1e-6, 1e-13  # of D, and of the size of the system
@@ -181,7 +182,7 @@ def _change_before_sampling(L: Array, b: Array, c: Array, D: float) -> float:
             return float(c @ _held(-L, b, g)[1]) - D
         return float(rows[degree - 1] @ _held(-L, b, g)[0] @ b)
 
-    for last in range(b.size - 1, -1, -1):
+    for last in range(min(b.size - 1, _STEEPEST), -1, -1):
         values = states[1] @ c - D if last == 0 else states[0] @ rows[last - 1]
         for k in np.flatnonzero((values[:-1] * values[1:] <= 0.0) & (values[:-1] != values[1:])):
             ends = float(grid[k]), float(grid[k + 1])

@@ -40,7 +40,7 @@ def not_determined(known: KnownDynamics) -> tuple[str, ...]:
     shown = bands_told(known)
     return tuple(
         f"the {name_of(each)} of G at {_place(each)} is not determined by this drive: "
-        f"{'; '.join(each.undetermined)}; the drive shows G {shown}"
+        f"{'; '.join(each.undetermined)}; the drive shows G {shown}{_advice(each)}"
         for each in _missed(known)
     )
 
@@ -148,6 +148,10 @@ def polynomials_told(continuous: ContinuousDynamics) -> list[str]:
         f"  {name:11s} in s: " + "  ".join(f"{each:.6g}" for each in coefficients)
         for name, coefficients in (("numerator", continuous.num), ("denominator", continuous.den))
     ]
+
+
+def _advice(root: FoundRoot) -> str:
+    return ", so a smaller state_order may do" if root.is_shown else ""
 
 
 def _missed(known: KnownDynamics) -> list[FoundRoot]:

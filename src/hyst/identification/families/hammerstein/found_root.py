@@ -92,22 +92,24 @@ class FoundRoot:
 
     def to_dict(self) -> dict[str, Any]:
         """Give plain numbers and text; None for what has no value."""
-
-        def plain(value: float) -> float | None:
-            return float(value) if math.isfinite(value) else None
-
+        z, error = self.value, self.standard_error
         return {
-            "value": [float(self.value.real), float(self.value.imag)],
-            "standard_error": [plain(self.standard_error.real), plain(self.standard_error.imag)],
-            "frequency_hz": plain(self.frequency),
-            "frequency_standard_error": plain(self.frequency_error),
-            "damping": plain(self.damping),
-            "damping_standard_error": plain(self.damping_error),
-            "time_constant_s": plain(self.time_constant),
-            "time_constant_standard_error": plain(self.time_constant_error),
+            "value": [float(z.real), float(z.imag)],
+            "standard_error": [plain_number(error.real), plain_number(error.imag)],
+            "frequency_hz": plain_number(self.frequency),
+            "frequency_standard_error": plain_number(self.frequency_error),
+            "damping": plain_number(self.damping),
+            "damping_standard_error": plain_number(self.damping_error),
+            "time_constant_s": plain_number(self.time_constant),
+            "time_constant_standard_error": plain_number(self.time_constant_error),
             "unit_circle": self.side,
             "undetermined": list(self.undetermined),
         }
+
+
+def plain_number(value: float) -> float | None:
+    """Give a number for a file; None for what is not finite."""
+    return float(value) if math.isfinite(value) else None
 
 
 def roots_found(

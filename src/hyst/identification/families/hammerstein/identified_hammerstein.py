@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hyst.identification.families.family import Family
 from hyst.identification.families.hammerstein.dynamics_words import dynamics_as_data, summary_lines
-from hyst.identification.families.hammerstein.found_root import FoundRoot
+from hyst.identification.families.hammerstein.found_root import FoundRoot, plain_number
 from hyst.identification.families.hammerstein.frequency_response import FrequencyResponse
 from hyst.identification.families.hammerstein.known_dynamics import KnownDynamics
 from hyst.identification.families.hammerstein.markov import MarkovParameters
@@ -61,7 +61,8 @@ class IdentifiedHammerstein(Identified):
     hankel_noise
         Singular values below it are noise.
     poles, pole_standard_errors
-        Shape (n,), complex: the errors of real and imaginary parts.
+        Shape (n,), complex: the errors of real and imaginary parts, infinite where the records do
+        not determine them.
     inverse_of_dynamics
         Stable noncausal inverse of G, or None with the reason in ``undetermined``.
     loop
@@ -155,7 +156,7 @@ class IdentifiedHammerstein(Identified):
             "delay": self.dynamics.delay,
             "poles": [[float(p.real), float(p.imag)] for p in self.poles],
             "pole_standard_errors": [
-                [float(p.real), float(p.imag)] for p in self.pole_standard_errors
+                [plain_number(p.real), plain_number(p.imag)] for p in self.pole_standard_errors
             ],
             "noise_rms": self.noise_rms,
             **dynamics_as_data(self.known),
