@@ -17,6 +17,7 @@ from hyst.report.distortion_section import distortion_sections as distortion_sec
 from hyst.report.drive_figure import draw_drive as draw_drive
 from hyst.report.drive_summary import drive_table as drive_table
 from hyst.report.dynamics_figures import dynamics_sections as dynamics_sections
+from hyst.report.dynamics_figures import dynamics_table as dynamics_table
 from hyst.report.estimation_figure import draw_estimates as draw_estimates
 from hyst.report.forc_figure import draw_forc_diagram as draw_forc_diagram
 from hyst.report.identification_report import Section as Section

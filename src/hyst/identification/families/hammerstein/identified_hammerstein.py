@@ -6,9 +6,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from hyst.identification.families.family import Family
+from hyst.identification.families.hammerstein.dynamics_words import dynamics_as_data, summary_lines
+from hyst.identification.families.hammerstein.found_root import FoundRoot, plain_number
+from hyst.identification.families.hammerstein.frequency_response import FrequencyResponse
+from hyst.identification.families.hammerstein.known_dynamics import KnownDynamics
 from hyst.identification.families.hammerstein.markov import MarkovParameters
 from hyst.identification.result.identified import Identified
 from hyst.models import LinearDynamics, StableInverse
@@ -58,7 +62,8 @@ class IdentifiedHammerstein(Identified):
     hankel_noise
         Singular values below it are noise.
     poles, pole_standard_errors
-        Shape (n,), complex: the errors of real and imaginary parts.
+        Shape (n,), complex: the errors of real and imaginary parts, infinite where the records do
+        not determine them.
     inverse_of_dynamics
         Stable noncausal inverse of G, or None with the reason in ``undetermined``.
     loop
@@ -69,6 +74,8 @@ class IdentifiedHammerstein(Identified):
         Residual after the refinement, output units.
     dynamics_are_given
         Whether G was known before and held: then the errors of its poles are 0.
+    known
+        What the fit tells of G: poles, zeros and frequency response with their errors.
     """
 
     hysteresis: Operator
@@ -83,7 +90,51 @@ class IdentifiedHammerstein(Identified):
     loop: Loop
     front: Family
     noise_rms: float
+    known: KnownDynamics
     dynamics_are_given: bool = False
+
+    @property
+    def resonances(self) -> tuple[FoundRoot, ...]:
+        """Complex pairs of poles of G, with natural frequency and damping, by rising frequency."""
+        return tuple(each for each in self.known.poles if each.is_pair)
+
+    @property
+    def real_poles(self) -> tuple[FoundRoot, ...]:
+        """Real poles of G, with their time constants where they have one."""
+        return tuple(each for each in self.known.poles if not each.is_pair)
+
+    @property
+    def zeros(self) -> tuple[FoundRoot, ...]:
+        """Zeros of G; ``side`` tells a nonminimum phase."""
+        return self.known.zeros
+
+    def frequency_response(self, frequencies: ArrayLike | None = None) -> FrequencyResponse:
+        """Give the frequency response of G with the band in which it is known.
+
+        Parameters
+        ----------
+        frequencies
+            Shape (p,), Hz, from 0 to half the sample rate; None: some hundred, from below the
+            drive's lowest, dense about resonances.
+
+        Returns
+        -------
+        FrequencyResponse
+            With a mark where the drive had no power and the response is an extrapolation.
+
+        Raises
+        ------
+        InputError
+            If one of them is no such number.
+
+        Examples
+        --------
+        ::
+
+            response = found.frequency_response([10.0, 100.0])
+            response.gain, response.gain_band(0.95), response.excited
+        """
+        return self.known.frequency_response(frequencies)
 
     @property
     def hysteresis_family(self) -> str:
@@ -105,9 +156,10 @@ class IdentifiedHammerstein(Identified):
             "delay": self.dynamics.delay,
             "poles": [[float(p.real), float(p.imag)] for p in self.poles],
             "pole_standard_errors": [
-                [float(p.real), float(p.imag)] for p in self.pole_standard_errors
+                [plain_number(p.real), plain_number(p.imag)] for p in self.pole_standard_errors
             ],
             "noise_rms": self.noise_rms,
+            **dynamics_as_data(self.known),
         }
         if self.markov is not None:
             more |= {
@@ -132,11 +184,9 @@ class IdentifiedHammerstein(Identified):
         -------
         str
         """
-        given = ", given" if self.dynamics_are_given else ""
-        lines = [super().summary(), "", f"poles of G (order {self.dynamics.order}{given}):"]
-        for pole, error in zip(self.poles, self.pole_standard_errors, strict=True):
-            sure = "" if given else f"   standard error {error.real:.2g}, {error.imag:.2g}"
-            lines.append(f"  {pole.real:+.6g} {pole.imag:+.6g}j{sure}")
+        lines = [super().summary(), "", *summary_lines(self.known)]
+        if self.dynamics_are_given:
+            lines.append("G was given and is held")
         inverse = self.inverse_of_dynamics
         if inverse is not None:
             lines.append(
