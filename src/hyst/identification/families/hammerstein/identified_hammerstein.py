@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from hyst.identification.families.family import Family
 from hyst.identification.families.hammerstein.markov import MarkovParameters
+from hyst.identification.families.hammerstein.yardstick import Yardstick
+from hyst.identification.families.hammerstein.yardstick_told import in_one_line
 from hyst.identification.result.identified import Identified
 from hyst.models import LinearDynamics, StableInverse
 from hyst.operators import Operator
@@ -66,6 +68,8 @@ class IdentifiedHammerstein(Identified):
         Family of the hysteresis, with its options.
     noise_rms
         Residual after the refinement, output units.
+    yardstick
+        What richer models leave: its ratio tells whether the records are of such a system.
     """
 
     hysteresis: Operator
@@ -80,6 +84,7 @@ class IdentifiedHammerstein(Identified):
     loop: Loop
     front: Family
     noise_rms: float
+    yardstick: Yardstick
 
     @property
     def hysteresis_family(self) -> str:
@@ -108,6 +113,7 @@ class IdentifiedHammerstein(Identified):
                 [float(p.real), float(p.imag)] for p in self.pole_standard_errors
             ],
             "noise_rms": self.noise_rms,
+            "yardstick": self.yardstick.to_dict(),
         }
         if inverse is not None:
             more |= {
@@ -130,6 +136,7 @@ class IdentifiedHammerstein(Identified):
                 f"  {pole.real:+.6g} {pole.imag:+.6g}j   standard error "
                 f"{error.real:.2g}, {error.imag:.2g}"
             )
+        lines.append(f"yardstick: the model leaves {in_one_line(self.yardstick)}")
         inverse = self.inverse_of_dynamics
         if inverse is not None:
             lines.append(

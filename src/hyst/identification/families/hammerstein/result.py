@@ -14,6 +14,8 @@ from hyst.identification.families.hammerstein.identified_hammerstein import (
 )
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint_of
 from hyst.identification.families.hammerstein.markov import choose_markov
+from hyst.identification.families.hammerstein.yardstick import yardstick_of
+from hyst.identification.families.hammerstein.yardstick_told import lowered
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.result.fit_spread import FitSpread, spread_of_fit
 from hyst.identification.result.identified import Identified
@@ -50,7 +52,11 @@ def identified_with_dynamics(
         reason += ("the realization was not stable and was replaced by a stable one",)
     spread = spread_of_fit(overview.data, fit)
     poles, pole_errors = _poles(dynamics, fit, spread)
-    known = vars(identified) | {"undetermined": identified.undetermined + reason}
+    yardstick = yardstick_of(fit, overview.data)
+    known = vars(identified) | {
+        "undetermined": identified.undetermined + reason,
+        "verdict": lowered(identified.verdict, yardstick, records[0].output_unit),
+    }
     return IdentifiedHammerstein(
         **known,
         hysteresis=joint_of(fit).hysteresis(fit.solution.theta),
@@ -65,6 +71,7 @@ def identified_with_dynamics(
         loop=_loop(records[0], inverse, spread.noise_rms),
         front=front,
         noise_rms=spread.noise_rms,
+        yardstick=yardstick,
     )
 
 
