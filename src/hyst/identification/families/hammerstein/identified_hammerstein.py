@@ -14,6 +14,8 @@ from hyst.identification.families.hammerstein.found_root import FoundRoot, plain
 from hyst.identification.families.hammerstein.frequency_response import FrequencyResponse
 from hyst.identification.families.hammerstein.known_dynamics import KnownDynamics
 from hyst.identification.families.hammerstein.markov import MarkovParameters
+from hyst.identification.families.hammerstein.yardstick import Yardstick
+from hyst.identification.families.hammerstein.yardstick_told import in_one_line
 from hyst.identification.result.identified import Identified
 from hyst.models import LinearDynamics, StableInverse
 from hyst.operators import Operator
@@ -76,6 +78,8 @@ class IdentifiedHammerstein(Identified):
         Whether G was known before and held: then the errors of its poles are 0.
     known
         What the fit tells of G: poles, zeros and frequency response with their errors.
+    yardstick
+        What richer models leave: its ratio tells whether the records are of such a system.
     """
 
     hysteresis: Operator
@@ -91,6 +95,7 @@ class IdentifiedHammerstein(Identified):
     front: Family
     noise_rms: float
     known: KnownDynamics
+    yardstick: Yardstick
     dynamics_are_given: bool = False
 
     @property
@@ -160,6 +165,7 @@ class IdentifiedHammerstein(Identified):
             ],
             "noise_rms": self.noise_rms,
             **dynamics_as_data(self.known),
+            "yardstick": self.yardstick.to_dict(),
         }
         if self.markov is not None:
             more |= {
@@ -187,6 +193,7 @@ class IdentifiedHammerstein(Identified):
         lines = [super().summary(), "", *summary_lines(self.known)]
         if self.dynamics_are_given:
             lines.append("G was given and is held")
+        lines.append(f"yardstick: the model leaves {in_one_line(self.yardstick)}")
         inverse = self.inverse_of_dynamics
         if inverse is not None:
             lines.append(

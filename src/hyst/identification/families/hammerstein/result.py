@@ -23,6 +23,8 @@ from hyst.identification.families.hammerstein.markov import (
     markov_if_excited,
 )
 from hyst.identification.families.hammerstein.realization import Realization
+from hyst.identification.families.hammerstein.yardstick import yardstick_of
+from hyst.identification.families.hammerstein.yardstick_told import lowered
 from hyst.identification.families.option import AUTO
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.result.fit_spread import spread_of_fit
@@ -61,9 +63,11 @@ def identified_with_dynamics(
     spread = spread_of_fit(overview.data, fit)
     known = known_dynamics(fit, overview.data, spread)
     poles, pole_errors = _poles(known)
+    yardstick = yardstick_of(fit, overview.data)
+    verdict = lowered(identified.verdict, yardstick, records[0].output_unit)
     taken = vars(identified) | {
         "undetermined": identified.undetermined + reason + not_determined(known),
-        "verdict": verdict_on(identified.verdict, known),
+        "verdict": verdict_on(verdict, known),
     }
     return IdentifiedHammerstein(
         **taken,
@@ -81,6 +85,7 @@ def identified_with_dynamics(
         front=front,
         noise_rms=spread.noise_rms,
         known=known,
+        yardstick=yardstick,
     )
 
 
