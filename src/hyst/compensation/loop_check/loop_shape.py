@@ -1,0 +1,172 @@
+"""The shape of a loop in a few numbers: harmonics over the phase of the input, cycle by cycle.
+
+Behind a hysteresis that knows no rate, v of a drive that repeats depends on where the input stands
+on its way, however fast it goes that way. So over the phase of the input the harmonics of v are the
+same at all frequencies: of the first, the part in phase is the gain of the loop and the part a
+quarter behind its width; the others are its shape. The mean is left out, which sensors do not keep.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.compensation.loop_check.repeated_cycles import RepeatedCycles
+
+Array = NDArray[np.float64]
+
+HARMONICS = 3
+
+_MOST_PARTS = 16  # of a stretch whose scatter is taken: long ones tell slow noise, too
+_MOST_HARMONICS = 20
+_SURE_TO = 1e-6  # of the range: no simulation and no inverse is better
+
+
+@dataclass(frozen=True, eq=False)
+class LoopShape:
+    """Harmonics of v on a stretch, of the model and of what v has beside the model.
+
+    Each has the shape (harmonics, 2): parts in phase with the input and behind it, units of v.
+
+    Parameters
+    ----------
+    modelled
+        Of the model's hysteresis.
+    beside
+        Of v minus that of the model, mean of the cycles.
+    variance
+        Of ``beside``, of either part, shape (harmonics,).
+    freedom
+        Degrees of freedom of the variance.
+    late
+        By how much ``beside`` changes with a second of delay.
+    noise
+        Standard deviation of single samples of v beside what repeats.
+    repeats
+        Rms of what repeats of v minus that of the model, its mean taken out.
+    """
+
+    modelled: Array
+    beside: Array
+    variance: Array
+    freedom: int
+    late: Array
+    noise: float
+    repeats: float
+
+    @property
+    def seen(self) -> Array:
+        """Give the harmonics of v itself."""
+        return np.asarray(self.modelled + self.beside)
+
+    def beside_at(self, phase: Array) -> Array:
+        """Give ``beside`` over a phase, rad, shape (N,)."""
+        return np.asarray(_columns(phase, len(self.beside))[:, 1:] @ self.beside.reshape(-1))
+
+    def up_to(self, harmonics: int) -> LoopShape:
+        """Leave out harmonics beyond so many."""
+        return LoopShape(
+            self.modelled[:harmonics],
+            self.beside[:harmonics],
+            self.variance[:harmonics],
+            self.freedom,
+            self.late[:harmonics],
+            self.noise,
+            self.repeats,
+        )
+
+
+def shape_of(
+    v: Array, modelled: Array, cycles: RepeatedCycles, harmonics: int, dt: float
+) -> LoopShape:
+    """Take the harmonics of a stretch, with what noise makes of them.
+
+    The scatter between cycles is the noise, whatever its colour; of many cycles, neighbours are
+    taken together.
+
+    Parameters
+    ----------
+    v, modelled
+        Shape (N,): the signal behind the hysteresis, from the output and by the model.
+    cycles
+        The stretch.
+    harmonics
+        How many.
+    dt
+        Sample time, s.
+    """
+    window = cycles.window
+    speed = np.gradient(modelled, dt)[window]
+    model, beside = modelled[window], (v - modelled)[window]
+    beside = beside - _drift(beside, cycles)
+    parts = min(cycles.cycles, _MOST_PARTS)
+    part = (cycles.cycle * parts) // cycles.cycles
+    by_part = np.array(
+        [_harmonics(beside, cycles, part == number, harmonics) for number in range(parts)]
+    )
+    scatter = by_part.var(axis=0, ddof=1).mean(axis=1) / parts
+    floor = np.square(_SURE_TO * float(np.ptp(model)))
+    noise, repeats = _apart(beside, cycles)
+    everywhere = np.ones(beside.size, dtype=np.bool_)
+    return LoopShape(
+        modelled=_harmonics(model, cycles, everywhere, harmonics),
+        beside=by_part.mean(axis=0),
+        variance=scatter + floor,
+        freedom=2 * (parts - 1),
+        late=-_harmonics(speed, cycles, everywhere, harmonics),
+        noise=noise,
+        repeats=repeats,
+    )
+
+
+def _drift(signal: Array, cycles: RepeatedCycles) -> Array:
+    """Give the straight line through the means of the cycles."""
+    count = np.bincount(cycles.cycle)
+    mean = np.bincount(cycles.cycle, signal) / count
+    at = np.arange(signal.size, dtype=np.float64)
+    centre = np.bincount(cycles.cycle, at) / count
+    slope = np.polyfit(centre - centre.mean(), mean - mean.mean(), 1)[0]
+    return np.asarray(mean.mean() + slope * (at - centre.mean()))
+
+
+def _harmonics(
+    signal: Array, cycles: RepeatedCycles, chosen: NDArray[np.bool_], harmonics: int
+) -> Array:
+    """Give the weighted least-squares harmonics over the phase, shape (harmonics, 2)."""
+    columns = _columns(cycles.phase[chosen], harmonics)
+    weighted = columns * cycles.weight[chosen, None]
+    found = np.linalg.solve(columns.T @ weighted, weighted.T @ signal[chosen])
+    return np.asarray(found[1:].reshape(harmonics, 2))
+
+
+def _columns(phase: Array, harmonics: int) -> Array:
+    columns = [np.ones(phase.size)]
+    for n in range(1, harmonics + 1):
+        columns += [np.cos(n * phase), np.sin(n * phase)]
+    return np.stack(columns, axis=1)
+
+
+def _apart(beside: Array, cycles: RepeatedCycles) -> tuple[float, float]:
+    """Give the standard deviation of what does not repeat, and the rms of what does."""
+    a_cycle = beside.size / cycles.cycles
+    columns = _columns(cycles.phase, int(np.clip(a_cycle / 6.0, 1, _MOST_HARMONICS)))
+    repeated = columns @ np.linalg.lstsq(columns, beside, rcond=None)[0]
+    freedom = max(beside.size - columns.shape[1], 1)
+    variance = float(np.square(beside - repeated).sum()) / freedom
+    power = float(np.var(repeated)) - variance * columns.shape[1] / beside.size
+    return float(np.sqrt(variance)), float(np.sqrt(max(power, 0.0)))
+
+
+def distance(one: Array, other: Array) -> float:
+    """Give how far apart two loops are at most, from their harmonics.
+
+    Parameters
+    ----------
+    one, other
+        Shape (harmonics, 2), units of v.
+    """
+    phase = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
+    between = (one - other).reshape(-1)
+    return float(np.abs(_columns(phase, len(one))[:, 1:] @ between).max())
