@@ -79,7 +79,7 @@ class LoopShape:
 
 
 def shape_of(
-    v: Array, modelled: Array, cycles: RepeatedCycles, harmonics: int, dt: float
+    v: Array, modelled: Array, cycles: RepeatedCycles, harmonics: int, dt: float, doubt: Array
 ) -> LoopShape:
     """Take the harmonics of a stretch, with what noise makes of them.
 
@@ -96,24 +96,22 @@ def shape_of(
         How many.
     dt
         Sample time, s.
+    doubt
+        Shape of the stretch: by what the model may be wrong because its input is noisy.
     """
     window = cycles.window
     speed = np.gradient(modelled, dt)[window]
     model, beside = modelled[window], (v - modelled)[window]
     beside = beside - _drift(beside, cycles)
-    parts = min(cycles.cycles, _MOST_PARTS)
-    part = (cycles.cycle * parts) // cycles.cycles
-    by_part = np.array(
-        [_harmonics(beside, cycles, part == number, harmonics) for number in range(parts)]
-    )
-    scatter = by_part.var(axis=0, ddof=1).mean(axis=1) / parts
+    mean, scatter, parts = _mean_and_scatter(beside, cycles, harmonics)
     floor = np.square(_SURE_TO * float(np.ptp(model)))
     noise, repeats = _apart(beside, cycles)
     everywhere = np.ones(beside.size, dtype=np.bool_)
+    unsure = np.square(_harmonics(doubt, cycles, everywhere, harmonics)).mean(axis=1)
     return LoopShape(
         modelled=_harmonics(model, cycles, everywhere, harmonics),
-        beside=by_part.mean(axis=0),
-        variance=scatter + floor,
+        beside=mean,
+        variance=scatter.mean(axis=1) + floor + unsure,
         freedom=2 * (parts - 1),
         late=-_harmonics(speed, cycles, everywhere, harmonics),
         noise=noise,
@@ -148,14 +146,27 @@ def _columns(phase: Array, harmonics: int) -> Array:
     return np.stack(columns, axis=1)
 
 
+def _mean_and_scatter(
+    signal: Array, cycles: RepeatedCycles, harmonics: int
+) -> tuple[Array, Array, int]:
+    """Give the mean of the harmonics over the parts of a stretch, its variance, and how many."""
+    parts = min(cycles.cycles, _MOST_PARTS)
+    part = (cycles.cycle * parts) // cycles.cycles
+    by_part = np.array(
+        [_harmonics(signal, cycles, part == number, harmonics) for number in range(parts)]
+    )
+    return by_part.mean(axis=0), by_part.var(axis=0, ddof=1) / parts, parts
+
+
 def _apart(beside: Array, cycles: RepeatedCycles) -> tuple[float, float]:
     """Give the standard deviation of what does not repeat, and the rms of what does."""
     a_cycle = beside.size / cycles.cycles
-    columns = _columns(cycles.phase, int(np.clip(a_cycle / 6.0, 1, _MOST_HARMONICS)))
-    repeated = columns @ np.linalg.lstsq(columns, beside, rcond=None)[0]
-    freedom = max(beside.size - columns.shape[1], 1)
-    variance = float(np.square(beside - repeated).sum()) / freedom
-    power = float(np.var(repeated)) - variance * columns.shape[1] / beside.size
+    harmonics = int(np.clip(a_cycle / 6.0, 1, _MOST_HARMONICS))
+    mean, scatter, _ = _mean_and_scatter(beside, cycles, harmonics)
+    left = beside - _columns(cycles.phase, harmonics)[:, 1:] @ mean.reshape(-1)
+    freedom = max(beside.size - mean.size - 1, 1)
+    variance = float(np.square(left - left.mean()).sum()) / freedom
+    power = 0.5 * float((np.square(mean) - scatter).sum())
     return float(np.sqrt(variance)), float(np.sqrt(max(power, 0.0)))
 
 

@@ -9,11 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_not_negative, as_positive
-from hyst.compensation.loop_check.chosen_inverse import (
-    ChosenInverse,
-    adapted,
-    inverse_for_loops,
-)
+from hyst.compensation.loop_check.chosen_inverse import inverse_for_loop
+from hyst.compensation.loop_check.input_noise import doubt_by_input_noise
 from hyst.compensation.loop_check.loop_shape import HARMONICS, shape_of
 from hyst.compensation.loop_check.loops import LoopOfRecord, LoopsBehind
 from hyst.compensation.loop_check.rate_test import RepeatedLoop, comparable, rate_test
@@ -96,6 +93,8 @@ def loops_behind(
     """
     as_positive(level, "level", "a chance", most=0.5)
     as_not_negative(tolerance, "tolerance")
+    if band is not None:
+        as_positive(band, "band", "a frequency in Hz")
     given = (records,) if isinstance(records, Record) else tuple(records)
     if not given:
         raise InputError("there is no record; give one or more")
@@ -109,12 +108,12 @@ def loops_behind(
             raise InputError(f"the input of record {name} is {record.u[0]:.6g} throughout")
     y = [_behind(after, record.y) for record in given]
     modelled = [record.u if before is None else before(record.u) for record in given]
-    chosen = inverse_for_loops(dynamics, band)
     loops = tuple(
-        _loop(*each, chosen, dynamics, band is None)
-        for each in zip(called, given, y, modelled, strict=True)
+        _loop(*each, dynamics, band) for each in zip(called, given, y, modelled, strict=True)
     )
-    repeated = tuple(each for number, loop in enumerate(loops) for each in _repeated(number, loop))
+    repeated = tuple(
+        each for number, loop in enumerate(loops) for each in _repeated(number, loop, before)
+    )
     loops = tuple(_with_noise(number, loop, repeated) for number, loop in enumerate(loops))
     groups = comparable(repeated)
     tests = tuple(
@@ -163,9 +162,8 @@ def _loop(
     record: Record,
     y: Array,
     modelled: Array,
-    chosen: ChosenInverse,
     dynamics: LinearDynamics,
-    free: bool,
+    band: float | None,
 ) -> LoopOfRecord:
     if np.ptp(modelled) == 0.0:
         raise InputError(
@@ -174,11 +172,10 @@ def _loop(
         )
     # Without what moves, whose curvature would count as noise.
     noise = estimate_noise(y - dynamics(modelled))
-    if free:
-        whole = repeated_cycles(record.u, record.dt, slice(0, len(record)))
-        highest = max((each.frequency for each in whole), default=0.0)
-        extent = float(np.ptp(modelled))
-        chosen = adapted(chosen, dynamics, noise, extent, highest, len(record))
+    drives = repeated_cycles(record.u, record.dt, slice(0, len(record)))
+    highest = max((each.frequency for each in drives), default=0.0)
+    extent = float(np.ptp(modelled))
+    chosen = inverse_for_loop(dynamics, band, noise, extent, highest, len(record))
     inverse = chosen.inverse
     valid = inverse.valid(len(record))
     if valid.stop - valid.start < LEAST_SAMPLES:
@@ -194,12 +191,15 @@ def _loop(
     )
 
 
-def _repeated(number: int, loop: LoopOfRecord) -> list[RepeatedLoop]:
+def _repeated(number: int, loop: LoopOfRecord, front: Operator | None) -> list[RepeatedLoop]:
     found, band = [], loop.seen_through.band
     for cycles in repeated_cycles(loop.record.u, loop.record.dt, loop.valid):
         most = HARMONICS if band is None else min(HARMONICS, int(band / cycles.frequency))
         if most >= 1:
-            shape = shape_of(loop.v, loop.modelled, cycles, most, loop.record.dt)
+            doubt = np.zeros(cycles.phase.size)
+            if front is not None:
+                doubt = doubt_by_input_noise(front, loop.record.u, cycles)
+            shape = shape_of(loop.v, loop.modelled, cycles, most, loop.record.dt, doubt)
             found.append(RepeatedLoop(number, cycles, shape))
     return found
 

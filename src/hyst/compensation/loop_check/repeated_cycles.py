@@ -21,6 +21,8 @@ ALIKE = 0.05
 """Of length and swing, by which cycles of one stretch may differ."""
 
 _JITTER = 2  # samples: a turn lies between two of them, and noise moves it
+_MOST_MOVED = 0.25  # of a cycle
+_SWEPT = 1.5  # samples by which the length of a cycle may grow from the first to the last
 _SINE = 0.05  # rms that is left of a sine, over its amplitude
 _LEAVES = 6.0  # times that: the sine has ended
 _STEPS = 8  # of the fit of a sine, which takes three
@@ -92,9 +94,10 @@ def repeated_cycles(u: Array, dt: float, valid: slice) -> tuple[RepeatedCycles, 
     extent = float(np.ptp(u))
     if extent == 0.0:
         return ()
-    turns = reversals(u, max(suggest_dead_band(u), SMALLEST_SWING * extent))
+    noise = suggest_dead_band(u)
+    turns = reversals(u, max(noise, SMALLEST_SWING * extent))
     found = []
-    for first, last in _alike(u, turns):
+    for first, last in _alike(u, turns, noise):
         inside = [k for k in range(first + 1, last + 1) if valid.start <= turns[k] < valid.stop]
         if len(inside) >= 2 * LEAST_CYCLES:
             each = _stretch(u, dt, turns[inside], valid)
@@ -103,18 +106,21 @@ def repeated_cycles(u: Array, dt: float, valid: slice) -> tuple[RepeatedCycles, 
     return tuple(found)
 
 
-def _alike(u: Array, turns: NDArray[np.intp]) -> Iterator[tuple[int, int]]:
+def _alike(u: Array, turns: NDArray[np.intp], noise: float) -> Iterator[tuple[int, int]]:
     """Give first and last turn of each run of cycles that are like the first of the run."""
     first = 0
     while first + 2 < turns.size:
         length = int(turns[first + 2] - turns[first])
         ends = u[turns[first]], u[turns[first + 1]]
         swing = abs(float(ends[1] - ends[0]))
+        # The top of a sine is flat, so that noise of this height moves its turn by so much.
+        moved = length * float(np.sqrt(2.0 * noise / swing)) / np.pi
+        room = max(_JITTER, ALIKE * length, min(moved, _MOST_MOVED * length))
         last = first + 1
         while last + 1 < turns.size:
             k = last + 1
-            as_long = abs(int(turns[k] - turns[k - 2]) - length) <= max(_JITTER, ALIKE * length)
-            as_wide = abs(u[turns[k]] - ends[(k - first) % 2]) <= ALIKE * swing
+            as_long = abs(int(turns[k] - turns[k - 2]) - length) <= room
+            as_wide = abs(u[turns[k]] - ends[(k - first) % 2]) <= max(ALIKE * swing, noise)
             if not (as_long and as_wide):
                 break
             last = k
@@ -125,7 +131,7 @@ def _alike(u: Array, turns: NDArray[np.intp]) -> Iterator[tuple[int, int]]:
 
 def _stretch(u: Array, dt: float, turns: NDArray[np.intp], valid: slice) -> RepeatedCycles | None:
     lengths = turns[2:] - turns[:-2]
-    if lengths.mean() < LEAST_SAMPLES:
+    if lengths.mean() < LEAST_SAMPLES or _is_swept(lengths):
         return None
     sine = _as_sine(u[turns[0] : turns[-1] + 1], 2.0 * np.pi / float(lengths.mean()))
     if sine is None:
@@ -154,6 +160,13 @@ def _stretch(u: Array, dt: float, turns: NDArray[np.intp], valid: slice) -> Repe
         weight=np.full(samples, rate),
         is_sine=True,
     )
+
+
+def _is_swept(lengths: NDArray[np.intp]) -> bool:
+    """Tell a slow sweep, whose cycles grow longer or shorter all the time."""
+    k = np.arange(lengths.size) - 0.5 * (lengths.size - 1)
+    growth = abs(float(np.dot(k, lengths) / np.dot(k, k))) * (lengths.size - 1)
+    return growth > max(_SWEPT, ALIKE * float(lengths.mean()))
 
 
 def _as_sine(u: Array, rate: float) -> tuple[float, float, float, float, float] | None:
