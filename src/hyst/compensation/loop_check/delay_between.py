@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.compensation.loop_check.loop_shape import LoopShape
+from hyst.compensation.loop_check.loop_shape import DELAYS, LoopShape
 from hyst.compensation.loop_check.repeated_cycles import RepeatedCycles
 
 Array = NDArray[np.float64]
@@ -16,7 +16,7 @@ _STEPS = 6
 
 
 def remaining_delay(
-    shapes: Sequence[LoopShape], cycles: Sequence[RepeatedCycles]
+    shapes: Sequence[LoopShape], cycles: Sequence[RepeatedCycles], dt: float
 ) -> tuple[float, list[Array]]:
     """Fit the delay that v still has, by weighted least squares, and take it back.
 
@@ -29,6 +29,8 @@ def remaining_delay(
         Of each loop.
     cycles
         Their stretches.
+    dt
+        Sample time, s.
 
     Returns
     -------
@@ -40,7 +42,7 @@ def remaining_delay(
     weight = np.array([1.0 / each.variance for each in shapes])[:, :, None]
     delay = 0.0
     for _ in range(_STEPS):
-        moved = [_moved(*each, delay) for each in zip(shapes, cycles, strict=True)]
+        moved = [_moved(*each, dt, delay) for each in zip(shapes, cycles, strict=True)]
         left = np.array([beside for beside, _ in moved])
         slope = np.array([by_delay for _, by_delay in moved])
         mean = (weight * left).sum(axis=0) / weight.sum(axis=0)
@@ -50,13 +52,19 @@ def remaining_delay(
         if power == 0.0:
             break
         delay -= float((weight * free * own).sum()) / power
-    return delay, [_moved(*each, delay)[0] for each in zip(shapes, cycles, strict=True)]
+    return delay, [_moved(*each, dt, delay)[0] for each in zip(shapes, cycles, strict=True)]
 
 
-def _moved(shape: LoopShape, cycles: RepeatedCycles, delay: float) -> tuple[Array, Array]:
-    """Give what is beside the model when v is taken ``delay`` seconds ahead, and its slope."""
+def _moved(
+    shape: LoopShape, cycles: RepeatedCycles, dt: float, delay: float
+) -> tuple[Array, Array]:
+    """Give what is beside the model without ``delay`` seconds of v, and its slope by them."""
     if not cycles.is_sine:
-        return shape.beside - delay * shape.late, -shape.late
+        samples = float(np.clip(delay / dt, DELAYS[0], DELAYS[-1]))
+        place = min(int(np.searchsorted(DELAYS, samples, side="right")) - 1, DELAYS.size - 2)
+        slope = (shape.late[place + 1] - shape.late[place]) / (DELAYS[1] - DELAYS[0])
+        late = shape.late[place] + (samples - DELAYS[place]) * slope
+        return shape.seen - late, -slope / dt
     n = np.arange(1, len(shape.beside) + 1, dtype=np.float64)
     rate = 2.0 * np.pi * cycles.frequency * n
     cosine, sine = np.cos(rate * delay), np.sin(rate * delay)

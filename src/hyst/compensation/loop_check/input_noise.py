@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.compensation.loop_check.harmonics import harmonics_of, signal_of
 from hyst.compensation.loop_check.repeated_cycles import RepeatedCycles
 from hyst.operators import Operator
 
@@ -40,10 +41,9 @@ def doubt_by_input_noise(front: Operator, u: Array, cycles: RepeatedCycles) -> A
     rate = float(cycles.weight[0])
     phase = cycles.phase[0] + rate * np.arange(-before, given.size)
     a_cycle = given.size / cycles.cycles
-    n = np.arange(int(np.clip(a_cycle / 6.0, 1, _MOST_HARMONICS)) + 1)
-    turned = np.multiply.outer(phase, n)
-    columns = np.concatenate([np.cos(turned), np.sin(turned[:, 1:])], axis=1)
-    repeats = columns @ np.linalg.lstsq(columns[before:], given, rcond=None)[0]
+    count = int(np.clip(a_cycle / 6.0, 1, _MOST_HARMONICS))
+    own = signal_of(harmonics_of(given, cycles.phase, cycles.weight, count), phase)
+    repeats = own + float(np.mean(given - own[before:]))
     noise = given - repeats[before:]
     if float(np.abs(noise).max()) <= 1e-9 * (cycles.high - cycles.low):
         return np.zeros(given.size)

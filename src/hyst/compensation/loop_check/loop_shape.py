@@ -13,11 +13,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.compensation.loop_check.harmonics import harmonics_of, signal_of
 from hyst.compensation.loop_check.repeated_cycles import RepeatedCycles
 
 Array = NDArray[np.float64]
 
 HARMONICS = 3
+
+DELAYS = np.linspace(-6.0, 6.0, 25)
+"""Samples, between which a delay is looked for where the input is no sine."""
 
 _MOST_PARTS = 16  # of a stretch whose scatter is taken: long ones tell slow noise, too
 _MOST_HARMONICS = 20
@@ -41,7 +45,8 @@ class LoopShape:
     freedom
         Degrees of freedom of the variance.
     late
-        By how much ``beside`` changes with a second of delay.
+        Shape (delays, harmonics, 2): ``modelled`` as it would be late by each of ``DELAYS``
+        samples, where the input is no sine; empty of a sine, of which it is known.
     noise
         Standard deviation of single samples of v beside what repeats.
     repeats
@@ -63,7 +68,7 @@ class LoopShape:
 
     def beside_at(self, phase: Array) -> Array:
         """Give ``beside`` over a phase, rad, shape (N,)."""
-        return np.asarray(_columns(phase, len(self.beside))[:, 1:] @ self.beside.reshape(-1))
+        return signal_of(self.beside, phase)
 
     def up_to(self, harmonics: int) -> LoopShape:
         """Leave out harmonics beyond so many."""
@@ -72,14 +77,14 @@ class LoopShape:
             self.beside[:harmonics],
             self.variance[:harmonics],
             self.freedom,
-            self.late[:harmonics],
+            self.late[:, :harmonics],
             self.noise,
             self.repeats,
         )
 
 
 def shape_of(
-    v: Array, modelled: Array, cycles: RepeatedCycles, harmonics: int, dt: float, doubt: Array
+    v: Array, modelled: Array, cycles: RepeatedCycles, harmonics: int, doubt: Array
 ) -> LoopShape:
     """Take the harmonics of a stretch, with what noise makes of them.
 
@@ -94,26 +99,22 @@ def shape_of(
         The stretch.
     harmonics
         How many.
-    dt
-        Sample time, s.
     doubt
         Shape of the stretch: by what the model may be wrong because its input is noisy.
     """
     window = cycles.window
-    speed = np.gradient(modelled, dt)[window]
     model, beside = modelled[window], (v - modelled)[window]
     beside = beside - _drift(beside, cycles)
     mean, scatter, parts = _mean_and_scatter(beside, cycles, harmonics)
     floor = np.square(_SURE_TO * float(np.ptp(model)))
     noise, repeats = _apart(beside, cycles)
-    everywhere = np.ones(beside.size, dtype=np.bool_)
-    unsure = np.square(_harmonics(doubt, cycles, everywhere, harmonics)).mean(axis=1)
+    unsure = np.square(_harmonics(doubt, cycles, harmonics)).mean(axis=1)
     return LoopShape(
-        modelled=_harmonics(model, cycles, everywhere, harmonics),
+        modelled=_harmonics(model, cycles, harmonics),
         beside=mean,
         variance=scatter.mean(axis=1) + floor + unsure,
         freedom=2 * (parts - 1),
-        late=-_harmonics(speed, cycles, everywhere, harmonics),
+        late=_late(modelled, cycles, harmonics),
         noise=noise,
         repeats=repeats,
     )
@@ -129,21 +130,18 @@ def _drift(signal: Array, cycles: RepeatedCycles) -> Array:
     return np.asarray(mean.mean() + slope * (at - centre.mean()))
 
 
-def _harmonics(
-    signal: Array, cycles: RepeatedCycles, chosen: NDArray[np.bool_], harmonics: int
-) -> Array:
-    """Give the weighted least-squares harmonics over the phase, shape (harmonics, 2)."""
-    columns = _columns(cycles.phase[chosen], harmonics)
-    weighted = columns * cycles.weight[chosen, None]
-    found = np.linalg.solve(columns.T @ weighted, weighted.T @ signal[chosen])
-    return np.asarray(found[1:].reshape(harmonics, 2))
+def _harmonics(signal: Array, cycles: RepeatedCycles, count: int) -> Array:
+    return harmonics_of(signal, cycles.phase, cycles.weight, count)
 
 
-def _columns(phase: Array, harmonics: int) -> Array:
-    columns = [np.ones(phase.size)]
-    for n in range(1, harmonics + 1):
-        columns += [np.cos(n * phase), np.sin(n * phase)]
-    return np.stack(columns, axis=1)
+def _late(modelled: Array, cycles: RepeatedCycles, harmonics: int) -> Array:
+    """Give the harmonics of a model that is late, straight between samples."""
+    if cycles.is_sine:
+        return np.empty((0, harmonics, 2))
+    at, k = np.arange(cycles.start, cycles.stop), np.arange(modelled.size)
+    return np.array(
+        [_harmonics(np.interp(at - late, k, modelled), cycles, harmonics) for late in DELAYS]
+    )
 
 
 def _mean_and_scatter(
@@ -152,8 +150,10 @@ def _mean_and_scatter(
     """Give the mean of the harmonics over the parts of a stretch, its variance, and how many."""
     parts = min(cycles.cycles, _MOST_PARTS)
     part = (cycles.cycle * parts) // cycles.cycles
+    phase, weight = cycles.phase, cycles.weight
+    chosen = (part == number for number in range(parts))
     by_part = np.array(
-        [_harmonics(signal, cycles, part == number, harmonics) for number in range(parts)]
+        [harmonics_of(signal[at], phase[at], weight[at], harmonics) for at in chosen]
     )
     return by_part.mean(axis=0), by_part.var(axis=0, ddof=1) / parts, parts
 
@@ -163,7 +163,7 @@ def _apart(beside: Array, cycles: RepeatedCycles) -> tuple[float, float]:
     a_cycle = beside.size / cycles.cycles
     harmonics = int(np.clip(a_cycle / 6.0, 1, _MOST_HARMONICS))
     mean, scatter, _ = _mean_and_scatter(beside, cycles, harmonics)
-    left = beside - _columns(cycles.phase, harmonics)[:, 1:] @ mean.reshape(-1)
+    left = beside - signal_of(mean, cycles.phase)
     freedom = max(beside.size - mean.size - 1, 1)
     variance = float(np.square(left - left.mean()).sum()) / freedom
     power = 0.5 * float((np.square(mean) - scatter).sum())
@@ -179,5 +179,4 @@ def distance(one: Array, other: Array) -> float:
         Shape (harmonics, 2), units of v.
     """
     phase = np.linspace(0.0, 2.0 * np.pi, 180, endpoint=False)
-    between = (one - other).reshape(-1)
-    return float(np.abs(_columns(phase, len(one))[:, 1:] @ between).max())
+    return float(np.abs(signal_of(one - other, phase)).max())

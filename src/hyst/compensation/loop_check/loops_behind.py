@@ -199,7 +199,7 @@ def _repeated(number: int, loop: LoopOfRecord, front: Operator | None) -> list[R
             doubt = np.zeros(cycles.phase.size)
             if front is not None:
                 doubt = doubt_by_input_noise(front, loop.record.u, cycles)
-            shape = shape_of(loop.v, loop.modelled, cycles, most, loop.record.dt, doubt)
+            shape = shape_of(loop.v, loop.modelled, cycles, most, doubt)
             found.append(RepeatedLoop(number, cycles, shape))
     return found
 

@@ -178,14 +178,12 @@ def rate_test(
     loops = tuple(replace(each, shape=each.shape.up_to(common)) for each in loops)
     found = _compared(loops, [each.shape.beside for each in loops])
     shapes = [each.shape for each in loops]
-    delay, ahead = remaining_delay(shapes, [each.cycles for each in loops])
+    delay, ahead = remaining_delay(shapes, [each.cycles for each in loops], dt)
     without = _compared(loops, ahead)
     small = 0.01 * tolerance * extent
     cause = COINCIDE
     if found.p_value < level:
-        explained = without.p_value >= level or without.distance <= max(
-            small, _EXPLAINED * found.distance
-        )
+        explained = without.p_value >= level or without.distance <= _EXPLAINED * found.distance
         if found.distance <= small:
             cause = SMALL
         elif _changed(loops, level, small):

@@ -25,6 +25,7 @@ _MOST_MOVED = 0.25  # of a cycle
 _SWEPT = 1.5  # samples by which the length of a cycle may grow from the first to the last
 _SINE = 0.05  # rms that is left of a sine, over its amplitude
 _LEAVES = 6.0  # times that: the sine has ended
+_SETTLED = 1e-9  # rad at the end of the stretch
 _STEPS = 8  # of the fit of a sine, which takes three
 
 
@@ -173,7 +174,7 @@ def _as_sine(u: Array, rate: float) -> tuple[float, float, float, float, float] 
     """Give amplitude, centre, rad a sample, first phase and what is left of u; None: no sine."""
     k = np.arange(u.size, dtype=np.float64)
     a = b = c = 0.0
-    for _ in range(_STEPS):
+    for step in range(_STEPS):
         cosine, sine = np.cos(rate * k), np.sin(rate * k)
         columns = np.stack([cosine, sine, np.ones(u.size), k * (b * cosine - a * sine)], axis=1)
         scale = np.linalg.norm(columns, axis=0)
@@ -183,6 +184,8 @@ def _as_sine(u: Array, rate: float) -> tuple[float, float, float, float, float] 
         rate += float(found[3])
         if rate <= 0.0:
             return None
+        if step > 0 and abs(found[3]) * u.size < _SETTLED:
+            break
     amplitude = float(np.hypot(a, b))
     begin = -float(np.arctan2(b, a))
     left = float(np.sqrt(np.mean(np.square(u - c - amplitude * np.cos(begin + rate * k)))))

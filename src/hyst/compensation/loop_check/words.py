@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from hyst.compensation.loop_check.loops import LoopOfRecord
 
 _MEANS = {
-    WIDER: "the loop grows wider with the frequency, and a delay alone does not explain it: the "
-    "dynamics lack a lag, or the hysteresis depends on the rate (identify with --hysteresis rdpi)",
+    WIDER: "the loop grows wider with the frequency: the dynamics lack a lag, or the hysteresis "
+    "depends on the rate (identify with --hysteresis rdpi)",
     NARROWER: "the loop is wider at low frequencies: creep or another slow relaxation, which the "
     "model lacks (identify with --creep, from records with holds)",
     CREEP: "gain and width of the loop fall with the frequency: creep or another slow relaxation, "
@@ -62,7 +62,7 @@ def sentence_of_test(test: RateTest, level: float, tolerance: float, rate_free: 
         f"{first.cycles.low:.4g} to {first.cycles.high:.4g}"
     )
     what = "" if rate_free else ", what the rate does in the model taken out,"
-    sizes = f"{test.distance_percent:.2g} % of range at most, p = {_p(test.found.p_value)}"
+    sizes = f"{test.distance_percent:.2g} % of range at most, p {_p(test.found.p_value)}"
     if test.cause == COINCIDE:
         return f"The loops{what} coincide as far as noise lets one see ({between}; {sizes})."
     if test.cause == SMALL:
@@ -82,6 +82,10 @@ def _why(test: RateTest) -> str:
         f"{100.0 * abs(slow.ratio):.4g} to {100.0 * abs(fast.ratio):.4g} % of the model's, the "
         f"area from {_area_percent(slow)} to {_area_percent(fast)}"
     )
+    if test.cause in (WIDER, LAG):
+        numbers += (
+            f"; a delay alone, of {test.delay / test.dt:.3g} samples, would leave {_left(test)}"
+        )
     return f"{_MEANS[test.cause]}; {numbers}"
 
 
@@ -93,12 +97,16 @@ def _as_delay(test: RateTest) -> str:
         if samples > 0.0
         else f"as they do where the delay of the model is {said} too long"
     )
-    left = f"{100.0 * test.without_delay.distance / test.extent:.2g} % of range"
     return (
-        f"{what}, and without it {left} are left (p = {_p(test.without_delay.p_value)}); correct "
+        f"{what}, and without it {_left(test)} are left; correct "
         "the delay of the dynamics (converters, filters of the sensor), unless a short lag or "
         "plays that widen with the rate, which look alike, are the reason"
     )
+
+
+def _left(test: RateTest) -> str:
+    left = test.without_delay
+    return f"{100.0 * left.distance / test.extent:.2g} % of range (p {_p(left.p_value)})"
 
 
 def _area_percent(loop: RepeatedLoop) -> str:
@@ -108,7 +116,7 @@ def _area_percent(loop: RepeatedLoop) -> str:
 
 
 def _p(value: float) -> str:
-    return f"{value:.2g}" if value >= 1e-12 else "0"
+    return f"= {value:.2g}" if value >= 1e-12 else "< 1e-12"
 
 
 def why_no_test(repeated: Sequence[RepeatedLoop], records: int) -> str:
