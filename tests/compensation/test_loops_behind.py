@@ -368,6 +368,12 @@ def test_numbers_are_values_of_json() -> None:
     [
         (FRONT, recorded(FRONT, [sine(4.0, 3.0)]), {}, "the model has no linear dynamics"),
         (dynamics() @ MODEL, recorded(MODEL, [sine(4.0, 3.0)]), {}, "2 stages of linear dynamics"),
+        (
+            FRONT @ dynamics(),
+            recorded(MODEL, [sine(4.0, 3.0)]),
+            {},
+            "behind the dynamics has memory",
+        ),
         (MODEL, [], {}, "there is no record"),
         (MODEL, [hyst.Record(sine(4.0, 3.0), sine(4.0, 3.0), 2e-3)], {}, "dt = 0.002 s"),
         (MODEL, recorded(MODEL, [sine(20.0, 0.1)[:40]]), {}, "has 40 samples, and the inverse"),

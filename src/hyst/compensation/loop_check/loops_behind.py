@@ -50,8 +50,8 @@ def loops_behind(
     Parameters
     ----------
     model
-        One ``LinearDynamics`` with the hysteresis in front, and maps or hysteresis with an exact
-        inverse behind, if anything.
+        One ``LinearDynamics`` with the hysteresis in front, and maps with an exact inverse behind,
+        if anything.
     records
         One or several, of the model's sample time; several stretches may follow each other in one.
     band
@@ -71,8 +71,8 @@ def loops_behind(
     Raises
     ------
     InputError
-        If the model has no dynamics or more than one stage of them, or a record has another sample
-        time, a constant input, or is shorter than the inverse needs.
+        If the model has no dynamics or more than one stage of them, or hysteresis behind them, or a
+        record has another sample time, a constant input, or is shorter than the inverse needs.
     NotInvertibleError
         If the dynamics have no stable inverse in the band, or what stands behind them has none.
 
@@ -146,6 +146,11 @@ def _stages(model: Operator) -> tuple[Operator | None, LinearDynamics, Operator 
             f"the model has {said}, and a loop is looked for behind one stage of them; {more}"
         )
     before, dynamics, after = stages_around_dynamics(model)
+    if after is not None and not after.traits().memoryless:
+        raise InputError(
+            "what stands behind the dynamics has memory, and this sees hysteresis in front of "
+            "dynamics only; give a model of hysteresis, then dynamics"
+        )
     late = round(model.description.delay)
     if late > 0:
         G = dynamics
