@@ -54,9 +54,6 @@ def cause(found) -> str:
     return test.cause
 
 
-# The example of S0
-
-
 def test_v_of_the_paper_s_sine_by_an_independent_inverse() -> None:
     """S0 fig. 6, with G of eq. 48 held over 0.01 s: own plays, own filter, own Laurent series."""
     dt = 0.01
@@ -97,9 +94,6 @@ def test_v_of_the_paper_s_sine_by_an_independent_inverse() -> None:
     (repeated,) = found.repeated
     assert repeated.area == pytest.approx(polygon, rel=2e-3)
     assert repeated.frequency == pytest.approx(1.0 / (2.0 * np.pi), rel=1e-9)
-
-
-# The test holds its level
 
 
 @pytest.mark.parametrize(("periods", "colour"), [(3.0, 0.0), (6.0, 0.9)])
@@ -284,9 +278,6 @@ def test_differences_below_the_tolerance_are_told_and_allowed() -> None:
     assert cause(found) == "small"
     assert found.holds
     assert not loops_behind(MODEL, records, tolerance=0.0).holds
-
-
-# How it is seen
 
 
 def test_a_zero_on_the_circle_leaves_a_band() -> None:

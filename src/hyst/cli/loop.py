@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 import typer
@@ -22,7 +22,9 @@ from hyst.cli.console import at_work, note, show_files, show_table
 from hyst.cli.exit_codes import DONE, UNFIT
 from hyst.cli.fitted import Folder, HowToRead
 from hyst.cli.reading_options import reads_records
-from hyst.compensation import LoopsBehind, loops_behind
+
+if TYPE_CHECKING:
+    from hyst.compensation import LoopsBehind
 
 Records = Annotated[
     list[Path],
@@ -76,7 +78,7 @@ def loop(
         also = [] if how["output_file"] is None else [how["output_file"]]
         refuse_inputs_as_outputs(outputs, [model_file, *data, *also])
         say("inverting the dynamics")
-        found = loops_behind(
+        found = hyst.compensation.loops_behind(
             model, records, band=band, level=level, tolerance=tolerance, names=names
         )
         say("figure")

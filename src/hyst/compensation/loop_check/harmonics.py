@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_BLOCK = 65_536  # samples whose cosines are held at a time
+_BLOCK = 16_384  # samples whose cosines are held at a time
 
 
 def harmonics_of(signal: Array, phase: Array, weight: Array, count: int) -> Array:
@@ -35,8 +35,8 @@ def harmonics_of(signal: Array, phase: Array, weight: Array, count: int) -> Arra
     square, right = np.zeros((2 * count + 1, 2 * count + 1)), np.zeros(2 * count + 1)
     for start in range(0, phase.size, _BLOCK):
         part = slice(start, start + _BLOCK)
-        turned = np.multiply.outer(np.arange(1, count + 1), phase[part])
-        columns = np.concatenate([np.ones((1, turned.shape[1])), np.cos(turned), np.sin(turned)])
+        turned = _turned(phase[part], count)
+        columns = np.concatenate([np.ones((1, turned.shape[1])), turned.real, turned.imag])
         weighted = columns * weight[part]
         square += weighted @ columns.T
         right += weighted @ signal[part]
@@ -60,6 +60,17 @@ def signal_of(harmonics: Array, phase: Array) -> Array:
         Shape (N,).
     """
     result = np.zeros(phase.size)
-    for n, (a, b) in enumerate(harmonics, 1):
-        result += a * np.cos(n * phase) + b * np.sin(n * phase)
+    for start in range(0, phase.size, _BLOCK):
+        part = slice(start, start + _BLOCK)
+        turned = _turned(phase[part], len(harmonics))
+        result[part] = harmonics[:, 0] @ turned.real + harmonics[:, 1] @ turned.imag
     return result
+
+
+def _turned(phase: Array, count: int) -> NDArray[np.complex128]:
+    """Give ``exp(i n phase)`` for n from 1, shape (count, N), by products: cosines are slow."""
+    turned = np.empty((count, phase.size), dtype=np.complex128)
+    turned[0] = np.exp(1j * phase)
+    for n in range(1, count):
+        np.multiply(turned[n - 1], turned[0], out=turned[n])
+    return turned
