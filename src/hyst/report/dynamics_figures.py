@@ -142,6 +142,8 @@ def _loop(found: IdentifiedHammerstein) -> Section:
         texts=(
             "The signal behind the hysteresis was estimated from the output alone, by the inverse "
             f"of G; noise blurs it by +- {found.loop.band:.3g} (two standard deviations).",
+            "A drive of many frequencies makes a cloud of it. Record sines of one amplitude and "
+            "run hyst loop: it draws one loop and tests whether the frequency moves it.",
         ),
         table=Table("Loop", ("samples shown", "band"), (_loop_row(found),)),
         picture="estimated_loop.png",
