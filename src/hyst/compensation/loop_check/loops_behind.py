@@ -15,7 +15,7 @@ from hyst.compensation.loop_check.loop_shape import HARMONICS, shape_of
 from hyst.compensation.loop_check.loops import LoopOfRecord, LoopsBehind
 from hyst.compensation.loop_check.rate_test import RepeatedLoop, comparable, rate_test
 from hyst.compensation.loop_check.repeated_cycles import LEAST_SAMPLES, repeated_cycles
-from hyst.compensation.noncausal import stages_around_dynamics
+from hyst.compensation.noncausal import split_at_dynamics
 from hyst.errors import InputError
 from hyst.models import LinearDynamics
 from hyst.operators import Composition, Operator
@@ -145,7 +145,12 @@ def _stages(model: Operator) -> tuple[Operator | None, LinearDynamics, Operator 
         raise InputError(
             f"the model has {said}, and a loop is looked for behind one stage of them; {more}"
         )
-    before, dynamics, after = stages_around_dynamics(model)
+    stages = split_at_dynamics(model)
+    at = next(i for i, each in enumerate(stages) if isinstance(each, LinearDynamics))
+    dynamics = stages[at]
+    assert isinstance(dynamics, LinearDynamics), "it was looked for"
+    before = Composition(stages[:at]) if at else None
+    after = Composition(stages[at + 1 :]) if at + 1 < len(stages) else None
     if after is not None and not after.traits().memoryless:
         raise InputError(
             "what stands behind the dynamics has memory, and this sees hysteresis in front of "
