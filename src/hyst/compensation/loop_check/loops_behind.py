@@ -145,12 +145,12 @@ def _stages(model: Operator) -> tuple[Operator | None, LinearDynamics, Operator 
         raise InputError(
             f"the model has {said}, and a loop is looked for behind one stage of them; {more}"
         )
-    stages = split_at_dynamics(model)
-    at = next(i for i, each in enumerate(stages) if isinstance(each, LinearDynamics))
-    dynamics = stages[at]
+    around = split_at_dynamics(model)
+    at = next(i for i, each in enumerate(around) if isinstance(each, LinearDynamics))
+    dynamics = around[at]
     assert isinstance(dynamics, LinearDynamics), "it was looked for"
-    before = Composition(stages[:at]) if at else None
-    after = Composition(stages[at + 1 :]) if at + 1 < len(stages) else None
+    before = Composition(around[:at]) if at else None
+    after = Composition(around[at + 1 :]) if at + 1 < len(around) else None
     if after is not None and not after.traits().memoryless:
         raise InputError(
             "what stands behind the dynamics has memory, and this sees hysteresis in front of "
