@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hyst.checks.numbers import whole_number as as_whole_number
 from hyst.errors import InputError
+from hyst.identification.choice.cross_validation import leaves_white_noise
 from hyst.identification.families.family import Estimates, Family, Fit, Start, Words
 from hyst.identification.families.hammerstein.coefficients import (
     coefficients,
@@ -326,6 +327,8 @@ class Hammerstein(Family):
         seen = replace(
             fit, family=self.hysteresis_family, parametrization=joint_of(fit).seen_by_front()
         )
+        if self.starts_from_plays and leaves_white_noise(overview, fit):
+            return fit
         short = Overview(shortened(overview.data, _WARM_UP), rates_matter=True)
         improved = self.hysteresis_family.finish(seen, short, _BURST)
         if np.array_equal(improved.solution.theta, fit.solution.theta):
