@@ -177,7 +177,7 @@ def leaves_white_noise(overview: Overview, fit: Fit) -> bool:
         return power <= 0.0
     alike = [float(errors[lag:] @ errors[:-lag]) / power for lag in range(1, WHITE_LAGS + 1)]
     limit = scipy.stats.chi2.isf(WHITE_BY_CHANCE, WHITE_LAGS)
-    return errors.size * float(np.square(alike).sum()) < limit
+    return bool(errors.size * float(np.square(alike).sum()) < limit)
 
 
 def _mean_square(residual: Array, block: Block) -> float:

@@ -94,16 +94,19 @@ def continuous_of(dynamics: LinearDynamics) -> tuple[ContinuousDynamics | None, 
         return None, str(error)
 
 
-def summary_lines(known: KnownDynamics) -> list[str]:
+def summary_lines(known: KnownDynamics, given: bool = False) -> list[str]:
     """Give lines of a summary on poles, zeros and the continuous system.
 
     Parameters
     ----------
     known
         What a fit tells of its dynamics.
+    given
+        Whether they were known before, and held.
     """
     G = known.dynamics
-    late = f", delay {G.delay} samples ({G.delay * G.dt:.4g} s)" if G.delay else ""
+    late = ", given" if given else ""
+    late += f", delay {G.delay} samples ({G.delay * G.dt:.4g} s)" if G.delay else ""
     lines = [
         f"zeros and poles of G (order {G.order}{late}); the drive shows G {bands_told(known)}:"
     ]
