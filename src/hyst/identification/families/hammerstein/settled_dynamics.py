@@ -25,7 +25,7 @@ _ITERATIONS = 8
 _FARTHEST = 12  # samples of delay
 _MEANT = 2  # samples by which feedthrough may make up for a delay that is too long
 _LAGS = 100  # of the residual, for how many samples of it are worth one
-ROUNDING = 1e-20
+ROUNDING = 1e-14
 """Of the output's power: less is nothing."""
 
 
