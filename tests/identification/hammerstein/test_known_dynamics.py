@@ -276,6 +276,19 @@ def test_a_pole_that_may_lie_on_the_circle_is_told() -> None:
         assert any("reach the unit circle" in each for each in pole.undetermined) == says
 
 
+def test_dynamics_that_are_held_have_no_error() -> None:
+    spread = FitSpread(
+        Spread(np.ones(1), 1.0, np.eye(1), np.empty((1, 0))), np.ones(1, dtype=bool), 1.0
+    )
+    nowhere = DriveBand(np.empty(0), np.empty(0), 500.0)
+    poles = np.array([0.8 + 0.5j, 0.8 - 0.5j, -0.3])
+    for pole in roots_found("pole", poles, np.zeros((3, 1), complex), 1e-3, spread, nowhere):
+        assert pole.is_determined
+        assert (pole.standard_error, pole.modulus_error) == (0.0, 0.0)
+    (resonance,) = roots_found("pole", poles[:2], np.zeros((2, 1)), 1e-3, spread, nowhere)
+    assert resonance.frequency_error == resonance.damping_error == 0.0
+
+
 def test_a_sampled_negative_pole_has_no_frequency() -> None:
     plant = LinearDynamics.from_zeros_poles_gain([0.2], [0.6, -0.5], 1.0, 1e-3)
     plant = plant.in_units(1.0, 1.0 / plant.dc_gain())
