@@ -287,6 +287,14 @@ def test_dynamics_that_are_held_have_no_error() -> None:
         assert (pole.standard_error, pole.modulus_error) == (0.0, 0.0)
     (resonance,) = roots_found("pole", poles[:2], np.zeros((2, 1)), 1e-3, spread, nowhere)
     assert resonance.frequency_error == resonance.damping_error == 0.0
+    held = DynamicsByTheta(G, np.zeros((2, 2, 1)), *np.zeros((2, 2, 1)), np.zeros(1))
+    known = KnownDynamics(held, spread, nowhere, (resonance,), ())
+    response = known.frequency_response([10.0, 200.0])
+    assert response.excited.all()
+    assert not response.gain_error.any()
+    assert summary_lines(known)[0] == (
+        "zeros and poles of G (order 2, delay 3 samples (0.0003 s)); given:"
+    )
 
 
 def test_a_sampled_negative_pole_has_no_frequency() -> None:

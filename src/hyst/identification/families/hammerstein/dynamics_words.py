@@ -104,9 +104,8 @@ def summary_lines(known: KnownDynamics) -> list[str]:
     """
     G = known.dynamics
     late = f", delay {G.delay} samples ({G.delay * G.dt:.4g} s)" if G.delay else ""
-    lines = [
-        f"zeros and poles of G (order {G.order}{late}); the drive shows G {bands_told(known)}:"
-    ]
+    shown = "given" if known.is_held else f"the drive shows G {bands_told(known)}"
+    lines = [f"zeros and poles of G (order {G.order}{late}); {shown}:"]
     for row in root_rows(known):
         name, *rest = row
         lines.append(f"  {name:14s} " + "   ".join(each for each in rest if each))
