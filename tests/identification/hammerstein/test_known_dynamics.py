@@ -293,7 +293,7 @@ def test_dynamics_that_are_held_have_no_error() -> None:
     assert response.excited.all()
     assert not response.gain_error.any()
     assert summary_lines(known)[0] == (
-        "zeros and poles of G (order 2, delay 3 samples (0.0003 s)); given:"
+        "zeros and poles of G (order 2, given); delay 3 samples (0.0003 s):"
     )
 
 

@@ -103,9 +103,10 @@ def summary_lines(known: KnownDynamics) -> list[str]:
         What a fit tells of its dynamics.
     """
     G = known.dynamics
-    late = f", delay {G.delay} samples ({G.delay * G.dt:.4g} s)" if G.delay else ""
-    shown = "given" if known.is_held else f"the drive shows G {bands_told(known)}"
-    lines = [f"zeros and poles of G (order {G.order}{late}); {shown}:"]
+    late = f"; delay {G.delay} samples ({G.delay * G.dt:.4g} s)" if G.delay else ""
+    given = ", given" if known.is_held else ""
+    shown = "" if known.is_held else f"; the drive shows G {bands_told(known)}"
+    lines = [f"zeros and poles of G (order {G.order}{given}){late}{shown}:"]
     for row in root_rows(known):
         name, *rest = row
         lines.append(f"  {name:14s} " + "   ".join(each for each in rest if each))
