@@ -22,6 +22,9 @@ from hyst.report.estimation_figure import draw_estimates as draw_estimates
 from hyst.report.forc_figure import draw_forc_diagram as draw_forc_diagram
 from hyst.report.identification_report import Section as Section
 from hyst.report.identification_report import write_report as write_report
+from hyst.report.loops_figure import draw_loops_behind as draw_loops_behind
+from hyst.report.loops_tables import loops_table as loops_table
+from hyst.report.loops_tables import repeated_loops_table as repeated_loops_table
 from hyst.report.observer_answer import ObserverAnswer as ObserverAnswer
 from hyst.report.observer_figures import draw_observer_bode as draw_observer_bode
 from hyst.report.tables import Table as Table

@@ -15,6 +15,7 @@ from hyst.identification.families.hammerstein.dynamics_words import (
     root_rows,
 )
 from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
+from hyst.identification.families.hammerstein.markov import MarkovParameters
 from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn, with_unit
 from hyst.report.frequency_response_figure import draw_dynamics
 from hyst.report.identification_report import Section
@@ -44,14 +45,14 @@ def dynamics_sections(found: Identified) -> tuple[Section, ...]:
     """
     if not isinstance(found, IdentifiedHammerstein):
         return ()
-    sections = [_response(found), _dynamics(found)]
+    first = [] if found.markov is None else [_response(found, found.markov)]
+    sections = [*first, _dynamics(found)]
     if found.loop.valid.stop > found.loop.valid.start:
         sections.append(_loop(found))
     return tuple(sections)
 
 
-def _response(found: IdentifiedHammerstein) -> Section:
-    markov = found.markov
+def _response(found: IdentifiedHammerstein, markov: MarkovParameters) -> Section:
     return Section(
         heading="First step: the impulse response",
         texts=(
@@ -74,7 +75,7 @@ def _response(found: IdentifiedHammerstein) -> Section:
             ),
         ),
         picture="impulse_response.png",
-        png=draw_impulse_response(found),
+        png=draw_impulse_response(found, markov),
         caption="Markov parameters, and singular values of their Hankel matrix.",
     )
 
@@ -149,6 +150,8 @@ def _loop(found: IdentifiedHammerstein) -> Section:
         texts=(
             "The signal behind the hysteresis was estimated from the output alone, by the inverse "
             f"of G; noise blurs it by +- {found.loop.band:.3g} (two standard deviations).",
+            "A drive of many frequencies makes a cloud of it. Record sines of one amplitude and "
+            "run hyst loop: it draws one loop and tests whether the frequency moves it.",
         ),
         table=Table("Loop", ("samples shown", "band"), (_loop_row(found),)),
         picture="estimated_loop.png",
@@ -164,11 +167,18 @@ def _loop_row(found: IdentifiedHammerstein) -> tuple[str, str]:
 
 
 @drawn
-def draw_impulse_response(found: IdentifiedHammerstein) -> Figure:
-    """Draw step 1 and the singular values of step 2, as PNG."""
+def draw_impulse_response(found: IdentifiedHammerstein, markov: MarkovParameters) -> Figure:
+    """Draw step 1 and the singular values of step 2, as PNG.
+
+    Parameters
+    ----------
+    found
+        The result.
+    markov
+        Step 1.
+    """
     figure, (response, singular) = blank(2, 1, 10.0, 3.9)
-    markov = found.markov
-    scale = _scale(found)
+    scale = _scale(found, markov)
     lags = np.arange(markov.order + 1)
     response.errorbar(
         lags,
@@ -258,8 +268,8 @@ def _shown_range(v: Array, fitted: Array) -> tuple[float, float]:
     return float(low - margin), float(high + margin)
 
 
-def _scale(found: IdentifiedHammerstein) -> float:
+def _scale(found: IdentifiedHammerstein, markov: MarkovParameters) -> float:
     """Factor that brings the first step to DC gain 1, by least squares on the refined response."""
-    h = found.dynamics.impulse_response(found.markov.order + 1)
-    m = found.markov.values
+    h = found.dynamics.impulse_response(markov.order + 1)
+    m = markov.values
     return float(m @ h) / float(m @ m)

@@ -7,7 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from hyst.identification.families.hammerstein.frequency_response import FrequencyResponse
 from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
+from hyst.models import LinearDynamics
 from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn
 
 Array = NDArray[np.float64]
@@ -22,11 +24,8 @@ def draw_dynamics(found: IdentifiedHammerstein) -> Figure:
     figure, (gain, phase) = blank(1, 2, 10.0, 6.4)
     response = found.frequency_response()
     frequency = response.frequency
-    first = found.first_dynamics.frequency_response(frequency)
-    first_phase = np.degrees(np.unwrap(np.angle(first)))
-    turns = 360.0 * np.round((response.phase[0] - first_phase[0]) / 360.0)
-    gain.loglog(frequency, np.abs(first), color=MEASURED, linewidth=0.9, label="first realization")
-    phase.semilogx(frequency, first_phase + turns, color=MEASURED, linewidth=0.9)
+    if found.first_dynamics is not None:
+        _realization(gain, phase, response, found.first_dynamics)
     _band(gain, frequency, *response.gain_band())
     gain.loglog(frequency, response.gain, color=MODELLED, label="identified G")
     _band(phase, frequency, *response.phase_band())
@@ -46,6 +45,18 @@ def draw_dynamics(found: IdentifiedHammerstein) -> Figure:
     phase.set_xlabel("frequency [Hz]")
     gain.legend(loc="lower left")
     return figure
+
+
+def _realization(
+    gain: Axes, phase: Axes, response: FrequencyResponse, first: LinearDynamics
+) -> None:
+    """Draw what the impulse response alone says, its phase by whole turns near the other."""
+    values = first.frequency_response(response.frequency)
+    degrees = np.degrees(np.unwrap(np.angle(values)))
+    turns = 360.0 * np.round((response.phase[0] - degrees[0]) / 360.0)
+    frequency = response.frequency
+    gain.loglog(frequency, np.abs(values), color=MEASURED, linewidth=0.9, label="first realization")
+    phase.semilogx(frequency, degrees + turns, color=MEASURED, linewidth=0.9)
 
 
 def _band(axes: Axes, frequency: Array, low: Array, high: Array) -> None:

@@ -14,6 +14,8 @@ from hyst.identification.families.hammerstein.found_root import FoundRoot, plain
 from hyst.identification.families.hammerstein.frequency_response import FrequencyResponse
 from hyst.identification.families.hammerstein.known_dynamics import KnownDynamics
 from hyst.identification.families.hammerstein.markov import MarkovParameters
+from hyst.identification.families.hammerstein.yardstick import Yardstick
+from hyst.identification.families.hammerstein.yardstick_told import in_one_line
 from hyst.identification.result.identified import Identified
 from hyst.models import LinearDynamics, StableInverse
 from hyst.operators import Operator
@@ -53,11 +55,12 @@ class IdentifiedHammerstein(Identified):
     dynamics
         G, DC gain 1, with the delay that was found.
     first_dynamics
-        G as realized from the Markov parameters, before the refinement.
+        G as realized from the Markov parameters, of the order that was found; None where the drive
+        does not determine them.
     markov
-        Step 1.
+        Step 1 of the paper; None where the drive does not determine it, or G was given.
     singular_values
-        Of the Hankel matrix, descending, for the choice of the order.
+        Of the Hankel matrix, descending; empty without Markov parameters.
     hankel_noise
         Singular values below it are noise.
     poles, pole_standard_errors
@@ -71,14 +74,18 @@ class IdentifiedHammerstein(Identified):
         Family of the hysteresis, with its options.
     noise_rms
         Residual after the refinement, output units.
+    dynamics_are_given
+        Whether G was known before and held: then the errors of its poles are 0.
     known
         What the fit tells of G: poles, zeros and frequency response with their errors.
+    yardstick
+        What richer models leave: its ratio tells whether the records are of such a system.
     """
 
     hysteresis: Operator
     dynamics: LinearDynamics
-    first_dynamics: LinearDynamics
-    markov: MarkovParameters
+    first_dynamics: LinearDynamics | None
+    markov: MarkovParameters | None
     singular_values: Array
     hankel_noise: float
     poles: NDArray[np.complex128]
@@ -88,6 +95,8 @@ class IdentifiedHammerstein(Identified):
     front: Family
     noise_rms: float
     known: KnownDynamics
+    yardstick: Yardstick
+    dynamics_are_given: bool = False
 
     @property
     def resonances(self) -> tuple[FoundRoot, ...]:
@@ -147,11 +156,7 @@ class IdentifiedHammerstein(Identified):
         inverse = self.inverse_of_dynamics
         more: dict[str, Any] = {
             "hysteresis_family": self.hysteresis_family,
-            "fir_order": self.markov.order,
-            "regressor_condition": self.markov.condition,
-            "markov_parameters": self.markov.values.tolist(),
-            "markov_standard_errors": self.markov.standard_errors.tolist(),
-            "hankel_singular_values": self.singular_values.tolist(),
+            "given": self.dynamics_are_given,
             "state_order": self.dynamics.order,
             "delay": self.dynamics.delay,
             "poles": [[float(p.real), float(p.imag)] for p in self.poles],
@@ -160,7 +165,16 @@ class IdentifiedHammerstein(Identified):
             ],
             "noise_rms": self.noise_rms,
             **dynamics_as_data(self.known),
+            "yardstick": self.yardstick.to_dict(),
         }
+        if self.markov is not None:
+            more |= {
+                "fir_order": self.markov.order,
+                "regressor_condition": self.markov.condition,
+                "markov_parameters": self.markov.values.tolist(),
+                "markov_standard_errors": self.markov.standard_errors.tolist(),
+                "hankel_singular_values": self.singular_values.tolist(),
+            }
         if inverse is not None:
             more |= {
                 "preview": inverse.preview,
@@ -177,6 +191,9 @@ class IdentifiedHammerstein(Identified):
         str
         """
         lines = [super().summary(), "", *summary_lines(self.known)]
+        if self.dynamics_are_given:
+            lines.append("G was given and is held")
+        lines.append(f"yardstick: the model leaves {in_one_line(self.yardstick)}")
         inverse = self.inverse_of_dynamics
         if inverse is not None:
             lines.append(
