@@ -217,10 +217,8 @@ def test_three_sines_do_not_determine_a_resonance_above_them(
     assert not resonance.is_determined
     assert not resonance.is_shown
     (sentence,) = not_determined(known)
-    assert sentence.startswith("the resonance of G at ")
-    assert (
-        "Hz is not determined by this drive: the drive shows nothing within an octave" in sentence
-    )
+    assert sentence.startswith("the resonance at ")
+    assert "of G is not determined by this drive: the drive shows nothing within" in sentence
     verdict = verdict_on(Verdict("good", ("Noise.",)), known)
     assert verdict.level == "fair"
     assert verdict.sentences[0].startswith("This drive does not determine the resonance at ")
@@ -256,7 +254,8 @@ def test_poles_drowned_in_noise_are_not_determined(seed: int) -> None:
     known = found(weak, Affine(1.0, 0.0), u, 3.0, seed)
     # The drive covers all frequencies: it is noise that hides them.
     assert all(not each.is_determined for each in known.poles)
-    assert len(not_determined(known)) == len(known.poles) > 0
+    sentences = " ".join(not_determined(known))
+    assert sentences.count("pole at") + sentences.count("the resonance at") == len(known.poles) > 0
     told = [why for each in known.poles if each.is_pair for why in each.undetermined]
     assert all("nothing" in why or "standard error" in why or "tell" in why for why in told)
 
