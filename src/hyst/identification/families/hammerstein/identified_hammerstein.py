@@ -190,7 +190,7 @@ class IdentifiedHammerstein(Identified):
         -------
         str
         """
-        lines = [super().summary(), "", *summary_lines(self.known, self.dynamics_are_given)]
+        lines = [super().summary(), "", *summary_lines(self.known)]
         lines.append(f"yardstick: the model leaves {in_one_line(self.yardstick)}")
         inverse = self.inverse_of_dynamics
         if inverse is not None:
