@@ -23,6 +23,8 @@ from hyst.signals import Record, estimate_noise
 
 Array = NDArray[np.float64]
 
+_MOSTLY = 0.5  # of a record: where less of it repeats, all of its samples tell the error
+
 LEVEL = 0.01
 LEAST_DIFFERENCE = 0.5
 """% of range."""
@@ -211,9 +213,11 @@ def _repeated(number: int, loop: LoopOfRecord, front: Operator | None) -> list[R
 
 def _with_noise(number: int, loop: LoopOfRecord, repeated: Sequence[RepeatedLoop]) -> LoopOfRecord:
     """Tell noise from what repeats, where there is something that does."""
-    own = [each.shape for each in repeated if each.record == number]
-    if not own:
+    stretches = [each for each in repeated if each.record == number]
+    told = sum(each.cycles.phase.size for each in stretches)
+    if told <= _MOSTLY * (loop.valid.stop - loop.valid.start):
         return loop
+    own = [each.shape for each in stretches]
     noise, repeats = (
         float(np.sqrt(np.mean(np.square(values))))
         for values in ([each.noise for each in own], [each.repeats for each in own])
