@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_not_negative, as_positive
-from hyst.compensation.loop_check.chosen_inverse import inverse_for_loop
+from hyst.compensation.loop_check.chosen_inverse import Inverses, inverse_for_loop
 from hyst.compensation.loop_check.input_noise import doubt_by_input_noise
 from hyst.compensation.loop_check.loop_shape import HARMONICS, shape_of
 from hyst.compensation.loop_check.loops import LoopOfRecord, LoopsBehind
@@ -110,8 +110,9 @@ def loops_behind(
             raise InputError(f"the input of record {name} is {record.u[0]:.6g} throughout")
     y = [_behind(after, record.y) for record in given]
     modelled = [record.u if before is None else before(record.u) for record in given]
+    inverses = Inverses(dynamics)
     loops = tuple(
-        _loop(*each, dynamics, band) for each in zip(called, given, y, modelled, strict=True)
+        _loop(*each, inverses, band) for each in zip(called, given, y, modelled, strict=True)
     )
     repeated = tuple(
         each for number, loop in enumerate(loops) for each in _repeated(number, loop, before)
@@ -169,7 +170,7 @@ def _loop(
     record: Record,
     y: Array,
     modelled: Array,
-    dynamics: LinearDynamics,
+    inverses: Inverses,
     band: float | None,
 ) -> LoopOfRecord:
     if np.ptp(modelled) == 0.0:
@@ -177,12 +178,13 @@ def _loop(
             f"the hysteresis of the model does not move on record {name}, whose input goes from "
             f"{record.u.min():.6g} to {record.u.max():.6g}; drive it further"
         )
+    dynamics = inverses.dynamics
     # Without what moves, whose curvature would count as noise.
     noise = estimate_noise(y - dynamics(modelled))
     drives = repeated_cycles(record.u, record.dt, slice(0, len(record)))
     highest = max((each.frequency for each in drives), default=0.0)
     extent = float(np.ptp(modelled))
-    chosen = inverse_for_loop(dynamics, band, noise, extent, highest, len(record))
+    chosen = inverse_for_loop(inverses, band, noise, extent, highest, len(record))
     inverse = chosen.inverse
     valid = inverse.valid(len(record))
     if valid.stop - valid.start < LEAST_SAMPLES:
