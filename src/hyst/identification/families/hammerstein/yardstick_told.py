@@ -7,7 +7,7 @@ from hyst.identification.judgement.causes.dynamics import DYNAMICS
 from hyst.operators import Verdict
 from hyst.operators.verdict import Level
 
-UNFIT_RATIO, UNFIT_SHARE = 1.5, 0.1
+UNFIT_RATIO, UNFIT_SHARE = 1.4, 0.1
 """Ratio, and what is left beside noise over the output's deviation, from which it is unfit."""
 
 LIKE_LINEAR, LINEAR_SHARE = 0.7, 0.05
