@@ -44,7 +44,7 @@ def test_limits_hold_in_the_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["--kind", "noise", "--rate", "100"], "unknown kind 'noise'"),
+        (["--kind", "sawtooth", "--rate", "100"], "unknown kind 'sawtooth'"),
         (["--kind", "triangle", "--rate", "100"], "give max_rate"),
         (["--kind", "multisine", "--rate", "0"], "--rate is 0.0"),
         (["--kind", "multisine", "--rate", "100", "--band", "1"], "--band is '1'"),

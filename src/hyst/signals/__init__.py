@@ -11,7 +11,9 @@ from hyst.signals.first_order_curves import (
     forc_density,
     reversal_curves,
 )
+from hyst.signals.held_levels import levels
 from hyst.signals.loop_metrics import hysteresis_percent, loop_area
+from hyst.signals.lowpassed_noise import lowpassed_noise
 from hyst.signals.metrics import Metrics, error_metrics
 from hyst.signals.multisines import multisine
 from hyst.signals.noise import estimate_noise, suggest_dead_band
@@ -38,7 +40,9 @@ __all__ = [
     "forc_density",
     "from_rest",
     "hysteresis_percent",
+    "levels",
     "loop_area",
+    "lowpassed_noise",
     "multisine",
     "persistence",
     "prbs",
