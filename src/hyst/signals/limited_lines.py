@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 
 _TURNS = 3
 _SAME_CORNER = 1e-6  # of a frequency
+_LARGEST_POWER = 30.0
+_SAME_POWER = 1e-3
 _SMALL = 1e-2  # of the largest line: what is below hardly excites
 
 
@@ -78,18 +80,19 @@ class Corners:
     ----------
     rate, acceleration
         From there as 1/f, and as 1/f^2.
-    last
-        Lines above are left out.
+    power
+        Of 1/f by which all lines fall, where corners do not do.
     """
 
     rate: float = math.inf
     acceleration: float = math.inf
-    last: float = math.inf
+    power: float = 0.0
 
     def shape(self, frequency: Array) -> Array:
         """Give the factors of lines, shape (m,)."""
         fall = np.minimum(self.rate / frequency, np.square(self.acceleration / frequency))
-        return np.asarray(np.where(frequency <= self.last, np.minimum(1.0, fall), 0.0))
+        slope = (frequency[0] / frequency) ** self.power
+        return np.asarray(np.minimum(1.0, fall) * slope)
 
 
 def shaped(lines: Lines, phases: Array, limits: Limits) -> Corners:
@@ -122,7 +125,7 @@ def shaped(lines: Lines, phases: Array, limits: Limits) -> Corners:
             corners = _highest(lines, corners, "acceleration", lambda c: beyond(c)[1])
         if max(beyond(corners)) <= 1.0:
             return corners
-    corners = _highest(lines, corners, "last", lambda c: max(beyond(c)))
+    corners = _least_power(lambda c: max(beyond(c)))
     if max(beyond(corners)) > 1.0:
         raise InputError(_too_fast(lines, phases, limits))
     return corners
@@ -149,8 +152,8 @@ def said_of(corners: Corners, lines: Lines) -> tuple[str, ...]:
             f"lines above {corners.acceleration:.4g} Hz fall as 1/f^2 for the limit of the "
             "acceleration"
         )
-    if math.isfinite(corners.last):
-        parts.append(f"lines above {corners.last:.4g} Hz are left out for the limits")
+    if corners.power > 0.0:
+        parts.append(f"all lines fall as 1/f^{corners.power:.3g} for the limits")
     sizes = lines.sizes * corners.shape(frequency)
     large = frequency[sizes >= _SMALL * sizes.max()]
     parts.append(
@@ -176,6 +179,19 @@ def _highest(
             low, best = middle, tried
         else:
             high = middle
+    return best
+
+
+def _least_power(beyond: Callable[[Corners], float]) -> Corners:
+    """Let all lines fall no more than it takes, or as much as leaves the lowest alone."""
+    low, high, best = 0.0, _LARGEST_POWER, Corners(power=_LARGEST_POWER)
+    while high - low > _SAME_POWER and beyond(best) <= 1.0:
+        middle = 0.5 * (low + high)
+        tried = Corners(power=middle)
+        if beyond(tried) <= 1.0:
+            high, best = middle, tried
+        else:
+            low = middle
     return best
 
 
