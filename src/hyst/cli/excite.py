@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -199,7 +200,10 @@ def excite(
     if rest is not None:
         drive = hyst.signals.from_rest(drive, rest, **limits)
     found = actuator.forecast(drive) if actuator.is_stated else None
-    show_files(write_drive(drive, out, name))
+    marked = (
+        [] if found is None else [each.value for each in found.of_dynamics if each.is_frequency]
+    )
+    show_files(write_drive(drive, out, name, marked))
     show_table(hyst.report.drive_table(drive, name))
     for sentence in drive.notes:
         note(sentence)
@@ -213,13 +217,15 @@ def _samples(duration: float, rate: float) -> int:
     return max(round(min(count, 1e18)), 1)
 
 
-def write_drive(drive: hyst.signals.Drive, out: Path, name: str) -> list[Path]:
+def write_drive(
+    drive: hyst.signals.Drive, out: Path, name: str, resonances: Sequence[float] = ()
+) -> list[Path]:
     """Write a drive as CSV, and a figure of it beside that; give both files."""
     label, unit = hyst.io.split_unit(name)
     figure = out.with_suffix(".png")
     hyst.io.write_columns(out, ["time [s]", hyst.io.join_unit(label, unit)], (drive.time, drive.u))
     with replacing(figure) as temporary:
-        temporary.write_bytes(hyst.report.draw_drive(drive, label, unit))
+        temporary.write_bytes(hyst.report.draw_drive(drive, label, unit, resonances))
     return [out, figure]
 
 

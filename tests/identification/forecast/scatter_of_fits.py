@@ -16,7 +16,7 @@ DT, DELAY = 1e-3, 2
 
 
 def resonance(frequency: float, damping: float) -> tuple[Array, Array]:
-    """Give ``w^2 / (s^2 + 2 d w s + w^2)`` with a held input, from its step response in closed form."""
+    """Give ``w^2 / (s^2 + 2 d w s + w^2)`` with a held input, from its step response."""
     w = 2.0 * np.pi * frequency
     decay, turn = -damping * w, w * np.sqrt(1.0 - damping**2)
     e, c, s = np.exp(decay * DT), np.cos(turn * DT), np.sin(turn * DT)

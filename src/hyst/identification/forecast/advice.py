@@ -48,8 +48,9 @@ def advice_on(
     if delay_evidence is not None and delay_evidence < TOLD_APART:
         said.append(
             "the delay is not determined: one sample more or less is "
-            f"{delay_evidence:.2g} standard errors away, and {TOLD_APART:g} tell them apart; add "
-            "higher frequencies, or hold the delay if it is known"
+            f"{delay_evidence:.2g} standard errors away, and {TOLD_APART:g} tell them apart, for "
+            "the zeros of the dynamics make up for it in this band; add higher frequencies, or "
+            "hold the delay if it is known"
         )
     return tuple(said)
 
@@ -76,13 +77,13 @@ def _on_resonances(drive: Drive, dynamics: Sequence[ExpectedError]) -> list[str]
     said, low_high = list[str](), band_of(drive)
     hertz, open_ones = 0.0, dict[float, list[ExpectedError]]()
     for each in dynamics:
-        hertz = each.value if each.name.endswith("[Hz]") else hertz
+        hertz = each.value if each.is_frequency else hertz
         if not each.determined:
             open_ones.setdefault(hertz, []).append(each)
     for at, those in open_ones.items():
         worst = max(those, key=lambda each: each.share)
         what = those[0].name.removesuffix(" [Hz]")
-        if those[0].name.endswith("[Hz]"):
+        if those[0].is_frequency:
             what = f"{what} at {at:.4g} Hz"
         what += " and its damping are" if len(those) > 1 else " is"
         said.append(f"the {what} not determined: {_cure(low_high, at, worst)}")

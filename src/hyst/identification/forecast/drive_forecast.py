@@ -36,6 +36,11 @@ class ExpectedError:
     by_own_lines: float = 0.0
 
     @property
+    def is_frequency(self) -> bool:
+        """Whether it is that of a resonance or a lag."""
+        return self.name.endswith("[Hz]")
+
+    @property
     def error(self) -> float:
         """The larger of both standard errors; infinity where the number is left open."""
         either = (self.standard_error, self.by_own_lines)
