@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 from hyst.identification.forecast import DriveForecast, ExpectedError
 from hyst.report.tables import Table, number
+
+_OPEN = 10.0  # times the number
 
 
 def forecast_table(found: DriveForecast) -> Table:
@@ -40,5 +40,6 @@ def forecast_headline(found: DriveForecast) -> str:
 
 
 def _row(each: ExpectedError) -> tuple[str, ...]:
-    error = number(each.error) if math.isfinite(each.error) else "open"
+    # An error of many times the number is none that means something.
+    error = number(each.error) if each.share < _OPEN else "open"
     return each.name, number(each.value), error, each.verdict
