@@ -93,13 +93,14 @@ def _table(title: str, drives: dict[str, Drive], stage: hyst.Operator) -> None:
     for name, drive in drives.items():
         found = forecast_drive(drive, stage)
         frequency, damping = found.of_dynamics
+        hertz = frequency.error if frequency.share < 1.0 else np.inf
         p, r = (
             max(each.share for each in found.of_front if each.name.startswith(letter))
             for letter in "pr"
         )
         print(
             f"{name:22s} {np.abs(drive.u).max():8.3f} {drive.max_rate:9.4g} "
-            f"{_shown(frequency.error if frequency.share < 1.0 else np.inf)} {_shown(damping.share, True)} {_shown(p, True)} "
+            f"{_shown(hertz)} {_shown(damping.share, True)} {_shown(p, True)} "
             f"{_shown(r, True)}  {len(found.undetermined)}"
             + (f"    {_scatter(drive, stage):.2f}" if checked and found.sufficient else "")
         )

@@ -56,6 +56,11 @@ _BY_KIND = {
     "register": ("prbs",),
     "seed": ("multisine", "odd-multisine", "noise", "levels", "prbs"),
 }
+_AS_TYPED = (
+    *("amplitude", "rms", "offset", "periods", "spectrum", "corner", "uniform", "keep"),
+    *("spacing", "hold", "decay", "clock", "register", "seed"),
+)
+"""Options that are given to the design of a drive as they are."""
 
 Kind = Annotated[str, typer.Option(help=f"One of {', '.join(KINDS)}.", show_default=False)]
 Rate = Annotated[float, typer.Option(metavar="HZ", help="Samples per second.", show_default=False)]
@@ -168,9 +173,7 @@ def excite(
     if rms is not None and given(context, "amplitude"):
         raise hyst.InputError("--amplitude and --rms are both given; give one of them")
     whole_number(fir_order, "--fir-order", 0, more=" samples")
-    ends = None if band is None else numbers(band, "band")
-    if ends is not None and len(ends) != 2:
-        raise hyst.InputError(f"--band is {band!r}; give the lowest and the highest frequency")
+    ends = None if band is None else _ends(band)
     actuator = stated_actuator(model, resonance, delay, radii, weights, noise)
     limits = {
         "max_rate": math.inf if max_rate is None else max_rate,
@@ -179,36 +182,26 @@ def excite(
     drive = hyst.signals.design(
         kind,
         dt=1.0 / rate,
-        amplitude=amplitude,
-        rms=rms,
-        offset=offset,
         samples=_samples(duration, rate),
-        periods=periods,
-        band=None if ends is None else (ends[0], ends[1]),
+        band=ends,
         limits=limits,
-        decay=decay,
-        clock=clock,
-        register=register,
-        seed=seed,
-        spectrum=spectrum,
-        corner=corner,
-        uniform=uniform,
-        keep=keep,
-        spacing=spacing,
-        hold=hold,
+        **{each: context.params[each] for each in _AS_TYPED},
     )
     if rest is not None:
         drive = hyst.signals.from_rest(drive, rest, **limits)
     found = actuator.forecast(drive) if actuator.is_stated else None
-    marked = (
-        [] if found is None else [each.value for each in found.of_dynamics if each.is_frequency]
-    )
-    show_files(write_drive(drive, out, name, marked))
-    show_table(hyst.report.drive_table(drive, name))
-    for sentence in drive.notes:
-        note(sentence)
+    show_files(write_drive(drive, out, name, () if found is None else found.frequencies))
+    _tell_drive(drive, name)
     _tell_forecast(found)
     _tell_persistence(drive, fir_order)
+
+
+def _ends(band: str) -> tuple[float, float]:
+    """Read the two frequencies of a band."""
+    values = numbers(band, "band")
+    if len(values) != 2:
+        raise hyst.InputError(f"--band is {band!r}; give the lowest and the highest frequency")
+    return values[0], values[1]
 
 
 def _samples(duration: float, rate: float) -> int:
@@ -227,6 +220,12 @@ def write_drive(
     with replacing(figure) as temporary:
         temporary.write_bytes(hyst.report.draw_drive(drive, label, unit, resonances))
     return [out, figure]
+
+
+def _tell_drive(drive: hyst.signals.Drive, name: str) -> None:
+    show_table(hyst.report.drive_table(drive, name))
+    for sentence in drive.notes:
+        note(sentence)
 
 
 def _tell_forecast(found: hyst.identification.DriveForecast | None) -> None:

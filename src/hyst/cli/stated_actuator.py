@@ -52,7 +52,21 @@ Noise = Annotated[
 
 @dataclass(frozen=True)
 class StatedActuator:
-    """What was typed of it, read but not yet made: that takes the drive."""
+    """What was typed of it, read but not yet made: that takes the drive.
+
+    Parameters
+    ----------
+    model
+        From a file; None for a sketch.
+    resonances
+        Hz and damping ratios.
+    delay
+        Whole samples.
+    radii, weights
+        Of its plays; empty if left out.
+    noise, noise_db
+        Output units, or None and dB below the output.
+    """
 
     model: hyst.operators.Operator | None
     resonances: tuple[tuple[float, float], ...]
@@ -68,7 +82,18 @@ class StatedActuator:
         return self.model is not None or bool(self.resonances or self.radii)
 
     def forecast(self, drive: hyst.signals.Drive) -> hyst.identification.DriveForecast:
-        """Tell what a drive will determine of it."""
+        """Tell what a drive will determine of it.
+
+        Parameters
+        ----------
+        drive
+            The drive.
+
+        Raises
+        ------
+        InputError
+            As ``hyst.identification.forecast_drive``, and if the sketch cannot be made.
+        """
         made = self.model if self.model is not None else self._sketched(drive)
         return hyst.identification.forecast_drive(
             drive, made, noise=self.noise, noise_db=self.noise_db
@@ -95,7 +120,18 @@ def stated_actuator(
     weights: str | None,
     noise: str,
 ) -> StatedActuator:
-    """Read what was typed, and refuse what does not go together."""
+    """Read what was typed, and refuse what does not go together.
+
+    Parameters
+    ----------
+    model, resonances, delay, radii, weights, noise
+        As typed.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read or does not go together.
+    """
     if model is not None and (resonances or radii or weights or delay is not None):
         raise hyst.InputError(
             "--model is given, and it states all; leave out --resonance, --delay, --radii and "

@@ -19,7 +19,7 @@ from hyst.report.drive_summary import drive_table as drive_table
 from hyst.report.dynamics_figures import dynamics_sections as dynamics_sections
 from hyst.report.estimation_figure import draw_estimates as draw_estimates
 from hyst.report.forc_figure import draw_forc_diagram as draw_forc_diagram
-from hyst.report.forecast_table import forecast_table as forecast_table
+from hyst.report.forecast_summary import forecast_table as forecast_table
 from hyst.report.identification_report import Section as Section
 from hyst.report.identification_report import write_report as write_report
 from hyst.report.observer_answer import ObserverAnswer as ObserverAnswer

@@ -9,8 +9,8 @@ from typing import Any
 from hyst.errors import InputError
 from hyst.signals.drive import Drive
 from hyst.signals.held_levels import levels
-from hyst.signals.lowpassed_noise import lowpassed_noise
 from hyst.signals.multisines import multisine
+from hyst.signals.noise_drive import lowpassed_noise
 from hyst.signals.sequences import forc, prbs, staircase, triangle
 from hyst.signals.swept_sines import swept_sine
 

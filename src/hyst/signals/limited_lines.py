@@ -56,14 +56,28 @@ class Lines:
         return self.numbers / (self.count * self.dt)
 
     def wave(self, sizes: Array, phases: Array) -> Array:
-        """Give one period, shape (count,), of the amplitude asked for."""
+        """Give one period of the amplitude asked for, shape (count,).
+
+        Parameters
+        ----------
+        sizes, phases
+            Shape (m,), amplitudes to one another, and radians.
+        """
         spectrum = np.zeros(self.count // 2 + 1, dtype=np.complex128)
         spectrum[self.numbers] = sizes * np.exp(1j * phases)
         period = np.fft.irfft(spectrum, self.count)
         return np.asarray(period * self.sized(period))
 
     def excess(self, u: Array, limits: Limits) -> tuple[float, float]:
-        """Give rate and acceleration of a period as shares of what is allowed."""
+        """Give rate and acceleration of a period as shares of what is allowed.
+
+        Parameters
+        ----------
+        u
+            Shape (count,), without offset.
+        limits
+            Limits.
+        """
         step, bend = steps_of(u)
         largest = float(np.abs(u).max()) + abs(self.offset)
         return (
@@ -89,7 +103,13 @@ class Corners:
     power: float = 0.0
 
     def shape(self, frequency: Array) -> Array:
-        """Give the factors of lines, shape (m,)."""
+        """Give the factors of lines, shape (m,).
+
+        Parameters
+        ----------
+        frequency
+            Shape (m,), Hz, ascending.
+        """
         fall = np.minimum(self.rate / frequency, np.square(self.acceleration / frequency))
         slope = (frequency[0] / frequency) ** self.power
         return np.asarray(np.minimum(1.0, fall) * slope)

@@ -64,7 +64,18 @@ def period_of(
 
 
 def require_kept(keep: str) -> None:
-    """Refuse what limits cannot leave alone."""
+    """Refuse what limits cannot leave alone.
+
+    Parameters
+    ----------
+    keep
+        As of ``period_of``.
+
+    Raises
+    ------
+    InputError
+        If it is none of ``KEPT``.
+    """
     if keep not in KEPT:
         raise InputError(f"keep is {keep!r}; choose one of {', '.join(KEPT)}")
 

@@ -6,8 +6,8 @@ sines in phase, is a train of peaks, which disturbs the Markov parameters far mo
 input does: what the hysteresis adds is correlated with past inputs and does not average out. With a
 Gaussian input it is correlated, too, for plays remember (Bussgang's theorem is for maps without
 memory), but little here: the radii are small beside the amplitude. The dead zone as printed jumps
-to 0 whenever the input turns, which is another nonlinearity. Zeros of G have the modulus 0.726 and its relative degree is 1, so
-its inverse looks one sample ahead.
+to 0 whenever the input turns, which is another nonlinearity. Zeros of G have the modulus 0.726 and
+its relative degree is 1, so its inverse looks one sample ahead.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hyst.identification.forecast.drive_forecast import DriveForecast, ExpectedError
 from hyst.identification.forecast.expected_errors import forecast_drive
-from hyst.identification.forecast.sketched_stage import sketched_plays, sketched_stage
+from hyst.identification.forecast.stage_sketch import sketched_plays, sketched_stage
 
 __all__ = ["DriveForecast", "ExpectedError", "forecast_drive", "sketched_plays", "sketched_stage"]
 

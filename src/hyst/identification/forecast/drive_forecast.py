@@ -101,6 +101,11 @@ class DriveForecast:
         return self.of_dynamics + self.of_front
 
     @property
+    def frequencies(self) -> tuple[float, ...]:
+        """Of resonances and lags, Hz."""
+        return tuple(each.value for each in self.of_dynamics if each.is_frequency)
+
+    @property
     def undetermined(self) -> tuple[str, ...]:
         """Names of the numbers that stay open."""
         return tuple(each.name for each in self.errors if not each.determined)

@@ -75,7 +75,7 @@ def forecast_drive(
     >>> from hyst.identification import sketched_stage
     >>> front = hyst.PrandtlIshlinskii([0.3], [0.4], 1.0)
     >>> stage = sketched_stage(1e-3, [(80.0, 0.05)], front=front)
-    >>> slow = hyst.signals.triangle(1e-3, 1.0, 20.0, cycles=20)
+    >>> slow = hyst.signals.multisine(1e-3, 4000, amplitude=1.0, band=(1.0, 20.0))
     >>> wide = hyst.signals.multisine(1e-3, 4000, amplitude=1.0, band=(1.0, 200.0))
     >>> forecast_drive(slow, stage).sufficient, forecast_drive(wide, stage).sufficient
     (False, True)
