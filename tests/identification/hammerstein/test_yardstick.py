@@ -194,7 +194,7 @@ def test_an_order_too_low_is_unfit_with_the_ratio() -> None:
 def test_the_true_system_is_good_and_says_so() -> None:
     dt = 1e-3
     true = modes((80.0, 0.15), dt=dt, delay=0)
-    u = multisine(dt, 3000, amplitude=10.0, periods=2, seed=2).u
+    u = multisine(dt, 6000, amplitude=10.0, periods=2, seed=2).u
     record = Record(u, noisy((true @ FRONT)(u)), dt)
     found = hyst.identify(record, family="hammerstein", hysteresis="pi", plays=5, state_order=2)
     assert isinstance(found, IdentifiedHammerstein)
