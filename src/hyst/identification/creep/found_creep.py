@@ -55,8 +55,8 @@ ROUNDS = 2
 """Of looking for creep and searching again without it, before all is fitted together."""
 
 DYNAMICS = (
-    "creep is not identified with {}, whose dynamics may be as slow; choose another family, or "
-    "leave creep out"
+    "creep is identified with {}, whose dynamics may be as slow, only where no other family is "
+    "compared; name it alone, or leave creep out"
 )
 
 SURE_OF_DELAY = 2.5
@@ -106,6 +106,32 @@ def require_place(families: Sequence[Family], wanted: Wanted) -> None:
     late = [each.name for each in families if each.answers_late]
     if isinstance(wanted, int) and len(late) == len(families):
         raise NotIdentifiableError(DYNAMICS.format(", ".join(late)))
+
+
+def creeping_inside(
+    families: Sequence[Family], wanted: Wanted
+) -> tuple[tuple[Family, ...], Wanted]:
+    """Let families creep that have dynamics of their own after it, where all chosen ones have.
+
+    Parameters
+    ----------
+    families
+        That were chosen.
+    wanted
+        As of ``identify``.
+
+    Returns
+    -------
+    tuple of Family
+    int, "auto" or None
+        What is still to be looked for beside a fit.
+    """
+    if not isinstance(wanted, int):
+        return tuple(families), wanted
+    makers = [getattr(each, "creeping", None) for each in families]
+    if not all(makers):
+        return tuple(families), wanted
+    return tuple(make(wanted) for make in makers if make is not None), None
 
 
 def with_creep(

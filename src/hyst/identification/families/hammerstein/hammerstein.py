@@ -16,6 +16,12 @@ from hyst.identification.families.hammerstein.coefficients import (
     coefficients,
     coefficients_by_theta,
 )
+from hyst.identification.families.hammerstein.creeping_front import (
+    CreepingFront,
+    as_creeping,
+    creeping_starts,
+    told_of_creep,
+)
 from hyst.identification.families.hammerstein.distortion_levels import average_periods
 from hyst.identification.families.hammerstein.first_dynamics import shortened, signal_behind
 from hyst.identification.families.hammerstein.first_guess import (
@@ -67,6 +73,7 @@ from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.thinning import MOST_SAMPLES
 from hyst.identification.record_use.used_samples import Data, prepare
 from hyst.identification.result.identified import Identified
+from hyst.models import LinearDynamics
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
@@ -186,9 +193,15 @@ class Hammerstein(Family):
         """The hysteresis; the one that is given, if one is."""
         if self.front is not None:
             given: HeldFront = self.front
-            return given
+            return as_creeping(replace(given, lags=0), given.lags) if given.lags else given
         assert isinstance(self.hysteresis, Family), "the registry puts an object for a name"
         return self.hysteresis
+
+    def creeping(self, lags: int) -> Self:
+        """Give the family with so many lags of creep between hysteresis and dynamics."""
+        if self.front is not None:
+            return replace(self, front=replace(self.front, lags=lags))
+        return replace(self, hysteresis=as_creeping(self.hysteresis_family, lags))
 
     def records_to_use(
         self, records: tuple[Record, ...], start: Literal["auto"] | int
@@ -263,9 +276,13 @@ class Hammerstein(Family):
             held = overview.once(
                 ("held", self.dynamics), lambda: held_dynamics(self.dynamics, overview)
             )
+            if isinstance(self.hysteresis_family, CreepingFront):
+                return self._creeping_starts(held, overview, size)[:most]
             of_known = self.hysteresis_family, held, overview.data, size
             return overview.once(("known", self, size), lambda: starts_of_known(*of_known))[:most]
         first = self._first_dynamics(overview)
+        if isinstance(self.hysteresis_family, CreepingFront):
+            return self._creeping_starts(first.dynamics, overview, size)[:most]
         if self.front is not None:
             return starts_behind_known(self.front, first.dynamics, overview.data)[:most]
         fronts = overview.once(
@@ -274,9 +291,20 @@ class Hammerstein(Family):
         )
         return [joint(each, first.dynamics) for each in fronts[:most]]
 
+    def _creeping_starts(
+        self, dynamics: LinearDynamics, overview: Overview, size: int
+    ) -> Sequence[Start]:
+        front, held = self.hysteresis_family, self.dynamics is not None
+        assert isinstance(front, CreepingFront), "it was asked"
+        return overview.once(
+            ("creeping", self, size),
+            lambda: creeping_starts(front, dynamics, overview.data, size, held),
+        )
+
     def _first_dynamics(self, overview: Overview) -> FirstDynamics:
         orders = (self.fir_order, self.state_order)
         front = self.hysteresis_family if self.front is None else Linear()
+        front = front.base if isinstance(front, CreepingFront) else front
         return overview.once(
             ("first dynamics", self),
             lambda: first_dynamics(self, front, behind_known(self.front, overview), orders),
@@ -339,6 +367,8 @@ class Hammerstein(Family):
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
         """Say what the hysteresis' family says, and if the dynamics explain nothing."""
         notes = self.hysteresis_family.notes(self._front_fit(fit), data)
+        if isinstance(self.hysteresis_family, CreepingFront):
+            notes += told_of_creep(fit, data)
         if joint_of(fit).held:
             given: GivenDynamics = self.dynamics
             notes += told_of_delay(given, dynamics_of(fit), data)
