@@ -56,8 +56,8 @@ def identify(
     Parameters
     ----------
     records
-        One or more records of one actuator, each with its own memory and, but for dynamics, its own
-        sample time. What ``hyst.diagnose`` finds in them is acted on: samples that are no
+        One or more records of one actuator, each with its own memory and its own sample time; with
+        dynamics one that divides them all is taken. What ``hyst.diagnose`` finds in them is acted on: samples that are no
         measurements do not count.
     family
         A name; several with commas between them, which are compared by cross-validation, the

@@ -19,7 +19,6 @@ from hyst.identification.families.hammerstein.coefficients import (
 from hyst.identification.families.hammerstein.creeping_front import (
     CreepingFront,
     as_creeping,
-    creeping_starts,
     told_of_creep,
 )
 from hyst.identification.families.hammerstein.distortion_levels import average_periods
@@ -44,16 +43,9 @@ from hyst.identification.families.hammerstein.held_front import (
 from hyst.identification.families.hammerstein.held_joint import joint_held
 from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
-from hyst.identification.families.hammerstein.known_front import (
-    behind_known,
-    starts_behind_known,
-)
-from hyst.identification.families.hammerstein.known_start import (
-    held_dynamics,
-    settled,
-    starts_of_known,
-    told_of_delay,
-)
+from hyst.identification.families.hammerstein.known_front import behind_known
+from hyst.identification.families.hammerstein.known_start import settled, told_of_delay
+from hyst.identification.families.hammerstein.known_starts import known_starts
 from hyst.identification.families.hammerstein.markov import choose_markov
 from hyst.identification.families.hammerstein.record_checks import flat_tops
 from hyst.identification.families.hammerstein.result import identified_with_dynamics
@@ -69,11 +61,11 @@ from hyst.identification.families.option import (
     whole_number_or_auto,
 )
 from hyst.identification.fit.bounded_least_squares import CONVERGED, Problem, Solution, minimize
+from hyst.identification.record_use.one_sample_time import at_one_sample_time, finest
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.thinning import MOST_SAMPLES
-from hyst.identification.record_use.used_samples import Data, prepare
+from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.identified import Identified
-from hyst.models import LinearDynamics
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
@@ -96,16 +88,6 @@ def _as_hysteresis(value: Any, name: str) -> Any:
         f"{name} is of type {type(value).__name__}; give the name of a family, or a family of "
         "hyst.families with its options"
     )
-
-
-def _require_one_sample_time(data: Data) -> None:
-    """Refuse records of several sample times: sampled dynamics hold for one."""
-    times = [record.dt for record in data.records]
-    if max(times) - min(times) > 1e-6 * min(times):
-        raise InputError(
-            f"the records have sample times from {min(times):.6g} to {max(times):.6g} s; linear "
-            "dynamics are identified for one sample time, so resample the records to one"
-        )
 
 
 def _as_period(value: Any, name: str) -> int | None:
@@ -218,13 +200,15 @@ class Hammerstein(Family):
             records = tuple(average_periods(each, self.period) for each in records)
             # The first of two equal periods is the past of the second, of both parts.
             start = int(self.period)
-        data = prepare(records, start)
-        _require_one_sample_time(data)
+        at_one = at_one_sample_time(records, None if self.dynamics is None else self.dynamics.dt)
+        data = at_one.prepared(start)
         if self.dynamics is not None:
             dt = data.records[0].dt
             data = settled(data, self.dynamics.at(dt)) if start == AUTO else data
-            return data, flat_tops(data.records) + self.dynamics.told(dt) + told_of(self.front)
-        seen = data if self.front is None else self.front.behind(data)
+            notes = at_one.notes + flat_tops(records) + self.dynamics.told(dt)
+            return data, notes + told_of(self.front)
+        seen = finest(Overview(data)).data
+        seen = seen if self.front is None else self.front.behind(seen)
         markov, doubts = choose_markov(seen.records, self.fir_order)
         if start == AUTO:
             starts = tuple(
@@ -232,7 +216,7 @@ class Hammerstein(Family):
                 for each, record in zip(data.starts, data.records, strict=True)
             )
             data = replace(data, starts=starts)
-        return data, flat_tops(data.records) + doubts + told_of(self.front)
+        return data, at_one.notes + flat_tops(records) + doubts + told_of(self.front)
 
     def suited(self, data: Data) -> tuple[Self, tuple[str, ...]]:
         """Fit the options of the hysteresis to the records."""
@@ -272,34 +256,26 @@ class Hammerstein(Family):
 
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
         """Start from the dynamics found once, and the hysteresis before them of this size."""
-        if self.dynamics is not None:
-            held = overview.once(
-                ("held", self.dynamics), lambda: held_dynamics(self.dynamics, overview)
-            )
-            if isinstance(self.hysteresis_family, CreepingFront):
-                return self._creeping_starts(held, overview, size)[:most]
-            of_known = self.hysteresis_family, held, overview.data, size
-            return overview.once(("known", self, size), lambda: starts_of_known(*of_known))[:most]
+        given = overview
+        overview = given.once("finest", lambda: finest(given))
+        known = overview.once(
+            ("known", self, size),
+            lambda: known_starts(
+                (self.front, self.dynamics),
+                self.hysteresis_family,
+                overview,
+                size,
+                lambda: self._first_dynamics(overview).dynamics,
+            ),
+        )
+        if known is not None:
+            return known[:most]
         first = self._first_dynamics(overview)
-        if isinstance(self.hysteresis_family, CreepingFront):
-            return self._creeping_starts(first.dynamics, overview, size)[:most]
-        if self.front is not None:
-            return starts_behind_known(self.front, first.dynamics, overview.data)[:most]
         fronts = overview.once(
             ("fronts", self, size),
             lambda: fronts_of(self, self.hysteresis_family, first, overview.data, size),
         )
         return [joint(each, first.dynamics) for each in fronts[:most]]
-
-    def _creeping_starts(
-        self, dynamics: LinearDynamics, overview: Overview, size: int
-    ) -> Sequence[Start]:
-        front, held = self.hysteresis_family, self.dynamics is not None
-        assert isinstance(front, CreepingFront), "it was asked"
-        return overview.once(
-            ("creeping", self, size),
-            lambda: creeping_starts(front, dynamics, overview.data, size, held),
-        )
 
     def _first_dynamics(self, overview: Overview) -> FirstDynamics:
         orders = (self.fir_order, self.state_order)
@@ -397,7 +373,7 @@ class Hammerstein(Family):
     def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
         """Add the parts, the impulse response, the poles and the loop."""
         return identified_with_dynamics(
-            identified, fit, self.hysteresis_family, overview, self.fir_order
+            identified, fit, self.hysteresis_family, finest(overview), self.fir_order
         )
 
     def words_for(self, identified: Identified) -> Words:

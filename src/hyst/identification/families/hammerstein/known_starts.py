@@ -1,0 +1,53 @@
+"""Where fits start of which something is known: dynamics, hysteresis, or that it creeps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from hyst.identification.families.family import Family, Start
+from hyst.identification.families.hammerstein.creeping_front import CreepingFront, creeping_starts
+from hyst.identification.families.hammerstein.given_dynamics import GivenDynamics
+from hyst.identification.families.hammerstein.held_front import HeldFront
+from hyst.identification.families.hammerstein.known_front import starts_behind_known
+from hyst.identification.families.hammerstein.known_start import held_dynamics, starts_of_known
+from hyst.identification.record_use.overview import Overview
+from hyst.models import LinearDynamics
+
+
+def known_starts(
+    known: tuple[HeldFront | None, GivenDynamics | None],
+    hysteresis: Family,
+    overview: Overview,
+    size: int,
+    first: Callable[[], LinearDynamics],
+) -> Sequence[Start] | None:
+    """Give where to start; None where nothing is known and nothing creeps.
+
+    Parameters
+    ----------
+    known
+        Hysteresis and dynamics, each None where it is not known.
+    hysteresis
+        Family in front.
+    overview
+        The records.
+    size
+        One of the sizes of the hysteresis.
+    first
+        Finds dynamics that are not known.
+
+    Raises
+    ------
+    NotIdentifiableError
+        If the records do not show the hysteresis.
+    """
+    front, given = known
+    held = None
+    if given is not None:
+        held = overview.once(("held", given), lambda: held_dynamics(given, overview))
+    if isinstance(hysteresis, CreepingFront):
+        dynamics = first() if held is None else held
+        return creeping_starts(hysteresis, dynamics, overview.data, size, held is not None)
+    if held is not None:
+        return starts_of_known(hysteresis, held, overview.data, size)
+    return None if front is None else starts_behind_known(front, first(), overview.data)
