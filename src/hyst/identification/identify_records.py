@@ -57,8 +57,8 @@ def identify(
     ----------
     records
         One or more records of one actuator, each with its own memory and its own sample time; with
-        dynamics one that divides them all is taken. What ``hyst.diagnose`` finds in them is acted on: samples that are no
-        measurements do not count.
+        dynamics one that divides them all is taken. What ``hyst.diagnose`` finds in them is acted
+        on: samples that are no measurements do not count.
     family
         A name; several with commas between them, which are compared by cross-validation, the
         simplest that it does not show to be worse than the best being taken; ``"auto"``: those that

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.creep.creeping_family import CreepingFamily
-from hyst.identification.creep.evidence import nuisances_of
 from hyst.identification.creep.joint_fit import IDLE
 from hyst.identification.creep.told import SLOW
 from hyst.identification.families.estimates import Estimates
@@ -25,6 +24,7 @@ from hyst.identification.families.hammerstein.held_joint import joint_held
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
 from hyst.identification.families.hammerstein.known_start import fronts_before, signal_of_plays
 from hyst.identification.families.staged_family import StagedFamily
+from hyst.identification.fit.nuisance import Nuisances, Settling
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.fit.stages import StagedParametrization, with_stage
 from hyst.identification.record_use.overview import Overview
@@ -145,8 +145,31 @@ def _creeping(front: Start, guess: CreepGuess, held: bool, data: Data) -> Start:
     lower = np.repeat([0.0, guess.bounds[0]], count)
     upper = np.repeat([LARGEST_WEIGHT, guess.bounds[1]], count)
     staged = with_stage(base, theta, stage, "output", lower, upper)
-    made, start = (joint_held if held else joint)(staged, guess.dynamics)
-    return replace(made, nuisances=nuisances_of(count, False, base.size + count)), start
+    return joined(staged, guess.dynamics, held)
+
+
+def joined(front: Start, dynamics: LinearDynamics, held: bool) -> Start:
+    """Give the free parameters of a hysteresis, of its creep if it has any, and of dynamics.
+
+    What lags still do of their state before each record is fitted beside them.
+
+    Parameters
+    ----------
+    front
+        The hysteresis, with lags or without.
+    dynamics
+        Behind it, of gain 1 at rest.
+    held
+        Whether they are known.
+    """
+    made, theta = (joint_held if held else joint)(front, dynamics)
+    own = front[0]
+    if not isinstance(own, StagedParametrization):
+        return made, theta
+    count = (own.size - own.base.size) // 2
+    places = tuple(range(own.base.size + count, own.size))
+    beside = () if made.nuisances is None else made.nuisances.parts
+    return replace(made, nuisances=Nuisances((*beside, Settling(places)))), theta
 
 
 def told_of_creep(fit: Fit, data: Data) -> tuple[str, ...]:

@@ -19,13 +19,19 @@ from hyst.identification.families.hammerstein.coefficients import (
 from hyst.identification.families.hammerstein.creeping_front import (
     CreepingFront,
     as_creeping,
+    joined,
     told_of_creep,
 )
 from hyst.identification.families.hammerstein.distortion_levels import average_periods
-from hyst.identification.families.hammerstein.first_dynamics import shortened, signal_behind
+from hyst.identification.families.hammerstein.first_dynamics import (
+    as_whole_delay,
+    shortened,
+    signal_behind,
+)
 from hyst.identification.families.hammerstein.first_guess import (
     FirstDynamics,
     first_dynamics,
+    first_dynamics_of_plays,
     fronts_of,
 )
 from hyst.identification.families.hammerstein.given_dynamics import (
@@ -40,7 +46,6 @@ from hyst.identification.families.hammerstein.held_front import (
     require_one_hysteresis,
     told_of,
 )
-from hyst.identification.families.hammerstein.held_joint import joint_held
 from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
 from hyst.identification.families.hammerstein.known_front import behind_known
@@ -49,6 +54,15 @@ from hyst.identification.families.hammerstein.known_starts import known_starts
 from hyst.identification.families.hammerstein.markov import choose_markov
 from hyst.identification.families.hammerstein.record_checks import flat_tops
 from hyst.identification.families.hammerstein.result import identified_with_dynamics
+from hyst.identification.families.hammerstein.ringing import without_ringing
+from hyst.identification.families.hammerstein.settled_dynamics import (
+    ROUNDING,
+    numbers_of,
+    price,
+    samples_worth,
+    settled_dynamics,
+    simpler,
+)
 from hyst.identification.families.hammerstein.without_dynamics import dynamics_doubts
 from hyst.identification.families.hammerstein.words import WORDS, words_behind
 from hyst.identification.families.linear import Linear
@@ -66,6 +80,7 @@ from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.thinning import MOST_SAMPLES
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.identified import Identified
+from hyst.models import LinearDynamics
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
@@ -77,7 +92,7 @@ MOST_LAGS, MOST_STATES, LONGEST_PERIOD = 5000, 64, 10**9
 
 _WARM_UP = 8_000
 _BURST = 12
-_STALLED = 0.99
+_STALLED = 0.998
 _TOLERANCE = 2e-2  # of the residual variance: at most a seventh of a standard error is left
 
 
@@ -128,6 +143,7 @@ class Hammerstein(Family):
     name = "hammerstein"
     words = WORDS
     methods = ("exact", "noncausal")
+    judged_in_sample = True
     answers_late = True
     depends_on_rate = True
     explains = ("rate dependence", "dynamics")
@@ -202,21 +218,21 @@ class Hammerstein(Family):
             start = int(self.period)
         at_one = at_one_sample_time(records, None if self.dynamics is None else self.dynamics.dt)
         data = at_one.prepared(start)
+        doubts = at_one.notes + flat_tops(records)
         if self.dynamics is not None:
             dt = data.records[0].dt
             data = settled(data, self.dynamics.at(dt)) if start == AUTO else data
-            notes = at_one.notes + flat_tops(records) + self.dynamics.told(dt)
-            return data, notes + told_of(self.front)
-        seen = finest(Overview(data)).data
-        seen = seen if self.front is None else self.front.behind(seen)
-        markov, doubts = choose_markov(seen.records, self.fir_order)
-        if start == AUTO:
-            starts = tuple(
-                max(each, min(markov.order, len(record) // 4))
-                for each, record in zip(data.starts, data.records, strict=True)
-            )
-            data = replace(data, starts=starts)
-        return data, at_one.notes + flat_tops(records) + doubts + told_of(self.front)
+            return data, doubts + self.dynamics.told(dt) + told_of(self.front)
+        if not self.starts_from_plays:
+            seen = finest(Overview(data)).data
+            seen = seen if self.front is None else self.front.behind(seen)
+            doubts += choose_markov(seen.records, self.fir_order)[1]
+        return data, doubts + told_of(self.front)
+
+    @property
+    def starts_from_plays(self) -> bool:
+        """Whether plays are the first guess of the hysteresis; else the paper's first step is."""
+        return bool(self.fir_order == AUTO)
 
     def suited(self, data: Data) -> tuple[Self, tuple[str, ...]]:
         """Fit the options of the hysteresis to the records."""
@@ -278,13 +294,16 @@ class Hammerstein(Family):
         return [joint(each, first.dynamics) for each in fronts[:most]]
 
     def _first_dynamics(self, overview: Overview) -> FirstDynamics:
+        return overview.once(("first dynamics", self), lambda: self._find_dynamics(overview))
+
+    def _find_dynamics(self, overview: Overview) -> FirstDynamics:
+        if self.starts_from_plays:
+            delay = None if overview.delay == AUTO else as_whole_delay(overview.delay)
+            return first_dynamics_of_plays(overview, self.state_order, delay, self.front)
         orders = (self.fir_order, self.state_order)
         front = self.hysteresis_family if self.front is None else Linear()
         front = front.base if isinstance(front, CreepingFront) else front
-        return overview.once(
-            ("first dynamics", self),
-            lambda: first_dynamics(self, front, behind_known(self.front, overview), orders),
-        )
+        return first_dynamics(self, front, behind_known(self.front, overview), orders)
 
     def solve(
         self, problem: Problem, theta: Array, max_iterations: int, tolerance: float = _TOLERANCE
@@ -305,7 +324,8 @@ class Hammerstein(Family):
             theta, before = found.theta, found.cost
 
     def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
-        """Improve the hysteresis as its own family knows, the dynamics following."""
+        """Settle the dynamics; improve the hysteresis as its own family knows, they following."""
+        fit = self._with_settled_dynamics(fit, overview, max_iterations)
         seen = replace(
             fit, family=self.hysteresis_family, parametrization=joint_of(fit).seen_by_front()
         )
@@ -317,6 +337,36 @@ class Hammerstein(Family):
         again = self.solve(problem, improved.solution.theta, max_iterations)
         return replace(fit, solution=again) if again.cost < fit.solution.cost else fit
 
+    def _with_settled_dynamics(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Look at delay and feedthrough again, behind the hysteresis that was found."""
+        if not self.starts_from_plays or joint_of(fit).held:
+            return fit
+        before, data = dynamics_of(fit), overview.data
+        delay = None if overview.delay == AUTO else as_whole_delay(overview.delay)
+        whole = finest(overview).data
+        now = settled_dynamics(whole, self._front_fit(fit).operator, before, delay, orders=False)
+        tried = {numbers_of(before): fit}
+        for each in (now, *simpler(now, delay), *simpler(before, delay)):
+            if numbers_of(each) not in tried:
+                tried[numbers_of(each)] = self._behind(fit, each, data, max_iterations)
+        least = min(tried.values(), key=lambda each: each.solution.cost)
+        errors = least.problem(data).residual(least.solution.theta)[: data.measured().size]
+        worth, floor = samples_worth(errors), ROUNDING * float(data.measured().var())
+
+        def price_of(each: Fit) -> float:
+            count = each.parametrization.free_count
+            return price(each.solution.cost / errors.size, count, worth, floor)
+
+        return min(tried.values(), key=price_of)
+
+    def _behind(self, fit: Fit, dynamics: LinearDynamics, data: Data, most: int) -> Fit:
+        """Fit again, from other dynamics behind the same hysteresis."""
+        front = self._front_fit(fit)
+        start = front.parametrization, front.solution.theta
+        parametrization, theta = joined(start, dynamics, held=False)
+        again = replace(fit, parametrization=parametrization)
+        return replace(again, solution=self.solve(again.problem(data), theta, most))
+
     def simplified(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
         """Fit again without the parts of the hysteresis that came out idle."""
         dynamics, before = dynamics_of(fit), self._front_fit(fit)
@@ -324,8 +374,8 @@ class Hammerstein(Family):
         simpler = self.hysteresis_family.simplified(before, behind, max_iterations)
         if simpler is before:
             return fit
-        beside = joint_held if joint_of(fit).held else joint
-        parametrization, theta = beside((simpler.parametrization, simpler.solution.theta), dynamics)
+        start = simpler.parametrization, simpler.solution.theta
+        parametrization, theta = joined(start, dynamics, joint_of(fit).held)
         family = replace(self, hysteresis=simpler.family)  # which may have fewer terms, too
         left = replace(fit, family=family, parametrization=parametrization)
         problem = left.problem(overview.data)
@@ -375,6 +425,10 @@ class Hammerstein(Family):
         return identified_with_dynamics(
             identified, fit, self.hysteresis_family, finest(overview), self.fir_order
         )
+
+    def without_past(self, fit: Fit, data: Data) -> Data:
+        """Take out what the unknown state of the dynamics before each record left in it."""
+        return without_ringing(data, fit)
 
     def words_for(self, identified: Identified) -> Words:
         """Give the words of the hysteresis and of the dynamics behind it."""

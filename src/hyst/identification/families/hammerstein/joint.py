@@ -16,6 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.families.family import Fit, Start
+from hyst.identification.families.hammerstein.ringing import Ringing
+from hyst.identification.fit.nuisance import Nuisances
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.models import LinearDynamics
 from hyst.operators import Operator
@@ -120,6 +122,7 @@ def joint(front: Start, base: LinearDynamics) -> Start:
         canonical=_canonical(hysteresis),
         gauges=_gauges(hysteresis, base, feedthrough),
         gauge_count=1 + hysteresis.gauge_count,
+        nuisances=Nuisances((Ringing(base, first),)) if n else None,
         is_allowed=_is_allowed(hysteresis, base, feedthrough),
         front=hysteresis,
         base=base,
