@@ -108,8 +108,10 @@ def test_auto_looks_for_none_and_units_do_not_matter() -> None:
 
 
 def test_what_cannot_creep_is_refused() -> None:
-    record = record_of(RESONANCE @ CREEP @ PI)
+    u = LEVELS[:1500]
+    record = Record(u, RESONANCE(u), DT)
+    family = "linear,hammerstein"
     with pytest.raises(NotIdentifiableError, match=r"hammerstein, whose dynamics .* name it alone"):
-        hyst.identify(record, family="linear,hammerstein", hysteresis="pi", plays=1, creep=2)
+        hyst.identify(record, family=family, hysteresis="linear", state_order=2, creep=2)
     with pytest.raises(InputError, match="creep is 6"):
         identified(record, creep=6)

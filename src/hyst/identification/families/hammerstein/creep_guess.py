@@ -102,7 +102,7 @@ def slowest_real(dynamics: LinearDynamics) -> float:
 def without_slow_poles(dynamics: LinearDynamics, slow: float, most: int) -> LinearDynamics:
     """Give dynamics without the real poles that creep, of gain 1 at rest.
 
-    Those are slow, and add a part of the gain at rest that is small beside the whole; a slow pole
+    Those are slow, and what they add to the gain at rest is small beside the whole; a slow pole
     through which all of the signal goes, as a lag of an amplifier, is none of them.
 
     Parameters
@@ -121,7 +121,7 @@ def without_slow_poles(dynamics: LinearDynamics, slow: float, most: int) -> Line
     left = np.linalg.inv(right)
     # Partial fractions, at rest.
     share = np.real((dynamics.C @ right) * (left @ dynamics.B) / (1.0 - poles)) / dynamics.dc_gain()
-    creeps = np.flatnonzero(is_slow & (share > 0.0) & (share < LARGEST))
+    creeps = np.flatnonzero(is_slow & (np.abs(share) < LARGEST))
     creeps = creeps[np.argsort(-np.real(poles[creeps]))][:most]
     if not creeps.size:
         return dynamics

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Self, final
 
@@ -18,15 +18,18 @@ from hyst.identification.families.hammerstein.creep_guess import (
     CreepGuess,
     guess_of_creep,
     slowest_real,
+    without_slow_poles,
 )
+from hyst.identification.families.hammerstein.dense_plays import dense_plays
 from hyst.identification.families.hammerstein.first_dynamics import signal_behind
+from hyst.identification.families.hammerstein.held_front import HeldFront
 from hyst.identification.families.hammerstein.held_joint import joint_held
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
 from hyst.identification.families.hammerstein.known_start import fronts_before, signal_of_plays
 from hyst.identification.families.staged_family import StagedFamily
 from hyst.identification.fit.nuisance import Nuisances, Settling
 from hyst.identification.fit.parametrization import Parametrization
-from hyst.identification.fit.stages import StagedParametrization, with_stage
+from hyst.identification.fit.stages import StagedParametrization, with_part, with_stage
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import Creep, LinearDynamics
@@ -98,7 +101,11 @@ class CreepingFront(StagedFamily):
 
 
 def creeping_starts(
-    front: CreepingFront, dynamics: LinearDynamics, data: Data, size: int, held: bool
+    front: CreepingFront,
+    dynamics: LinearDynamics,
+    data: Data,
+    size: int,
+    again: Callable[[HeldFront], LinearDynamics] | None,
 ) -> Sequence[Start]:
     """Give hysteresis, creep and dynamics to start from, the best first.
 
@@ -112,19 +119,32 @@ def creeping_starts(
         The records.
     size
         One of the sizes of the hysteresis.
-    held
-        Whether the dynamics are known.
+    again
+        Finds dynamics behind a known hysteresis; None where they are known.
 
     Raises
     ------
     NotIdentifiableError
         If the records do not show this hysteresis.
     """
+    held = again is None
     guess = guess_of_creep(data, dynamics, front.lags, held)
+    if again is not None:
+        # A lag that nobody knew of was made up for by further poles.
+        found = again(_hysteresis_of(data, guess))
+        fast = without_slow_poles(found, guess.bounds[0], found.order)
+        guess = replace(guess, dynamics=fast)
     together = guess.together()
     signals = [signal_of_plays(data, together), _before_creep(data, guess)]
     fronts = fronts_before(front.base, together, signals, data, size)
     return [_creeping(each, guess, held, data) for each in fronts]
+
+
+def _hysteresis_of(data: Data, guess: CreepGuess) -> HeldFront:
+    """Give plays that creep, as the records have them."""
+    plays = dense_plays(data, guess.together())
+    stage = Creep(guess.weights, guess.time_constants, guess.dynamics.dt)
+    return HeldFront(with_part(plays, stage, "output"))
 
 
 def _before_creep(data: Data, guess: CreepGuess) -> Data:

@@ -281,7 +281,7 @@ class Hammerstein(Family):
                 self.hysteresis_family,
                 overview,
                 size,
-                lambda: self._first_dynamics(overview).dynamics,
+                lambda front: self._dynamics_behind(overview, front),
             ),
         )
         if known is not None:
@@ -294,12 +294,21 @@ class Hammerstein(Family):
         return [joint(each, first.dynamics) for each in fronts[:most]]
 
     def _first_dynamics(self, overview: Overview) -> FirstDynamics:
-        return overview.once(("first dynamics", self), lambda: self._find_dynamics(overview))
+        return overview.once(
+            ("first dynamics", self), lambda: self._find_dynamics(overview, self.front)
+        )
 
-    def _find_dynamics(self, overview: Overview) -> FirstDynamics:
+    def _dynamics_behind(self, overview: Overview, front: HeldFront | None) -> LinearDynamics:
+        if front is None or front is self.front or not self.starts_from_plays:
+            return self._first_dynamics(overview).dynamics
+        return overview.once(
+            ("dynamics behind", self), lambda: self._find_dynamics(overview, front).dynamics
+        )
+
+    def _find_dynamics(self, overview: Overview, known: HeldFront | None) -> FirstDynamics:
         if self.starts_from_plays:
             delay = None if overview.delay == AUTO else as_whole_delay(overview.delay)
-            return first_dynamics_of_plays(overview, self.state_order, delay, self.front)
+            return first_dynamics_of_plays(overview, self.state_order, delay, known)
         orders = (self.fir_order, self.state_order)
         front = self.hysteresis_family if self.front is None else Linear()
         front = front.base if isinstance(front, CreepingFront) else front

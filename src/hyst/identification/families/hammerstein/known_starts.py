@@ -19,7 +19,7 @@ def known_starts(
     hysteresis: Family,
     overview: Overview,
     size: int,
-    first: Callable[[], LinearDynamics],
+    first: Callable[[HeldFront | None], LinearDynamics],
 ) -> Sequence[Start] | None:
     """Give where to start; None where nothing is known and nothing creeps.
 
@@ -34,7 +34,7 @@ def known_starts(
     size
         One of the sizes of the hysteresis.
     first
-        Finds dynamics that are not known.
+        Finds dynamics that are not known, behind a hysteresis that is or is not.
 
     Raises
     ------
@@ -46,8 +46,8 @@ def known_starts(
     if given is not None:
         held = overview.once(("held", given), lambda: held_dynamics(given, overview))
     if isinstance(hysteresis, CreepingFront):
-        dynamics = first() if held is None else held
-        return creeping_starts(hysteresis, dynamics, overview.data, size, held is not None)
+        dynamics, again = (first(front), first) if held is None else (held, None)
+        return creeping_starts(hysteresis, dynamics, overview.data, size, again)
     if held is not None:
         return starts_of_known(hysteresis, held, overview.data, size)
-    return None if front is None else starts_behind_known(front, first(), overview.data)
+    return None if front is None else starts_behind_known(front, first(front), overview.data)
