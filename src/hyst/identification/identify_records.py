@@ -11,13 +11,9 @@ from threadpoolctl import threadpool_limits
 from hyst.diagnosis import Diagnosis
 from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
 from hyst.identification.creep.creeping import Creeping
-from hyst.identification.creep.found_creep import Wanted as Creeps
-from hyst.identification.creep.found_creep import (
-    as_creep,
-    creeping_inside,
-    require_place,
-    with_creep,
-)
+from hyst.identification.creep.found_creep import with_creep
+from hyst.identification.creep.wanted import Wanted as Creeps
+from hyst.identification.creep.wanted import as_creep, creeping_inside, require_place
 from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families, families_in_reserve
 from hyst.identification.lag.found_lag import Wanted as Lagging

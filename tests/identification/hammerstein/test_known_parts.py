@@ -72,7 +72,7 @@ def test_standard_errors_are_those_of_the_hysteresis_alone() -> None:
     assert not found.pole_standard_errors.any()
     assert np.sort_complex(found.poles) == pytest.approx(np.sort_complex(G.poles()), abs=1e-12)
     assert found.markov is None
-    assert "G was given and is held" in found.summary()
+    assert "(order 2, given)" in found.summary()
     assert found.to_dict()["dynamics"]["given"] is True
 
 
