@@ -66,6 +66,16 @@ def test_a_fine_and_a_coarse_record_tell_more_than_one(n: int, order: tuple[int,
     assert both.verdict.level == "good"
 
 
+def test_radii_of_either_record_are_found() -> None:
+    """The narrowest play moves in both, the widest hardly in the fine record."""
+    found = identified([fine(1), coarse(1)], radii=None, plays=3)
+    for i, radius in enumerate(RADII, 1):
+        value, error = constants(found)[f"r[{i}]"]
+        assert abs(value - radius) < 4.0 * error < 0.1
+    # White noise over some 7000 samples is known to 0.8 %; three times that.
+    assert found.noise_rms == pytest.approx(NOISE, rel=0.025)
+
+
 def test_standard_errors_agree_with_scatter() -> None:
     held = LinearDynamics(G.A, G.B, G.C, G.D, DT, 1)
     runs = [

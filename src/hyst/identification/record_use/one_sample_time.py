@@ -126,9 +126,12 @@ def finest(overview: Overview) -> Overview:
     def of(parts: tuple) -> tuple:  # type: ignore[type-arg]
         return tuple(parts[i] for i in whole) if parts else parts
 
+    records: tuple[Record, ...] = of(data.records)
+    low, high = (min(r.u.min() for r in records), max(r.u.max() for r in records))
     chosen = replace(
         data,
-        records=of(data.records),
+        half_range=float(high - low) / 2.0,
+        records=records,
         starts=of(data.starts),
         kept=of(data.kept),
         disturbances=of(data.disturbances),

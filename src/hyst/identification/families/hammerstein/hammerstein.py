@@ -281,7 +281,7 @@ class Hammerstein(Family):
 
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
         """Start from the dynamics found once, and the hysteresis before them of this size."""
-        overview = _finest(overview)
+        whole = _finest(overview)
         known = overview.once(
             ("known", self, size),
             lambda: known_starts(
@@ -289,12 +289,12 @@ class Hammerstein(Family):
                 self.hysteresis_family,
                 overview,
                 size,
-                lambda front: self._dynamics_behind(overview, front),
+                lambda front: self._dynamics_behind(whole, front),
             ),
         )
         if known is not None:
             return known[:most]
-        first = self._first_dynamics(overview)
+        first = self._first_dynamics(whole)
         fronts = overview.once(
             ("fronts", self, size),
             lambda: fronts_of(self, self.hysteresis_family, first, overview.data, size),

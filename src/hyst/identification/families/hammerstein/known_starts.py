@@ -8,8 +8,15 @@ from hyst.identification.families.family import Family, Start
 from hyst.identification.families.hammerstein.creeping_front import CreepingFront, creeping_starts
 from hyst.identification.families.hammerstein.given_dynamics import GivenDynamics
 from hyst.identification.families.hammerstein.held_front import HeldFront
+from hyst.identification.families.hammerstein.joint import joint
 from hyst.identification.families.hammerstein.known_front import starts_behind_known
-from hyst.identification.families.hammerstein.known_start import held_dynamics, starts_of_known
+from hyst.identification.families.hammerstein.known_start import (
+    fronts_before,
+    held_dynamics,
+    signal_of_plays,
+    starts_of_known,
+)
+from hyst.identification.record_use.one_sample_time import finest
 from hyst.identification.record_use.overview import Overview
 from hyst.models import LinearDynamics
 
@@ -21,7 +28,7 @@ def known_starts(
     size: int,
     first: Callable[[HeldFront | None], LinearDynamics],
 ) -> Sequence[Start] | None:
-    """Give where to start; None where nothing is known and nothing creeps.
+    """Give where to start; None where it is found as for one record of which nothing is known.
 
     Parameters
     ----------
@@ -50,4 +57,12 @@ def known_starts(
         return creeping_starts(hysteresis, dynamics, overview.data, size, again)
     if held is not None:
         return starts_of_known(hysteresis, held, overview.data, size)
-    return None if front is None else starts_behind_known(front, first(front), overview.data)
+    if front is not None:
+        return starts_behind_known(front, first(front), overview.data)
+    if finest(overview) is overview:
+        return None
+    # Those that were measured at every sample showed the dynamics; all show the hysteresis.
+    dynamics = first(None)
+    signals = [signal_of_plays(overview.data, dynamics)]
+    fronts = fronts_before(hysteresis, dynamics, signals, overview.data, size)
+    return [joint(each, dynamics) for each in fronts]
