@@ -61,14 +61,7 @@ from hyst.identification.families.hammerstein.markov import choose_markov
 from hyst.identification.families.hammerstein.record_checks import flat_tops
 from hyst.identification.families.hammerstein.result import identified_with_dynamics
 from hyst.identification.families.hammerstein.ringing import without_ringing
-from hyst.identification.families.hammerstein.settled_dynamics import (
-    ROUNDING,
-    numbers_of,
-    price,
-    samples_worth,
-    settled_dynamics,
-    simpler,
-)
+from hyst.identification.families.hammerstein.settled_fit import Refits
 from hyst.identification.families.hammerstein.without_dynamics import dynamics_doubts
 from hyst.identification.families.hammerstein.words import WORDS, words_behind
 from hyst.identification.families.linear import Linear
@@ -363,7 +356,7 @@ class Hammerstein(Family):
         """Look at delay and feedthrough again, behind the hysteresis that was found."""
         if not self.starts_from_plays or joint_of(fit).held:
             return fit
-        before, data = dynamics_of(fit), overview.data
+        data = overview.data
         rows = data.measured().size
         delay = None if overview.delay == AUTO else as_whole_delay(overview.delay)
         # What plays made up for by a pole, the family in front may do itself.
@@ -371,22 +364,13 @@ class Hammerstein(Family):
         better = fit.solution.cost < _BETTER * rows * self._first_dynamics(whole).cost
         creeps = isinstance(self.hysteresis_family, CreepingFront)
         steps = () if self.state_order != AUTO or creeps else ALL if better else FEWER
-        operator = self._front_fit(fit).operator
-        now = settled_dynamics(whole.data, operator, before, delay, steps)
-        tried = {numbers_of(before): fit}
-        simple = (*simpler(now.best.dynamics, delay), *simpler(before, delay))
-        for each in (now.best.dynamics, *now.near, *simple):
-            if numbers_of(each) not in tried:
-                tried[numbers_of(each)] = self._behind(fit, each, data, max_iterations)
-        least = min(tried.values(), key=lambda each: each.solution.cost)
-        errors = least.problem(data).residual(least.solution.theta)[:rows]
-        worth, floor = samples_worth(errors), ROUNDING * float(data.measured().var())
-
-        def price_of(each: Fit) -> float:
-            count = each.parametrization.free_count
-            return price(each.solution.cost / errors.size, count, worth, floor)
-
-        return min(tried.values(), key=price_of)
+        refits = Refits(
+            data,
+            whole.data,
+            delay,
+            lambda start, dynamics: self._behind(start, dynamics, data, max_iterations),
+        )
+        return refits.settled(fit, steps)
 
     def _behind(self, fit: Fit, dynamics: LinearDynamics, data: Data, most: int) -> Fit:
         """Fit again, from other dynamics behind the same hysteresis."""
