@@ -327,13 +327,14 @@ class Hammerstein(Family):
         converged, too, when a dozen steps lower the squared error by no more than a hundredth.
         """
         before, used = np.inf, 0
+        problem, theta, back = self.hysteresis_family.in_own_coordinates(problem, theta)
         while True:
             found = minimize(problem, theta, min(_BURST, max(max_iterations - used, 1)), tolerance)
             used += found.iterations
             if found.status == CONVERGED or found.cost > _STALLED * before:
-                return Solution(found.theta, found.cost, used, CONVERGED)
+                return Solution(back(found.theta), found.cost, used, CONVERGED)
             if used >= max_iterations:
-                return replace(found, iterations=used)
+                return replace(found, theta=back(found.theta), iterations=used)
             theta, before = found.theta, found.cost
 
     def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
