@@ -35,6 +35,8 @@ from hyst.identification.families.hammerstein.first_guess import (
     fronts_of,
 )
 from hyst.identification.families.hammerstein.first_guess_of_plays import (
+    ALL,
+    FEWER,
     Wanted,
     first_dynamics_of_plays,
 )
@@ -366,13 +368,14 @@ class Hammerstein(Family):
         delay = None if overview.delay == AUTO else as_whole_delay(overview.delay)
         # What plays made up for by a pole, the family in front may do itself.
         whole = _finest(overview)
-        plays = self._first_dynamics(whole).cost
-        orders = self.state_order == AUTO and fit.solution.cost < _BETTER * plays * rows
-        orders = orders and not isinstance(self.hysteresis_family, CreepingFront)
+        better = fit.solution.cost < _BETTER * rows * self._first_dynamics(whole).cost
+        creeps = isinstance(self.hysteresis_family, CreepingFront)
+        steps = () if self.state_order != AUTO or creeps else ALL if better else FEWER
         operator = self._front_fit(fit).operator
-        now = settled_dynamics(whole.data, operator, before, delay, orders).dynamics
+        now = settled_dynamics(whole.data, operator, before, delay, steps)
         tried = {numbers_of(before): fit}
-        for each in (now, *simpler(now, delay), *simpler(before, delay)):
+        simple = (*simpler(now.best.dynamics, delay), *simpler(before, delay))
+        for each in (now.best.dynamics, *now.near, *simple):
             if numbers_of(each) not in tried:
                 tried[numbers_of(each)] = self._behind(fit, each, data, max_iterations)
         least = min(tried.values(), key=lambda each: each.solution.cost)
