@@ -190,12 +190,31 @@ def test_too_much_noise_is_told_with_what_it_takes() -> None:
     assert f"{worst / 0.1:.2g} times the amplitude" in " ".join(found.advice)
 
 
-def test_a_redundant_constant_is_open() -> None:
-    # A play of radius 0 is the input itself.
+def test_what_no_drive_tells_apart_is_shared_and_not_the_drives_fault() -> None:
+    # A play of radius 0 is the input itself; a map behind plays shares a factor with their weights.
     stage = sketched_stage(1e-4, [(200.0, 0.03)], front=sketched_plays([0.0, 0.3]))
     found = forecast_drive(multisine(1000.0), stage)
-    assert {"p0", "p[1]"} <= set(found.undetermined)
-    assert "p[2]" not in found.undetermined
+    assert found.shared == ("p0", "p[1]")
+    assert found.sufficient
+    assert len(found.held) == 1
+    # Two weights add up, so what is left has the error of their sum: that of the same stage with
+    # one weight, and some more for the radius that is free besides.
+    (other,) = set(found.shared) - set(found.held)
+    alone = sketched_stage(1e-4, [(200.0, 0.03)], front=sketched_plays([0.3], [0.8, 0.2]))
+    of_one = named(forecast_drive(multisine(1000.0), alone), "p0")
+    assert of_one <= named(found, other) <= 1.1 * of_one
+    curved = hyst.DeadZone([0.8, 0.3, 0.2], [0.01, -0.2, 0.25])
+    plays = sketched_plays([0.2, 0.4], [0.6, 0.2, 0.2])
+    mapped = sketched_stage(1e-4, [(200.0, 0.03)], front=curved @ plays)
+    wide = forecast_drive(multisine(1000.0), mapped)
+    assert {"p0", "p[1]", "p[2]"} <= set(wide.shared)
+    assert not {"r[1]", "r[2]"} & set(wide.shared)
+    assert wide.undetermined == ()
+    # The same model, and a drive to blame: two levels, or an amplitude below a radius.
+    binary = forecast_drive(hyst.signals.prbs(1e-4, 1.0, register=11, clock=5), mapped)
+    assert {"r[1]", "r[2]", "p[1]"} <= set(binary.undetermined)
+    small = forecast_drive(multisine(1000.0, amplitude=0.3), mapped)
+    assert {"r[2]", "p[2]"} <= set(small.undetermined)
 
 
 def test_models_without_dynamics_and_dynamics_alone() -> None:
