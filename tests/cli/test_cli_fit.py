@@ -43,10 +43,29 @@ def test_constants_are_fitted_and_written(files: tuple[Path, Path], run: Callabl
     assert (folder / "out" / "report.html").stat().st_size > 0
 
 
-def test_what_is_not_determined_has_a_dash_and_a_reason(
+def test_dynamics_are_fitted_as_a_whole_and_told_by_what_they_do(
     files: tuple[Path, Path], run: Callable, folder: Path
 ):
     model, record = files
+    ended = run("fit", model, record, *COLUMNS, "-o", "out")
+    assert ended.code == 0
+    assert "the gain of linear_dynamics at rest is held at 1" in ended.out
+    assert "not determined" not in ended.out
+    lines = [line.split() for line in ended.out.split("\n")]
+    told = next(line for line in lines if line[:1] == ["linear_dynamics.time_constant[1]"])
+    # A pole at 0.8 forgets within -dt / log 0.8; six digits are printed.
+    assert float(told[1]) == pytest.approx(-1e-3 / np.log(0.8), rel=1e-5)
+    found = hyst.load(folder / "out" / "model.json")
+    u = drive()
+    np.testing.assert_allclose(found(u), TRUE(u), atol=1e-6)
+    assert "time_constant" in (folder / "out" / "report.html").read_text()
+
+
+def test_what_is_not_determined_has_a_dash_and_a_reason(run: Callable, folder: Path):
+    true = hyst.Affine(2.0) @ hyst.PrandtlIshlinskii([0.4, 0.2], [1.0, 3.0], p0=0.8)
+    record = write_csv(folder / "static.csv", "u,y", drive(), true(drive()))
+    model = folder / "two_gains.json"
+    (hyst.Affine(2.0) @ GUESS.parts[0]).save(model)
     ended = run("fit", model, record, *COLUMNS, "-o", "out")
     assert ended.code == 0
     assert "on a bound, or not determined by the records" in ended.out

@@ -66,8 +66,8 @@ def invert_trajectory(
     The predicted error is always that of the model driven by the command, thresholds from the
     command's own rate.
 
-    ``noncausal``: for linear dynamics behind (or before) a hysteresis; looks ahead through the
-    dynamics, then inverts the hysteresis exactly.
+    ``noncausal``: for linear dynamics behind or before a hysteresis, or on both sides; looks ahead
+    through the dynamics and inverts the hysteresis exactly.
 
     Parameters
     ----------

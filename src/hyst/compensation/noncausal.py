@@ -1,10 +1,13 @@
-"""Inversion of a hysteresis with linear dynamics behind it: look ahead through the dynamics.
+"""Inversion of a hysteresis with linear dynamics behind or before it, or on both sides.
 
-The wanted output passes the stable, two-sided inverse of the dynamics, then the exact inverse of
-the hysteresis. Before and after the trajectory the wanted output is taken to rest.
+From the output back to the input: dynamics by their stable, two-sided inverse, which looks ahead,
+all between them by its exact inverse. Before and after the trajectory the wanted output is taken to
+rest.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +22,7 @@ from hyst.operators import Composition, Operator
 Array = NDArray[np.float64]
 
 _FORGOTTEN = 1e-9  # of the sum of the absolute impulse response
+_ON_ITS_BRANCH = 1e-7  # of the reference's range: what series and rounding leave is far less
 
 
 def invert_noncausally(
@@ -34,7 +38,7 @@ def invert_noncausally(
     Parameters
     ----------
     model
-        One ``LinearDynamics`` stage among stages with exact inverses.
+        ``LinearDynamics``, one stage or several, among stages with exact inverses.
     y_ref, input_range, history
         As in ``invert_trajectory``.
     clip
@@ -49,7 +53,7 @@ def invert_noncausally(
     Raises
     ------
     InputError
-        If the model has not exactly one linear stage, or the input leaves its range.
+        If the model has no stage of linear dynamics, or the input leaves its range.
     NotInvertibleError
         If the hysteresis has no exact inverse or the dynamics have no stable one.
 
@@ -63,13 +67,15 @@ def invert_noncausally(
     >>> bool(np.abs(done.predicted_error[:-1]).max() < 1e-10)
     True
     """
-    before, dynamics, after = stages_around_dynamics(model)
+    parts = split_at_dynamics(model)
     reference = finite_vector(y_ref, "y_ref")
     past = None if history is None else finite_vector(history, "history")
     start = model.initial_state() if past is None else model.run(past)[1]
-    inverse = StableInverse.of(dynamics, band=band)
-    v = inverse(_through(after, reference, None))
-    u = _through(before, v, past)
+    inverses = [
+        StableInverse.of(each, band=band) if isinstance(each, LinearDynamics) else None
+        for each in parts
+    ]
+    u = _inverted(parts, inverses, reference, past)
     clipped = 0
     if input_range is not None:
         low, high = float(input_range[0]), float(input_range[1])
@@ -82,19 +88,54 @@ def invert_noncausally(
             )
         clipped, u = int(outside.sum()), np.clip(u, low, high)
     y_predicted, _ = model.run(u, start)
-    known = inverse.valid(reference.size)
-    first = min(known.start + _settled_after(dynamics), reference.size)
-    inside = (first, max(first, known.stop))
+    known = [each for each in inverses if each is not None]
+    inside = _interior(parts, known, reference, y_predicted)
     where = f"exact for samples {inside[0]} to {inside[1] - 1}, and before and after"
     if inside[0] == inside[1]:
         where = "the record is too short for it to be exact anywhere but"
+    gains = " and ".join(f"{each.noise_gain:.3g}" for each in reversed(known))
+    several = ", of the dynamics from the output on" if len(known) > 1 else ""
     note = (
-        f"looks {inverse.preview} samples ahead; {where} as far as the reference rests there; "
-        f"noise gain {inverse.noise_gain:.3g}"
+        f"looks {sum(each.preview for each in known)} samples ahead; {where} as far as the "
+        f"reference rests there; noise gain {gains}{several}"
     )
     return Compensation(
         u, reference, y_predicted, "noncausal", clipped, notes=(note,), interior=inside
     )
+
+
+def _inverted(
+    parts: Sequence[Operator],
+    inverses: Sequence[StableInverse | None],
+    reference: Array,
+    past: Array | None,
+) -> Array:
+    """Go back from the output to the input, part by part."""
+    before = [past]
+    for part in parts[:-1]:
+        before.append(None if before[-1] is None else part(before[-1]))
+    # What lies before a hysteresis looks ahead of it, where the reference rests already.
+    ahead = sum(each.preview for each in [one for one in inverses if one is not None][:-1])
+    signal = np.concatenate([reference, np.full(ahead, reference[-1])])
+    for part, inverse, own_past in reversed(list(zip(parts, inverses, before, strict=True))):
+        signal = _through(part, signal, own_past) if inverse is None else inverse(signal)
+    return signal[: reference.size]
+
+
+def _interior(
+    parts: Sequence[Operator], inverses: Sequence[StableInverse], reference: Array, y: Array
+) -> tuple[int, int]:
+    """Give the samples that what is not known of start and end does not reach."""
+    dynamics = [each for each in parts if isinstance(each, LinearDynamics)]
+    first = sum(each.memory for each in inverses) + sum(map(_settled_after, dynamics))
+    beyond = max(reference.size - sum(each.preview for each in inverses), 0)
+    first = min(first, reference.size)
+    behind = parts[[isinstance(each, LinearDynamics) for each in parts].index(True) :]
+    if not all(isinstance(each, LinearDynamics) or each.traits().memoryless for each in behind):
+        # Until the dynamics before it have settled, a memory may take a branch and keep to it.
+        off = np.abs(y - reference)[first:beyond] > _ON_ITS_BRANCH * float(np.ptp(reference))
+        first += int(np.flatnonzero(off)[-1]) + 1 if off.any() else 0
+    return first, max(first, beyond)
 
 
 def _settled_after(dynamics: LinearDynamics) -> int:
@@ -104,10 +145,8 @@ def _settled_after(dynamics: LinearDynamics) -> int:
     return int(np.searchsorted(grown, (1.0 - _FORGOTTEN) * grown[-1]))
 
 
-def stages_around_dynamics(
-    model: Operator,
-) -> tuple[Operator | None, LinearDynamics, Operator | None]:
-    """Split a model at its one stage of linear dynamics.
+def split_at_dynamics(model: Operator) -> tuple[Operator, ...]:
+    """Split a model at its stages of linear dynamics.
 
     Parameters
     ----------
@@ -116,33 +155,33 @@ def stages_around_dynamics(
 
     Returns
     -------
-    before, dynamics, after
-        What stands before and after the dynamics is None where nothing does.
+    tuple of Operator
+        The stages of dynamics and what stands before, between and behind them, in the order of the
+        signal.
 
     Raises
     ------
     InputError
-        If there is not exactly one such stage.
+        If there is no such stage.
     """
     stages = list(model.parts) if isinstance(model, Composition) else [model]
-    places = [i for i, stage in enumerate(stages) if isinstance(stage, LinearDynamics)]
-    if len(places) != 1:
+    parts, between = list[Operator](), list[Operator]()
+    for stage in stages:
+        if isinstance(stage, LinearDynamics):
+            parts += [Composition(between), stage] if between else [stage]
+            between = []
+        else:
+            between.append(stage)
+    parts += [Composition(between)] if between else []
+    if not any(isinstance(each, LinearDynamics) for each in parts):
         raise InputError(
-            f"the model has {len(places)} stages of linear dynamics; method 'noncausal' is for "
-            "models with one"
+            "the model has 0 stages of linear dynamics; method 'noncausal' is for models with some"
         )
-    at = places[0]
-    before = Composition(stages[:at]) if at > 0 else None
-    after = Composition(stages[at + 1 :]) if at + 1 < len(stages) else None
-    dynamics = stages[at]
-    assert isinstance(dynamics, LinearDynamics)
-    return before, dynamics, after
+    return tuple(parts)
 
 
-def _through(operator: Operator | None, signal: Array, past: Array | None) -> Array:
+def _through(operator: Operator, signal: Array, past: Array | None) -> Array:
     """Pass the exact inverse of an operator, with the memory its past has left."""
-    if operator is None:
-        return signal
     inverse = operator.inverse()
     state = None if past is None else inverse.run(operator(past))[1]
     return inverse.run(signal, state)[0]

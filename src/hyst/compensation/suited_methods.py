@@ -6,10 +6,10 @@ from collections.abc import Callable
 
 from hyst.compensation.invert import METHODS
 from hyst.compensation.nearest_input import turns
-from hyst.compensation.noncausal import stages_around_dynamics
+from hyst.compensation.noncausal import split_at_dynamics
 from hyst.compensation.rate_dependent.task import stages_around_plays
 from hyst.errors import InputError, NotInvertibleError
-from hyst.models import StableInverse
+from hyst.models import LinearDynamics, StableInverse
 from hyst.operators import Operator
 
 
@@ -48,9 +48,11 @@ def _has(model: Operator, method: str) -> bool:
 
 
 def _require_dynamics_with_inverse(model: Operator) -> None:
-    before, dynamics, after = stages_around_dynamics(model)
-    StableInverse.of(dynamics)
-    _require_inverses(before, after)
+    for each in split_at_dynamics(model):
+        if isinstance(each, LinearDynamics):
+            StableInverse.of(each)
+        else:
+            _require_inverses(each)
 
 
 def _require_plays_with_inverse(model: Operator) -> None:

@@ -13,15 +13,24 @@ from threadpoolctl import threadpool_limits
 from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.selection import settled
-from hyst.identification.families.family import Family, Fit, Start, Words
+from hyst.identification.dynamics_estimates import chain_of, estimates_of_chain
+from hyst.identification.families.family import Estimates, Family, Fit, Start, Words
+from hyst.identification.families.hammerstein.first_dynamics import shortened
 from hyst.identification.fit.bounded_least_squares import Solution
-from hyst.identification.fit.parametrization import Parametrization, selection
+from hyst.identification.fit.chain_fit import fit_chain
+from hyst.identification.fit.chain_parametrization import (
+    ChainParametrization,
+    chain,
+    links_of,
+)
+from hyst.identification.fit.scales_between import Link
 from hyst.identification.options import Options, as_delay, listed, silent
 from hyst.identification.record_use.cleaned import as_drift, cleaned
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data, prepare, require_same_units
 from hyst.identification.result.identified import Identified
 from hyst.identification.result.identified_from_fit import identified_from_fit, traced
+from hyst.models import LinearDynamics
 from hyst.operators import Operator
 from hyst.operators.parameters import Parameters
 from hyst.operators.provenance import options_asked
@@ -29,6 +38,9 @@ from hyst.signals import Record
 
 Array = NDArray[np.float64]
 Bound = tuple[float, float]
+
+MOST_SAMPLES = 50_000
+"""On which a start of hysteresis with dynamics is improved before the last step takes all."""
 
 MOST_NAMES = 12
 """In a message; beyond, the first ones are named."""
@@ -50,7 +62,7 @@ class OwnModel(Family):
     depends_on_rate = True  # nothing is known of it
     explains = ("rate dependence", "dynamics", "run direction")
 
-    parametrization: Parametrization
+    parametrization: ChainParametrization
     theta: Array
 
     def __post_init__(self) -> None:
@@ -63,6 +75,14 @@ class OwnModel(Family):
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
         """Start from the model's own constants."""
         return [(self.parametrization, self.theta)]
+
+    def estimates(self, fit: Fit) -> Estimates:
+        """Give the constants that are free, and of dynamics what is known of them."""
+        return estimates_of_chain(fit)
+
+    def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
+        """Say what is held, because no record shows it."""
+        return chain_of(fit).sentences
 
 
 def fit(
@@ -158,7 +178,7 @@ def fit(
 
 def parametrize_own(
     model: Operator, free: Iterable[str] | None, bounds: Mapping[str, Bound]
-) -> Start:
+) -> tuple[ChainParametrization, Array]:
     """Give the free constants of a model and their values.
 
     Parameters
@@ -179,7 +199,7 @@ def parametrize_own(
         As ``fit``.
     """
     own = model.parameters()
-    places = _free_places(own, free)
+    places, whole = _free_places(model, own, free)
     lower, upper = own.lower.copy(), own.upper.copy()
     if not isinstance(bounds, Mapping):
         raise InputError(
@@ -188,35 +208,10 @@ def parametrize_own(
     for name, bound in bounds.items():
         low, high = _as_bound(name, bound)
         at = _places_of(own, name)
+        _require_single(name, at, links_of(model, own, places), whole)
         lower[at], upper[at] = np.maximum(lower[at], low), np.minimum(upper[at], high)
     _require_start_within(own, lower, upper)
-    fixed = own.values.copy()
-    fixed[places] = 0.0
-    transform = selection(own.values.size, places)
-
-    def is_allowed(theta: Array) -> bool:
-        try:
-            model.with_parameters(fixed + transform @ theta)
-        except InputError:
-            return False
-        return True
-
-    def canonical(theta: Array) -> Array:
-        nearest = model.nearest_parameters(fixed + transform @ theta)[places]
-        return np.clip(nearest, lower[places], upper[places])
-
-    return (
-        Parametrization(
-            model,
-            transform,
-            fixed,
-            lower[places],
-            upper[places],
-            canonical,
-            is_allowed=is_allowed,
-        ),
-        own.values[places],
-    )
+    return chain(model, places, whole, lower, upper)
 
 
 def _fitted(family: OwnModel, data: Data, options: Options) -> Fit:
@@ -229,22 +224,51 @@ def _fitted(family: OwnModel, data: Data, options: Options) -> Fit:
     options.say("fit")
     unsolved = Fit(family, 0, family.parametrization, Solution(family.theta, np.inf, 0, ""))
     most = options.max_iterations
-    solution = family.solve(unsolved.problem(data), family.theta, most)
+    if family.parametrization.dynamics:
+        beginning = shortened(data, max(MOST_SAMPLES // len(data.records), 1))
+        solution = fit_chain(family.parametrization, family.theta, data, most, beginning)
+    else:
+        solution = family.solve(unsolved.problem(data), family.theta, most)
     found = Fit(family, 0, family.parametrization, solution)
     return options.converged(settled(found, Overview(data), most))
 
 
-def _free_places(own: Parameters, free: Iterable[str] | None) -> list[int]:
+def _free_places(
+    model: Operator, own: Parameters, free: Iterable[str] | None
+) -> tuple[list[int], list[int]]:
+    """Give the places of constants that move one by one, and which stages move as a whole."""
+    links = links_of(model, own, ())
+    dynamics = {i: each for i, each in enumerate(links) if isinstance(each.stage, LinearDynamics)}
     if free is None:
-        places = list(range(len(own)))
+        names, whole = list(own.names), list(dynamics)
     elif not isinstance(free, Iterable):
         raise InputError(f"free is of type {type(free).__name__}; give names of constants")
     else:
         names = [free] if isinstance(free, str) else list(free)
-        places = sorted({int(place) for name in names for place in _places_of(own, name)})
-    if not places:
+        whole = [i for i, each in dynamics.items() if each.name and each.name in names]
+        names = [name for name in names if name not in {dynamics[i].name for i in whole}]
+    single = {int(place) for name in names for place in _places_of(own, name)}
+    for i in whole:
+        matrices = set(range(links[i].constant, links[i].constant + links[i].free.size))
+        # Of a stage that is free as a whole, D says whether it may leave 0.
+        single -= matrices if free is None else matrices - {max(matrices)}
+    if not single and not whole:
         raise InputError("no constant is free; name at least one, or leave out free for all")
-    return places
+    return sorted(single), whole
+
+
+def _require_single(
+    name: str, at: NDArray[np.intp], links: Sequence[Link], whole: Sequence[int]
+) -> None:
+    """Refuse bounds of entries of matrices that are no constants of the fit."""
+    for i in whole:
+        first = links[i].constant
+        if ((at >= first) & (at < first + links[i].free.size)).any():
+            raise InputError(
+                f"{name} has bounds, but its dynamics are fitted as a whole, in which the entries "
+                "of their matrices are no free constants; bound other constants, or name the "
+                "single entries that may move in free"
+            )
 
 
 def _places_of(own: Parameters, name: str) -> NDArray[np.intp]:

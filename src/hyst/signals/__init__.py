@@ -13,6 +13,7 @@ from hyst.signals.first_order_curves import (
 )
 from hyst.signals.held_levels import levels
 from hyst.signals.loop_metrics import hysteresis_percent, loop_area
+from hyst.signals.measured_response import MeasuredResponse
 from hyst.signals.metrics import Metrics, error_metrics
 from hyst.signals.multisines import multisine
 from hyst.signals.noise import estimate_noise, suggest_dead_band
@@ -28,6 +29,7 @@ __all__ = [
     "Drive",
     "ForcDensity",
     "Limits",
+    "MeasuredResponse",
     "Metrics",
     "Persistence",
     "Record",
