@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+import scipy.fft
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_positive
@@ -15,6 +18,7 @@ Array = NDArray[np.float64]
 
 KEPT = ("amplitude", "spectrum")
 
+_FINE = 16  # samples in a period of the highest line
 _TURNS = 4  # of evening out and shaping, each of which changes what the other one needs
 
 
@@ -103,7 +107,12 @@ def factor_of(period: Array, amplitude: float | None, rms: float | None) -> floa
 
 
 def _evened(lines: Lines, sizes: Array, phases: Array) -> Array:
-    return even_phases(lambda tried: lines.wave(sizes, tried), lines.numbers, phases)
+    """Even out the values on as coarse a grid as shows all lines."""
+    count = int(scipy.fft.next_fast_len(_FINE * int(lines.numbers[-1])))
+    coarse = lines
+    if count < lines.count:
+        coarse = replace(lines, count=count, dt=lines.dt * lines.count / count)
+    return even_phases(lambda tried: coarse.wave(sizes, tried), lines.numbers, phases)
 
 
 def _evenness(period: Array, uniform: bool) -> tuple[str, ...]:

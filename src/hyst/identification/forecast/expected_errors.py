@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 MOST_SAMPLES = 200_000
 """Of a drive that are looked at; a longer one can only be better."""
 
+_OFFSET = "offset"
 _SHARED = 1e-6  # of a direction of scaled constants: more than its rounding
 
 _HALF_RATE = (1.0 - 1e-9) * math.pi  # rad per sample
@@ -207,11 +208,13 @@ def _errors_of_front(
         constants = each.parameters()
         for place, (name, value) in enumerate(zip(constants.names, constants.values, strict=True)):
             column = first + place
-            # What would change the output as much as all of it, for a constant that is 0.
+            # What would change the output as much as all of it.
             whole = size * math.sqrt(samples) / float(known.scale[column])
+            by_chance = name == _OFFSET or value == 0.0  # its size says nothing of what matters
+            scale = max(abs(float(value)), whole) if by_chance else abs(float(value))
             held = column in shared[1]
             error = 0.0 if held else float(errors[column])
-            expected = ExpectedError(name, float(value), error, abs(float(value)) or whole)
+            expected = ExpectedError(name, float(value), error, scale)
             found.append(replace(expected, shared=bool(is_shared[column]), held=held))
     return tuple(found)
 
