@@ -83,3 +83,61 @@ def test_without_edges_the_table_is_of_all_samples() -> None:
         "inversion, rms",
         "inversion, max",
     ]
+
+
+def low_pass(frequency: float, damping: float) -> LinearDynamics:
+    w = 2.0 * np.pi * frequency
+    return LinearDynamics.from_continuous([w * w], [1.0, 2.0 * damping * w, w * w], 1e-3)
+
+
+BOTH = MIXED @ PI @ low_pass(60.0, 0.5)
+
+
+@pytest.mark.parametrize("behind", [MIXED, hyst.Affine(-2.0, 0.1) @ MIXED], ids=["", "and a map"])
+def test_dynamics_on_both_sides_are_followed_from_rest_to_rest(behind: hyst.Operator) -> None:
+    model = behind @ PI @ low_pass(60.0, 0.5)
+    rest = float(model(np.zeros(1))[0])
+    done = invert_trajectory(model, rest_to_rest() + rest, "noncausal")
+    # As above; the noise gain of both inverses is some thousand.
+    assert done.max_abs < 1e-8
+    assert "of the dynamics from the output on" in done.notes[0]
+
+
+def test_the_end_of_a_moving_reference_is_looked_beyond_by_both() -> None:
+    """What is wanted after the record is known to rest; the command of its end must know it."""
+    y_ref = rest_to_rest(4000)
+    cut = int(np.abs(y_ref).argmax()) + 1
+    longer = np.concatenate([y_ref[:cut], np.full(400, y_ref[cut - 1])])
+    short = invert_trajectory(BOTH, longer[:cut], "noncausal").u
+    # The noise gains times the rounding of the series.
+    np.testing.assert_allclose(
+        short, invert_trajectory(BOTH, longer, "noncausal").u[:cut], atol=1e-8
+    )
+
+
+def test_the_memory_behind_dynamics_goes_on_where_history_ended() -> None:
+    model = PI @ low_pass(60.0, 0.5)
+    before = 5.0 * np.sin(np.linspace(0.0, 20.0, 1500)) * np.linspace(1.0, 0.2, 1500)
+    before = np.concatenate([before, np.full(500, before[-1])])
+    y_ref = rest_to_rest() + model(before)[-1]
+    assert invert_trajectory(model, y_ref, "noncausal", history=before).max_abs < 1e-8
+    assert invert_trajectory(model, y_ref, "noncausal").max_abs > 0.1
+
+
+def test_a_branch_taken_while_dynamics_ring_is_no_interior() -> None:
+    """From rest to a level at once, a resonance overshoots, and plays behind it remember that."""
+    ringing = PI @ low_pass(20.0, 0.05)
+    t = np.linspace(0.0, 40.0, 6000)
+    y_ref = 3.0 + 0.2 * np.sin(t)
+    done = invert_trajectory(ringing, y_ref, "noncausal")
+    first, beyond = done.interior
+    assert np.abs(done.predicted_error[2000:-100]).max() > 1e-3
+    assert first == beyond or np.abs(done.predicted_error[first:beyond]).max() < 1e-6
+
+
+def test_methods_for_dynamics_on_both_sides() -> None:
+    assert hyst.compensation.methods_for(BOTH) == ("noncausal",)
+    flat = LinearDynamics.from_transfer_function([1.0, 1.0], [1.0, -0.5], dt=1e-3)
+    assert hyst.compensation.methods_for(flat @ BOTH) == ()
+    with pytest.raises(NotInvertibleError, match=r"the zero -1\+0j"):
+        invert_trajectory(flat @ BOTH, rest_to_rest(), "noncausal")
