@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import scipy.fft
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_positive
@@ -18,7 +17,7 @@ Array = NDArray[np.float64]
 
 KEPT = ("amplitude", "spectrum")
 
-_FINE = 16  # samples in a period of the highest line
+_FINE = 12  # samples in a period of the highest line, at least
 _TURNS = 4  # of evening out and shaping, each of which changes what the other one needs
 
 
@@ -108,7 +107,7 @@ def factor_of(period: Array, amplitude: float | None, rms: float | None) -> floa
 
 def _evened(lines: Lines, sizes: Array, phases: Array) -> Array:
     """Even out the values on as coarse a grid as shows all lines."""
-    count = int(scipy.fft.next_fast_len(_FINE * int(lines.numbers[-1])))
+    count = 1 << (_FINE * int(lines.numbers[-1]) - 1).bit_length()  # a fast length
     coarse = lines
     if count < lines.count:
         coarse = replace(lines, count=count, dt=lines.dt * lines.count / count)
