@@ -16,6 +16,7 @@ from hyst.identification.forecast.drive_forecast import DriveForecast, ExpectedE
 from hyst.identification.forecast.free_numbers import (
     FreeNumbers,
     free_numbers,
+    frequency_and_damping,
     poles_by_directions,
 )
 from hyst.identification.forecast.information import Information
@@ -154,16 +155,13 @@ def _errors_of_dynamics(
             # What turns its sign from sample to sample, or is gone after one, has no frequency.
             if pole.imag < 0.0 or not np.isfinite(pole) or pole.imag * dynamics.dt > _HALF_RATE:
                 continue
-            size = float(np.abs(pole))
-            hertz, damping = size / (2.0 * math.pi), -float(pole.real) / size
+            hertz, damping, slopes = frequency_and_damping(complex(pole), slope)
             there = float(np.abs(dynamics.frequency_response(hertz)[0]))
             shares = own.shares(complex(pole), there)
-            by_size = np.real(np.conj(pole) * slope) / size
-            by_damping = -np.real(slope) / size - damping * by_size / size
             lag = pole.imag == 0.0
             name = f"{'lag' if lag else 'resonance'} [Hz]"
             rows = np.zeros((2, known.scale.size))
-            rows[:, first : first + slope.size] = by_size / (2.0 * math.pi), by_damping
+            rows[:, first : first + slope.size] = slopes
             errors = known.standard_errors(rows, sigma)
             found.append(_expected(name, hertz, float(errors[0]), shares[0]))
             if not lag:

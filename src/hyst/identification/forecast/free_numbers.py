@@ -131,6 +131,29 @@ def poles_by_directions(dynamics: LinearDynamics) -> tuple[NDArray[np.complex128
     return np.log(z) / dynamics.dt, by_k / (z * dynamics.dt)[:, None]
 
 
+def frequency_and_damping(pole: complex, slope: Array) -> tuple[float, float, Array]:
+    """Give frequency in Hz and damping ratio of a continuous pole, and their derivatives.
+
+    Parameters
+    ----------
+    pole
+        rad/s.
+    slope
+        Shape (n,), its derivative.
+
+    Returns
+    -------
+    frequency, damping : float
+    numpy.ndarray
+        Shape (2, n).
+    """
+    size = abs(pole)
+    damping = -pole.real / size
+    by_size = np.real(np.conj(pole) * slope) / size
+    by_damping = -np.real(slope) / size - damping * by_size / size
+    return size / (2.0 * np.pi), damping, np.array([by_size / (2.0 * np.pi), by_damping])
+
+
 def _require_usable(dynamics: LinearDynamics) -> None:
     poles, vectors = np.linalg.eig(dynamics.A)
     if not dynamics.is_stable():
