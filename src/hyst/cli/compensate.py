@@ -58,6 +58,12 @@ Method = Annotated[
 Preview = Annotated[
     int, typer.Option(metavar="N", help="Samples of the reference known ahead, of preview.")
 ]
+Band = Annotated[
+    float | None,
+    typer.Option(
+        metavar="HZ", show_default=False, help="Of noncausal: highest frequency to invert."
+    ),
+]
 RateLimit = Annotated[
     float | None,
     typer.Option(
@@ -102,6 +108,7 @@ History = Annotated[
 _FIXED = ("--method", "--outside", "--with-delay")
 _BY_METHOD = {
     "preview": ("preview",),
+    "band": ("noncausal",),
     "rate_limit": ("preview", "trajectory"),
     "allow_unconverged": ("trajectory",),
     "objective": ("trajectory",),
@@ -132,6 +139,7 @@ def compensate(
     no_limits: NoLimits = False,
     history: History = None,
     preview: Preview = 20,
+    band: Band = None,
     rate_limit: RateLimit = None,
     objective: Objective = "rms",
     roughness: Roughness = None,
@@ -170,6 +178,7 @@ def compensate(
             objective=objective,
             roughness=roughness,
             preview=preview,
+            band=band,
             allow_unconverged=allow_unconverged,
             despite_verdict=despite_verdict,
             progress=progress,
