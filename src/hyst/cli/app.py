@@ -24,6 +24,7 @@ from hyst.cli.family_options import FamilyCommand
 from hyst.cli.fit import fit
 from hyst.cli.identify import identify
 from hyst.cli.info import info
+from hyst.cli.loop import loop
 from hyst.cli.observer import observer
 from hyst.cli.reproduce import reproduce
 from hyst.cli.simulate import simulate
@@ -45,6 +46,7 @@ VERBS = (
     compare,
     adapt,
     simulate,
+    loop,
     compensate,
     observer,
     export,

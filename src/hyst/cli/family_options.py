@@ -14,6 +14,7 @@ import typer
 from typer.core import TyperCommand
 
 import hyst
+from hyst.cli.option_files import FILE, opened
 
 _PANEL = "Options of the families"
 _TYPED = "hyst.cli.family_options"
@@ -61,7 +62,8 @@ def options_given(context: typer.Context, family: str) -> dict[str, Any]:
         for each in names:
             option = hyst.families.option(each, name)
             if option is not None:
-                values[name] = option.read(text, said)
+                is_file = option.metavar == FILE
+                values[name] = opened(text, said) if is_file else option.read(text, said)
                 option.check(values[name], said)
     return values
 

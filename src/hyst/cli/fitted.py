@@ -171,6 +171,9 @@ def tell_fitted(found: hyst.Identified, records: Sequence[hyst.Record]) -> None:
     show_table(hyst.report.parameters_table(found))
     if any(math.isnan(each) for each in found.standard_errors):
         print("(-: on a bound, or not determined by the records)")
+    of_dynamics = hyst.report.dynamics_table(found)
+    if of_dynamics.rows:
+        show_table(of_dynamics)
     for sentence in found.undetermined:
         print(f"note: {sentence}")
 

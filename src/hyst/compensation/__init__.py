@@ -7,6 +7,8 @@ from hyst.compensation.error_of_inverse.inverse_reduction import reduce_inverse
 from hyst.compensation.error_of_inverse.inverse_slopes import slope_range
 from hyst.compensation.expectation import ModelError
 from hyst.compensation.invert import METHODS, invert_trajectory
+from hyst.compensation.loop_check.loops import LoopsBehind
+from hyst.compensation.loop_check.loops_behind import loops_behind
 from hyst.compensation.result import Compensation, error_parts
 from hyst.compensation.suited_methods import methods_for
 
@@ -14,10 +16,12 @@ __all__ = [
     "METHODS",
     "Compensation",
     "ErrorBound",
+    "LoopsBehind",
     "ModelError",
     "error_bound",
     "error_parts",
     "invert_trajectory",
+    "loops_behind",
     "methods_for",
     "reduce_inverse",
     "slope_range",

@@ -139,7 +139,8 @@ def find(
         replace(each, parametrization=_in_given_units(each, task)) for each in (fit, *choice.rivals)
     )
     notes = task.notes + left_out + choice.notes + _outlying(task, options)
-    return Found(fit, task.given, choice.candidates, notes, tuple(rivals), task.evidence)
+    data = fit.family.without_past(fit, task.given)
+    return Found(fit, data, choice.candidates, notes, tuple(rivals), task.evidence)
 
 
 def _tasks(

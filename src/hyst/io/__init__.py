@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hyst.io.formats import FORMATS, read_table, read_tables
+from hyst.io.frequency_response_file import read_frequency_response
 from hyst.io.header import split_unit
 from hyst.io.reading import read_column, read_record, read_records
 from hyst.io.summary import ColumnSummary, FileSummary, summarize_file
@@ -19,6 +20,7 @@ __all__ = [
     "Table",
     "join_unit",
     "read_column",
+    "read_frequency_response",
     "read_record",
     "read_records",
     "read_table",

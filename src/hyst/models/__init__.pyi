@@ -3,6 +3,7 @@
 from hyst.models.bouc_wen import BoucWen as BoucWen
 from hyst.models.butterfly import Butterfly as Butterfly
 from hyst.models.coleman_hodgdon import ColemanHodgdon as ColemanHodgdon
+from hyst.models.continuous_dynamics import ContinuousDynamics as ContinuousDynamics
 from hyst.models.creep import Creep as Creep
 from hyst.models.creeping_plays import CreepingPlays as CreepingPlays
 from hyst.models.dahl import Dahl as Dahl

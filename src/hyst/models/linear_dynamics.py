@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Self, final
+from typing import Any, Literal, Self, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,18 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 from hyst.checks.arrays import as_constants
 from hyst.checks.numbers import as_sample_time, whole_number
 from hyst.errors import InputError
-from hyst.models.linear_properties import (
-    answers_after,
-    causal_inverse,
-    poles_of,
-    settling_samples,
-    values_at,
-    zeros_of,
-)
+from hyst.models.continuous_dynamics import ContinuousDynamics, in_seconds
+from hyst.models.hold import held_late, released
+from hyst.models.linear_properties import causal_inverse, settling_samples
 from hyst.models.matrices import LARGEST_DELAY, checked_matrices
 from hyst.models.python_control import matrices_of, state_space_of
-from hyst.models.realizations import cascade, companion, sections_of, zero_order_hold
-from hyst.operators.base import Operator
+from hyst.models.realizations import cascade, companion, sections_of
+from hyst.models.state_space import StateSpace
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.portrait import NOTHING, Portrait
 from hyst.operators.registry import entries, register
@@ -37,7 +32,7 @@ Array = NDArray[np.float64]
 @register
 @final
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class LinearDynamics(Operator):
+class LinearDynamics(StateSpace):
     """Linear dynamics: ``x_{k+1} = A x_k + B w_k, y_k = C x_k + D w_k, w_k = u_{k-delay}``.
 
     Parameters
@@ -129,7 +124,7 @@ class LinearDynamics(Operator):
         return cls(*companion(num, den), dt, delay)
 
     @classmethod
-    def from_continuous(cls, num: ArrayLike, den: ArrayLike, dt: float, delay: int = 0) -> Self:
+    def from_continuous(cls, num: ArrayLike, den: ArrayLike, dt: float, delay: float = 0) -> Self:
         """Sample ``num(s)/den(s)`` with the input held between samples (zero-order hold).
 
         Parameters
@@ -137,7 +132,7 @@ class LinearDynamics(Operator):
         num, den
             Coefficients in descending powers of s.
         dt, delay
-            Sample time, s, and whole samples.
+            Sample time, s, and dead time in samples, whole or not.
 
         Raises
         ------
@@ -150,7 +145,39 @@ class LinearDynamics(Operator):
         >>> bool(abs(lag.poles()[0] - np.exp(-1.0)) < 1e-15)
         True
         """
-        return cls(*zero_order_hold(num, den, dt), dt, delay)
+        matrices, whole = held_late(num, den, dt, delay)
+        return cls(*matrices, dt, whole)
+
+    def to_continuous(
+        self, method: Literal["zoh"] = "zoh", *, split_delay: bool = True
+    ) -> ContinuousDynamics:
+        """Give the continuous system whose zero-order hold this is, slower than half the rate.
+
+        Parameters
+        ----------
+        method
+            ``"zoh"``: the input is held between samples.
+        split_delay
+            Tell a feedthrough behind a delay as a part of a sample of dead time, if one has it.
+
+        Raises
+        ------
+        InputError
+            If there is no such method.
+        NotInvertibleError
+            If a pole lies at 0 or on the negative real axis.
+
+        Examples
+        --------
+        >>> lag = LinearDynamics.from_continuous([100.0], [1.0, 100.0], dt=0.01, delay=1.4)
+        >>> back = lag.to_continuous()
+        >>> np.round(back.den, 9).tolist(), round(back.delay, 12)
+        ([1.0, 100.0], 0.014)
+        """
+        if method != "zoh":
+            raise InputError(f"method is {method!r}; give 'zoh'")
+        parts = released(self.A, self.B, self.C, self.D, self.delay, split_delay)
+        return in_seconds(*parts, self.dt)
 
     @classmethod
     def from_zeros_poles_gain(
@@ -319,37 +346,6 @@ class LinearDynamics(Operator):
         choices = {"order": self.order, "delay": self.delay}
         return (Stage("state_space", constants, choices=choices),)
 
-    @property
-    def order(self) -> int:
-        """Number of states n, the delay not counted."""
-        return int(self.B.size)
-
-    def poles(self) -> NDArray[np.complex128]:
-        """Give the eigenvalues of A, the largest modulus first; those of the delay are left out."""
-        return poles_of(self.A)
-
-    def relative_degree(self) -> int:
-        """Give the number of samples, delay included, until the output answers.
-
-        That of the zero system is its order plus one, plus the delay.
-        """
-        return answers_after(self.A, self.B, self.C, self.D) + self.delay
-
-    def zeros(self) -> NDArray[np.complex128]:
-        """Give the finite zeros, the largest modulus first; the delay adds none."""
-        return zeros_of(self.A, self.B, self.C, self.D)
-
-    def is_stable(self) -> bool:
-        """Tell whether all poles lie inside the unit circle."""
-        return self.order == 0 or bool(np.abs(self.poles()[0]) < 1.0)
-
-    def dc_gain(self) -> float:
-        """Give the gain at rest, ``C (I - A)^-1 B + D``; infinity for a pole at 1."""
-        try:
-            return float(self.C @ np.linalg.solve(np.eye(self.order) - self.A, self.B)) + self.D
-        except np.linalg.LinAlgError:
-            return math.inf
-
     def impulse_response(self, samples: int) -> Array:
         """Give the Markov parameters ``H_0 .. H_{samples - 1}``, from rest.
 
@@ -367,18 +363,6 @@ class LinearDynamics(Operator):
         impulse = np.zeros(whole_number(samples, "samples", 1))
         impulse[0] = 1.0
         return self.run(impulse, np.zeros(self.order + self.delay))[0]
-
-    def frequency_response(self, frequency: ArrayLike) -> NDArray[np.complex128]:
-        """Give ``G(exp(2 pi i f dt))``.
-
-        Parameters
-        ----------
-        frequency
-            Shape (m,), Hz.
-        """
-        angle = 2.0 * np.pi * self.dt * np.atleast_1d(np.asarray(frequency, dtype=np.float64))
-        points = np.exp(1j * angle)
-        return np.asarray(values_at(points, self.A, self.B, self.C, self.D) / points**self.delay)
 
     def __repr__(self) -> str:
         late = f", delay={self.delay}" if self.delay else ""

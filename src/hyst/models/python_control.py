@@ -11,6 +11,7 @@ from hyst.errors import InputError, MissingExtraError
 from hyst.models.realizations import companion, zero_order_hold
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 
 def matrices_of(system: Any, dt: float | None) -> tuple[Array, Array, Array, float, float]:
@@ -69,12 +70,7 @@ def state_space_of(A: Array, B: Array, C: Array, D: float, dt: float, delay: int
     MissingExtraError
         If python-control is not installed.
     """
-    try:
-        import control  # optional
-    except ImportError:
-        raise MissingExtraError(
-            "python-control is not installed; install hyst[control] or the package control"
-        ) from None
+    control = _python_control()
     n, d = B.size, delay
     a, b, c = np.zeros((n + d, n + d)), np.zeros((n + d, 1)), np.zeros((1, n + d))
     a[:n, :n], c[0, :n] = A, C
@@ -85,6 +81,60 @@ def state_space_of(A: Array, B: Array, C: Array, D: float, dt: float, delay: int
         a[:n, n], c[0, n], b[-1, 0] = B, D, 1.0
         a[np.arange(n, n + d - 1), np.arange(n + 1, n + d)] = 1.0
     return control.ss(a, b, c, D if d == 0 else 0.0, dt, remove_useless_states=False)
+
+
+def continuous_state_space_of(
+    A: Array, B: Array, C: Array, D: float, delay: float, order: int
+) -> Any:
+    """Give the ``control.StateSpace`` of a continuous system, its dead time by Pade.
+
+    Parameters
+    ----------
+    A, B, C, D
+        Shapes (n, n), (n,), (n,) and a number.
+    delay
+        Dead time, s.
+    order
+        Of Pade's approximation; 0: without the dead time.
+
+    Raises
+    ------
+    MissingExtraError
+        If python-control is not installed.
+    """
+    control = _python_control()
+    system = control.ss(A, B[:, None], C[None, :], D, remove_useless_states=False)
+    if order == 0 or delay == 0.0:
+        return system
+    return control.series(control.tf2ss(*control.pade(delay, order)), system)
+
+
+def frequency_response_data_of(response: Complex, frequency: Array, dt: float) -> Any:
+    """Give the ``control.FrequencyResponseData`` of a sampled system.
+
+    Parameters
+    ----------
+    response, frequency
+        Shape (p,): complex values, and where, Hz.
+    dt
+        Sample time, s.
+
+    Raises
+    ------
+    MissingExtraError
+        If python-control is not installed.
+    """
+    return _python_control().frd(response, 2.0 * np.pi * frequency, dt)
+
+
+def _python_control() -> Any:
+    try:
+        import control  # optional
+    except ImportError:
+        raise MissingExtraError(
+            "python-control is not installed; install hyst[control] or the package control"
+        ) from None
+    return control
 
 
 def _polynomials(system: Any) -> tuple[Array, Array]:

@@ -17,10 +17,14 @@ from hyst.report.distortion_section import distortion_sections as distortion_sec
 from hyst.report.drive_figure import draw_drive as draw_drive
 from hyst.report.drive_summary import drive_table as drive_table
 from hyst.report.dynamics_figures import dynamics_sections as dynamics_sections
+from hyst.report.dynamics_figures import dynamics_table as dynamics_table
 from hyst.report.estimation_figure import draw_estimates as draw_estimates
 from hyst.report.forc_figure import draw_forc_diagram as draw_forc_diagram
 from hyst.report.identification_report import Section as Section
 from hyst.report.identification_report import write_report as write_report
+from hyst.report.loops_figure import draw_loops_behind as draw_loops_behind
+from hyst.report.loops_tables import loops_table as loops_table
+from hyst.report.loops_tables import repeated_loops_table as repeated_loops_table
 from hyst.report.observer_answer import ObserverAnswer as ObserverAnswer
 from hyst.report.observer_figures import draw_observer_bode as draw_observer_bode
 from hyst.report.tables import Table as Table

@@ -7,12 +7,24 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from hyst.identification import Identified
+from hyst.identification.families.hammerstein.dynamics_words import (
+    HEADER,
+    bands_told,
+    continuous_of,
+    polynomials_told,
+    root_rows,
+)
 from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
+from hyst.identification.families.hammerstein.markov import MarkovParameters
 from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn, with_unit
+from hyst.report.frequency_response_figure import draw_dynamics
 from hyst.report.identification_report import Section
 from hyst.report.tables import Table, number
 
 Array = NDArray[np.float64]
+
+RESPONSE = "frequency_response.csv"
+"""File of the frequency response, beside the report."""
 
 _MOST_POINTS = 20_000
 _BINS = 40
@@ -33,14 +45,14 @@ def dynamics_sections(found: Identified) -> tuple[Section, ...]:
     """
     if not isinstance(found, IdentifiedHammerstein):
         return ()
-    sections = [_response(found), _dynamics(found)]
+    first = [] if found.markov is None else [_response(found, found.markov)]
+    sections = [*first, _dynamics(found)]
     if found.loop.valid.stop > found.loop.valid.start:
         sections.append(_loop(found))
     return tuple(sections)
 
 
-def _response(found: IdentifiedHammerstein) -> Section:
-    markov = found.markov
+def _response(found: IdentifiedHammerstein, markov: MarkovParameters) -> Section:
     return Section(
         heading="First step: the impulse response",
         texts=(
@@ -63,24 +75,21 @@ def _response(found: IdentifiedHammerstein) -> Section:
             ),
         ),
         picture="impulse_response.png",
-        png=draw_impulse_response(found),
+        png=draw_impulse_response(found, markov),
         caption="Markov parameters, and singular values of their Hankel matrix.",
     )
 
 
 def _dynamics(found: IdentifiedHammerstein) -> Section:
-    rows = tuple(
-        (
-            f"{pole.real:+.6g} {pole.imag:+.6g}j",
-            f"{error.real:.2g}, {error.imag:.2g}",
-            number(abs(float(np.angle(pole))) / (2.0 * np.pi * found.dynamics.dt)),
-        )
-        for pole, error in zip(found.poles, found.pole_standard_errors, strict=True)
-    )
     inverse = found.inverse_of_dynamics
     texts = [
         "G carries no gain of its own: its gain at rest is 1, because input and output determine "
-        "only the product with the hysteresis."
+        "only the product with the hysteresis.",
+        f"The drive shows G {bands_told(found.known)}. Standard errors and band count the noise "
+        "and not what a model of too low an order leaves out; where the drive has no power within "
+        "an octave (shaded), the response is an extrapolation by the model. The table of gain and "
+        f"phase with their bands is {RESPONSE}.",
+        *_in_continuous_time(found),
     ]
     if inverse is not None:
         texts.append(
@@ -91,10 +100,39 @@ def _dynamics(found: IdentifiedHammerstein) -> Section:
     return Section(
         heading="The dynamics",
         texts=tuple(texts),
-        table=Table("Poles of G", ("pole", "standard errors", "frequency [Hz]"), rows),
+        table=dynamics_table(found),
         picture="dynamics.png",
         png=draw_dynamics(found),
-        caption="Frequency response of G, before and after the refinement.",
+        caption="Frequency response of G, before and after the refinement, with its 95 % band.",
+        files={RESPONSE: found.frequency_response().to_csv().encode()},
+    )
+
+
+def dynamics_table(found: Identified) -> Table:
+    """Give poles and zeros of the dynamics with standard errors; no rows where there are none.
+
+    Parameters
+    ----------
+    found
+        Any result.
+
+    Returns
+    -------
+    Table
+    """
+    rows = root_rows(found.known) if isinstance(found, IdentifiedHammerstein) else ()
+    return Table("Poles and zeros of G, with standard errors", HEADER, rows)
+
+
+def _in_continuous_time(found: IdentifiedHammerstein) -> tuple[str, ...]:
+    continuous, reason = continuous_of(found.dynamics)
+    if continuous is None:
+        return (f"There is no continuous system whose sampled form it is: {reason}.",)
+    late = f" and a dead time of {continuous.delay:.6g} s" if continuous.delay else ""
+    polynomials = "; ".join(" ".join(each.split()) for each in polynomials_told(continuous))
+    return (
+        "It is the sampled form, for an input held between samples, of the continuous system with "
+        f"{polynomials} (descending powers of s, rad/s){late}.",
     )
 
 
@@ -104,6 +142,8 @@ def _loop(found: IdentifiedHammerstein) -> Section:
         texts=(
             "The signal behind the hysteresis was estimated from the output alone, by the inverse "
             f"of G; noise blurs it by +- {found.loop.band:.3g} (two standard deviations).",
+            "A drive of many frequencies makes a cloud of it. Record sines of one amplitude and "
+            "run hyst loop: it draws one loop and tests whether the frequency moves it.",
         ),
         table=Table("Loop", ("samples shown", "band"), (_loop_row(found),)),
         picture="estimated_loop.png",
@@ -119,11 +159,18 @@ def _loop_row(found: IdentifiedHammerstein) -> tuple[str, str]:
 
 
 @drawn
-def draw_impulse_response(found: IdentifiedHammerstein) -> Figure:
-    """Draw step 1 and the singular values of step 2, as PNG."""
+def draw_impulse_response(found: IdentifiedHammerstein, markov: MarkovParameters) -> Figure:
+    """Draw step 1 and the singular values of step 2, as PNG.
+
+    Parameters
+    ----------
+    found
+        The result.
+    markov
+        Step 1.
+    """
     figure, (response, singular) = blank(2, 1, 10.0, 3.9)
-    markov = found.markov
-    scale = _scale(found)
+    scale = _scale(found, markov)
     lags = np.arange(markov.order + 1)
     response.errorbar(
         lags,
@@ -146,27 +193,6 @@ def draw_impulse_response(found: IdentifiedHammerstein) -> Figure:
     singular.axvline(found.dynamics.order + 0.5, color=MODELLED, linestyle="--")
     singular.set_title("Singular values, order chosen")
     singular.set_xlabel("number")
-    return figure
-
-
-@drawn
-def draw_dynamics(found: IdentifiedHammerstein) -> Figure:
-    """Draw the frequency response of G, as PNG."""
-    figure, (gain, phase) = blank(2, 1, 10.0, 3.9)
-    nyquist = 0.5 / found.dynamics.dt
-    frequency = np.geomspace(1e-3 * nyquist, 0.999 * nyquist, 600)
-    for G, color, label in (
-        (found.first_dynamics, MEASURED, "realized"),
-        (found.dynamics, MODELLED, "refined"),
-    ):
-        response = G.frequency_response(frequency)
-        gain.loglog(frequency, np.abs(response), color=color, label=label)
-        phase.semilogx(frequency, np.degrees(np.unwrap(np.angle(response))), color=color)
-    gain.set_title("Gain of G")
-    phase.set_title("Phase of G [degrees]")
-    gain.set_xlabel("frequency [Hz]")
-    phase.set_xlabel("frequency [Hz]")
-    gain.legend()
     return figure
 
 
@@ -234,8 +260,8 @@ def _shown_range(v: Array, fitted: Array) -> tuple[float, float]:
     return float(low - margin), float(high + margin)
 
 
-def _scale(found: IdentifiedHammerstein) -> float:
+def _scale(found: IdentifiedHammerstein, markov: MarkovParameters) -> float:
     """Factor that brings the first step to DC gain 1, by least squares on the refined response."""
-    h = found.dynamics.impulse_response(found.markov.order + 1)
-    m = found.markov.values
+    h = found.dynamics.impulse_response(markov.order + 1)
+    m = markov.values
     return float(m @ h) / float(m @ m)

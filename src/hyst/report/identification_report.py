@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 import os
 import shlex
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -55,6 +55,8 @@ class Section:
         What it says.
     picture, png, caption
         Name of the picture's file, its content, and what there is to see.
+    files
+        Further files to write beside it, by name.
     """
 
     heading: str
@@ -63,6 +65,7 @@ class Section:
     picture: str
     png: bytes
     caption: str
+    files: Mapping[str, bytes] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +112,7 @@ def write_report(
     banner
         A line to put above everything, for instance that the data are simulated.
     sections
-        Further sections of the page; their pictures are written too.
+        Further sections of the page; their pictures and files are written too.
 
     Returns
     -------
@@ -140,10 +143,15 @@ def write_report(
         for name, content in figures.items():
             (temporary / name).write_bytes(content)
         for section in sections:
-            (temporary / section.picture).write_bytes(section.png)
+            for name, content in _files_of(section).items():
+                (temporary / name).write_bytes(content)
         (temporary / PAGE).write_text(_page(findings, figures), encoding="utf-8")
-    names = (*FILES, *(section.picture for section in sections))
+    names = (*FILES, *(name for section in sections for name in _files_of(section)))
     return tuple(Path(folder) / name for name in names)
+
+
+def _files_of(section: Section) -> dict[str, bytes]:
+    return {section.picture: section.png, **section.files}
 
 
 def _several(records: Record | Sequence[Record]) -> tuple[Record, ...]:

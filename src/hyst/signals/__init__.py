@@ -12,6 +12,7 @@ from hyst.signals.first_order_curves import (
     reversal_curves,
 )
 from hyst.signals.loop_metrics import hysteresis_percent, loop_area
+from hyst.signals.measured_response import MeasuredResponse
 from hyst.signals.metrics import Metrics, error_metrics
 from hyst.signals.multisines import multisine
 from hyst.signals.noise import estimate_noise, suggest_dead_band
@@ -26,6 +27,7 @@ __all__ = [
     "Drive",
     "ForcDensity",
     "Limits",
+    "MeasuredResponse",
     "Metrics",
     "Persistence",
     "Record",

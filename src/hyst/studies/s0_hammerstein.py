@@ -214,6 +214,7 @@ def figures() -> dict[str, bytes]:
         PNG by file name.
     """
     v, record, found = _designed()
+    assert found.markov is not None, "its dynamics were not given"
     printed = printed_input(DT)
     h = G.impulse_response(FIR_ORDER + 1)
     by_printed = fit_markov(simulate(TWO_SIDED, printed)[1], FIR_ORDER).values
@@ -233,7 +234,7 @@ def figures() -> dict[str, bytes]:
     return {
         "s0-fig3.png": draw_markov(h, scaled),
         "s0-fig4.png": draw_bode(
-            G, {"before refinement": found.first_dynamics, "refined": found.dynamics}
+            G, {"before refinement": _before_refinement(found), "refined": found.dynamics}
         ),
         "s0-fig5.png": draw_intermediate(
             record.time[part], v[part], found.loop.v[part] / gain, "Designed input"
@@ -243,3 +244,9 @@ def figures() -> dict[str, bytes]:
         ),
         "s0-fig6-loop.png": draw_loops(sine[last], v_sine[last], v_hat[last], "u = 10 sin(T_s k)"),
     }
+
+
+def _before_refinement(found: IdentifiedHammerstein) -> LinearDynamics:
+    """Give the dynamics of the paper's steps, which this drive determines."""
+    assert found.first_dynamics is not None, "fir_order was given"
+    return found.first_dynamics

@@ -1,4 +1,4 @@
-"""Coefficients and poles of dynamics, their derivatives, and the gauge of their gain."""
+"""Coefficients of dynamics, their derivatives, and the gauge of their gain."""
 
 from __future__ import annotations
 
@@ -8,8 +8,6 @@ import pytest
 from hyst.identification.families.hammerstein.coefficients import (
     coefficients,
     coefficients_by_theta,
-    poles_as_numbers,
-    poles_by_theta,
 )
 from hyst.identification.families.hammerstein.joint import JointParametrization, joint
 from hyst.identification.fit.parametrization import Parametrization
@@ -64,8 +62,6 @@ def test_derivatives_are_those_of_differences(feedthrough: float) -> None:
     # Central differences of step 1e-6 keep half of the digits.
     by_theta = central(lambda t: coefficients(parametrization.dynamics(t)), theta)[:, 2:]
     assert coefficients_by_theta(dynamics, free) == pytest.approx(by_theta, abs=1e-7)
-    by_theta = central(lambda t: poles_as_numbers(parametrization.dynamics(t)), theta)[:, 2:]
-    assert poles_by_theta(dynamics, free) == pytest.approx(by_theta, abs=1e-7)
     assert parametrization.gauges is not None
     by_theta = central(lambda t: parametrization.gauges(t)[0], theta)  # type: ignore[misc]
     assert parametrization.gauges(theta)[1] == pytest.approx(by_theta, abs=1e-6)

@@ -8,7 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hyst.errors import NotIdentifiableError, SolverError
-from hyst.identification.choice.cross_validation import Score, cross_validate, fewest_left
+from hyst.identification.choice.cross_validation import (
+    Score,
+    cross_validate,
+    fewest_left,
+    score_in_sample,
+)
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.fit.bounded_least_squares import CONVERGED, Solution
 from hyst.identification.record_use.overview import Overview
@@ -67,6 +72,8 @@ class Contender:
         other
             A better one, of the same records.
         """
+        if self.family.judged_in_sample and other.family.judged_in_sample:
+            return not self.score.seems_worse(other.score)
         output_range, least = self.overview.output_range, other.score.rms
         negligible = 0.0
         if not self.overview.shows_minor_loops:
@@ -304,7 +311,8 @@ def contender_of(family: Family, overview: Overview, fit: Fit) -> Contender:
     fit
         Of all samples.
     """
-    score = cross_validate(overview, fit)
+    score_of = score_in_sample if family.judged_in_sample else cross_validate
+    score = score_of(overview, fit)
     candidate = Candidate(
         family.name,
         fit.size,
@@ -327,7 +335,8 @@ def _grow(family: Family, overview: Overview, progress: Callable[[str], None]) -
         contender = first_contender(family, overview, size)
         found.append(contender)
         score = contender.score.rms
-        idle = 0 if score < best * (1.0 - SMALLEST_GAIN) else idle + 1
+        gain = 0.0 if family.judged_in_sample else SMALLEST_GAIN
+        idle = 0 if score < best * (1.0 - gain) else idle + 1
         best = min(best, score)
         if idle == 2:
             break

@@ -76,6 +76,8 @@ class Family(ABC):
     """Whether it may choose among the delays left possible, by a fit for each of them."""
     loops_tell_delay: ClassVar[bool | str] = True
     """Whether a delay that loops of a general kind show is taken, or its ``"own"``; else 0."""
+    judged_in_sample: ClassVar[bool] = False
+    """Whether its sizes are scored on what they were fitted to, for blocks are no witnesses."""
     answers_late: ClassVar[bool] = False
     """Whether the delay of the output is part of the model, so that none is looked for before."""
     depends_on_rate: ClassVar[bool] = False
@@ -298,6 +300,18 @@ class Family(ABC):
             constants.values[free],
             fit.parametrization.transform[free],
         )
+
+    def without_past(self, fit: Fit, data: Data) -> Data:
+        """Give the records without what a past that nobody knows has left in them.
+
+        Parameters
+        ----------
+        fit
+            The final fit, in the user's units.
+        data
+            Its records.
+        """
+        return data
 
     def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
         """Add what only this family can say to the result.

@@ -198,3 +198,14 @@ def read_whole(text: str, _: str) -> int | str:
         return int(text)
     except ValueError:
         return text
+
+
+def as_text(text: str, _: str) -> str:
+    """Give what was typed as it is, as the name of a file that the command line opens.
+
+    Parameters
+    ----------
+    text
+        What was typed.
+    """
+    return text

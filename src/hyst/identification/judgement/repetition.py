@@ -21,11 +21,22 @@ FEWEST_AT_A_PHASE = 3
 
 def period_of(part: Part) -> float:
     """Give the samples, no whole number, after which all of the drive repeats; 0 if it does not."""
-    found = drive_period(part.u)
+    return repeats_after(part.u)
+
+
+def repeats_after(u: Array) -> float:
+    """Give the samples, no whole number, after which all of a drive repeats; 0 if it does not.
+
+    Parameters
+    ----------
+    u
+        Shape (n,).
+    """
+    found = drive_period(u)
     if found is None:
         return 0.0
-    apart = part.u[first_comparable(found) :] - earlier(part.u, found)[0]
-    same = float(np.sqrt(np.mean(apart**2))) <= SAME_DRIVE * float(np.ptp(part.u))
+    apart = u[first_comparable(found) :] - earlier(u, found)[0]
+    same = float(np.sqrt(np.mean(apart**2))) <= SAME_DRIVE * float(np.ptp(u))
     return found if same else 0.0
 
 

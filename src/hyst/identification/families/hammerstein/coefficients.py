@@ -1,4 +1,4 @@
-"""What people are told of dynamics, with its exact derivative: coefficients and poles.
+"""Coefficients of dynamics, which people are told, with their exact derivative.
 
 With ``A = A0 + B0 k'`` the numerator ``adj(z - A) B0`` of the states does not depend on k, so the
 coefficients of ``sum b_i q^-i / (1 + sum a_i q^-i)`` are affine in k, C and D a.
@@ -50,45 +50,6 @@ def coefficients_by_theta(dynamics: LinearDynamics, feedthrough: bool) -> Array:
     result[n + 1 :, n : 2 * n] = states
     result[n:, -1] = a
     return result if feedthrough else result[:, :-1]
-
-
-def poles_as_numbers(dynamics: LinearDynamics) -> Array:
-    """Give real parts, then imaginary parts, of the poles in a settled order.
-
-    Parameters
-    ----------
-    dynamics
-        Of order n.
-    """
-    poles = np.linalg.eigvals(dynamics.A)
-    poles = poles[np.lexsort((poles.imag, poles.real))]
-    return np.concatenate([poles.real, poles.imag])
-
-
-def poles_by_theta(dynamics: LinearDynamics, feedthrough: bool) -> Array:
-    """Give the derivative of ``poles_as_numbers`` by k, C and D.
-
-    Parameters
-    ----------
-    dynamics
-        Of order n.
-    feedthrough
-        Whether D is free.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (2 n, 2 n), or one column more; not finite where two poles are one.
-    """
-    n = dynamics.order
-    poles, right = np.linalg.eig(dynamics.A)
-    order = np.lexsort((poles.imag, poles.real))
-    # The rows of the inverse are the left eigenvectors, scaled so that w' v = 1.
-    left_b = np.linalg.solve(right, dynamics.B.astype(complex))
-    by_k = (left_b[:, None] * right.T)[order]
-    result = np.zeros((2 * n, 2 * n + int(feedthrough)))
-    result[:, :n] = np.concatenate([by_k.real, by_k.imag])
-    return result
 
 
 def _denominator(dynamics: LinearDynamics) -> Array:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError, NotIdentifiableError
+from hyst.identification.families.hammerstein.repetition import advice_on_period, repeats
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
@@ -182,6 +183,6 @@ def _periods(record: Record, period: int, settle: int, least: int) -> tuple[Arra
         )
     used = slice(settle * period, (settle + count) * period)
     u, y = record.u[used].reshape(count, period), record.y[used].reshape(count, period)
-    if float(np.abs(u - u[0]).max()) > 0.05 * float(np.ptp(u)):
-        raise InputError(f"the input does not repeat after {period} samples; give its period")
+    if not repeats(u):
+        raise InputError(advice_on_period(record.u[settle * period :], period, least))
     return u, y

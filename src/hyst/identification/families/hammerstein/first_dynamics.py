@@ -19,6 +19,7 @@ from hyst.identification.families.hammerstein.realization import Realization, re
 from hyst.identification.families.option import AUTO
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics, StableInverse
+from hyst.operators import Operator
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
@@ -48,11 +49,27 @@ def delay_of(markov: MarkovParameters, wanted: float | str) -> int:
         If what is wanted is no number of samples.
     """
     if wanted != AUTO:
-        return as_whole_number(wanted, "delay", 0, MOST_DELAY, " samples, or 'auto'")
+        return as_whole_delay(wanted)
     size = np.abs(markov.values)
     floor = np.maximum(_SIGNIFICANT * markov.standard_errors, _NEGLIGIBLE * size.max())
     begun = np.flatnonzero(size > floor)
     return max(int(begun[0]) - 1, 0) if begun.size else 0
+
+
+def as_whole_delay(wanted: float | str) -> int:
+    """Give a delay that was asked for.
+
+    Parameters
+    ----------
+    wanted
+        Samples.
+
+    Raises
+    ------
+    InputError
+        If it is no whole number of samples.
+    """
+    return as_whole_number(wanted, "delay", 0, MOST_DELAY, " samples, or 'auto'")
 
 
 def orders_to_try(
@@ -194,6 +211,21 @@ def signal_behind(data: Data, dynamics: LinearDynamics) -> Data:
     return replace(
         data, records=tuple(records), starts=tuple(starts), lag=0.0, kept=(), disturbances=()
     )
+
+
+def behind_operator(data: Data, hysteresis: Operator) -> Data:
+    """Give the records of the hysteresis alone: the input, and what a model of it makes of it.
+
+    Parameters
+    ----------
+    data
+        The records.
+    hysteresis
+        The model.
+    """
+    data = shortened(data, max(LONGEST_START // len(data.records), 1))
+    records = tuple(replace(each, y=hysteresis(each.u)) for each in data.records)
+    return replace(data, records=records, lag=0.0, kept=(), disturbances=())
 
 
 def shortened(data: Data, samples: int) -> Data:

@@ -17,22 +17,61 @@ from hyst.identification.families.hammerstein.coefficients import (
     coefficients_by_theta,
 )
 from hyst.identification.families.hammerstein.distortion_levels import average_periods
-from hyst.identification.families.hammerstein.first_dynamics import shortened, signal_behind
+from hyst.identification.families.hammerstein.first_dynamics import (
+    as_whole_delay,
+    shortened,
+    signal_behind,
+)
 from hyst.identification.families.hammerstein.first_guess import (
     FirstDynamics,
     first_dynamics,
+    first_dynamics_of_plays,
     fronts_of,
 )
+from hyst.identification.families.hammerstein.given_dynamics import (
+    GivenDynamics,
+    as_given_dynamics,
+)
+from hyst.identification.families.hammerstein.held_doubts import doubts_about_given
+from hyst.identification.families.hammerstein.held_front import (
+    DEFAULT,
+    HeldFront,
+    as_held_front,
+    require_one_hysteresis,
+    told_of,
+)
+from hyst.identification.families.hammerstein.held_joint import joint_held
 from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
+from hyst.identification.families.hammerstein.known_front import (
+    behind_known,
+    starts_behind_known,
+)
+from hyst.identification.families.hammerstein.known_start import (
+    held_dynamics,
+    settled,
+    starts_of_known,
+    told_of_delay,
+)
 from hyst.identification.families.hammerstein.markov import choose_markov
 from hyst.identification.families.hammerstein.record_checks import flat_tops
 from hyst.identification.families.hammerstein.result import identified_with_dynamics
+from hyst.identification.families.hammerstein.ringing import without_ringing
+from hyst.identification.families.hammerstein.settled_dynamics import (
+    ROUNDING,
+    numbers_of,
+    price,
+    samples_worth,
+    settled_dynamics,
+    simpler,
+)
 from hyst.identification.families.hammerstein.without_dynamics import dynamics_doubts
 from hyst.identification.families.hammerstein.words import WORDS, words_behind
+from hyst.identification.families.linear import Linear
 from hyst.identification.families.option import (
     AUTO,
     Option,
+    as_text,
     option,
     read_whole,
     whole_number_or_auto,
@@ -42,6 +81,7 @@ from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.thinning import MOST_SAMPLES
 from hyst.identification.record_use.used_samples import Data, prepare
 from hyst.identification.result.identified import Identified
+from hyst.models import LinearDynamics
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
@@ -53,7 +93,7 @@ MOST_LAGS, MOST_STATES, LONGEST_PERIOD = 5000, 64, 10**9
 
 _WARM_UP = 8_000
 _BURST = 12
-_STALLED = 0.99
+_STALLED = 0.998
 _TOLERANCE = 2e-2  # of the residual variance: at most a seventh of a standard error is left
 
 
@@ -99,18 +139,29 @@ class Hammerstein(Family):
         Number of states of G, 1 to 64, or ``"auto"``: as many as lower the error noticeably.
     period
         Samples of a period of the drive: all but the first are averaged. None: there is none.
+    dynamics
+        G where it is known, which is held at a gain of 1 at rest: a ``LinearDynamics``, a model
+        with it at its output, a system of python-control or scipy.signal (continuous ones with
+        their input held between samples), or a frequency response, to which dynamics are fitted
+        first (``hyst.read_frequency_response``). The drive need not excite an impulse response
+        then. None: it is identified.
+    front
+        The hysteresis where it is known, which is held but for a gain and an offset after it: an
+        operator, a result of ``hyst.identify``, or a model that ``hyst.load`` read. None: it is
+        identified.
     """
 
     name = "hammerstein"
     words = WORDS
     methods = ("exact", "noncausal")
+    judged_in_sample = True
     answers_late = True
     depends_on_rate = True
     explains = ("rate dependence", "dynamics")
     wraps = "hysteresis"
 
     hysteresis: Any = option(
-        "mpi",
+        DEFAULT,
         Option(_as_hysteresis, "Family in front of the dynamics.", lambda text, _: text, "FAMILY"),
     )
     fir_order: Any = option(
@@ -128,6 +179,18 @@ class Hammerstein(Family):
             "N",
         ),
     )
+    dynamics: Any = option(
+        None, Option(as_given_dynamics, "Linear dynamics that are known, held.", as_text, "FILE")
+    )
+
+    front: Any = option(
+        None, Option(as_held_front, "Hysteresis that is known, held.", as_text, "FILE")
+    )
+
+    def __post_init__(self) -> None:
+        """Check the options, and that a hysteresis is not given and asked for."""
+        super().__post_init__()
+        require_one_hysteresis(self.front, self.hysteresis)
 
     @classmethod
     def can_wrap(cls, other: type[Family]) -> bool:
@@ -135,8 +198,11 @@ class Hammerstein(Family):
         return not other.answers_late
 
     @property
-    def front(self) -> Family:
-        """The hysteresis."""
+    def hysteresis_family(self) -> Family:
+        """The hysteresis; the one that is given, if one is."""
+        if self.front is not None:
+            given: HeldFront = self.front
+            return given
         assert isinstance(self.hysteresis, Family), "the registry puts an object for a name"
         return self.hysteresis
 
@@ -144,7 +210,7 @@ class Hammerstein(Family):
         self, records: tuple[Record, ...], start: Literal["auto"] | int
     ) -> tuple[Data, tuple[str, ...]]:
         """Average periods; leave out what the unknown state of the dynamics may have disturbed."""
-        refused = self.front.refused_before_dynamics()
+        refused = self.hysteresis_family.refused_before_dynamics()
         if refused:
             raise InputError(refused)
         if self.period is not None:
@@ -157,23 +223,33 @@ class Hammerstein(Family):
             start = int(self.period)
         data = prepare(records, start)
         _require_one_sample_time(data)
-        markov, doubts = choose_markov(data.records, self.fir_order)
-        if start == AUTO:
-            starts = tuple(
-                max(each, min(markov.order, len(record) // 4))
-                for each, record in zip(data.starts, data.records, strict=True)
-            )
-            data = replace(data, starts=starts)
-        return data, flat_tops(data.records) + doubts
+        doubts = flat_tops(data.records)
+        if self.dynamics is not None:
+            dt = data.records[0].dt
+            data = settled(data, self.dynamics.at(dt)) if start == AUTO else data
+            return data, doubts + self.dynamics.told(dt) + told_of(self.front)
+        if not self.starts_from_plays:
+            seen = data if self.front is None else self.front.behind(data)
+            doubts += choose_markov(seen.records, self.fir_order)[1]
+        return data, doubts + told_of(self.front)
+
+    @property
+    def starts_from_plays(self) -> bool:
+        """Whether plays are the first guess of the hysteresis; else the paper's first step is."""
+        return bool(self.fir_order == AUTO)
 
     def suited(self, data: Data) -> tuple[Self, tuple[str, ...]]:
         """Fit the options of the hysteresis to the records."""
-        front, notes = self.front.suited(data)
+        if self.front is not None:
+            return self, ()
+        front, notes = self.hysteresis_family.suited(data)
         return replace(self, hysteresis=front), notes
 
     def in_units(self, input_scale: float, output_scale: float) -> Self:
         """Give the family with options of the hysteresis in other units."""
-        return replace(self, hysteresis=self.front.in_units(input_scale, output_scale))
+        if self.front is not None:
+            return replace(self, front=self.front.in_units(input_scale, output_scale))
+        return replace(self, hysteresis=self.hysteresis_family.in_units(input_scale, output_scale))
 
     def searched(self, data: Data) -> Data:
         """Give the beginning of long records: the dynamics know of every sample."""
@@ -185,31 +261,46 @@ class Hammerstein(Family):
 
     def sizes(self) -> tuple[int, ...]:
         """Give the sizes of the hysteresis."""
-        return self.front.sizes()
+        return self.hysteresis_family.sizes()
 
     def least_parameters(self, size: int) -> int:
         """Give those of the hysteresis and of dynamics of the least order without feedthrough."""
+        if self.dynamics is not None:
+            return self.hysteresis_family.least_parameters(size)
         order = 1 if self.state_order == AUTO else int(self.state_order)
-        return self.front.least_parameters(size) + 2 * order - 1
+        return self.hysteresis_family.least_parameters(size) + 2 * order - 1
 
     def root_weights(self, data: Data) -> Array | None:
         """Give the weights of the hysteresis' family."""
-        return self.front.root_weights(data)
+        return self.hysteresis_family.root_weights(data)
 
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
         """Start from the dynamics found once, and the hysteresis before them of this size."""
+        if self.dynamics is not None:
+            held = overview.once(
+                ("held", self.dynamics), lambda: held_dynamics(self.dynamics, overview)
+            )
+            of_known = self.hysteresis_family, held, overview.data, size
+            return overview.once(("known", self, size), lambda: starts_of_known(*of_known))[:most]
         first = self._first_dynamics(overview)
+        if self.front is not None:
+            return starts_behind_known(self.front, first.dynamics, overview.data)[:most]
         fronts = overview.once(
             ("fronts", self, size),
-            lambda: fronts_of(self, self.front, first, overview.data, size),
+            lambda: fronts_of(self, self.hysteresis_family, first, overview.data, size),
         )
         return [joint(each, first.dynamics) for each in fronts[:most]]
 
     def _first_dynamics(self, overview: Overview) -> FirstDynamics:
+        return overview.once(("first dynamics", self), lambda: self._find_dynamics(overview))
+
+    def _find_dynamics(self, overview: Overview) -> FirstDynamics:
+        if self.starts_from_plays:
+            delay = None if overview.delay == AUTO else as_whole_delay(overview.delay)
+            return first_dynamics_of_plays(overview, self.state_order, delay, self.front)
         orders = (self.fir_order, self.state_order)
-        return overview.once(
-            ("first dynamics", self), lambda: first_dynamics(self, self.front, overview, orders)
-        )
+        front = self.hysteresis_family if self.front is None else Linear()
+        return first_dynamics(self, front, behind_known(self.front, overview), orders)
 
     def solve(
         self, problem: Problem, theta: Array, max_iterations: int, tolerance: float = _TOLERANCE
@@ -230,24 +321,56 @@ class Hammerstein(Family):
             theta, before = found.theta, found.cost
 
     def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
-        """Improve the hysteresis as its own family knows, the dynamics following."""
-        seen = replace(fit, family=self.front, parametrization=joint_of(fit).seen_by_front())
+        """Settle the dynamics; improve the hysteresis as its own family knows, they following."""
+        fit = self._with_settled_dynamics(fit, overview, max_iterations)
+        seen = replace(
+            fit, family=self.hysteresis_family, parametrization=joint_of(fit).seen_by_front()
+        )
         short = Overview(shortened(overview.data, _WARM_UP), rates_matter=True)
-        improved = self.front.finish(seen, short, _BURST)
+        improved = self.hysteresis_family.finish(seen, short, _BURST)
         if np.array_equal(improved.solution.theta, fit.solution.theta):
             return fit
         problem = fit.problem(overview.data)
         again = self.solve(problem, improved.solution.theta, max_iterations)
         return replace(fit, solution=again) if again.cost < fit.solution.cost else fit
 
+    def _with_settled_dynamics(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
+        """Look at delay and feedthrough again, behind the hysteresis that was found."""
+        if not self.starts_from_plays or joint_of(fit).held:
+            return fit
+        before, data = dynamics_of(fit), overview.data
+        delay = None if overview.delay == AUTO else as_whole_delay(overview.delay)
+        now = settled_dynamics(data, self._front_fit(fit).operator, before, delay, orders=False)
+        tried = {numbers_of(before): fit}
+        for each in (now, *simpler(now, delay), *simpler(before, delay)):
+            if numbers_of(each) not in tried:
+                tried[numbers_of(each)] = self._behind(fit, each, data, max_iterations)
+        least = min(tried.values(), key=lambda each: each.solution.cost)
+        errors = least.problem(data).residual(least.solution.theta)[: data.measured().size]
+        worth, floor = samples_worth(errors), ROUNDING * float(data.measured().var())
+
+        def price_of(each: Fit) -> float:
+            count = each.parametrization.free_count
+            return price(each.solution.cost / errors.size, count, worth, floor)
+
+        return min(tried.values(), key=price_of)
+
+    def _behind(self, fit: Fit, dynamics: LinearDynamics, data: Data, most: int) -> Fit:
+        """Fit again, from other dynamics behind the same hysteresis."""
+        front = self._front_fit(fit)
+        parametrization, theta = joint((front.parametrization, front.solution.theta), dynamics)
+        again = replace(fit, parametrization=parametrization)
+        return replace(again, solution=self.solve(again.problem(data), theta, most))
+
     def simplified(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
         """Fit again without the parts of the hysteresis that came out idle."""
         dynamics, before = dynamics_of(fit), self._front_fit(fit)
         behind = Overview(signal_behind(overview.data, dynamics), rates_matter=True)
-        simpler = self.front.simplified(before, behind, max_iterations)
+        simpler = self.hysteresis_family.simplified(before, behind, max_iterations)
         if simpler is before:
             return fit
-        parametrization, theta = joint((simpler.parametrization, simpler.solution.theta), dynamics)
+        beside = joint_held if joint_of(fit).held else joint
+        parametrization, theta = beside((simpler.parametrization, simpler.solution.theta), dynamics)
         family = replace(self, hysteresis=simpler.family)  # which may have fewer terms, too
         left = replace(fit, family=family, parametrization=parametrization)
         problem = left.problem(overview.data)
@@ -260,18 +383,23 @@ class Hammerstein(Family):
         """Give the hysteresis of a fit as a fit of its own family."""
         front = joint_of(fit).front
         solution = replace(fit.solution, theta=fit.solution.theta[: front.size])
-        return Fit(self.front, fit.size, front, solution)
+        return Fit(self.hysteresis_family, fit.size, front, solution)
 
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
         """Say what the hysteresis' family says, and if the dynamics explain nothing."""
-        return self.front.notes(self._front_fit(fit), data) + dynamics_doubts(
-            fit, self.front, self.fitted(data)
-        )
+        notes = self.hysteresis_family.notes(self._front_fit(fit), data)
+        if joint_of(fit).held:
+            given: GivenDynamics = self.dynamics
+            notes += told_of_delay(given, dynamics_of(fit), data)
+            return notes + doubts_about_given(fit, self.fitted(data))
+        return notes + dynamics_doubts(fit, self.hysteresis_family, self.fitted(data))
 
     def estimates(self, fit: Fit) -> Estimates:
         """Give constants of the hysteresis and coefficients of the dynamics."""
         parametrization, dynamics = joint_of(fit), dynamics_of(fit)
-        front = self.front.estimates(self._front_fit(fit))
+        front = self.hysteresis_family.estimates(self._front_fit(fit))
+        if parametrization.held:
+            return front
         n, first = dynamics.order, parametrization.front.size
         by_dynamics = coefficients_by_theta(dynamics, parametrization.feedthrough)
         by_theta = np.zeros((len(front.names) + len(by_dynamics), parametrization.size))
@@ -287,7 +415,13 @@ class Hammerstein(Family):
 
     def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
         """Add the parts, the impulse response, the poles and the loop."""
-        return identified_with_dynamics(identified, fit, self.front, overview, self.fir_order)
+        return identified_with_dynamics(
+            identified, fit, self.hysteresis_family, overview, self.fir_order
+        )
+
+    def without_past(self, fit: Fit, data: Data) -> Data:
+        """Take out what the unknown state of the dynamics before each record left in it."""
+        return without_ringing(data, fit)
 
     def words_for(self, identified: Identified) -> Words:
         """Give the words of the hysteresis and of the dynamics behind it."""

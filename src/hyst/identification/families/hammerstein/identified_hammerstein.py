@@ -6,10 +6,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from hyst.identification.families.family import Family
+from hyst.identification.families.hammerstein.dynamics_words import dynamics_as_data, summary_lines
+from hyst.identification.families.hammerstein.found_root import FoundRoot, plain_number
+from hyst.identification.families.hammerstein.frequency_response import FrequencyResponse
+from hyst.identification.families.hammerstein.known_dynamics import KnownDynamics
 from hyst.identification.families.hammerstein.markov import MarkovParameters
+from hyst.identification.families.hammerstein.yardstick import Yardstick
+from hyst.identification.families.hammerstein.yardstick_told import in_one_line
 from hyst.identification.result.identified import Identified
 from hyst.models import LinearDynamics, StableInverse
 from hyst.operators import Operator
@@ -49,15 +55,17 @@ class IdentifiedHammerstein(Identified):
     dynamics
         G, DC gain 1, with the delay that was found.
     first_dynamics
-        G as realized from the Markov parameters, before the refinement.
+        G as realized from the Markov parameters, of the order that was found; None where the drive
+        does not determine them.
     markov
-        Step 1.
+        Step 1 of the paper; None where the drive does not determine it, or G was given.
     singular_values
-        Of the Hankel matrix, descending, for the choice of the order.
+        Of the Hankel matrix, descending; empty without Markov parameters.
     hankel_noise
         Singular values below it are noise.
     poles, pole_standard_errors
-        Shape (n,), complex: the errors of real and imaginary parts.
+        Shape (n,), complex: the errors of real and imaginary parts, infinite where the records do
+        not determine them.
     inverse_of_dynamics
         Stable noncausal inverse of G, or None with the reason in ``undetermined``.
     loop
@@ -66,12 +74,18 @@ class IdentifiedHammerstein(Identified):
         Family of the hysteresis, with its options.
     noise_rms
         Residual after the refinement, output units.
+    dynamics_are_given
+        Whether G was known before and held: then the errors of its poles are 0.
+    known
+        What the fit tells of G: poles, zeros and frequency response with their errors.
+    yardstick
+        What richer models leave: its ratio tells whether the records are of such a system.
     """
 
     hysteresis: Operator
     dynamics: LinearDynamics
-    first_dynamics: LinearDynamics
-    markov: MarkovParameters
+    first_dynamics: LinearDynamics | None
+    markov: MarkovParameters | None
     singular_values: Array
     hankel_noise: float
     poles: NDArray[np.complex128]
@@ -80,6 +94,52 @@ class IdentifiedHammerstein(Identified):
     loop: Loop
     front: Family
     noise_rms: float
+    known: KnownDynamics
+    yardstick: Yardstick
+    dynamics_are_given: bool = False
+
+    @property
+    def resonances(self) -> tuple[FoundRoot, ...]:
+        """Complex pairs of poles of G, with natural frequency and damping, by rising frequency."""
+        return tuple(each for each in self.known.poles if each.is_pair)
+
+    @property
+    def real_poles(self) -> tuple[FoundRoot, ...]:
+        """Real poles of G, with their time constants where they have one."""
+        return tuple(each for each in self.known.poles if not each.is_pair)
+
+    @property
+    def zeros(self) -> tuple[FoundRoot, ...]:
+        """Zeros of G; ``side`` tells a nonminimum phase."""
+        return self.known.zeros
+
+    def frequency_response(self, frequencies: ArrayLike | None = None) -> FrequencyResponse:
+        """Give the frequency response of G with the band in which it is known.
+
+        Parameters
+        ----------
+        frequencies
+            Shape (p,), Hz, from 0 to half the sample rate; None: some hundred, from below the
+            drive's lowest, dense about resonances.
+
+        Returns
+        -------
+        FrequencyResponse
+            With a mark where the drive had no power and the response is an extrapolation.
+
+        Raises
+        ------
+        InputError
+            If one of them is no such number.
+
+        Examples
+        --------
+        ::
+
+            response = found.frequency_response([10.0, 100.0])
+            response.gain, response.gain_band(0.95), response.excited
+        """
+        return self.known.frequency_response(frequencies)
 
     @property
     def hysteresis_family(self) -> str:
@@ -96,19 +156,25 @@ class IdentifiedHammerstein(Identified):
         inverse = self.inverse_of_dynamics
         more: dict[str, Any] = {
             "hysteresis_family": self.hysteresis_family,
-            "fir_order": self.markov.order,
-            "regressor_condition": self.markov.condition,
-            "markov_parameters": self.markov.values.tolist(),
-            "markov_standard_errors": self.markov.standard_errors.tolist(),
-            "hankel_singular_values": self.singular_values.tolist(),
+            "given": self.dynamics_are_given,
             "state_order": self.dynamics.order,
             "delay": self.dynamics.delay,
             "poles": [[float(p.real), float(p.imag)] for p in self.poles],
             "pole_standard_errors": [
-                [float(p.real), float(p.imag)] for p in self.pole_standard_errors
+                [plain_number(p.real), plain_number(p.imag)] for p in self.pole_standard_errors
             ],
             "noise_rms": self.noise_rms,
+            **dynamics_as_data(self.known),
+            "yardstick": self.yardstick.to_dict(),
         }
+        if self.markov is not None:
+            more |= {
+                "fir_order": self.markov.order,
+                "regressor_condition": self.markov.condition,
+                "markov_parameters": self.markov.values.tolist(),
+                "markov_standard_errors": self.markov.standard_errors.tolist(),
+                "hankel_singular_values": self.singular_values.tolist(),
+            }
         if inverse is not None:
             more |= {
                 "preview": inverse.preview,
@@ -124,12 +190,10 @@ class IdentifiedHammerstein(Identified):
         -------
         str
         """
-        lines = [super().summary(), "", f"poles of G (order {self.dynamics.order}):"]
-        for pole, error in zip(self.poles, self.pole_standard_errors, strict=True):
-            lines.append(
-                f"  {pole.real:+.6g} {pole.imag:+.6g}j   standard error "
-                f"{error.real:.2g}, {error.imag:.2g}"
-            )
+        lines = [super().summary(), "", *summary_lines(self.known)]
+        if self.dynamics_are_given:
+            lines.append("G was given and is held")
+        lines.append(f"yardstick: the model leaves {in_one_line(self.yardstick)}")
         inverse = self.inverse_of_dynamics
         if inverse is not None:
             lines.append(

@@ -16,6 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.families.family import Fit, Start
+from hyst.identification.families.hammerstein.ringing import Ringing
+from hyst.identification.fit.nuisance import Nuisances
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.models import LinearDynamics
 from hyst.operators import Operator
@@ -36,11 +38,14 @@ class JointParametrization(Parametrization):
         Realization whose coordinates are kept; stable.
     feedthrough
         Whether D is free; it is 0 otherwise.
+    held
+        Whether the dynamics are known: then none of their parameters is free.
     """
 
     front: Parametrization = None  # type: ignore[assignment]  # the fields before have defaults
     base: LinearDynamics = None  # type: ignore[assignment]
     feedthrough: bool = True
+    held: bool = False
 
     def hysteresis(self, theta: Array) -> Operator:
         """Give the hysteresis."""
@@ -49,8 +54,17 @@ class JointParametrization(Parametrization):
     def dynamics(self, theta: Array) -> LinearDynamics:
         """Give the dynamics."""
         base = self.base
+        if self.held:
+            return base
         A, C, D = _matrices(theta[self.front.size :], base, self.feedthrough)
         return LinearDynamics(A, base.B, C, D, base.dt, base.delay)
+
+    def over_theta(self, by_dynamics: Array) -> Array:
+        """Give a derivative by k, C and D as one by theta; nothing moves dynamics that are held."""
+        result = np.zeros((len(by_dynamics), self.size))
+        if not self.held:
+            result[:, self.front.size :] = by_dynamics
+        return result
 
     def seen_by_front(self) -> Parametrization:
         """Give the same free parameters for the family of the hysteresis: its own come first."""
@@ -108,6 +122,7 @@ def joint(front: Start, base: LinearDynamics) -> Start:
         canonical=_canonical(hysteresis),
         gauges=_gauges(hysteresis, base, feedthrough),
         gauge_count=1 + hysteresis.gauge_count,
+        nuisances=Nuisances((Ringing(base, first),)) if n else None,
         is_allowed=_is_allowed(hysteresis, base, feedthrough),
         front=hysteresis,
         base=base,

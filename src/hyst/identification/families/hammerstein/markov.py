@@ -197,6 +197,20 @@ def choose_markov(
     return _died_out(best, chosen=True), ()
 
 
+def markov_if_excited(records: Sequence[Record], order: int | str) -> MarkovParameters | None:
+    """Estimate the Markov parameters for comparison; None where the inputs do not determine them.
+
+    Parameters
+    ----------
+    records, order
+        As of ``choose_markov``.
+    """
+    try:
+        return choose_markov(records, order)[0]
+    except (InputError, NotIdentifiableError):
+        return None
+
+
 def _excited(
     records: Sequence[Record], order: int, start: int
 ) -> tuple[MarkovParameters | None, str]:

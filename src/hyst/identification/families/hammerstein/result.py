@@ -5,17 +5,29 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.families.family import Family, Fit
-from hyst.identification.families.hammerstein.coefficients import poles_as_numbers, poles_by_theta
+from hyst.identification.families.hammerstein.dynamics_words import not_determined, verdict_on
 from hyst.identification.families.hammerstein.first_dynamics import inverse_of, realized
 from hyst.identification.families.hammerstein.identified_hammerstein import (
     IdentifiedHammerstein,
     Loop,
 )
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint_of
-from hyst.identification.families.hammerstein.markov import choose_markov
+from hyst.identification.families.hammerstein.known_dynamics import (
+    KnownDynamics,
+    known_dynamics,
+)
+from hyst.identification.families.hammerstein.markov import (
+    MarkovParameters,
+    markov_if_excited,
+)
+from hyst.identification.families.hammerstein.realization import Realization
+from hyst.identification.families.hammerstein.yardstick import yardstick_of
+from hyst.identification.families.hammerstein.yardstick_told import lowered
+from hyst.identification.families.option import AUTO
 from hyst.identification.record_use.overview import Overview
-from hyst.identification.result.fit_spread import FitSpread, spread_of_fit
+from hyst.identification.result.fit_spread import spread_of_fit
 from hyst.identification.result.identified import Identified
 from hyst.models import LinearDynamics, StableInverse
 from hyst.signals import Record
@@ -43,42 +55,61 @@ def identified_with_dynamics(
     """
     records = overview.data.records
     dynamics = dynamics_of(fit)
-    markov, _ = choose_markov(records, fir_order)
-    first = realized(markov, dynamics.delay, dynamics.dt, dynamics.order)
     inverse, reason = inverse_of(dynamics)
-    if first.stabilized:
+    markov = None if joint_of(fit).held else markov_if_excited(records, fir_order)
+    first = _realization(markov, dynamics)
+    if first is not None and first.stabilized and fir_order != AUTO:
         reason += ("the realization was not stable and was replaced by a stable one",)
     spread = spread_of_fit(overview.data, fit)
-    poles, pole_errors = _poles(dynamics, fit, spread)
-    known = vars(identified) | {"undetermined": identified.undetermined + reason}
+    known = known_dynamics(fit, overview.data, spread)
+    poles, pole_errors = _poles(known)
+    yardstick = yardstick_of(fit, overview.data)
+    verdict = lowered(identified.verdict, yardstick, records[0].output_unit)
+    taken = vars(identified) | {
+        "undetermined": identified.undetermined + reason + not_determined(known),
+        "verdict": verdict_on(verdict, known),
+    }
     return IdentifiedHammerstein(
-        **known,
+        **taken,
         hysteresis=joint_of(fit).hysteresis(fit.solution.theta),
         dynamics=dynamics,
-        first_dynamics=first.dynamics,
+        first_dynamics=None if first is None else first.dynamics,
         markov=markov,
-        singular_values=first.singular_values,
-        hankel_noise=first.noise_level,
+        singular_values=np.zeros(0) if first is None else first.singular_values,
+        hankel_noise=float("nan") if first is None else first.noise_level,
         poles=poles,
         pole_standard_errors=pole_errors,
+        dynamics_are_given=joint_of(fit).held,
         inverse_of_dynamics=inverse,
         loop=_loop(records[0], inverse, spread.noise_rms),
         front=front,
         noise_rms=spread.noise_rms,
+        known=known,
+        yardstick=yardstick,
     )
 
 
-def _poles(
-    dynamics: LinearDynamics, fit: Fit, spread: FitSpread
-) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    parametrization, n = joint_of(fit), dynamics.order
-    by_theta = np.zeros((2 * n, parametrization.size))
-    by_theta[:, parametrization.front.size :] = poles_by_theta(
-        dynamics, parametrization.feedthrough
-    )
-    values, errors = poles_as_numbers(dynamics), spread.of(by_theta)
-    errors[~by_theta.any(axis=1)] = 0.0  # a real pole stays real
-    return values[:n] + 1j * values[n:], errors[:n] + 1j * errors[n:]
+def _realization(markov: MarkovParameters | None, dynamics: LinearDynamics) -> Realization | None:
+    """Give the paper's first dynamics of the order that was found, where there are any."""
+    if markov is None:
+        return None
+    try:
+        return realized(markov, dynamics.delay, dynamics.dt, dynamics.order)
+    except (InputError, NotIdentifiableError):
+        return None
+
+
+def _poles(known: KnownDynamics) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    """Give all poles, of pairs both, with standard errors of real and imaginary parts."""
+    values: list[complex] = []
+    errors: list[complex] = []
+    for each in known.poles:
+        both = (each.value, each.value.conjugate()) if each.is_pair else (each.value,)
+        values += both
+        errors += [each.standard_error] * len(both)
+    found = np.array(values, dtype=np.complex128)
+    order = np.lexsort((found.imag, found.real))
+    return found[order], np.array(errors, dtype=np.complex128)[order]
 
 
 def _loop(record: Record, inverse: StableInverse | None, noise_rms: float) -> Loop:
