@@ -44,7 +44,7 @@ def test_limits_hold_in_the_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["--kind", "noise", "--rate", "100"], "unknown kind 'noise'"),
+        (["--kind", "sawtooth", "--rate", "100"], "unknown kind 'sawtooth'"),
         (["--kind", "triangle", "--rate", "100"], "give max_rate"),
         (["--kind", "multisine", "--rate", "0"], "--rate is 0.0"),
         (["--kind", "multisine", "--rate", "100", "--band", "1"], "--band is '1'"),
@@ -77,6 +77,32 @@ def test_limits_hold_in_the_file(tmp_path: Path) -> None:
         (["--kind", "multisine", "--rate", "100", "--duration", "nan"], "--duration is nan"),
         (["--kind", "multisine", "--rate", "100", "--band", "1,60"], "half the sample rate, 50 Hz"),
         (["--kind", "schroeder", "--rate", "100", "--band", "9,3"], "9 to 3 Hz; give two"),
+        (["--kind", "noise", "--rate", "100"], "give its corner, in Hz"),
+        (["--kind", "noise", "--rate", "100", "--corner", "50"], "half the sample rate, 50 Hz"),
+        (["--kind", "levels", "--rate", "100", "--hold", "60"], "hold is 60 samples and a period"),
+        (["--kind", "prbs", "--rate", "100", "--hold", "6"], "--hold is for --kind levels"),
+        (["--kind", "levels", "--rate", "100", "--uniform"], "--uniform is for --kind"),
+        (["--kind", "multisine", "--rate", "100", "--spacing", "linear"], "--kind swept-sine"),
+        (["--kind", "multisine", "--rate", "100", "--spectrum", "blue"], "spectrum is 'blue'"),
+        (["--kind", "multisine", "--rate", "100", "--keep", "all"], "keep is 'all'; choose one of"),
+        (["--kind", "multisine", "--rate", "100", "--max-rate", "1"], "the lowest line, needs"),
+        (["--kind", "multisine", "--rate", "100", "--resonance", "9"], "--resonance is '9'; give"),
+        (
+            ["--kind", "multisine", "--rate", "100", "--resonance", "60,0.1"],
+            "is at 60 Hz, not below",
+        ),
+        (["--kind", "multisine", "--rate", "100", "--delay", "2"], "--delay is for --resonance"),
+        (["--kind", "multisine", "--rate", "100", "--weights", "2"], "--weights is for"),
+        (
+            ["--kind", "multisine", "--rate", "100", "--noise", "loud"],
+            "--noise is 'loud'; give it as",
+        ),
+        (["--kind", "multisine", "--rate", "100", "--noise", "-1"], "--noise is '-1'; give it as"),
+        (["--kind", "multisine", "--rate", "99", "--model", "m", "--radii", "1"], "it states all"),
+        (
+            ["--kind", "levels", "--rate", "99", "--duration", "0.1", "--resonance", "9,0.1"],
+            "the drive has 10 samples and the model 15 numbers",
+        ),
     ],
 )
 def test_refuses_in_one_sentence(
@@ -108,14 +134,61 @@ def test_drive_record_identify_from_files(tmp_path: Path) -> None:
 
 
 def test_every_kind_is_drawn_without_a_warning(tmp_path: Path) -> None:
-    kinds = ["odd-multisine", "schroeder", "prbs", "swept-sine", "triangle", "staircase"]
-    for kind in kinds:
+    kinds = ["odd-multisine", "schroeder", "prbs", "swept-sine", "triangle", "staircase", "levels"]
+    for kind in [*kinds, "noise"]:
         out = tmp_path / f"{kind}.csv"
-        assert (
-            main(["excite", "--kind", kind, "--rate", "100", "--max-rate", "1e4", "-o", str(out)])
-            == 0
-        )
+        arguments = ["--kind", kind, "--rate", "100", "--max-rate", "1e4", "-o", str(out)]
+        arguments += ["--corner", "20"] if kind == "noise" else []
+        assert main(["excite", *arguments]) == 0
         assert out.with_suffix(".png").exists()
+
+
+AUDITED = ["--resonance", "200,0.03", "--delay", "3", "--radii", "0.05,0.15,0.3,0.5,0.8"]
+
+
+def excited(tmp_path: Path, *more: str) -> int:
+    usual = ["--rate", "10000", "--duration", "2", "-o", str(tmp_path / "drive.csv")]
+    return main(["excite", *usual, *more])
+
+
+def test_says_what_it_will_determine(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    limits = ["--amplitude", "1", "--max-rate", "500", "--max-acceleration", "2e6"]
+    assert excited(tmp_path, "--kind", "multisine", "--band", "1,1000", *limits, *AUDITED) == 0
+    told = capsys.readouterr()
+    assert "13 of 13 numbers" in told.out
+    assert "nothing stays open" in told.out
+    assert "the amplitude is kept and the spectrum shaped" in told.err
+    # The paper's method would ask for more, and says so behind it.
+    assert told.out.index("nothing stays open") < told.out.index("not persistently exciting")
+    u, _, _ = hyst.io.read_column(tmp_path / "drive.csv", "u")
+    assert np.abs(u).max() == pytest.approx(1.0, rel=1e-9)
+    assert np.abs(np.diff(u)).max() * 1e4 <= 500.0
+
+
+def test_names_what_stays_open(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    more = ["--kind", "multisine", "--band", "1,60", "--amplitude", "0.4", "--noise", "0.002"]
+    assert excited(tmp_path, *more, *AUDITED) == 0
+    told = capsys.readouterr().out
+    assert "with noise of 0.002 on an output" in told
+    assert "nothing above 60 Hz; add frequencies up to 300 Hz" in told
+    assert "plays of radius 0.5, 0.8 are not determined" in told
+    assert "nothing stays open" not in told
+
+
+def test_a_model_file_states_the_actuator(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    front = hyst.PrandtlIshlinskii([0.3, 0.2], [0.2, 0.5], 1.0)
+    model = hyst.identification.sketched_stage(1e-4, [(300.0, 0.05)], front=front)
+    model.save(tmp_path / "model.json")
+    more = ["--kind", "levels", "--hold", "8", "--model", str(tmp_path / "model.json")]
+    assert excited(tmp_path, *more) == 0
+    told = capsys.readouterr().out
+    assert "damping of 300 Hz" in told
+    assert "7 of 7 numbers" in told
+    assert main(["excite", "--rate", "1000", *more, "-o", str(tmp_path / "other.csv")]) == 2
+    assert "dt = 0.001 s, the model 0.0001 s" in capsys.readouterr().err
+    assert not (tmp_path / "other.csv").exists()
 
 
 def test_identify_averages_periods(tmp_path: Path) -> None:

@@ -249,7 +249,8 @@ def test_triangles_and_sines_have_one_loop() -> None:
         ([sine(4.0, 6.0), sine(20.0, 9.0, amplitude=4.0)], "no two of the 2 loops"),
         ([sine(4.0, 6.0), sine(20.0, 9.0, offset=1.0)], "no two of the 2 loops"),
         ([sine(4.0, 6.0), sine(4.0, 9.0)], "no two of the 2 loops"),
-        ([hyst.signals.multisine(DT, 2000, amplitude=5.0).u], "no input repeats"),
+        ([hyst.signals.multisine(DT, 1500, amplitude=5.0).u], "no input repeats"),
+        ([5.0 * np.sign(sine(10.0, 20.0) + 1e-9)], "no input repeats"),  # jumps
         ([sine(120.0, 50.0)], "no input repeats"),  # eight samples a cycle
         ([signal.chirp(DT * np.arange(400), 3.0, 0.4, 40.0) * 5.0], "no input repeats"),
     ],

@@ -62,10 +62,50 @@ def test_prbs_is_of_maximal_length(register: int) -> None:
 
 LIMITED = {
     "multisine": lambda rate, acc: signals.multisine(
-        1e-3, 500, rms=3.0, offset=70.0, periods=2, max_rate=rate, max_acceleration=acc
+        1e-3,
+        500,
+        rms=3.0,
+        offset=70.0,
+        periods=2,
+        max_rate=rate,
+        max_acceleration=acc,
+        keep="spectrum",
+    ),
+    "shaped multisine": lambda rate, acc: signals.multisine(
+        1e-3, 5000, rms=1.0, offset=70.0, periods=2, max_rate=rate, max_acceleration=acc
+    ),
+    "even multisine": lambda rate, acc: signals.multisine(
+        1e-3, 5000, amplitude=3.0, uniform=True, periods=2, max_rate=rate, max_acceleration=acc
+    ),
+    "noise": lambda rate, acc: signals.lowpassed_noise(
+        1e-3, 5000, 90.0, amplitude=3.0, offset=-9.0, max_rate=rate, max_acceleration=acc
+    ),
+    "levels": lambda rate, acc: signals.levels(
+        1e-3, 9000, 3.3, hold=7, offset=70.0, periods=2, max_rate=rate, max_acceleration=acc
+    ),
+    "levels held once": lambda rate, acc: signals.levels(
+        1e-3, 9000, 3.3, hold=1, offset=70.0, periods=2, max_rate=rate, max_acceleration=acc
     ),
     "swept sine": lambda rate, acc: signals.swept_sine(
-        1e-3, 2000, (1.0, 200.0), 5.0, periods=2, max_rate=rate, max_acceleration=acc
+        1e-3,
+        2000,
+        (1.0, 200.0),
+        5.0,
+        periods=2,
+        max_rate=rate,
+        max_acceleration=acc,
+        keep="spectrum",
+    ),
+    "shaped sweep": lambda rate, acc: signals.swept_sine(
+        1e-3,
+        9000,
+        (1.0, 200.0),
+        2.0,
+        offset=70.0,
+        spacing="logarithmic",
+        periods=2,
+        max_rate=rate,
+        max_acceleration=acc,
     ),
     "triangle": lambda rate, acc: signals.triangle(
         1e-3, 7.3, rate, cycles=3, offset=-20.0, max_acceleration=acc

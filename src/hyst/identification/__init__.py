@@ -11,6 +11,13 @@ from hyst.identification.families.registry import (
     names_of,
     require_taken,
 )
+from hyst.identification.forecast import (
+    DriveForecast,
+    ExpectedError,
+    forecast_drive,
+    sketched_plays,
+    sketched_stage,
+)
 from hyst.identification.identify_records import identify
 from hyst.identification.record_use.part_of_a_sample import earlier, later
 from hyst.identification.record_use.used_samples import UsedSamples
@@ -27,6 +34,8 @@ __all__ = [
     "Candidate",
     "ComparedModel",
     "Comparison",
+    "DriveForecast",
+    "ExpectedError",
     "Identified",
     "RecordErrors",
     "ReversalCurveFit",
@@ -36,6 +45,7 @@ __all__ = [
     "compare",
     "earlier",
     "families_in_reserve",
+    "forecast_drive",
     "identify",
     "identify_from_reversal_curves",
     "identify_weights_from_slopes",
@@ -43,6 +53,8 @@ __all__ = [
     "later",
     "names_of",
     "require_taken",
+    "sketched_plays",
+    "sketched_stage",
 ]
 
 

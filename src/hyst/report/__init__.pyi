@@ -20,6 +20,7 @@ from hyst.report.dynamics_figures import dynamics_sections as dynamics_sections
 from hyst.report.dynamics_figures import dynamics_table as dynamics_table
 from hyst.report.estimation_figure import draw_estimates as draw_estimates
 from hyst.report.forc_figure import draw_forc_diagram as draw_forc_diagram
+from hyst.report.forecast_summary import forecast_table as forecast_table
 from hyst.report.identification_report import Section as Section
 from hyst.report.identification_report import write_report as write_report
 from hyst.report.loops_figure import draw_loops_behind as draw_loops_behind

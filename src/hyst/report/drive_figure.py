@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -9,10 +11,11 @@ from hyst.report.canvas import MEASURED, MODELLED, SECOND, blank, drawn, with_un
 from hyst.signals import Drive
 
 _SHOWN = 4000  # samples of a long drive that are drawn over time
+_WIDE = 30.0  # half the sample rate over the lowest line: beyond, frequency is drawn by octaves
 
 
 @drawn
-def draw_drive(drive: Drive, name: str, unit: str) -> Figure:
+def draw_drive(drive: Drive, name: str, unit: str, resonances: Sequence[float] = ()) -> Figure:
     """Draw a designed drive.
 
     Parameters
@@ -21,6 +24,8 @@ def draw_drive(drive: Drive, name: str, unit: str) -> Figure:
         The drive.
     name, unit
         Of the input.
+    resonances
+        Hz, marked in the spectrum.
 
     Returns
     -------
@@ -42,8 +47,17 @@ def draw_drive(drive: Drive, name: str, unit: str) -> Figure:
     if shows.any():
         # The lines of a binary sequence are all alike: without room the axis would have no height.
         over_frequency.set_ylim(0.5 * spectrum[shows].min(), 2.0 * spectrum[shows].max())
-    over_frequency.set_xlim(0.0, 0.5 / drive.dt)
-    over_frequency.set_title("Amplitude of its lines")
+    lowest = float(frequency[shows].min()) if shows.any() else 0.0
+    if 0.0 < lowest < 0.5 / drive.dt / _WIDE:
+        over_frequency.set_xscale("log")  # on which a fall by a power of f is a straight line
+        over_frequency.set_xlim(lowest, 0.5 / drive.dt)
+    else:
+        over_frequency.set_xlim(0.0, 0.5 / drive.dt)
+    for each in resonances:
+        over_frequency.axvline(each, color=MODELLED, linewidth=0.8, linestyle="--")
+    over_frequency.set_title(
+        "Amplitude of its lines, stated resonances" if resonances else "Amplitude of its lines"
+    )
     over_frequency.set_xlabel("frequency [Hz], up to half the sample rate")
     values.hist(drive.u, bins=80, color=MEASURED)
     values.set_title("How often it is where")

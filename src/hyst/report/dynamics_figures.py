@@ -85,10 +85,8 @@ def _dynamics(found: IdentifiedHammerstein) -> Section:
     texts = [
         "G carries no gain of its own: its gain at rest is 1, because input and output determine "
         "only the product with the hysteresis.",
-        f"The drive shows G {bands_told(found.known)}. Standard errors and band count the noise "
-        "and not what a model of too low an order leaves out; where the drive has no power within "
-        "an octave (shaded), the response is an extrapolation by the model. The table of gain and "
-        f"phase with their bands is {RESPONSE}.",
+        *_how_known(found),
+        f"The table of gain and phase with their bands is {RESPONSE}.",
         *_in_continuous_time(found),
     ]
     if inverse is not None:
@@ -122,6 +120,16 @@ def dynamics_table(found: Identified) -> Table:
     """
     rows = root_rows(found.known) if isinstance(found, IdentifiedHammerstein) else ()
     return Table("Poles and zeros of G, with standard errors", HEADER, rows)
+
+
+def _how_known(found: IdentifiedHammerstein) -> tuple[str, ...]:
+    if found.known.is_held:
+        return ()
+    return (
+        f"The drive shows G {bands_told(found.known)}. Standard errors and band count the noise "
+        "and not what a model of too low an order leaves out; where the drive has no power within "
+        "an octave (shaded), the response is an extrapolation by the model.",
+    )
 
 
 def _in_continuous_time(found: IdentifiedHammerstein) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn
 Array = NDArray[np.float64]
 
 _MOST_DECADES = 4.0  # of gain below its largest
-_MOST_DEGREES = 200.0  # of a band beyond the phase
+_APART = 8.0  # ratio of frequencies at which two names stand beside each other
 
 
 @drawn
@@ -83,15 +83,18 @@ def _extrapolation(axes: Axes, frequency: Array, excited: NDArray[np.bool_]) -> 
 
 
 def _resonances(axes: Axes, found: IdentifiedHammerstein) -> None:
-    """Name the resonances at the upper edge."""
+    """Name the resonances at the upper edge, close ones below each other."""
+    row, before = 0, 0.0
     for each in found.resonances:
+        row = row + 1 if each.frequency < _APART * before else 0
+        before = each.frequency
         axes.axvline(each.frequency, color=SECOND, linestyle=":", linewidth=0.9)
         told = f" {each.frequency:.4g} Hz" + ("" if each.is_determined else ": not determined")
         axes.annotate(
             told,
             (each.frequency, 1.0),
             xycoords=("data", "axes fraction"),
-            xytext=(0, -11),
+            xytext=(0, -11 - 12 * row),
             textcoords="offset points",
             color=SECOND,
             fontsize=9.0,

@@ -69,11 +69,12 @@ def draw_loops_behind(found: LoopsBehind) -> Figure:
             shown = each.mean_v - line * (slope * each.mean_u + offset)
             axes.plot(each.mean_u, shown, color=colour, label=each.label, linewidth=1.6, zorder=3)
             lines += [shown] if shown.size else [each.v - taken]
-        slowest = loops[0]
-        shown = slowest.modelled - line * (slope * slowest.u + offset)
-        label = "hysteresis of the model"
-        axes.plot(slowest.u, shown, "--", color=MODELLED, linewidth=1.1, label=label, zorder=4)
-        _frame(axes, [*lines, shown])
+        for each in loops:
+            shown = each.modelled - line * (slope * each.u + offset)
+            label = "hysteresis of the model" if each is loops[0] else ""
+            axes.plot(each.u, shown, "--", color=MODELLED, linewidth=1.0, label=label, zorder=4)
+            lines.append(shown)
+        _frame(axes, lines)
     opened.axhline(0.0, color=FAINT, linewidth=1.0, zorder=0)
     first = found.loops[0].record
     raw.set_title("As recorded: output over input")

@@ -11,11 +11,13 @@ from hyst.signals.first_order_curves import (
     forc_density,
     reversal_curves,
 )
+from hyst.signals.held_levels import levels
 from hyst.signals.loop_metrics import hysteresis_percent, loop_area
 from hyst.signals.measured_response import MeasuredResponse
 from hyst.signals.metrics import Metrics, error_metrics
 from hyst.signals.multisines import multisine
 from hyst.signals.noise import estimate_noise, suggest_dead_band
+from hyst.signals.noise_drive import lowpassed_noise
 from hyst.signals.record import Record
 from hyst.signals.rest import from_rest
 from hyst.signals.sequences import decaying_triangle, forc, prbs, staircase, triangle
@@ -40,7 +42,9 @@ __all__ = [
     "forc_density",
     "from_rest",
     "hysteresis_percent",
+    "levels",
     "loop_area",
+    "lowpassed_noise",
     "multisine",
     "persistence",
     "prbs",

@@ -154,6 +154,14 @@ class Drive:
         return persistence(self.u, fir_order)
 
 
+def steps_of(u: Array) -> tuple[float, float]:
+    """Give the largest change of a periodic signal from sample to sample, and of that change."""
+    # Periodic signals also step from the end to the beginning.
+    step = float(np.abs(np.diff(u, append=u[:1])).max(initial=0.0))
+    bend = float(np.abs(np.diff(np.concatenate([u, u[:2]]), 2)).max(initial=0.0))
+    return step, bend
+
+
 def fitted(
     u: Array, dt: float, limits: Limits, offset: float = 0.0
 ) -> tuple[Array, tuple[str, ...]]:
@@ -176,9 +184,7 @@ def fitted(
     notes : tuple of str
         By how much it was scaled, and why.
     """
-    # Periodic signals also step from the end to the beginning.
-    step = float(np.abs(np.diff(u, append=u[:1])).max(initial=0.0))
-    bend = float(np.abs(np.diff(np.concatenate([u, u[:2]]), 2)).max(initial=0.0))
+    step, bend = steps_of(u)
     largest = float(np.abs(u).max()) + abs(offset)
     by_rate = limits.step(dt, largest) / step if step > 0.0 else math.inf
     by_acceleration = limits.bend(dt, largest) / bend if bend > 0.0 else math.inf

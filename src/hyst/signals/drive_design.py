@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 from hyst.errors import InputError
 from hyst.signals.drive import Drive
+from hyst.signals.held_levels import levels
 from hyst.signals.multisines import multisine
+from hyst.signals.noise_drive import lowpassed_noise
 from hyst.signals.sequences import forc, prbs, staircase, triangle
 from hyst.signals.swept_sines import swept_sine
 
-_MULTISINES: dict[str, dict[str, str]] = {
+_MULTISINES: dict[str, dict[str, Any]] = {
     "multisine": {},
     "odd-multisine": {"lines": "odd"},
     "schroeder": {"phases": "schroeder"},
 }
 _PATHS = ("triangle", "reversals", "forc", "staircase")
-KINDS = (*_MULTISINES, "prbs", "swept-sine", *_PATHS)
+KINDS = (*_MULTISINES, "noise", "levels", "prbs", "swept-sine", *_PATHS)
 
 
 def design(
@@ -35,6 +38,12 @@ def design(
     clock: int = 1,
     register: int = 10,
     seed: int = 0,
+    spectrum: str = "flat",
+    corner: float | None = None,
+    uniform: bool = False,
+    keep: str = "amplitude",
+    spacing: str = "linear",
+    hold: int = 5,
 ) -> Drive:
     """Design a drive of a kind.
 
@@ -45,7 +54,7 @@ def design(
     dt
         Sample time, s.
     amplitude, rms, offset
-        Input units; ``rms`` takes the place of the amplitude of multisines.
+        Input units; ``rms`` takes the place of the amplitude of multisines and noise.
     samples
         Of one period; of the rest on each step of a staircase.
     periods
@@ -56,6 +65,8 @@ def design(
         ``max_rate`` and ``max_acceleration``; triangles, reversal curves and stairs need the rate.
     decay, clock, register, seed
         As of the single kinds.
+    spectrum, corner, uniform, keep, spacing, hold
+        As of the single kinds; noise needs the corner of its low pass.
 
     Returns
     -------
@@ -72,45 +83,24 @@ def design(
     31
     """
     given = dict(limits or {})
+    repeated: dict[str, Any] = {"periods": periods, "offset": offset, **given}
+    sized: dict[str, Any] = {"amplitude": amplitude if rms is None else None, "rms": rms}
+    made: dict[str, Any] = {**sized, "uniform": uniform, "keep": keep, "seed": seed, **repeated}
     if kind in _MULTISINES:
-        more = _MULTISINES[kind]
-        return multisine(
-            dt,
-            samples,
-            amplitude=amplitude if rms is None else None,
-            rms=rms,
-            band=band,
-            lines=more.get("lines", "all"),
-            phases=more.get("phases", "random"),
-            periods=periods,
-            offset=offset,
-            seed=seed,
-            **given,
-        )
+        shape = {"spectrum": spectrum, "corner": corner, **_MULTISINES[kind]}
+        return multisine(dt, samples, band=band, **shape, **made)
+    if kind == "noise":
+        if corner is None:
+            raise InputError("noise needs a low pass; give its corner, in Hz")
+        return lowpassed_noise(dt, samples, corner, **made)
+    if kind == "levels":
+        return levels(dt, samples, amplitude, hold=hold, seed=seed, **repeated)
     if kind == "prbs":
         start = seed % (2**register - 1) + 1 if 2 <= register <= 20 else 1
-        return prbs(
-            dt,
-            amplitude,
-            register=register,
-            clock=clock,
-            periods=periods,
-            offset=offset,
-            seed=start,
-            **given,
-        )
+        return prbs(dt, amplitude, register=register, clock=clock, seed=start, **repeated)
     if kind == "swept-sine":
         ends = band if band is not None else (1.0 / (samples * dt), 0.4 / dt)
-        return swept_sine(
-            dt,
-            samples,
-            ends,
-            amplitude,
-            periods=periods,
-            offset=offset,
-            max_rate=given.get("max_rate", math.inf),
-            max_acceleration=given.get("max_acceleration", math.inf),
-        )
+        return swept_sine(dt, samples, ends, amplitude, spacing=spacing, keep=keep, **repeated)
     if kind in _PATHS:
         return _path(kind, dt, amplitude, offset, samples, periods, decay, given)
     raise InputError(f"unknown kind {kind!r}; choose one of {', '.join(KINDS)}")

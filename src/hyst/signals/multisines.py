@@ -7,9 +7,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.checks.numbers import as_positive, as_sample_time
+from hyst.checks.numbers import as_sample_time
 from hyst.errors import InputError
-from hyst.signals.drive import Drive, Limits, as_count, fitted, require_length
+from hyst.signals.drive import Drive, Limits, as_count, require_length
+from hyst.signals.limited_lines import Lines
+from hyst.signals.line_shapes import line_sizes
+from hyst.signals.periodic_drive import factor_of, period_of
 
 Array = NDArray[np.float64]
 
@@ -26,17 +29,22 @@ def multisine(
     band: tuple[float, float] | None = None,
     lines: str = "all",
     phases: str = "random",
+    spectrum: str = "flat",
+    corner: float | None = None,
+    uniform: bool = False,
     periods: int = 1,
     offset: float = 0.0,
     max_rate: float = math.inf,
     max_acceleration: float = math.inf,
+    keep: str = "amplitude",
     seed: int = 0,
 ) -> Drive:
-    """Make ``u_k = offset + sum_l a cos(2 pi l k / N + phi_l)`` over the lines of a band.
+    """Make ``u_k = offset + sum_l a_l cos(2 pi l k / N + phi_l)`` over the lines of a band.
 
-    Random phases make the values Gaussian, for which a nonlinearity disturbs the linear part
-    least; odd lines keep even distortion out of the lines that are measured; Schroeder phases keep
-    the peaks low.
+    Random phases make the values Gaussian, which seldom are large; ``uniform`` spreads them evenly.
+    A map without memory behind Gaussian values only scales the linear part (Bussgang); hysteresis
+    also adds slow parts to it. Odd lines keep even distortion out of the lines that are measured;
+    Schroeder phases keep the peaks low.
 
     Parameters
     ----------
@@ -56,12 +64,22 @@ def multisine(
         so that its level shows odd distortion.
     phases
         ``"random"`` or ``"schroeder"``.
+    spectrum
+        ``"flat"``: lines alike; ``"pink"``: their power falls as 1/f, as much in each octave.
+    corner
+        From this frequency, Hz, lines fall as 1/f more: below it the displacement is flat, above it
+        the rate.
+    uniform
+        Spread the values evenly between both ends; phases are changed for it, lines are not.
     periods
         How often the period is repeated.
     offset
         Mean, input units.
     max_rate, max_acceleration
-        Limits, as of ``Limits``; the signal is scaled down to meet them.
+        Limits, as of ``Limits``.
+    keep
+        What limits leave alone: ``"amplitude"`` (or rms), and high lines are made smaller, as 1/f
+        for the rate and as 1/f^2 for the acceleration; or ``"spectrum"``, and all is scaled down.
     seed
         Of the random phases; equal seeds give equal signals.
 
@@ -72,13 +90,14 @@ def multisine(
     Raises
     ------
     InputError
-        If the band goes beyond half the sample rate or holds no line, the drive would have more
-        than 1e8 samples, or an argument cannot be used.
+        If the band goes beyond half the sample rate or holds no line, the lowest line alone is
+        beyond a limit, the drive would have more than 1e8 samples, or an argument cannot be used.
 
     Notes
     -----
     Pintelon and Schoukens, System Identification, 2nd ed. (2012), ch. 4; Schroeder, IEEE Trans.
-    Inf. Theory 16 (1970), 85-89.
+    Inf. Theory 16 (1970), 85-89; for even values Schreiber and Schmitz, Phys. Rev. Lett. 77 (1996),
+    635-638.
 
     Examples
     --------
@@ -91,11 +110,11 @@ def multisine(
     rng = np.random.default_rng(seed)
     chosen = _lines(time, count, band, lines, rng)
     angles = _angles(chosen.size, phases, rng)
-    spectrum = np.zeros(count // 2 + 1, dtype=np.complex128)
-    spectrum[chosen] = np.exp(1j * angles)
-    period = np.fft.irfft(spectrum, count)
-    period *= _factor(period, amplitude, rms)
-    period, notes = fitted(period, time, Limits(max_rate, max_acceleration), offset)
+    sizes = line_sizes(chosen / (count * time), spectrum, corner)
+    made = Lines(
+        chosen, sizes, count, time, lambda period: factor_of(period, amplitude, rms), offset
+    )
+    period, notes = period_of(made, angles, Limits(max_rate, max_acceleration), keep, uniform)
     u = np.tile(period, periods) + offset
     return Drive(u, time, "multisine", count, notes)
 
@@ -135,11 +154,3 @@ def _angles(count: int, phases: str, rng: np.random.Generator) -> Array:
         l = np.arange(1, count + 1)  # noqa: E741  the field's letter for a line
         return np.asarray(-np.pi * l * (l - 1) / count)
     raise InputError(f"phases is {phases!r}; choose one of {', '.join(_PHASES)}")
-
-
-def _factor(period: Array, amplitude: float | None, rms: float | None) -> float:
-    if (amplitude is None) == (rms is None):
-        raise InputError("give either amplitude or rms")
-    if amplitude is not None:
-        return as_positive(amplitude, "amplitude") * (1.0 - 1e-15) / float(np.abs(period).max())
-    return as_positive(rms, "rms") / float(period.std()) if rms is not None else 0.0

@@ -3,10 +3,11 @@
 The printed sample time of 1e-5 s cannot be meant: G(z) of eq. 49 is G(s) of eq. 48 at 0.01 s, and
 at 1e-5 s the printed input excites 6 of 31 directions. With 0.01 s the printed input, a sum of
 sines in phase, is a train of peaks, which disturbs the Markov parameters far more than a designed
-input does: what the hysteresis adds is correlated with past inputs and does not average out, as it
-does with a Gaussian input (Bussgang). The dead zone as printed jumps to 0 whenever the input turns,
-which is another nonlinearity. Zeros of G have the modulus 0.726 and its relative degree is 1, so
-its inverse looks one sample ahead.
+input does: what the hysteresis adds is correlated with past inputs and does not average out. With a
+Gaussian input it is correlated, too, for plays remember (Bussgang's theorem is for maps without
+memory), but little here: the radii are small beside the amplitude. The dead zone as printed jumps
+to 0 whenever the input turns, which is another nonlinearity. Zeros of G have the modulus 0.726 and
+its relative degree is 1, so its inverse looks one sample ahead.
 """
 
 from __future__ import annotations

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,8 +13,11 @@ from hyst.models import LinearDynamics, StableInverse
 TOLERANCE = 1e-9
 """Share of all taps that may be left out."""
 
-TOLERANCES_IN_BAND = (1e-5, 1e-4, 1e-3)
-"""The same of a band, for records long and short: the model is seen through the same taps."""
+TOLERANCE_IN_BAND = 1e-5
+"""The same of a band, whose edge rings for long: the model is seen through the same taps."""
+
+SHORTER = (1e-4, 1e-3)
+"""The same for short records."""
 
 NOISY = 0.02
 """Of the range of v: a noise band wider than this, and the inverse is limited to a band."""
@@ -49,8 +53,30 @@ class ChosenInverse:
     note: str = ""
 
 
+class Inverses:
+    """Inverses of dynamics up to several frequencies, each expanded once.
+
+    Parameters
+    ----------
+    dynamics
+        What is inverted.
+    """
+
+    def __init__(self, dynamics: LinearDynamics) -> None:
+        self.dynamics = dynamics
+        self._known: dict[float, StableInverse] = {}
+
+    def below(self, limit: float) -> StableInverse:
+        """Give the inverse of a band, Hz; of all frequencies for infinity."""
+        if limit not in self._known:
+            band = None if limit == math.inf else limit
+            tolerance = TOLERANCE if band is None else TOLERANCE_IN_BAND
+            self._known[limit] = StableInverse.of(self.dynamics, tolerance=tolerance, band=band)
+        return self._known[limit]
+
+
 def inverse_for_loop(
-    dynamics: LinearDynamics,
+    inverses: Inverses,
     band: float | None,
     noise: float,
     extent: float,
@@ -64,8 +90,8 @@ def inverse_for_loop(
 
     Parameters
     ----------
-    dynamics
-        Stable.
+    inverses
+        Of the dynamics.
     band
         Highest frequency to invert, Hz, which is kept; None for as high as may be.
     noise
@@ -86,20 +112,21 @@ def inverse_for_loop(
         If a zero on or next to the unit circle lies within the band, or so low that no band is
         left; if the dynamics are not stable.
     """
+    dt = inverses.dynamics.dt
     if band is not None:
-        if band >= 0.5 / dynamics.dt:
+        if band >= 0.5 / dt:
             raise InputError(
-                f"band is {band:.6g} Hz, and records of {1.0 / dynamics.dt:.6g} samples a second "
-                f"hold nothing above {0.5 / dynamics.dt:.6g} Hz; give a lower one, or none"
+                f"band is {band:.6g} Hz, and records of {1.0 / dt:.6g} samples a second hold "
+                f"nothing above {0.5 / dt:.6g} Hz; give a lower one, or none"
             )
-        return ChosenInverse(_in_band(dynamics, band, samples), band)
-    first = found = _widest(dynamics, samples)
-    limit = _STEP * (0.5 / dynamics.dt if first.band is None else first.band)
+        return ChosenInverse(_in_band(inverses, band, samples), band)
+    first = found = _widest(inverses, samples)
+    limit = _STEP * (0.5 / dt if first.band is None else first.band)
     while limit >= HARMONICS_KEPT * highest > 0.0:
         short = _is_short(found.inverse, samples)
         if short and 2.0 * noise * found.inverse.noise_gain <= NOISY * extent:
             break
-        inverse = _in_band(dynamics, limit, samples)
+        inverse = _in_band(inverses, limit, samples)
         if short and not _is_short(inverse, samples):
             break  # and the narrower the band, the longer the inverse
         if _is_short(inverse, samples) or inverse.h.size < found.inverse.h.size:
@@ -108,10 +135,11 @@ def inverse_for_loop(
     return found
 
 
-def _widest(dynamics: LinearDynamics, samples: int) -> ChosenInverse:
+def _widest(inverses: Inverses, samples: int) -> ChosenInverse:
     try:
-        return ChosenInverse(StableInverse.of(dynamics, tolerance=TOLERANCE), None)
+        return ChosenInverse(inverses.below(math.inf), None)
     except NotInvertibleError:
+        dynamics = inverses.dynamics
         zeros = dynamics.zeros()
         near = zeros[np.abs(np.abs(zeros) - 1.0) < _NEAR_THE_CIRCLE]
         lowest = float(np.abs(np.angle(near)).min(initial=np.pi)) / (2.0 * np.pi * dynamics.dt)
@@ -122,15 +150,26 @@ def _widest(dynamics: LinearDynamics, samples: int) -> ChosenInverse:
             f"seen below {limit:.4g} Hz, for a zero of the dynamics lies next to the unit circle "
             f"at {lowest:.4g} Hz"
         )
-        return ChosenInverse(_in_band(dynamics, limit, samples), limit, note)
+        return ChosenInverse(_in_band(inverses, limit, samples), limit, note)
 
 
-def _in_band(dynamics: LinearDynamics, limit: float, samples: int) -> StableInverse:
-    for tolerance in TOLERANCES_IN_BAND:
-        inverse = StableInverse.of(dynamics, tolerance=tolerance, band=limit)
+def _in_band(inverses: Inverses, limit: float, samples: int) -> StableInverse:
+    inverse = inverses.below(limit)
+    for tolerance in SHORTER:
         if _is_short(inverse, samples):
             break
+        inverse = _shortened(inverses.below(limit), tolerance)
     return inverse
+
+
+def _shortened(inverse: StableInverse, tolerance: float) -> StableInverse:
+    """Leave out taps at both ends that sum up to no more than a share of all."""
+    size = np.abs(inverse.h)
+    spare = 0.5 * tolerance * float(size.sum())
+    first = int(np.argmax(np.cumsum(size) > spare))
+    last = size.size - int(np.argmax(np.cumsum(size[::-1]) > spare))
+    first, last = min(first, inverse.preview), max(last, inverse.preview + 1)
+    return replace(inverse, h=inverse.h[first:last].copy(), preview=inverse.preview - first)
 
 
 def _is_short(inverse: StableInverse, samples: int) -> bool:

@@ -114,6 +114,10 @@ class LoopsBehind:
     tolerance: float
     rate_independent_model: bool
 
+    def __repr__(self) -> str:
+        frequencies = ", ".join(f"{each.frequency:.4g}" for each in self.repeated) or "none"
+        return f"LoopsBehind({len(self.loops)} records, Hz: {frequencies}, p = {self.p_value})"
+
     @property
     def p_value(self) -> float | None:
         """Chance of differences as large by noise alone, at most; None if nothing was compared."""
@@ -167,6 +171,15 @@ class LoopsBehind:
             told.append(why_no_test(self.repeated, len(self.loops)))
         told.append(sentence_of_differences(self.loops, self.far_off, FAR_OFF))
         return tuple(told)
+
+    def summary(self) -> str:
+        """Give what is to be said, a line each.
+
+        Returns
+        -------
+        str
+        """
+        return "\n".join(self.sentences() + self.notes)
 
     def to_dict(self) -> dict[str, Any]:
         """Give all numbers as values of JSON.

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_not_negative, as_positive
-from hyst.compensation.loop_check.chosen_inverse import inverse_for_loop
+from hyst.compensation.loop_check.chosen_inverse import Inverses, inverse_for_loop
 from hyst.compensation.loop_check.input_noise import doubt_by_input_noise
 from hyst.compensation.loop_check.loop_shape import HARMONICS, shape_of
 from hyst.compensation.loop_check.loops import LoopOfRecord, LoopsBehind
@@ -22,6 +22,8 @@ from hyst.operators import Composition, Operator
 from hyst.signals import Record, estimate_noise
 
 Array = NDArray[np.float64]
+
+_MOSTLY = 0.5  # of a record: where less of it repeats, all of its samples tell the error
 
 LEVEL = 0.01
 LEAST_DIFFERENCE = 0.5
@@ -108,8 +110,9 @@ def loops_behind(
             raise InputError(f"the input of record {name} is {record.u[0]:.6g} throughout")
     y = [_behind(after, record.y) for record in given]
     modelled = [record.u if before is None else before(record.u) for record in given]
+    inverses = Inverses(dynamics)
     loops = tuple(
-        _loop(*each, dynamics, band) for each in zip(called, given, y, modelled, strict=True)
+        _loop(*each, inverses, band) for each in zip(called, given, y, modelled, strict=True)
     )
     repeated = tuple(
         each for number, loop in enumerate(loops) for each in _repeated(number, loop, before)
@@ -172,7 +175,7 @@ def _loop(
     record: Record,
     y: Array,
     modelled: Array,
-    dynamics: LinearDynamics,
+    inverses: Inverses,
     band: float | None,
 ) -> LoopOfRecord:
     if np.ptp(modelled) == 0.0:
@@ -180,12 +183,13 @@ def _loop(
             f"the hysteresis of the model does not move on record {name}, whose input goes from "
             f"{record.u.min():.6g} to {record.u.max():.6g}; drive it further"
         )
+    dynamics = inverses.dynamics
     # Without what moves, whose curvature would count as noise.
     noise = estimate_noise(y - dynamics(modelled))
     drives = repeated_cycles(record.u, record.dt, slice(0, len(record)))
     highest = max((each.frequency for each in drives), default=0.0)
     extent = float(np.ptp(modelled))
-    chosen = inverse_for_loop(dynamics, band, noise, extent, highest, len(record))
+    chosen = inverse_for_loop(inverses, band, noise, extent, highest, len(record))
     inverse = chosen.inverse
     valid = inverse.valid(len(record))
     if valid.stop - valid.start < LEAST_SAMPLES:
@@ -216,9 +220,11 @@ def _repeated(number: int, loop: LoopOfRecord, front: Operator | None) -> list[R
 
 def _with_noise(number: int, loop: LoopOfRecord, repeated: Sequence[RepeatedLoop]) -> LoopOfRecord:
     """Tell noise from what repeats, where there is something that does."""
-    own = [each.shape for each in repeated if each.record == number]
-    if not own:
+    stretches = [each for each in repeated if each.record == number]
+    told = sum(each.cycles.phase.size for each in stretches)
+    if told <= _MOSTLY * (loop.valid.stop - loop.valid.start):
         return loop
+    own = [each.shape for each in stretches]
     noise, repeats = (
         float(np.sqrt(np.mean(np.square(values))))
         for values in ([each.noise for each in own], [each.repeats for each in own])

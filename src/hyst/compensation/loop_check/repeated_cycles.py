@@ -25,6 +25,8 @@ _MOST_MOVED = 0.25  # of a cycle
 _SWEPT = 1.5  # samples by which the length of a cycle may grow from the first to the last
 _SINE = 0.05  # rms that is left of a sine, over its amplitude
 _LEAVES = 6.0  # times that: the sine has ended
+_LONGEST_STEP = 0.5 * np.pi  # rad: of what jumps from end to end no loop is seen
+_PLACES = 32  # of a cycle, where cycles are held against each other
 _SETTLED = 1e-9  # rad at the end of the stretch
 _STEPS = 8  # of the fit of a sine, which takes three
 
@@ -192,6 +194,15 @@ def _as_sine(u: Array, rate: float) -> tuple[float, float, float, float, float] 
     return (amplitude, c, rate, begin, left) if left <= _SINE * amplitude else None
 
 
+def _repeats(u: Array, begins: NDArray[np.intp], swing: float) -> bool:
+    """Tell whether the input goes the same way in all cycles, and not from turn to turn anyhow."""
+    share = np.linspace(0.0, 1.0, _PLACES, endpoint=False)
+    places = begins[:-1, None] + share * np.diff(begins)[:, None]
+    ways = np.interp(places, np.arange(u.size), u)
+    off = float(np.sqrt(np.mean(np.square(ways - ways.mean(axis=0)))))
+    return off <= ALIKE * swing
+
+
 def _between_turns(u: Array, dt: float, turns: NDArray[np.intp]) -> RepeatedCycles | None:
     """Read the phase from the input itself, where it is no sine."""
     count = (turns.size - 1) // 2
@@ -201,12 +212,16 @@ def _between_turns(u: Array, dt: float, turns: NDArray[np.intp]) -> RepeatedCycl
     start, stop = int(turns[0]), int(turns[-1])
     ends = np.median(u[turns[0::2]]), np.median(u[turns[1::2]])
     low, high = float(min(ends)), float(max(ends))
+    if not _repeats(u, turns[0::2], high - low):
+        return None
     stroke = np.searchsorted(turns, np.arange(start, stop), side="right") - 1
     falls = (stroke % 2 == 0) == (ends[0] > ends[1])
     x = np.clip((2.0 * u[start:stop] - low - high) / (high - low), -1.0, 1.0)
     phase = np.where(falls, np.arccos(x), 2.0 * np.pi - np.arccos(x))
     step = np.diff(phase)
     step[step < -np.pi] += 2.0 * np.pi  # over the top
+    if float(step.max()) > _LONGEST_STEP:
+        return None
     # Noise that steps back stands for no way.
     way = 0.5 * np.maximum(np.append(step, step[-1]) + np.append(step[0], step), 0.0)
     return RepeatedCycles(

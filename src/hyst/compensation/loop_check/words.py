@@ -37,7 +37,8 @@ _MEANS = {
     "drive that holds these frequencies), or, where it falls from the lowest on, the model lacks "
     "creep",
     SHAPE: "the shape of the loop changes with the frequency more than its gain and width: the "
-    "dynamics are wrong at multiples of the frequency, or the hysteresis depends on the rate",
+    "dynamics are wrong at multiples of the frequency, hum lies on one of them, or the "
+    "hysteresis depends on the rate",
     CHANGED: "but loops of one frequency differ from each other as well, so it is not the rate: "
     "the actuator changed between the records (temperature, load, drift)",
 }

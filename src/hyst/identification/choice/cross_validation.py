@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.stats
 from numpy.typing import NDArray
 
 from hyst.identification.choice.blocks import Block, blocks_of
@@ -17,6 +18,9 @@ from hyst.identification.record_use.overview import Overview
 Array = NDArray[np.float64]
 
 REFIT_ITERATIONS = 6
+
+WHITE_LAGS, WHITE_BY_CHANCE = 20, 1e-3
+"""Of the test of Box and Pierce (1970)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,12 +139,45 @@ def score_in_sample(overview: Overview, fit: Fit) -> Score:
     fit
         The family fitted to all samples.
     """
-    data = overview.data
-    residual = fit.problem(data).residual(fit.solution.theta)[: data.measured().size]
+    residual = residual_of(overview, fit)
     blocks = overview.once("blocks", lambda: blocks_of(overview))
     errors = np.array([float(np.mean(np.square(residual[each.rows]))) for each in blocks])
     count = residual.size
     return Score(errors * np.exp(fit.parametrization.free_count * np.log(count) / count))
+
+
+def residual_of(overview: Overview, fit: Fit) -> Array:
+    """Give what a fit leaves of its samples, beside what it takes for no part of the model.
+
+    Parameters
+    ----------
+    overview
+        The records.
+    fit
+        The family fitted to all samples.
+    """
+    data = overview.data
+    return fit.problem(data).residual(fit.solution.theta)[: data.measured().size]
+
+
+def leaves_white_noise(overview: Overview, fit: Fit) -> bool:
+    """Tell whether no sample of what a fit leaves is like another near it, so nothing is missing.
+
+    Parameters
+    ----------
+    overview
+        The records.
+    fit
+        The family fitted to all samples.
+    """
+    errors = residual_of(overview, fit)
+    errors = errors - errors.mean()
+    power = float(errors @ errors)
+    if power <= 0.0 or errors.size < 4 * WHITE_LAGS:
+        return power <= 0.0
+    alike = [float(errors[lag:] @ errors[:-lag]) / power for lag in range(1, WHITE_LAGS + 1)]
+    limit = scipy.stats.chi2.isf(WHITE_BY_CHANCE, WHITE_LAGS)
+    return bool(errors.size * float(np.square(alike).sum()) < limit)
 
 
 def _mean_square(residual: Array, block: Block) -> float:

@@ -12,6 +12,7 @@ from hyst.identification.choice.cross_validation import (
     Score,
     cross_validate,
     fewest_left,
+    leaves_white_noise,
     score_in_sample,
 )
 from hyst.identification.families.family import Family, Fit
@@ -338,6 +339,8 @@ def _grow(family: Family, overview: Overview, progress: Callable[[str], None]) -
         gain = 0.0 if family.judged_in_sample else SMALLEST_GAIN
         idle = 0 if score < best * (1.0 - gain) else idle + 1
         best = min(best, score)
-        if idle == 2:
+        if idle == 2 or (
+            idle == 1 and family.judged_in_sample and leaves_white_noise(overview, fit)
+        ):
             break
     return found

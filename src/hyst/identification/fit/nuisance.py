@@ -241,6 +241,7 @@ class Beside:
         root_weights: Array | None = None,
     ) -> None:
         self._nuisances = nuisances
+        self._last: tuple[Array, Projection] | None = None
         ends = np.cumsum(data.lengths())[:-1]
         moments = moments_of(data)
         masks = [None] * len(moments) if chosen is None else np.split(chosen, ends)
@@ -252,7 +253,13 @@ class Beside:
             self._roots.append(None if root is None else root[rows])
 
     def at(self, theta: Array) -> Projection:
-        """Give the projection for one theta."""
+        """Give the projection for one theta; the last one is remembered."""
+        if self._last is not None and np.array_equal(self._last[0], theta):
+            return self._last[1]
+        self._last = theta.copy(), self._new_at(theta)
+        return self._last[1]
+
+    def _new_at(self, theta: Array) -> Projection:
         bases = []
         for moments, root in zip(self._moments, self._roots, strict=True):
             columns = self._nuisances.columns(moments, theta)
@@ -283,28 +290,40 @@ class Basis:
     Parameters
     ----------
     orthonormal
-        Shape (n, k).
+        Shape (l, k): over the first samples, for beyond them all columns are 0.
     of_columns
         Shape (q, k): the basis is the columns times this.
+    samples
+        How many there are, n.
     """
 
     orthonormal: Array
     of_columns: Array
+    samples: int
 
     @classmethod
     def of(cls, columns: Array) -> Basis:
         """Give the basis of some columns; copies of others count once."""
+        samples = len(columns)
         if not columns.size:
-            return cls(np.zeros((len(columns), 0)), np.zeros((columns.shape[1], 0)))
+            return cls(np.zeros((samples, 0)), np.zeros((columns.shape[1], 0)), samples)
+        some = np.flatnonzero(columns[:, 0] if columns.shape[1] == 1 else columns.any(axis=1))
+        columns = columns[: some[-1] + 1 if some.size else 1]
         size = np.linalg.norm(columns, axis=0)
         size = np.where(size > 0.0, size, 1.0)
         left, values, right = np.linalg.svd(columns / size, full_matrices=False)
         kept = values > SMALLEST_DIRECTION * max(float(values[0]), SMALLEST_DIRECTION)
-        return cls(left[:, kept], right[kept].T / values[kept] / size[:, None])
+        return cls(left[:, kept], right[kept].T / values[kept] / size[:, None], samples)
 
     def out_of(self, values: Array) -> Array:
         """Give what is left of values, shape (n,) or (n, m), beside the columns."""
-        return np.asarray(values - self.orthonormal @ (self.orthonormal.T @ values))
+        left, first = values.copy(), slice(0, len(self.orthonormal))
+        left[first] -= self.orthonormal @ (self.orthonormal.T @ values[first])
+        return left
+
+    def along(self, values: Array) -> Array:
+        """Give what of values, shape (n,), is along each direction of the basis."""
+        return np.asarray(self.orthonormal.T @ values[: len(self.orthonormal)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -344,10 +363,10 @@ class Projection:
             Shape (samples,).
         """
         pieces = zip(self.bases, self._pieces(values), strict=True)
-        return [each.of_columns @ (each.orthonormal.T @ piece) for each, piece in pieces]
+        return [each.of_columns @ each.along(piece) for each, piece in pieces]
 
     def _pieces(self, values: Array) -> list[Array]:
-        return np.split(values, np.cumsum([len(each.orthonormal) for each in self.bases])[:-1])
+        return np.split(values, np.cumsum([each.samples for each in self.bases])[:-1])
 
 
 def moments_of(data: Data) -> list[Moments]:

@@ -12,6 +12,9 @@ from hyst.identification.fit.non_negative import non_negative
 
 Array = NDArray[np.float64]
 
+ROUNDING = 1e-24
+"""Of the output's power."""
+
 GRID = 48
 DIPS = 4
 
@@ -93,6 +96,9 @@ def saved_beside_a_line(line: Array, target: Array, left: float) -> float:
     left
         Sum of squared residuals of the model.
     """
-    by_line = float(target @ target) - float(line @ target) ** 2 / float(line @ line)
+    power = float(target @ target)
+    by_line = float(np.square(target - line * (float(line @ target) / float(line @ line))).sum())
+    if by_line <= ROUNDING * power:
+        return 0.0  # an exact line, and no shape saves more than rounding
     variance = left / max(target.size - 4, 1)
     return (by_line - left) / max(variance, float(np.finfo(np.float64).tiny))

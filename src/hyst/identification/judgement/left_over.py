@@ -22,6 +22,12 @@ MOST_CAUSES = 3
 """Told: further ones are small beside them, and their names the less certain."""
 
 
+NOT_FOUND = (
+    "nothing it follows has been found: it may be the sensor's noise, or what the model lacks."
+)
+SAME_CYCLE = "Drive the same cycle several times: it tells noise from what the model lacks."
+
+
 @dataclass(frozen=True)
 class Told:
     """What is left, and what to do.
@@ -140,8 +146,7 @@ def _without_name(remainder: Remainder, found: TakenApart) -> list[tuple[str, st
         return []
     return [
         (
-            f"What then is left, {remainder.said(found.noise)} rms, is not white, and nothing it "
-            "follows has been found: it may be the sensor's noise, or what the model lacks.",
-            "Drive the same cycle several times: it tells noise from what the model lacks.",
+            f"What then is left, {remainder.said(found.noise)} rms, is not white, and {NOT_FOUND}",
+            SAME_CYCLE,
         )
     ]

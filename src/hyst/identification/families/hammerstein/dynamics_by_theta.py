@@ -55,6 +55,11 @@ class DynamicsByTheta:
         A, B, C, D = np.split(rows, [n * n, n * n + n, n * n + 2 * n])
         return cls(dynamics, A.reshape(n, n, theta.size), B, C, D[0])
 
+    @property
+    def is_held(self) -> bool:
+        """Whether no free parameter moves the dynamics."""
+        return not any(each.any() for each in (self.A, self.B, self.C, self.D))
+
     def poles(self) -> tuple[Complex, Complex]:
         """Give the poles, ordered by real, then imaginary part, and their derivative (n, m).
 

@@ -36,12 +36,21 @@ def root_rows(known: KnownDynamics) -> tuple[tuple[str, ...], ...]:
 
 
 def not_determined(known: KnownDynamics) -> tuple[str, ...]:
-    """Give a sentence for each pole, and each zero with a frequency, not to be relied on."""
+    """Give sentences on poles, and zeros with a frequency, not to be relied on: one for a reason.
+
+    Parameters
+    ----------
+    known
+        What a fit tells of its dynamics.
+    """
     shown = bands_told(known)
+    groups: dict[tuple[str, str], list[FoundRoot]] = {}
+    for each in _missed(known):
+        groups.setdefault(("; ".join(each.undetermined), _advice(each)), []).append(each)
     return tuple(
-        f"the {name_of(each)} of G at {_place(each)} is not determined by this drive: "
-        f"{'; '.join(each.undetermined)}; the drive shows G {shown}{_advice(each)}"
-        for each in _missed(known)
+        f"{_named(roots)} of G {'are' if len(roots) > 1 else 'is'} not determined by this drive: "
+        f"{reasons}; the drive shows G {shown}{advice}"
+        for (reasons, advice), roots in groups.items()
     )
 
 
@@ -73,8 +82,7 @@ def verdict_on(verdict: Verdict, known: KnownDynamics) -> Verdict:
     missed = [each for each in _missed(known) if each.role == "pole"]
     if not missed:
         return verdict
-    named = ", ".join(f"the {name_of(each)} at {_place(each)}" for each in missed)
-    sentence = f"This drive does not determine {named} of G"
+    sentence = f"This drive does not determine {_named(missed)} of G"
     if all(each.is_shown for each in missed):
         return Verdict(verdict.level, (*verdict.sentences, f"{sentence}."))
     sentence += (
@@ -103,10 +111,10 @@ def summary_lines(known: KnownDynamics) -> list[str]:
         What a fit tells of its dynamics.
     """
     G = known.dynamics
-    late = f", delay {G.delay} samples ({G.delay * G.dt:.4g} s)" if G.delay else ""
-    lines = [
-        f"zeros and poles of G (order {G.order}{late}); the drive shows G {bands_told(known)}:"
-    ]
+    late = f"; delay {G.delay} samples ({G.delay * G.dt:.4g} s)" if G.delay else ""
+    given = ", given" if known.is_held else ""
+    shown = "" if known.is_held else f"; the drive shows G {bands_told(known)}"
+    lines = [f"zeros and poles of G (order {G.order}{given}){late}{shown}:"]
     for row in root_rows(known):
         name, *rest = row
         lines.append(f"  {name:14s} " + "   ".join(each for each in rest if each))
@@ -157,6 +165,10 @@ def _advice(root: FoundRoot) -> str:
 def _missed(known: KnownDynamics) -> list[FoundRoot]:
     roots = (*known.poles, *(each for each in known.zeros if each.is_pair))
     return [each for each in roots if not each.is_determined]
+
+
+def _named(roots: list[FoundRoot]) -> str:
+    return ", ".join(f"the {name_of(each)} at {_place(each)}" for each in roots)
 
 
 def _place(root: FoundRoot) -> str:

@@ -12,9 +12,7 @@ import numpy as np
 
 from hyst.errors import NotIdentifiableError
 from hyst.identification.families.family import Family, Fit, Start
-from hyst.identification.families.hammerstein.dense_plays import dense_plays
 from hyst.identification.families.hammerstein.first_dynamics import (
-    behind_operator,
     delay_of,
     of_gain_one,
     orders_to_try,
@@ -22,27 +20,18 @@ from hyst.identification.families.hammerstein.first_dynamics import (
     shortened,
     signal_behind,
 )
-from hyst.identification.families.hammerstein.held_front import HeldFront
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
 from hyst.identification.families.hammerstein.markov import choose_markov
-from hyst.identification.families.hammerstein.order_search import Search, search_order
-from hyst.identification.families.hammerstein.settled_dynamics import (
-    numbers_of,
-    settled_dynamics,
-)
 from hyst.identification.families.linear import Linear
-from hyst.identification.families.option import AUTO
 from hyst.identification.fit.bounded_least_squares import Solution, minimize
 from hyst.identification.fit.problem import problem_of
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics
-from hyst.operators import Operator
 
 MOST_STARTS = 3
 """Of the hysteresis."""
 
-_ROUNDS = 4  # of dynamics and hysteresis after each other
 _WARM_UP = 8_000  # samples of each record for the trial of an order
 _TRIAL_ITERATIONS = 30
 _COARSELY = 1.0  # of the residual variance
@@ -63,59 +52,14 @@ class FirstDynamics:
         The input, and the signal behind the hysteresis.
     trial
         The coarse fit of hysteresis and dynamics that chose them; None where plays did.
+    cost
+        Mean squared error that plays leave; infinity where none were tried.
     """
 
     dynamics: LinearDynamics
     behind: Overview
     trial: Fit | None
-
-
-def first_dynamics_of_plays(
-    overview: Overview,
-    state_order: int | str,
-    delay: int | None,
-    known: HeldFront | None = None,
-) -> FirstDynamics:
-    """Choose delay and order with plays on a grid of radii before the dynamics.
-
-    Parameters
-    ----------
-    overview
-        The records.
-    state_order
-        Number of states, or ``"auto"``.
-    delay
-        Samples, or None.
-    known
-        The hysteresis, where it is known: then it is what drives the dynamics.
-
-    Raises
-    ------
-    NotIdentifiableError
-        If no order gives stable dynamics of a gain at rest.
-    """
-    data = overview.data
-    orders = None if state_order == AUTO else (int(state_order),)
-    searched = Search.of(data, delay) if known is None else Search.of(known.behind(data), delay, 0)
-    found = search_order(searched, orders, float(data.measured().var()))
-    dynamics, looked = of_gain_one(found.dynamics), orders is not None
-    for _ in range(_ROUNDS):
-        hysteresis, before = _hysteresis(data, dynamics, known), dynamics
-        dynamics = settled_dynamics(data, hysteresis, before, delay, orders=False)
-        if numbers_of(dynamics) == numbers_of(before):
-            if looked:
-                break
-            dynamics = settled_dynamics(data, hysteresis, dynamics, delay, orders=True)
-            looked = True
-    behind = behind_operator(data, _hysteresis(data, dynamics, known))
-    return FirstDynamics(dynamics, Overview(behind, rates_matter=True), None)
-
-
-def _hysteresis(data: Data, dynamics: LinearDynamics, known: HeldFront | None) -> Operator:
-    """Give the hysteresis before dynamics: many plays, or what is known."""
-    if known is None:
-        return dense_plays(data, dynamics)
-    return known.operator.at_sample_time(data.records[0].dt)
+    cost: float = float("inf")
 
 
 def first_dynamics(

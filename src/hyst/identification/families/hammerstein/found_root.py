@@ -208,7 +208,7 @@ def _why_not(root: FoundRoot) -> tuple[str, ...]:
     reasons = []
     if math.isfinite(root.frequency):
         if not root.is_shown:
-            reasons.append("the drive shows nothing within an octave of it")
+            reasons.append("the drive shows nothing within an octave")
         share = root.frequency_error / root.frequency
         if share > UNSURE:
             reasons.append(

@@ -40,7 +40,7 @@ class FrequencyResponse:
         Shape (p,), standard error of the phase, degrees.
     excited
         Shape (p,): whether the drive had power within an octave; elsewhere the response is an
-        extrapolation by the model.
+        extrapolation by the model. Of dynamics that were given it is nowhere.
     dt
         Sample time, s.
     """

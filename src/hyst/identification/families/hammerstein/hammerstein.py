@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hyst.checks.numbers import whole_number as as_whole_number
 from hyst.errors import InputError
+from hyst.identification.choice.cross_validation import leaves_white_noise
 from hyst.identification.families.family import Estimates, Family, Fit, Start, Words
 from hyst.identification.families.hammerstein.coefficients import (
     coefficients,
@@ -25,8 +26,11 @@ from hyst.identification.families.hammerstein.first_dynamics import (
 from hyst.identification.families.hammerstein.first_guess import (
     FirstDynamics,
     first_dynamics,
-    first_dynamics_of_plays,
     fronts_of,
+)
+from hyst.identification.families.hammerstein.first_guess_of_plays import (
+    Wanted,
+    first_dynamics_of_plays,
 )
 from hyst.identification.families.hammerstein.given_dynamics import (
     GivenDynamics,
@@ -94,6 +98,7 @@ MOST_LAGS, MOST_STATES, LONGEST_PERIOD = 5000, 64, 10**9
 _WARM_UP = 8_000
 _BURST = 12
 _STALLED = 0.998
+_BETTER = 0.97  # of the squared error that plays leave
 _TOLERANCE = 2e-2  # of the residual variance: at most a seventh of a standard error is left
 
 
@@ -297,7 +302,8 @@ class Hammerstein(Family):
     def _find_dynamics(self, overview: Overview) -> FirstDynamics:
         if self.starts_from_plays:
             delay = None if overview.delay == AUTO else as_whole_delay(overview.delay)
-            return first_dynamics_of_plays(overview, self.state_order, delay, self.front)
+            wanted = Wanted(self.state_order, delay, self.front)
+            return first_dynamics_of_plays(overview, wanted)
         orders = (self.fir_order, self.state_order)
         front = self.hysteresis_family if self.front is None else Linear()
         return first_dynamics(self, front, behind_known(self.front, overview), orders)
@@ -326,6 +332,8 @@ class Hammerstein(Family):
         seen = replace(
             fit, family=self.hysteresis_family, parametrization=joint_of(fit).seen_by_front()
         )
+        if self.starts_from_plays and leaves_white_noise(overview, fit):
+            return fit
         short = Overview(shortened(overview.data, _WARM_UP), rates_matter=True)
         improved = self.hysteresis_family.finish(seen, short, _BURST)
         if np.array_equal(improved.solution.theta, fit.solution.theta):
@@ -339,14 +347,19 @@ class Hammerstein(Family):
         if not self.starts_from_plays or joint_of(fit).held:
             return fit
         before, data = dynamics_of(fit), overview.data
+        rows = data.measured().size
         delay = None if overview.delay == AUTO else as_whole_delay(overview.delay)
-        now = settled_dynamics(data, self._front_fit(fit).operator, before, delay, orders=False)
+        # What plays made up for by a pole, the family in front may do itself.
+        plays = self._first_dynamics(overview).cost
+        orders = self.state_order == AUTO and fit.solution.cost < _BETTER * plays * rows
+        operator = self._front_fit(fit).operator
+        now = settled_dynamics(data, operator, before, delay, orders).dynamics
         tried = {numbers_of(before): fit}
         for each in (now, *simpler(now, delay), *simpler(before, delay)):
             if numbers_of(each) not in tried:
                 tried[numbers_of(each)] = self._behind(fit, each, data, max_iterations)
         least = min(tried.values(), key=lambda each: each.solution.cost)
-        errors = least.problem(data).residual(least.solution.theta)[: data.measured().size]
+        errors = least.problem(data).residual(least.solution.theta)[:rows]
         worth, floor = samples_worth(errors), ROUNDING * float(data.measured().var())
 
         def price_of(each: Fit) -> float:

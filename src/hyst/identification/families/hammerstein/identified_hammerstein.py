@@ -191,8 +191,6 @@ class IdentifiedHammerstein(Identified):
         str
         """
         lines = [super().summary(), "", *summary_lines(self.known)]
-        if self.dynamics_are_given:
-            lines.append("G was given and is held")
         lines.append(f"yardstick: the model leaves {in_one_line(self.yardstick)}")
         inverse = self.inverse_of_dynamics
         if inverse is not None:

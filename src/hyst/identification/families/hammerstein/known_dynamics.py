@@ -52,6 +52,11 @@ class KnownDynamics:
         """G."""
         return self.by_theta.dynamics
 
+    @property
+    def is_held(self) -> bool:
+        """Whether G was known before the fit, which did not move it."""
+        return self.by_theta.is_held
+
     def frequencies(self) -> Array:
         """Give frequencies to look at G, Hz: from below the drive's to half the sample rate."""
         nyquist = 0.5 / self.dynamics.dt
@@ -94,7 +99,7 @@ class KnownDynamics:
             response,
             gain_error,
             np.degrees(phase_error),
-            self.band.excites(frequency),
+            self.band.excites(frequency) | self.is_held,
             self.dynamics.dt,
         )
 

@@ -13,6 +13,7 @@ Array = NDArray[np.float64]
 
 _FOLDS = 8
 _STRETCHES = 5  # of each fold in each record: every part of a chirp is in every fold
+_STANDARD_ERRORS = 2.0  # by which a gain is counted less: noise explains stretches by chance
 _RIDGES = (1e-10, 1e-7, 1e-5, 1e-3)  # of a column's square: some move in few stretches only
 
 
@@ -79,8 +80,8 @@ class LeftOutStretches:
         Returns
         -------
         float
-            Mean square of what is left of samples by coefficients found without them, where the
-            gain is counted less a standard error: noise explains some stretches by chance.
+            Mean square of what is left of samples by coefficients found without them, two
+            standard errors of it added.
         list of numpy.ndarray
             What is left by the coefficients found with all, of each record.
         """
@@ -91,7 +92,7 @@ class LeftOutStretches:
         whole = grams.sum(axis=0)
         found = [(_held_to(grams, ridge), ridge) for ridge in _RIDGES]
         left, ridge = min(found)
-        solution = _solved(whole, ridge)
+        solution = _solved(whole, _pull(whole, ridge))
         rest = [
             signal - table[:, rows[:-1]] @ solution
             for table, signal in zip(self.tables, self.target, strict=True)
@@ -100,18 +101,26 @@ class LeftOutStretches:
 
 
 def _held_to(grams: Array, ridge: float) -> float:
-    """Give the sum of squares of all folds, each by the others, and a standard error more."""
+    """Give the sum of squares of all folds, each by the others, and two standard errors more."""
     whole, before = grams.sum(axis=0), grams[:, -1, -1]
-    solutions = [np.append(-_solved(whole - fold, ridge), 1.0) for fold in grams]
+    pull = _pull(whole, ridge)
+    solutions = [np.append(-_solved(whole - fold, pull), 1.0) for fold in grams]
     after = np.array([each @ fold @ each for each, fold in zip(solutions, grams, strict=True)])
     shares = np.divide(after, before, out=np.ones(_FOLDS), where=before > 0.0)
-    chance = float(shares.std()) / math.sqrt(_FOLDS - 1)
+    chance = _STANDARD_ERRORS * float(shares.std()) / math.sqrt(_FOLDS - 1)
     return min(float(after.sum()) + chance * float(before.sum()), float(before.sum()))
 
 
-def _solved(gram: Array, ridge: float) -> Array:
+def _pull(gram: Array, ridge: float) -> Array:
+    """Give what is added to the diagonal: a share of each column's square, none to the constant.
+
+    It is that of all samples, or a column that moves in the stretches left out alone is free.
+    """
+    pull = ridge * np.diag(gram)[:-1] + np.finfo(float).tiny
+    pull[-1] = 0.0
+    return np.asarray(pull)
+
+
+def _solved(gram: Array, pull: Array) -> Array:
     """Give the coefficients of normal equations whose last column is the target."""
-    left = gram[:-1, :-1]
-    # A column may be nothing in all stretches but those left out.
-    diagonal = ridge * np.diag(left) + np.finfo(float).tiny
-    return np.asarray(np.linalg.solve(left + np.diag(diagonal), gram[:-1, -1]))
+    return np.asarray(np.linalg.solve(gram[:-1, :-1] + np.diag(pull), gram[:-1, -1]))

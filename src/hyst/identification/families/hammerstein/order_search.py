@@ -104,14 +104,21 @@ class Search:
         order
             Number of poles.
         """
+        found = self._at(order, self.low)
+        if not found and 1 not in self.low:
+            # Poles that are over within a few samples are none at a lower rate.
+            found = self._at(order, {1: [each.thinned() for each in self.full]})
+        return sorted(found, key=lambda each: each.cost)
+
+    def _at(self, order: int, rates: dict[int, list[Piece]]) -> list[Dynamic]:
         dt = self.data.records[0].dt
         found = []
-        for factor, pieces in self.low.items():
+        for factor, pieces in rates.items():
             low = self._low(pieces, order, factor)
             raised = None if low is None else at_full_rate(self.full, low, factor, dt, self.delays)
             if raised is not None and np.isfinite(raised.cost) and raised.dynamics.dc_gain() != 0.0:
                 found.append(raised)
-        return sorted(found, key=lambda each: each.cost)
+        return found
 
     def _low(self, pieces: Sequence[Piece], order: int, factor: int) -> Guess | None:
         first = self.delays.start // factor

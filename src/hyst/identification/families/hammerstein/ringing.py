@@ -20,7 +20,7 @@ from hyst.models import LinearDynamics
 
 Array = NDArray[np.float64]
 
-_OVER = 1e-12  # of what a state begins with
+_OVER = 1e-10  # of what a state begins with
 
 
 @final
@@ -39,55 +39,60 @@ class Ringing(Nuisance):
     base: LinearDynamics
     place: int
 
+    def count(self, moments: Moments, theta: Array) -> int:
+        """Give the number of states."""
+        return self.base.order
+
     def columns(self, moments: Moments, theta: Array) -> Array:
         """Give one column for each state."""
         A, C = self._matrices(theta)
-        units = np.eye(self.base.order)
-        return np.column_stack([self._over(moments, C, x, A) for x in units])
+        count = _samples(moments, A)
+        rows, inside = _rows(moments, count)
+        columns = np.zeros((moments.places.size, self.base.order))
+        columns[inside] = _powers(A.T, C, count)[rows]
+        return columns
 
     def slopes(self, moments: Moments, theta: Array, coefficients: Array) -> Array:
         """Give the derivative by k and C of the free response from one state."""
         A, C = self._matrices(theta)
         n, base = self.base.order, self.base
         result = np.zeros((moments.places.size, theta.size))
-        count = self._samples(moments, A)
-        rows, inside = self._rows(moments, count)
-        states = [_free(A, base.B, unit, coefficients, base.dt, count) for unit in np.eye(n)]
-        driven = LinearDynamics(A, base.B, C, 0.0, base.dt)
-        for i, state in enumerate(states):
-            result[inside, self.place + i] = np.asarray(driven(state))[rows]
-            result[inside, self.place + n + i] = state[rows]
+        count = _samples(moments, A)
+        rows, inside = _rows(moments, count)
+        states = _powers(A, coefficients, count)
+        driven = LinearDynamics(A, base.B, C, 0.0, base.dt)(np.ascontiguousarray(states.T))
+        result[inside, self.place : self.place + n] = np.asarray(driven).T[rows]
+        result[inside, self.place + n : self.place + 2 * n] = states[rows]
         return result
 
     def _matrices(self, theta: Array) -> tuple[Array, Array]:
         n, own = self.base.order, theta[self.place :]
         return self.base.A + np.outer(self.base.B, own[:n]), own[n : 2 * n]
 
-    def _over(self, moments: Moments, C: Array, x: Array, A: Array) -> Array:
-        count = self._samples(moments, A)
-        rows, inside = self._rows(moments, count)
-        column = np.zeros(moments.places.size)
-        column[inside] = _free(A, self.base.B, C, x, self.base.dt, count)[rows]
-        return column
 
-    def _samples(self, moments: Moments, A: Array) -> int:
-        """Give after how many samples nothing of it is left, or how many there are."""
-        last = int(moments.places[-1]) - moments.first + 1 if moments.places.size else 1
-        slowest = float(np.abs(np.linalg.eigvals(A)).max(initial=0.0))
-        if not 0.0 < slowest < 1.0:
-            return max(last, 1)
-        over = np.log(_OVER) / np.log(slowest) + 2 * self.base.order
-        return int(np.clip(over, 1, max(last, 1)))
-
-    def _rows(self, moments: Moments, count: int) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-        since = moments.places - moments.first
-        inside = (since >= 0) & (since < count)
-        return since[inside], inside
+def _samples(moments: Moments, A: Array) -> int:
+    """Give after how many samples nothing of it is left, or how many there are."""
+    last = int(moments.places[-1]) - moments.first + 1 if moments.places.size else 1
+    slowest = float(np.abs(np.linalg.eigvals(A)).max(initial=0.0))
+    if not 0.0 < slowest < 1.0:
+        return max(last, 1)
+    over = np.log(_OVER) / np.log(slowest) + 2 * len(A)
+    return int(np.clip(over, 1, max(last, 1)))
 
 
-def _free(A: Array, B: Array, C: Array, x: Array, dt: float, count: int) -> Array:
-    """Give ``C A^k x``."""
-    return np.asarray(LinearDynamics(A, B, C, 0.0, dt, x0=x)(np.zeros(count)))
+def _rows(moments: Moments, count: int) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    since = moments.places - moments.first
+    inside = (since >= 0) & (since < count)
+    return since[inside], inside
+
+
+def _powers(A: Array, x: Array, count: int) -> Array:
+    """Give ``A^k x`` for k = 0 .. count - 1, shape (count, n), by doubling."""
+    rows, power = x[None, :], A
+    while len(rows) < count:
+        rows = np.concatenate([rows, rows @ power.T])
+        power = power @ power
+    return rows[:count]
 
 
 def without_ringing(data: Data, fit: Fit) -> Data:

@@ -25,7 +25,7 @@ _ITERATIONS = 8
 _FARTHEST = 12  # samples of delay
 _MEANT = 2  # samples by which feedthrough may make up for a delay that is too long
 _LAGS = 100  # of the residual, for how many samples of it are worth one
-ROUNDING = 1e-20
+ROUNDING = 1e-14
 """Of the output's power: less is nothing."""
 
 
@@ -57,7 +57,7 @@ def settled_dynamics(
     dynamics: LinearDynamics,
     delay: int | None,
     orders: bool,
-) -> LinearDynamics:
+) -> Tried:
     """Give the dynamics that pay behind a known hysteresis: order, delay, feedthrough.
 
     Parameters
@@ -78,12 +78,10 @@ def settled_dynamics(
     tried = [nearest, *_without_feedthrough(behind, nearest.dynamics)]
     if orders:
         tried += _of_other_orders(behind, dynamics.order, delay)
-    tried = [each for each in tried if np.isfinite(each.cost)]
-    if not tried:
-        return dynamics
+    tried = [each for each in tried if np.isfinite(each.cost)] or [nearest]
     worth = samples_worth(min(tried, key=lambda each: each.cost).errors)
     floor = ROUNDING * float(behind.measured().var())
-    return min(tried, key=lambda each: price(each.cost, each.numbers, worth, floor)).dynamics
+    return min(tried, key=lambda each: price(each.cost, each.numbers, worth, floor))
 
 
 def numbers_of(dynamics: LinearDynamics) -> tuple[int, int, bool]:

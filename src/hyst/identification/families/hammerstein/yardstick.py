@@ -274,9 +274,11 @@ def _from_period_to_period(stretches: Sequence[Stretch]) -> float:
         period = repeats_after(each.u[each.start :])
         if not period:
             continue
-        before, kept = earlier(each.error, period)
-        change = each.error[first_comparable(period) :] - before
-        if np.abs(change).max(initial=0.0) > _EXACT * float(each.measured.std()):
+        first = first_comparable(period)
+        again = each.measured[first:] - earlier(each.measured, period)[0]
+        if np.abs(again).max(initial=0.0) > _EXACT * float(each.measured.std()):
+            before, kept = earlier(each.error, period)
+            change = each.error[first:] - before
             change = change - change.mean()
             squares += float(change @ change) / (1.0 + kept)
             count += change.size

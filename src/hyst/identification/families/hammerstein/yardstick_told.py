@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from hyst.identification.families.hammerstein.yardstick import TELLS, Yardstick
 from hyst.identification.judgement.causes.dynamics import DYNAMICS
+from hyst.identification.judgement.left_over import NOT_FOUND, SAME_CYCLE
 from hyst.operators import Verdict
 from hyst.operators.verdict import Level
 
-UNFIT_RATIO, UNFIT_SHARE = 1.5, 0.1
+UNFIT_RATIO, UNFIT_SHARE = 1.4, 0.1
 """Ratio, and what is left beside noise over the output's deviation, from which it is unfit."""
 
 LIKE_LINEAR, LINEAR_SHARE = 0.7, 0.05
@@ -56,6 +57,8 @@ def lowered(verdict: Verdict, yardstick: Yardstick, unit: str) -> Verdict:
     if level == "good":
         return Verdict(verdict.level, before)
     told = sentences(yardstick, unit)
+    if _missing(yardstick) != "unknown":  # then it has been found
+        before = tuple(each for each in before if not each.endswith((NOT_FOUND, SAME_CYCLE)))
     if verdict.level == "unfit":
         return Verdict("unfit", (*before, *told))
     if level == "unfit":

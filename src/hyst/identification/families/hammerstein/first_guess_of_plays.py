@@ -1,0 +1,143 @@
+"""Dynamics to start the joint fit from, behind plays: no impulse response need be excited."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hyst.identification.families.hammerstein.at_full_rate import Dynamic
+from hyst.identification.families.hammerstein.dense_plays import dense_plays
+from hyst.identification.families.hammerstein.first_dynamics import behind_operator, of_gain_one
+from hyst.identification.families.hammerstein.first_guess import FirstDynamics
+from hyst.identification.families.hammerstein.grid_front import OnGrid, refined_on_grid
+from hyst.identification.families.hammerstein.held_front import HeldFront
+from hyst.identification.families.hammerstein.order_search import Search, search_order
+from hyst.identification.families.hammerstein.settled_dynamics import (
+    ROUNDING,
+    Tried,
+    numbers_of,
+    price,
+    samples_worth,
+    settled_dynamics,
+)
+from hyst.identification.families.option import AUTO
+from hyst.identification.record_use.overview import Overview
+from hyst.identification.record_use.used_samples import Data
+from hyst.models import LinearDynamics
+from hyst.operators import Affine, Operator
+from hyst.operators.composition import leaves_of
+
+_ROUNDS = 4  # of dynamics and hysteresis after each other
+_ITERATIONS = 8
+_FAR = 4.0  # times the error of plays: what a line leaves is not looked at closer
+
+
+@dataclass(frozen=True, eq=False)
+class Wanted:
+    """What is known of the dynamics before they are found.
+
+    Parameters
+    ----------
+    state_order
+        Number of states, or ``"auto"``.
+    delay
+        Samples, or None.
+    known
+        The hysteresis, or None: if it is known it is what drives the dynamics.
+    """
+
+    state_order: int | str
+    delay: int | None
+    known: HeldFront | None = None
+
+    @property
+    def orders(self) -> tuple[int, ...] | None:
+        """Orders to choose from; None for all."""
+        return None if self.state_order == AUTO else (int(self.state_order),)
+
+    def search(self, data: Data, plays: bool) -> OnGrid:
+        """Search the order behind plays on a grid, behind what is known, or behind a line."""
+        if self.known is not None:
+            searched = Search.of(self.known.behind(data), self.delay, 0)
+        else:
+            searched = Search.of(data, self.delay) if plays else Search.of(data, self.delay, 0)
+        return search_order(searched, self.orders, float(data.measured().var()))
+
+    def hysteresis(self, data: Data, dynamics: LinearDynamics) -> Operator:
+        """Give the hysteresis before dynamics: many plays, or what is known."""
+        if self.known is None:
+            return dense_plays(data, dynamics)
+        return self.known.operator.at_sample_time(data.records[0].dt)
+
+
+def first_dynamics_of_plays(overview: Overview, wanted: Wanted) -> FirstDynamics:
+    """Choose delay and order with plays on a grid of radii before the dynamics.
+
+    Parameters
+    ----------
+    overview
+        The records.
+    wanted
+        What is known.
+
+    Raises
+    ------
+    NotIdentifiableError
+        If no order gives stable dynamics of a gain at rest.
+    """
+    data = overview.data
+    found = _settled(data, wanted)
+    hysteresis = wanted.hysteresis(data, found.dynamics)
+    if wanted.known is None and _is_a_line(data, wanted, found, hysteresis):
+        hysteresis = _line_of(data, hysteresis)
+    behind = Overview(behind_operator(data, hysteresis), rates_matter=True)
+    return FirstDynamics(of_gain_one(found.dynamics), behind, None, found.cost)
+
+
+def _settled(data: Data, wanted: Wanted) -> Tried:
+    """Find dynamics and the hysteresis before them after each other, until none changes."""
+    dynamics = of_gain_one(wanted.search(data, plays=True).dynamics)
+    looked = wanted.orders is not None
+    found: Tried | None = None
+    for _ in range(_ROUNDS):
+        hysteresis, before = wanted.hysteresis(data, dynamics), dynamics
+        found = settled_dynamics(data, hysteresis, before, wanted.delay, orders=False)
+        dynamics = found.dynamics
+        if numbers_of(dynamics) == numbers_of(before):
+            if looked:
+                break
+            found = settled_dynamics(data, hysteresis, dynamics, wanted.delay, orders=True)
+            dynamics, looked = found.dynamics, True
+    assert found is not None, "there is a round"
+    return found
+
+
+def _is_a_line(data: Data, wanted: Wanted, found: Tried, hysteresis: Operator) -> bool:
+    """Tell whether a line before dynamics, of another order perhaps, leaves as little as plays."""
+    G = found.dynamics
+    near = Dynamic(G, np.ones(1), np.inf)
+    line = refined_on_grid(data, np.empty(0), near, G.D != 0.0, _ITERATIONS)
+    if line.cost > _FAR * found.cost:
+        return False
+    if wanted.orders is None:
+        line = min(line, wanted.search(data, plays=False), key=lambda each: each.cost)
+    worth, floor = samples_worth(found.errors), ROUNDING * float(data.measured().var())
+    numbers = 2 * found.dynamics.order + _plays_of(hysteresis)
+    of_line = price(line.cost, 2 * line.dynamics.order, worth, floor)
+    return of_line <= price(found.cost, numbers, worth, floor)
+
+
+def _plays_of(hysteresis: Operator) -> int:
+    """Give the plays that have a weight."""
+    return sum(
+        int(np.count_nonzero(getattr(each, "p", np.empty(0)))) for each in leaves_of(hysteresis)
+    )
+
+
+def _line_of(data: Data, hysteresis: Operator) -> Operator:
+    """Give the least squares line of a hysteresis."""
+    u = data.inputs()
+    v = data.joined([hysteresis(r.u)[w] for r, w in zip(data.records, data.windows(), strict=True)])
+    slope, offset = np.polyfit(u, v, 1)
+    return Affine(float(slope), float(offset))
