@@ -282,8 +282,3 @@ def test_a_fit_with_creep_that_does_not_converge_leaves_what_was_found_without()
 def test_what_is_no_number_of_lags_is_refused(creep: object) -> None:
     with pytest.raises(InputError, match="creep is"):
         _identify(record(Y, U, 15), creep=creep)
-
-
-def test_families_without_a_place_for_creep_say_so() -> None:
-    with pytest.raises(NotIdentifiableError, match="hammerstein, whose dynamics may be as slow"):
-        hyst.identify(record(Y, U, 16), family="hammerstein", creep=1, hysteresis="pi", plays=1)

@@ -11,8 +11,9 @@ from threadpoolctl import threadpool_limits
 from hyst.diagnosis import Diagnosis
 from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
 from hyst.identification.creep.creeping import Creeping
-from hyst.identification.creep.found_creep import Wanted as Creeps
-from hyst.identification.creep.found_creep import as_creep, require_place, with_creep
+from hyst.identification.creep.found_creep import with_creep
+from hyst.identification.creep.wanted import Wanted as Creeps
+from hyst.identification.creep.wanted import as_creep, creeping_inside, require_place
 from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families, families_in_reserve
 from hyst.identification.lag.found_lag import Wanted as Lagging
@@ -51,9 +52,9 @@ def identify(
     Parameters
     ----------
     records
-        One or more records of one actuator, each with its own memory and, but for dynamics, its own
-        sample time. What ``hyst.diagnose`` finds in them is acted on: samples that are no
-        measurements do not count.
+        One or more records of one actuator, each with its own memory and its own sample time; with
+        dynamics one that divides them all is taken. What ``hyst.diagnose`` finds in them is acted
+        on: samples that are no measurements do not count.
     family
         A name; several with commas between them, which are compared by cross-validation, the
         simplest that it does not show to be worse than the best being taken; ``"auto"``: those that
@@ -76,7 +77,8 @@ def identify(
         Number of first-order lags that follow the output of the hysteresis and add to it, 1 to 5;
         ``"auto"``: as many as the records pay for, none unless what the model leaves shows them
         beyond drift, noise and loops of another shape; ``None``: none. What settles since a
-        record began, or drifts whatever the drive does, is no creep.
+        record began, or drifts whatever the drive does, is no creep. With dynamics after it a
+        number only: ``"auto"`` looks for none.
     lag
         Time constant, s, of a first-order lag of the drive before the hysteresis, as of an
         amplifier: it is a stage of the model then, which its inverse undoes. ``"auto"``: estimated
@@ -124,6 +126,7 @@ def identify(
     wanted = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
     families, about_drift = chosen_families(family, options), as_drift(drift)
     lags = as_creep(creep)
+    families, lags = creeping_inside(families, lags)
     require_place(families, lags)
     reserve = families_in_reserve(family, options)
     with threadpool_limits(1, user_api="blas"):

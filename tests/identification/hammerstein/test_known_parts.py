@@ -81,12 +81,12 @@ def test_standard_errors_agree_with_scatter() -> None:
         constants(
             identified(record_of(SINES, seed=seed), dynamics=G, hysteresis="pi", radii=RADII)
         )["prandtl_ishlinskii.p[3]"]
-        for seed in range(12)
+        for seed in range(8)
     ]
     values, errors = np.array(runs).T
-    # Twelve runs know their scatter to a fifth; three times that to either side.
-    assert 0.5 < values.std(ddof=1) / errors.mean() < 1.7
-    assert abs(values.mean() - WEIGHTS[2]) < 4.0 * errors.mean() / np.sqrt(12.0)
+    # Eight runs know their scatter to a quarter; three times that to either side.
+    assert 0.4 < values.std(ddof=1) / errors.mean() < 1.8
+    assert abs(values.mean() - WEIGHTS[2]) < 4.0 * errors.mean() / np.sqrt(8.0)
 
 
 @pytest.mark.parametrize("gain", [1.0, 0.37, -20.0])

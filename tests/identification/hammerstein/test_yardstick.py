@@ -179,7 +179,7 @@ def test_hysteresis_behind_the_dynamics_is_no_hammerstein_system(kind: str) -> N
 def test_an_order_too_low_is_unfit_with_the_ratio() -> None:
     dt = 1e-3
     true = modes((100.0, 0.05), (270.0, 0.03), dt=dt, delay=0)
-    u = multisine(dt, 6000, amplitude=10.0, periods=2, seed=2).u
+    u = multisine(dt, 3000, amplitude=10.0, periods=2, seed=2).u
     record = Record(u, noisy((true @ FRONT)(u)), dt)
     found = hyst.identify(record, family="hammerstein", hysteresis="pi", plays=5, state_order=2)
     assert isinstance(found, IdentifiedHammerstein)
@@ -205,7 +205,7 @@ def test_the_true_system_is_good_and_says_so() -> None:
 def test_a_bouc_wen_actuator_is_good_as_bouc_wen_and_not_as_plays() -> None:
     dt = 1e-3
     true, front = modes((80.0, 0.15), dt=dt, delay=0), hyst.BoucWen(1.0, 0.6, 0.5, 0.3)
-    u = multisine(dt, 6000, amplitude=2.0, periods=2, seed=5).u
+    u = multisine(dt, 3000, amplitude=2.0, periods=2, seed=5).u
     record = Record(u, noisy((true @ front)(u)), dt)
     levels = {}
     for name in ("bouc-wen", "pi"):

@@ -127,10 +127,10 @@ def inverse_for_loop(
         if short and 2.0 * noise * found.inverse.noise_gain <= NOISY * extent:
             break
         inverse = _in_band(inverses, limit, samples)
-        if short and not _is_short(inverse, samples):
-            break  # and the narrower the band, the longer the inverse
         if _is_short(inverse, samples) or inverse.h.size < found.inverse.h.size:
             found = ChosenInverse(inverse, limit, _why(first, limit, noise))
+        elif found is not first:
+            break  # the narrower the band, the longer the inverse, but for zeros at its edge
         limit *= _STEP
     return found
 

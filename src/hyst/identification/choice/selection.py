@@ -339,8 +339,16 @@ def _grow(family: Family, overview: Overview, progress: Callable[[str], None]) -
         gain = 0.0 if family.judged_in_sample else SMALLEST_GAIN
         idle = 0 if score < best * (1.0 - gain) else idle + 1
         best = min(best, score)
-        if idle == 2 or (
-            idle == 1 and family.judged_in_sample and leaves_white_noise(overview, fit)
-        ):
+        if idle == 2 or (idle == 1 and _nothing_is_left(family, overview, fit)):
             break
     return found
+
+
+def _nothing_is_left(family: Family, overview: Overview, fit: Fit) -> bool:
+    """Tell whether a fit behind dynamics leaves white noise, and the record could show more.
+
+    Drives of one amplitude hardly show one play more, or less, than there are.
+    """
+    if not family.judged_in_sample or not overview.shows_minor_loops:
+        return False
+    return leaves_white_noise(overview, fit)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.checks.numbers import whole_number
-from hyst.errors import InputError, NotIdentifiableError, SolverError
+from hyst.errors import NotIdentifiableError, SolverError
 from hyst.identification.creep.creeping import Creeping, by_name, over_windows, taken_out
 from hyst.identification.creep.creeping_family import CreepingFamily
 from hyst.identification.creep.evidence import (
@@ -30,7 +28,8 @@ from hyst.identification.creep.told import (
     DriftBeside,
     require_told,
 )
-from hyst.identification.families.family import Family, Fit
+from hyst.identification.creep.wanted import DYNAMICS, Wanted
+from hyst.identification.families.family import Fit
 from hyst.identification.families.option import AUTO
 from hyst.identification.families.staged_family import staged_of
 from hyst.identification.fit.nuisance import (
@@ -49,63 +48,15 @@ from hyst.identification.search import Found
 from hyst.operators import Affine, Composition, Operator
 
 Array = NDArray[np.float64]
-Wanted = int | Literal["auto"] | None
 
 ROUNDS = 2
 """Of looking for creep and searching again without it, before all is fitted together."""
-
-DYNAMICS = (
-    "creep is not identified with {}, whose dynamics may be as slow; choose another family, or "
-    "leave creep out"
-)
 
 SURE_OF_DELAY = 2.5
 """Standard errors that a delay beside creep must exceed."""
 
 LEAST_DELAY = 0.02
 """Samples: less is none."""
-
-
-def as_creep(creep: Any) -> Wanted:
-    """Check what is to be done about creep.
-
-    Parameters
-    ----------
-    creep
-        ``"auto"``, a number of lags, or None.
-
-    Raises
-    ------
-    InputError
-        If it is something else.
-    """
-    if creep is None or (isinstance(creep, str) and creep == "auto"):
-        return creep  # type: ignore[return-value]
-    if isinstance(creep, bool | str):
-        raise InputError(
-            f"creep is {creep!r}; give 'auto', a number of lags from 1 to {MOST_LAGS}, or None"
-        )
-    return whole_number(creep, "creep", 1, MOST_LAGS, ", 'auto' or None")
-
-
-def require_place(families: Sequence[Family], wanted: Wanted) -> None:
-    """Refuse creep that is asked for of families with dynamics of their own alone.
-
-    Parameters
-    ----------
-    families
-        That were chosen.
-    wanted
-        As of ``identify``.
-
-    Raises
-    ------
-    NotIdentifiableError
-        Before anything is searched.
-    """
-    late = [each.name for each in families if each.answers_late]
-    if isinstance(wanted, int) and len(late) == len(families):
-        raise NotIdentifiableError(DYNAMICS.format(", ".join(late)))
 
 
 def with_creep(

@@ -17,6 +17,7 @@ from hyst.diagnosis.findings.still_signals import NAME as STILL_SIGNAL
 from hyst.diagnosis.slow_drift import slow_drift
 from hyst.errors import HystError, InputError, NotIdentifiableError
 from hyst.identification.record_use.foreign_sines import foreign_sines
+from hyst.identification.record_use.one_sample_time import marked_at_one_time
 from hyst.identification.record_use.used_samples import Data
 from hyst.signals import Record
 
@@ -89,7 +90,7 @@ class Cleaned:
             len(a) == len(b) for a, b in zip(data.records, self.records, strict=True)
         )
         if not same:
-            return data
+            return marked_at_one_time(data, self.records, self.kept)
         kept = self.kept if any(each is not None for each in self.kept) else ()
         disturbances = (
             self.disturbances if any(each is not None for each in self.disturbances) else ()

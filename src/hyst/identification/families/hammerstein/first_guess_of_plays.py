@@ -12,7 +12,11 @@ from hyst.identification.families.hammerstein.first_dynamics import behind_opera
 from hyst.identification.families.hammerstein.first_guess import FirstDynamics
 from hyst.identification.families.hammerstein.grid_front import OnGrid, refined_on_grid
 from hyst.identification.families.hammerstein.held_front import HeldFront
-from hyst.identification.families.hammerstein.order_search import Search, search_order
+from hyst.identification.families.hammerstein.order_search import (
+    Search,
+    on_better_grid,
+    search_order,
+)
 from hyst.identification.families.hammerstein.settled_dynamics import (
     ROUNDING,
     Tried,
@@ -30,6 +34,9 @@ from hyst.operators.composition import leaves_of
 
 _ROUNDS = 4  # of dynamics and hysteresis after each other
 _ITERATIONS = 8
+ALL, FEWER = (-2, -1, 1, 2), (-2, -1)
+"""Steps of the order: a resonance takes two states at once."""
+
 _FAR = 4.0  # times the error of plays: what a line leaves is not looked at closer
 
 
@@ -59,9 +66,13 @@ class Wanted:
     def search(self, data: Data, plays: bool) -> OnGrid:
         """Search the order behind plays on a grid, behind what is known, or behind a line."""
         if self.known is not None:
-            searched = Search.of(self.known.behind(data), self.delay, 0)
+            searched = Search.of(self.known.behind(data), self.delay)
+        elif plays:
+            searched = on_better_grid(
+                data, self.delay, 2 if self.orders is None else self.orders[0]
+            )
         else:
-            searched = Search.of(data, self.delay) if plays else Search.of(data, self.delay, 0)
+            searched = Search.of(data, self.delay)
         return search_order(searched, self.orders, float(data.measured().var()))
 
     def hysteresis(self, data: Data, dynamics: LinearDynamics) -> Operator:
@@ -102,15 +113,30 @@ def _settled(data: Data, wanted: Wanted) -> Tried:
     found: Tried | None = None
     for _ in range(_ROUNDS):
         hysteresis, before = wanted.hysteresis(data, dynamics), dynamics
-        found = settled_dynamics(data, hysteresis, before, wanted.delay, orders=False)
+        found = settled_dynamics(data, hysteresis, before, wanted.delay).best
         dynamics = found.dynamics
         if numbers_of(dynamics) == numbers_of(before):
             if looked:
                 break
-            found = settled_dynamics(data, hysteresis, dynamics, wanted.delay, orders=True)
+            found = _of_best_order(data, wanted, hysteresis, found)
             dynamics, looked = found.dynamics, True
     assert found is not None, "there is a round"
     return found
+
+
+def _of_best_order(data: Data, wanted: Wanted, hysteresis: Operator, found: Tried) -> Tried:
+    """Look at other orders; at fewer states with the hysteresis that goes with them."""
+    settled = settled_dynamics(data, hysteresis, found.dynamics, wanted.delay, ALL)
+    best, worth = settled.best, samples_worth(settled.best.errors)
+    for each in settled.near:
+        if each.order >= best.dynamics.order:
+            continue
+        behind = wanted.hysteresis(data, of_gain_one(each))
+        fewer = settled_dynamics(data, behind, each, wanted.delay).best
+        floor = ROUNDING * float(data.measured().var())
+        of_fewer, of_best = (price(t.cost, t.numbers, worth, floor) for t in (fewer, best))
+        best = fewer if of_fewer <= of_best else best
+    return best
 
 
 def _is_a_line(data: Data, wanted: Wanted, found: Tried, hysteresis: Operator) -> bool:

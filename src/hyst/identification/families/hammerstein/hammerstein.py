@@ -17,6 +17,12 @@ from hyst.identification.families.hammerstein.coefficients import (
     coefficients,
     coefficients_by_theta,
 )
+from hyst.identification.families.hammerstein.creeping_front import (
+    CreepingFront,
+    as_creeping,
+    joined,
+    told_of_creep,
+)
 from hyst.identification.families.hammerstein.distortion_levels import average_periods
 from hyst.identification.families.hammerstein.first_dynamics import (
     as_whole_delay,
@@ -29,6 +35,8 @@ from hyst.identification.families.hammerstein.first_guess import (
     fronts_of,
 )
 from hyst.identification.families.hammerstein.first_guess_of_plays import (
+    ALL,
+    FEWER,
     Wanted,
     first_dynamics_of_plays,
 )
@@ -44,19 +52,11 @@ from hyst.identification.families.hammerstein.held_front import (
     require_one_hysteresis,
     told_of,
 )
-from hyst.identification.families.hammerstein.held_joint import joint_held
 from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
-from hyst.identification.families.hammerstein.known_front import (
-    behind_known,
-    starts_behind_known,
-)
-from hyst.identification.families.hammerstein.known_start import (
-    held_dynamics,
-    settled,
-    starts_of_known,
-    told_of_delay,
-)
+from hyst.identification.families.hammerstein.known_front import behind_known
+from hyst.identification.families.hammerstein.known_start import settled, told_of_delay
+from hyst.identification.families.hammerstein.known_starts import known_starts
 from hyst.identification.families.hammerstein.markov import choose_markov
 from hyst.identification.families.hammerstein.record_checks import flat_tops
 from hyst.identification.families.hammerstein.result import identified_with_dynamics
@@ -81,9 +81,10 @@ from hyst.identification.families.option import (
     whole_number_or_auto,
 )
 from hyst.identification.fit.bounded_least_squares import CONVERGED, Problem, Solution, minimize
+from hyst.identification.record_use.one_sample_time import at_one_sample_time, finest
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.thinning import MOST_SAMPLES
-from hyst.identification.record_use.used_samples import Data, prepare
+from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.identified import Identified
 from hyst.models import LinearDynamics
 from hyst.signals import Record
@@ -111,14 +112,8 @@ def _as_hysteresis(value: Any, name: str) -> Any:
     )
 
 
-def _require_one_sample_time(data: Data) -> None:
-    """Refuse records of several sample times: sampled dynamics hold for one."""
-    times = [record.dt for record in data.records]
-    if max(times) - min(times) > 1e-6 * min(times):
-        raise InputError(
-            f"the records have sample times from {min(times):.6g} to {max(times):.6g} s; linear "
-            "dynamics are identified for one sample time, so resample the records to one"
-        )
+def _finest(overview: Overview) -> Overview:
+    return overview.once("finest", lambda: finest(overview))
 
 
 def _as_period(value: Any, name: str) -> int | None:
@@ -207,9 +202,15 @@ class Hammerstein(Family):
         """The hysteresis; the one that is given, if one is."""
         if self.front is not None:
             given: HeldFront = self.front
-            return given
+            return as_creeping(replace(given, lags=0), given.lags) if given.lags else given
         assert isinstance(self.hysteresis, Family), "the registry puts an object for a name"
         return self.hysteresis
+
+    def creeping(self, lags: int) -> Self:
+        """Give the family with so many lags of creep between hysteresis and dynamics."""
+        if self.front is not None:
+            return replace(self, front=replace(self.front, lags=lags))
+        return replace(self, hysteresis=as_creeping(self.hysteresis_family, lags))
 
     def records_to_use(
         self, records: tuple[Record, ...], start: Literal["auto"] | int
@@ -226,15 +227,16 @@ class Hammerstein(Family):
             records = tuple(average_periods(each, self.period) for each in records)
             # The first of two equal periods is the past of the second, of both parts.
             start = int(self.period)
-        data = prepare(records, start)
-        _require_one_sample_time(data)
-        doubts = flat_tops(data.records)
+        at_one = at_one_sample_time(records, None if self.dynamics is None else self.dynamics.dt)
+        data = at_one.prepared(start)
+        doubts = at_one.notes + flat_tops(records)
         if self.dynamics is not None:
             dt = data.records[0].dt
             data = settled(data, self.dynamics.at(dt)) if start == AUTO else data
             return data, doubts + self.dynamics.told(dt) + told_of(self.front)
         if not self.starts_from_plays:
-            seen = data if self.front is None else self.front.behind(data)
+            seen = finest(Overview(data)).data
+            seen = seen if self.front is None else self.front.behind(seen)
             doubts += choose_markov(seen.records, self.fir_order)[1]
         return data, doubts + told_of(self.front)
 
@@ -281,15 +283,20 @@ class Hammerstein(Family):
 
     def starts(self, overview: Overview, size: int, most: int) -> Sequence[Start]:
         """Start from the dynamics found once, and the hysteresis before them of this size."""
-        if self.dynamics is not None:
-            held = overview.once(
-                ("held", self.dynamics), lambda: held_dynamics(self.dynamics, overview)
-            )
-            of_known = self.hysteresis_family, held, overview.data, size
-            return overview.once(("known", self, size), lambda: starts_of_known(*of_known))[:most]
-        first = self._first_dynamics(overview)
-        if self.front is not None:
-            return starts_behind_known(self.front, first.dynamics, overview.data)[:most]
+        whole = _finest(overview)
+        known = overview.once(
+            ("known", self, size),
+            lambda: known_starts(
+                (self.front, self.dynamics),
+                self.hysteresis_family,
+                overview,
+                size,
+                lambda front: self._dynamics_behind(whole, front),
+            ),
+        )
+        if known is not None:
+            return known[:most]
+        first = self._first_dynamics(whole)
         fronts = overview.once(
             ("fronts", self, size),
             lambda: fronts_of(self, self.hysteresis_family, first, overview.data, size),
@@ -297,15 +304,25 @@ class Hammerstein(Family):
         return [joint(each, first.dynamics) for each in fronts[:most]]
 
     def _first_dynamics(self, overview: Overview) -> FirstDynamics:
-        return overview.once(("first dynamics", self), lambda: self._find_dynamics(overview))
+        return overview.once(
+            ("first dynamics", self), lambda: self._find_dynamics(overview, self.front)
+        )
 
-    def _find_dynamics(self, overview: Overview) -> FirstDynamics:
+    def _dynamics_behind(self, overview: Overview, front: HeldFront | None) -> LinearDynamics:
+        if front is None or front is self.front or not self.starts_from_plays:
+            return self._first_dynamics(overview).dynamics
+        return overview.once(
+            ("dynamics behind", self), lambda: self._find_dynamics(overview, front).dynamics
+        )
+
+    def _find_dynamics(self, overview: Overview, known: HeldFront | None) -> FirstDynamics:
         if self.starts_from_plays:
             delay = None if overview.delay == AUTO else as_whole_delay(overview.delay)
-            wanted = Wanted(self.state_order, delay, self.front)
+            wanted = Wanted(self.state_order, delay, known)
             return first_dynamics_of_plays(overview, wanted)
         orders = (self.fir_order, self.state_order)
         front = self.hysteresis_family if self.front is None else Linear()
+        front = front.base if isinstance(front, CreepingFront) else front
         return first_dynamics(self, front, behind_known(self.front, overview), orders)
 
     def solve(
@@ -350,12 +367,15 @@ class Hammerstein(Family):
         rows = data.measured().size
         delay = None if overview.delay == AUTO else as_whole_delay(overview.delay)
         # What plays made up for by a pole, the family in front may do itself.
-        plays = self._first_dynamics(overview).cost
-        orders = self.state_order == AUTO and fit.solution.cost < _BETTER * plays * rows
+        whole = _finest(overview)
+        better = fit.solution.cost < _BETTER * rows * self._first_dynamics(whole).cost
+        creeps = isinstance(self.hysteresis_family, CreepingFront)
+        steps = () if self.state_order != AUTO or creeps else ALL if better else FEWER
         operator = self._front_fit(fit).operator
-        now = settled_dynamics(data, operator, before, delay, orders).dynamics
+        now = settled_dynamics(whole.data, operator, before, delay, steps)
         tried = {numbers_of(before): fit}
-        for each in (now, *simpler(now, delay), *simpler(before, delay)):
+        simple = (*simpler(now.best.dynamics, delay), *simpler(before, delay))
+        for each in (now.best.dynamics, *now.near, *simple):
             if numbers_of(each) not in tried:
                 tried[numbers_of(each)] = self._behind(fit, each, data, max_iterations)
         least = min(tried.values(), key=lambda each: each.solution.cost)
@@ -371,7 +391,8 @@ class Hammerstein(Family):
     def _behind(self, fit: Fit, dynamics: LinearDynamics, data: Data, most: int) -> Fit:
         """Fit again, from other dynamics behind the same hysteresis."""
         front = self._front_fit(fit)
-        parametrization, theta = joint((front.parametrization, front.solution.theta), dynamics)
+        start = front.parametrization, front.solution.theta
+        parametrization, theta = joined(start, dynamics, held=False)
         again = replace(fit, parametrization=parametrization)
         return replace(again, solution=self.solve(again.problem(data), theta, most))
 
@@ -382,8 +403,8 @@ class Hammerstein(Family):
         simpler = self.hysteresis_family.simplified(before, behind, max_iterations)
         if simpler is before:
             return fit
-        beside = joint_held if joint_of(fit).held else joint
-        parametrization, theta = beside((simpler.parametrization, simpler.solution.theta), dynamics)
+        start = simpler.parametrization, simpler.solution.theta
+        parametrization, theta = joined(start, dynamics, joint_of(fit).held)
         family = replace(self, hysteresis=simpler.family)  # which may have fewer terms, too
         left = replace(fit, family=family, parametrization=parametrization)
         problem = left.problem(overview.data)
@@ -401,6 +422,8 @@ class Hammerstein(Family):
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
         """Say what the hysteresis' family says, and if the dynamics explain nothing."""
         notes = self.hysteresis_family.notes(self._front_fit(fit), data)
+        if isinstance(self.hysteresis_family, CreepingFront):
+            notes += told_of_creep(fit, data)
         if joint_of(fit).held:
             given: GivenDynamics = self.dynamics
             notes += told_of_delay(given, dynamics_of(fit), data)
@@ -429,7 +452,7 @@ class Hammerstein(Family):
     def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
         """Add the parts, the impulse response, the poles and the loop."""
         return identified_with_dynamics(
-            identified, fit, self.hysteresis_family, overview, self.fir_order
+            identified, fit, self.hysteresis_family, finest(overview), self.fir_order
         )
 
     def without_past(self, fit: Fit, data: Data) -> Data:

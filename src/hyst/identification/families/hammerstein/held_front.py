@@ -51,9 +51,12 @@ class HeldFront(Family):
     ----------
     operator
         The hysteresis.
+    lags
+        Of the creep behind it.
     """
 
     operator: Operator = None  # type: ignore[assignment]  # fields of the class before have defaults
+    lags: int = 0
 
     def __post_init__(self) -> None:
         """Take name and words; a class with a name would be in the registry."""
@@ -228,9 +231,11 @@ def require_one_hysteresis(front: HeldFront | None, hysteresis: Any) -> None:
     InputError
         If both are.
     """
+    if front is None:
+        return
     name = getattr(hysteresis, "name", hysteresis)
     options = isinstance(hysteresis, Family) and hysteresis != type(hysteresis)()
-    if front is not None and (name != DEFAULT or options):
+    if name != DEFAULT or options:
         raise InputError(
             f"front is given, so hysteresis {name!r} and its options have nothing to find; leave "
             "out front, or hysteresis and its options"

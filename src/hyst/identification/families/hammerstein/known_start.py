@@ -65,9 +65,37 @@ def starts_of_known(
     NotIdentifiableError
         If the records do not show this hysteresis.
     """
+    behind = [signal_of_plays(data, dynamics), signal_behind(data, dynamics)]
+    fronts = fronts_before(front, dynamics, behind, data, size)
+    return [joint_held(each, dynamics) for each in fronts]
+
+
+def fronts_before(
+    front: Family, dynamics: LinearDynamics, signals: Sequence[Data], data: Data, size: int
+) -> list[Start]:
+    """Fit the hysteresis to signals behind it, what explains the output best first.
+
+    Parameters
+    ----------
+    front
+        The hysteresis.
+    dynamics
+        What stands between the signals and the output.
+    signals
+        Records with what may be behind the hysteresis as their output.
+    data
+        The records.
+    size
+        One of the sizes of the hysteresis.
+
+    Raises
+    ------
+    NotIdentifiableError
+        If no signal shows this hysteresis.
+    """
     fronts: list[Start] = []
     refusal: NotIdentifiableError | None = None
-    for behind in (signal_of_plays(data, dynamics), signal_behind(data, dynamics)):
+    for behind in signals:
         try:
             fronts += first_fronts(front, Overview(behind, rates_matter=True), size)
         except NotIdentifiableError as why:
@@ -78,10 +106,11 @@ def starts_of_known(
     short = shortened(data, _WARM_UP)
 
     def error(start: Start) -> float:
-        residual = problem_of(short, start[0]).residual(start[0].canonical(start[1]))
+        whole, theta = joint_held(start, dynamics)
+        residual = problem_of(short, whole).residual(whole.canonical(theta))
         return float(residual @ residual)
 
-    return sorted((joint_held(each, dynamics) for each in fronts), key=error)
+    return sorted(fronts, key=error)
 
 
 def held_dynamics(given: GivenDynamics, overview: Overview) -> LinearDynamics:
@@ -156,7 +185,7 @@ def _as_good(costs: Array) -> NDArray[np.intp]:
 def _costs_of_delays(data: Data, dynamics: LinearDynamics) -> Array:
     """Give what plays before the dynamics leave, for delays from 0 on."""
     data = shortened(data, max(_WARM_UP // len(data.records), 1))
-    filtered = [_filtered(_plays(each.u, data.half_range), dynamics) for each in data.records]
+    filtered = [filtered_by(plays_of(each.u, data.half_range), dynamics) for each in data.records]
     longest = min(min(len(each) for each in filtered) // 4, MOST_DELAY)
     target, costs = data.measured(), list[float]()
     while len(costs) <= min(int(np.argmin([*costs, np.inf])) + _NO_BETTER, longest):
@@ -166,16 +195,32 @@ def _costs_of_delays(data: Data, dynamics: LinearDynamics) -> Array:
                 for each, window in zip(filtered, data.windows(), strict=True)
             ]
         )
-        left = target - columns @ _weights(columns, target)
+        left = target - columns @ best_weights(columns, target)
         costs.append(float(left @ left))
     return np.array(costs)
 
 
-def _filtered(bank: Array, dynamics: LinearDynamics) -> Array:
+def filtered_by(bank: Array, dynamics: LinearDynamics) -> Array:
+    """Give what dynamics answer to each column.
+
+    Parameters
+    ----------
+    bank
+        Shape (N, m).
+    dynamics
+        Stable.
+    """
     return np.column_stack([dynamics(column) for column in bank.T])
 
 
-def _weights(columns: Array, target: Array) -> Array:
+def best_weights(columns: Array, target: Array) -> Array:
+    """Give the weights of columns by least squares.
+
+    Parameters
+    ----------
+    columns, target
+        Shapes (N, m) and (N,).
+    """
     scale = np.maximum(np.linalg.norm(columns, axis=0), np.finfo(np.float64).tiny)
     return np.asarray(scipy.linalg.lstsq(columns / scale, target)[0] / scale)
 
@@ -191,13 +236,13 @@ def signal_of_plays(data: Data, dynamics: LinearDynamics) -> Data:
         Known, of gain 1 at rest.
     """
     data = shortened(data, max(LONGEST_START // len(data.records), 1))
-    banks = [_plays(each.u, data.half_range) for each in data.records]
+    banks = [plays_of(each.u, data.half_range) for each in data.records]
     filtered = [
-        _filtered(bank, dynamics)[window]
+        filtered_by(bank, dynamics)[window]
         for bank, window in zip(banks, data.windows(), strict=True)
     ]
     columns, target = data.joined(filtered), data.measured()
-    weights = _weights(columns, target)
+    weights = best_weights(columns, target)
     records = tuple(
         replace(record, y=bank @ weights) for record, bank in zip(data.records, banks, strict=True)
     )
@@ -223,8 +268,16 @@ def settled(data: Data, dynamics: LinearDynamics) -> Data:
     return replace(data, starts=starts)
 
 
-def _plays(u: Array, half_range: float) -> Array:
-    """Give the drive, its plays and a constant, shape (N, m)."""
+def plays_of(u: Array, half_range: float) -> Array:
+    """Give the drive, its plays on a grid of radii and a constant, shape (N, m).
+
+    Parameters
+    ----------
+    u
+        Shape (N,).
+    half_range
+        Of the drives of all records.
+    """
     radii = half_range * _RADII
     plays = np.empty((u.size, radii.size))
     _engine.play_outputs(radii.tolist(), np.zeros(radii.size), np.ascontiguousarray(u), plays)

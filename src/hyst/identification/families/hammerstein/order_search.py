@@ -6,7 +6,7 @@ A resonance takes two states at once, so an order that grows by one stops before
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.signal
@@ -19,15 +19,14 @@ from hyst.identification.families.hammerstein.output_error import Guess, steigli
 from hyst.identification.families.hammerstein.play_inputs import (
     Piece,
     bandwidth,
+    grids_of,
     pieces_of,
-    radii_of_grid,
 )
 from hyst.identification.record_use.used_samples import Data
 
 Array = NDArray[np.float64]
 
-PLAYS = 8
-"""On the grid."""
+NO_PLAYS = np.empty(0)
 
 LARGEST_ORDER = 12
 MOST_DELAY = 10_000
@@ -68,9 +67,10 @@ class Search:
     delays: range
     full: list[Piece]
     low: dict[int, list[Piece]]
+    _known: dict[int, list[Dynamic]] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
-    def of(cls, data: Data, delay: int | None, plays: int = PLAYS) -> Search:
+    def of(cls, data: Data, delay: int | None, radii: Array = NO_PLAYS) -> Search:
         """Cut the records to pieces, at the rates that keep the band of the output.
 
         Parameters
@@ -79,10 +79,9 @@ class Search:
             The records.
         delay
             Samples, where it is known.
-        plays
-            On the grid of radii; 0 for a drive that goes straight to the dynamics.
+        radii
+            Of the grid, input units; none for a drive that goes straight to the dynamics.
         """
-        radii = radii_of_grid(data.half_range, plays) if plays else np.empty(0)
         full = pieces_of(data, radii)
         rows = min(each.output.size for each in full)
         most = min(MOST_DELAY, rows // 8)
@@ -104,11 +103,14 @@ class Search:
         order
             Number of poles.
         """
+        if order in self._known:
+            return self._known[order]
         found = self._at(order, self.low)
         if not found and 1 not in self.low:
             # Poles that are over within a few samples are none at a lower rate.
             found = self._at(order, {1: [each.thinned() for each in self.full]})
-        return sorted(found, key=lambda each: each.cost)
+        self._known[order] = sorted(found, key=lambda each: each.cost)
+        return self._known[order]
 
     def _at(self, order: int, rates: dict[int, list[Piece]]) -> list[Dynamic]:
         dt = self.data.records[0].dt
@@ -166,6 +168,27 @@ def lag_of_peak(pieces: Sequence[Piece]) -> int:
     products = scipy.signal.correlate(y - y.mean(), u - u.mean(), mode="full", method="fft")
     ahead = products[u.size - 1 : u.size - 1 + max(u.size // 4, 1)]
     return int(np.abs(ahead).argmax())
+
+
+def on_better_grid(data: Data, delay: int | None, order: int) -> Search:
+    """Give the search with the grid of radii that comes nearer to the output at one order.
+
+    Parameters
+    ----------
+    data
+        The records.
+    delay
+        Samples, where it is known.
+    order
+        Number of poles.
+    """
+    searches = [Search.of(data, delay, each) for each in grids_of(data.half_range)]
+
+    def least(search: Search) -> float:
+        found = search.candidates(order)
+        return found[0].cost if found else np.inf
+
+    return min(searches, key=least)
 
 
 def search_order(search: Search, orders: Sequence[int] | None, power: float) -> OnGrid:

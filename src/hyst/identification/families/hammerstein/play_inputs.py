@@ -23,7 +23,8 @@ MOST_ROWS = 40_000
 
 STRETCHES = 4
 
-_WIDEST, _NARROWEST = 0.9, 0.03  # of half the range of the drive
+_WIDEST, _NARROWEST, _FARTHEST = 0.9, 0.03, 0.95  # of half the range of the drive
+_GEOMETRIC, _EVEN = 8, 16
 _TAPS = 16  # of the low pass, for each sample kept
 _EDGE = 0.9  # of half the new sample rate
 _TRIMMED = 9  # samples at each end of a decimated stretch, which the low pass has not filled
@@ -70,17 +71,19 @@ class Piece:
         return Piece(np.ascontiguousarray(kept[:, 1:]), kept[:, 0].copy(), first)
 
 
-def radii_of_grid(half_range: float, count: int) -> Array:
-    """Give radii from next to 0 to nearly half the range of the drive, in geometric order.
+def grids_of(half_range: float) -> tuple[Array, Array]:
+    """Give two grids of radii up to nearly half the range of the drive: geometric, and even.
+
+    The first sees small radii, the second a hysteresis that stiffens towards the ends.
 
     Parameters
     ----------
     half_range
         Of the drive, input units.
-    count
-        How many.
     """
-    return np.asarray(half_range * np.geomspace(_NARROWEST, _WIDEST, count))
+    geometric = half_range * np.geomspace(_NARROWEST, _WIDEST, _GEOMETRIC)
+    even = half_range * np.linspace(0.0, _FARTHEST, _EVEN + 1)[1:]
+    return np.asarray(geometric), np.asarray(even)
 
 
 def pieces_of(data: Data, radii: Array, most_rows: int = MOST_ROWS) -> list[Piece]:

@@ -6,7 +6,7 @@ the drive of the dynamics is known, and what is left tells how many numbers it p
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 
 _ITERATIONS = 8
 _FARTHEST = 12  # samples of delay
+_UNSURE, _MOST_NEAR = 1.1, 3  # times the squared error: a hysteresis fitted with them moves it
 _MEANT = 2  # samples by which feedthrough may make up for a delay that is too long
 _LAGS = 100  # of the residual, for how many samples of it are worth one
 ROUNDING = 1e-14
@@ -51,13 +52,29 @@ class Tried:
     errors: Array
 
 
+@dataclass(frozen=True, eq=False)
+class Settled:
+    """What pays, and what pays nearly as well behind this very hysteresis.
+
+    Parameters
+    ----------
+    best
+        Dynamics.
+    near
+        Others, which a hysteresis fitted with them may prefer.
+    """
+
+    best: Tried
+    near: tuple[LinearDynamics, ...]
+
+
 def settled_dynamics(
     data: Data,
     hysteresis: Operator,
     dynamics: LinearDynamics,
     delay: int | None,
-    orders: bool,
-) -> Tried:
+    steps: Sequence[int] = (),
+) -> Settled:
     """Give the dynamics that pay behind a known hysteresis: order, delay, feedthrough.
 
     Parameters
@@ -70,18 +87,35 @@ def settled_dynamics(
         As they were fitted with it.
     delay
         Samples, where it is known.
-    orders
-        Whether other numbers of states are tried, too.
+    steps
+        How many states more or fewer are tried, too.
     """
     behind = driven_by(data, hysteresis)
     nearest = _at_best_delay(behind, dynamics, delay)
     tried = [nearest, *_without_feedthrough(behind, nearest.dynamics)]
-    if orders:
-        tried += _of_other_orders(behind, dynamics.order, delay)
+    if steps:
+        tried += _of_other_orders(behind, [dynamics.order + each for each in steps], delay)
     tried = [each for each in tried if np.isfinite(each.cost)] or [nearest]
     worth = samples_worth(min(tried, key=lambda each: each.cost).errors)
     floor = ROUNDING * float(behind.measured().var())
-    return min(tried, key=lambda each: price(each.cost, each.numbers, worth, floor))
+    prices = [price(each.cost, each.numbers, worth, floor) for each in tried]
+    order = np.argsort(prices, kind="stable")
+    best, rest = tried[order[0]], [tried[i] for i in order[1:]]
+    alike = [each for each in rest if each.cost <= _UNSURE * best.cost]
+    fewer = [each for each in rest if each.dynamics.order < best.dynamics.order]
+    near = [*_unlike(best, alike)[:_MOST_NEAR], *_unlike(best, fewer)[:1]]
+    return Settled(best, tuple(each.dynamics for each in near))
+
+
+def _unlike(best: Tried, tried: Sequence[Tried]) -> list[Tried]:
+    """Give the first of each kind that is not that of the best."""
+    kinds = {numbers_of(best.dynamics)}
+    found = []
+    for each in tried:
+        if numbers_of(each.dynamics) not in kinds:
+            kinds.add(numbers_of(each.dynamics))
+            found.append(each)
+    return found
 
 
 def numbers_of(dynamics: LinearDynamics) -> tuple[int, int, bool]:
@@ -128,9 +162,9 @@ def driven_by(data: Data, hysteresis: Operator) -> Data:
     return replace(data, records=records, half_range=max(spans) / 2.0, measured_inputs=())
 
 
-def _of_other_orders(data: Data, order: int, delay: int | None) -> Iterable[Tried]:
-    search = Search.of(data, delay, plays=0)
-    for each in (order - 1, order + 1, order + 2):
+def _of_other_orders(data: Data, orders: Sequence[int], delay: int | None) -> Iterable[Tried]:
+    search = Search.of(data, delay)
+    for each in orders:
         found = search.refined(each) if 0 < each <= LARGEST_ORDER else None
         if found is not None:
             yield _tried(found, feedthrough=True)

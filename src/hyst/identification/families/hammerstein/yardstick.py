@@ -98,7 +98,8 @@ class Yardstick:
     @property
     def ratio(self) -> float:
         """What the model leaves over the best of the yardsticks: 1 where nothing is missing."""
-        return self.model / max(self.best, _EXACT * self.deviation, math.ulp(0.0))
+        rounding = max(_EXACT * self.deviation, math.ulp(0.0))
+        return max(self.model, rounding) / max(self.best, rounding)
 
     @property
     def missing(self) -> Missing:

@@ -23,8 +23,14 @@ LEAST_DOUBTED, MOST_DOUBTED = 0.05, 0.5
 show it, with more it is the fit that failed."""
 
 _ADVICE = {
-    "dynamics": "Give G more states (--state-order), or drive a band that shows what is missing.",
-    "hysteresis": "Try another hysteresis in front (--hysteresis) or more plays (--plays).",
+    "dynamics": (
+        "Give G more states (--state-order), leave out dynamics that were given, or drive a band "
+        "that shows what is missing."
+    ),
+    "hysteresis": (
+        "Try another hysteresis in front (--hysteresis) or more plays (--plays), or leave out one "
+        "that was given."
+    ),
     "both": (
         "Try another hysteresis in front (--hysteresis), more plays (--plays) and more states "
         "(--state-order)."
@@ -101,8 +107,8 @@ def sentences(yardstick: Yardstick, unit: str) -> tuple[str, ...]:
     told = [first, _meaning(yardstick, missing, said)]
     if missing != "dynamics" and _is_like_linear(yardstick):
         told.append(
-            f"Linear dynamics without hysteresis leave {yardstick.linear:.3g}{said}: the "
-            "hysteresis of the model explains next to nothing."
+            f"Linear dynamics without hysteresis leave {yardstick.linear:.3g}{said}: the model "
+            "is hardly better, or worse."
         )
     return (*told, _ADVICE[missing])
 
@@ -116,18 +122,18 @@ def in_one_line(yardstick: Yardstick) -> str:
         What richer models leave.
     """
     if yardstick.best == yardstick.noise:
-        other = "is the noise from one period of the drive to the next"
+        other = "the noise from one period of the drive to the next"
     elif yardstick.best == yardstick.linear:
-        other = "linear dynamics without hysteresis leave"
+        other = "what linear dynamics without hysteresis leave"
     elif yardstick.best == yardstick.other_dynamics:
-        other = "other dynamics behind its hysteresis leave"
+        other = "what other dynamics behind its hysteresis leave"
     elif yardstick.best == yardstick.both:
-        other = "other hysteresis and dynamics leave"
+        other = "what other hysteresis and dynamics leave"
     else:
-        other = "plays with dynamics of their own, or of the output, leave"
+        other = "what plays with dynamics of their own, or of the output, leave"
     ratio = yardstick.ratio
     times = f"{ratio:.3g}" if ratio < 1000.0 else "more than 1000"
-    return f"{times} times what {other}"
+    return f"{times} times {other}"
 
 
 def _is_like_linear(yardstick: Yardstick) -> bool:
@@ -162,9 +168,10 @@ def _meaning(yardstick: Yardstick, missing: str, said: str) -> str:
         )
     if missing == "structure":
         return (
-            f"Any hysteresis followed by linear dynamics leaves about {both}, but hysteresis of "
-            f"the output, or plays with dynamics of their own, {yardstick.generous:.3g}{said}: it "
-            "is no hysteresis followed by linear dynamics, but lies behind them or in a feedback."
+            f"Any hysteresis followed by linear dynamics leaves about {both}, but hysteresis or a "
+            "curve of the output, or plays with dynamics of their own, "
+            f"{yardstick.generous:.3g}{said}: it is no hysteresis followed by linear dynamics. It "
+            "lies behind them, as the curve of a sensor does, or in a feedback."
         )
     return (
         "Neither another hysteresis, nor other dynamics, nor plays with dynamics of their own "
