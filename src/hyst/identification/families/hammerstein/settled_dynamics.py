@@ -6,7 +6,7 @@ the drive of the dynamics is known, and what is left tells how many numbers it p
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +17,6 @@ from hyst.identification.families.hammerstein.grid_front import OnGrid, refined_
 from hyst.identification.families.hammerstein.order_search import LARGEST_ORDER, Search
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics
-from hyst.operators import Operator
 
 Array = NDArray[np.float64]
 
@@ -70,7 +69,7 @@ class Settled:
 
 def settled_dynamics(
     data: Data,
-    hysteresis: Operator,
+    hysteresis: Callable[[Array], Array],
     dynamics: LinearDynamics,
     delay: int | None,
     steps: Sequence[int] = (),
@@ -147,7 +146,7 @@ def simpler(dynamics: LinearDynamics, delay: int | None) -> Iterable[LinearDynam
         yield LinearDynamics(moved.A, moved.B, moved.C, 0.0, moved.dt, each)
 
 
-def driven_by(data: Data, hysteresis: Operator) -> Data:
+def driven_by(data: Data, hysteresis: Callable[[Array], Array]) -> Data:
     """Give the records with the output of a hysteresis as their input.
 
     Parameters

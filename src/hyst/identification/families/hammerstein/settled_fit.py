@@ -7,10 +7,12 @@ own, and at a delay of their own.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 from hyst.identification.families.family import Fit
+from hyst.identification.families.hammerstein.creeping_front import joined
+from hyst.identification.families.hammerstein.first_guess_of_plays import ALL, FEWER, Wanted
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint_of
 from hyst.identification.families.hammerstein.settled_dynamics import (
     ROUNDING,
@@ -21,9 +23,11 @@ from hyst.identification.families.hammerstein.settled_dynamics import (
     settled_dynamics,
     simpler,
 )
+from hyst.identification.families.option import AUTO
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics
 
+_BETTER = 0.97  # of the squared error that plays leave
 _ROUNDS = 4  # of fewer states
 _WALKS = 3  # of dynamics and hysteresis after each other
 _FAR = 1e4  # times the least squared error: nothing is near
@@ -41,14 +45,14 @@ class Refits:
         Those that the dynamics are looked at in.
     delay
         Samples, where it is known.
-    behind
-        Fits again, from other dynamics behind the same hysteresis.
+    max_iterations
+        Of each further fit.
     """
 
     data: Data
     finest: Data
     delay: int | None
-    behind: Callable[[Fit, LinearDynamics], Fit]
+    max_iterations: int
     _tried: dict[tuple[int, int, bool], Fit] = field(default_factory=dict, init=False, repr=False)
 
     def settled(self, fit: Fit, steps: Sequence[int]) -> Fit:
@@ -85,8 +89,17 @@ class Refits:
         numbers = numbers_of(dynamics)
         if numbers in self._tried:
             return None
-        self._tried[numbers] = self.behind(fit, dynamics)
+        self._tried[numbers] = self._behind(fit, dynamics)
         return self._tried[numbers]
+
+    def _behind(self, fit: Fit, dynamics: LinearDynamics) -> Fit:
+        """Fit again, from other dynamics behind the same hysteresis."""
+        front = joint_of(fit).front
+        start = front, fit.solution.theta[: front.size]
+        parametrization, theta = joined(start, dynamics, held=False)
+        again = replace(fit, parametrization=parametrization)
+        problem = again.problem(self.data)
+        return replace(again, solution=fit.family.solve(problem, theta, self.max_iterations))
 
     def _walk(self, fit: Fit) -> None:
         """Look for the delay that goes with a hysteresis, and fit again, until neither changes."""
@@ -111,3 +124,35 @@ class Refits:
             return price(each.solution.cost / rows, count, worth, floor)
 
         return min(self._tried.values(), key=price_of)
+
+
+def with_settled_dynamics(
+    fit: Fit,
+    records: tuple[Data, Data],
+    wanted: Wanted,
+    plays: float | None,
+    max_iterations: int,
+) -> Fit:
+    """Fit again with other delays, orders, and without feedthrough; give the fit that pays.
+
+    What plays made up for by a pole or a delay, the family in front may do itself.
+
+    Parameters
+    ----------
+    fit
+        Hysteresis and dynamics.
+    records
+        Of the fit, and those with the finest samples.
+    wanted
+        What is known of the dynamics.
+    plays
+        Mean squared error that plays left; None where the order is not to be looked at.
+    max_iterations
+        Of each further fit.
+    """
+    data, finest = records
+    rows = data.measured().size
+    steps: tuple[int, ...] = ()
+    if plays is not None and wanted.state_order == AUTO:
+        steps = ALL if fit.solution.cost < _BETTER * rows * plays else FEWER
+    return Refits(data, finest, wanted.delay, max_iterations).settled(fit, steps)
