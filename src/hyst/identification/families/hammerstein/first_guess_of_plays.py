@@ -126,11 +126,7 @@ def first_dynamics_of_plays(overview: Overview, wanted: Wanted) -> FirstDynamics
         If no order gives stable dynamics of a gain at rest.
     """
     data = overview.data
-    found = _settled(data, wanted)
-    if wanted.known is None and _is_more_than_noise(data, found):
-        bent = _settled_behind_bent(data, wanted)
-        if bent is not None and bent.cost < _MUCH_LESS * found.cost:
-            wanted, found = replace(wanted, bent=True), bent
+    found, wanted = _settled_behind_best(data, wanted)
     hysteresis = wanted.hysteresis(data, found.dynamics)
     if wanted.known is None and not wanted.bent and _is_a_line(data, wanted, found, hysteresis):
         hysteresis = _line_of(data, hysteresis)
@@ -144,12 +140,25 @@ def _is_more_than_noise(data: Data, found: Tried) -> bool:
     return samples_worth(found.errors) < _WHITE * found.errors.size
 
 
-def _settled_behind_bent(data: Data, wanted: Wanted) -> Tried | None:
-    """Find dynamics behind squares and products of plays, too; None where there are none."""
+def _settled_behind_best(data: Data, wanted: Wanted) -> tuple[Tried, Wanted]:
+    """Find dynamics behind plays; where these leave more than noise, behind bent ones, too."""
+    bent = replace(wanted, bent=True)
     try:
-        return _settled(data, replace(wanted, bent=True))
+        found = _settled(data, wanted)
+    except NotIdentifiableError as refusal:
+        if wanted.known is not None:
+            raise
+        try:
+            return _settled(data, bent), bent
+        except NotIdentifiableError:
+            raise refusal from None
+    if wanted.known is not None or not _is_more_than_noise(data, found):
+        return found, wanted
+    try:
+        other = _settled(data, bent)
     except NotIdentifiableError:
-        return None
+        return found, wanted
+    return (other, bent) if other.cost < _MUCH_LESS * found.cost else (found, wanted)
 
 
 def _settled(data: Data, wanted: Wanted) -> Tried:

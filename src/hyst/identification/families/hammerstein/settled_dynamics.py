@@ -102,8 +102,15 @@ def settled_dynamics(
     best, rest = tried[order[0]], [tried[i] for i in order[1:]]
     alike = [each for each in rest if each.cost <= _UNSURE * best.cost]
     fewer = [each for each in rest if each.dynamics.order < best.dynamics.order]
-    near = [*_unlike(best, alike)[:_MOST_NEAR], *_unlike(best, fewer)[:1]]
+    near = [*_unlike(best, alike)[:_MOST_NEAR], *_first_of_each_order(fewer)]
     return Settled(best, tuple(each.dynamics for each in near))
+
+
+def _first_of_each_order(tried: Sequence[Tried]) -> list[Tried]:
+    found: dict[int, Tried] = {}
+    for each in tried:
+        found.setdefault(each.dynamics.order, each)
+    return list(found.values())
 
 
 def _unlike(best: Tried, tried: Sequence[Tried]) -> list[Tried]:

@@ -30,6 +30,8 @@ from hyst.models import LinearDynamics
 _BETTER = 0.97  # of the squared error that plays leave
 _ROUNDS = 4  # of fewer states
 _WALKS = 3  # of dynamics and hysteresis after each other
+_SHAPED = 0.5  # of the samples that what is left is worth: it has a shape
+_WORTH_SHAPED = 40.0  # a further pair of poles must lower its square by a third
 _FAR = 1e4  # times the least squared error: nothing is near
 
 
@@ -118,6 +120,9 @@ class Refits:
         rows = self.data.measured().size
         errors = least.problem(self.data).residual(least.solution.theta)[:rows]
         worth, floor = samples_worth(errors), ROUNDING * float(self.data.measured().var())
+        # What a hysteresis of another kind leaves lies around resonances, and each finds some of it
+        # to follow: in this very record, and in no other.
+        worth = worth if worth > _SHAPED * rows else min(worth, _WORTH_SHAPED)
 
         def price_of(each: Fit) -> float:
             count = each.parametrization.free_count
