@@ -7,6 +7,7 @@ size and independent for white drives, since powers of 1/z are nearly alike at a
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -82,7 +83,10 @@ def independent_states(poles: NDArray[np.complex128], dt: float) -> LinearDynami
         Sample time, s.
     """
     G = LinearDynamics.from_zeros_poles_gain([], poles, 1.0, dt)
-    gramian = scipy.linalg.solve_discrete_lyapunov(G.A, np.outer(G.B, G.B))
+    with warnings.catch_warnings():
+        # Poles next to 1 make it ill-conditioned; it scales the states, no more.
+        warnings.simplefilter("ignore", scipy.linalg.LinAlgWarning)
+        gramian = scipy.linalg.solve_discrete_lyapunov(G.A, np.outer(G.B, G.B))
     values, vectors = np.linalg.eigh((gramian + gramian.T) / 2.0)
     root = vectors * np.sqrt(np.maximum(values, 1e-14 * values[-1]))
     A, B = np.linalg.solve(root, G.A @ root), np.linalg.solve(root, G.B)

@@ -32,6 +32,8 @@ _ROUNDS = 4  # of fewer states
 _WALKS = 3  # of dynamics and hysteresis after each other
 _SHAPED = 0.5  # of the samples that what is left is worth: it has a shape
 _WORTH_SHAPED = 40.0  # a further pair of poles must lower its square by a third
+_TRIAL = 12  # iterations of a fit that may not be the one
+_NEAR, _MOST_NEAR = 1.15, 3  # times the squared error of the best: trials that may be the one
 _FAR = 1e4  # times the least squared error: nothing is near
 
 
@@ -47,14 +49,14 @@ class Refits:
         Those that the dynamics are looked at in.
     delay
         Samples, where it is known.
-    max_iterations
-        Of each further fit.
+    most
+        Iterations of the fit that is given.
     """
 
     data: Data
     finest: Data
     delay: int | None
-    max_iterations: int
+    most: int
     _tried: dict[tuple[int, int, bool], Fit] = field(default_factory=dict, init=False, repr=False)
 
     def settled(self, fit: Fit, steps: Sequence[int]) -> Fit:
@@ -67,7 +69,7 @@ class Refits:
         steps
             How many states more or fewer are tried, too.
         """
-        self._tried[numbers_of(dynamics_of(fit))] = fit
+        self._tried[numbers_of(dynamics_of(fit))] = given = fit
         for _ in range(_ROUNDS):
             before = dynamics_of(fit)
             now = self._look(fit, steps)
@@ -78,8 +80,19 @@ class Refits:
                     self._walk(again)
             best = self._best()
             if dynamics_of(best).order == before.order:
-                return best
+                return self._polished(best, given)
             fit, steps = best, tuple(each for each in steps if each < 0)
+        return self._polished(self._best(), given)
+
+    def _polished(self, best: Fit, given: Fit) -> Fit:
+        """Go on with the trials that are near the best; what was given is fitted."""
+        near = self._by_price()[:_MOST_NEAR]
+        for each in near:
+            if each is given or each.solution.cost > _NEAR * best.solution.cost:
+                continue
+            theta, numbers = each.solution.theta, numbers_of(dynamics_of(each))
+            solution = each.family.solve(each.problem(self.data), theta, self.most)
+            self._tried[numbers] = replace(each, solution=solution)
         return self._best()
 
     def _look(self, fit: Fit, steps: Sequence[int] = ()) -> Settled:
@@ -101,7 +114,7 @@ class Refits:
         parametrization, theta = joined(start, dynamics, held=False)
         again = replace(fit, parametrization=parametrization)
         problem = again.problem(self.data)
-        return replace(again, solution=fit.family.solve(problem, theta, self.max_iterations))
+        return replace(again, solution=fit.family.solve(problem, theta, _TRIAL))
 
     def _walk(self, fit: Fit) -> None:
         """Look for the delay that goes with a hysteresis, and fit again, until neither changes."""
@@ -116,6 +129,9 @@ class Refits:
 
     def _best(self) -> Fit:
         """Give the fit whose numbers pay."""
+        return self._by_price()[0]
+
+    def _by_price(self) -> list[Fit]:
         least = min(self._tried.values(), key=lambda each: each.solution.cost)
         rows = self.data.measured().size
         errors = least.problem(self.data).residual(least.solution.theta)[:rows]
@@ -128,7 +144,7 @@ class Refits:
             count = each.parametrization.free_count
             return price(each.solution.cost / rows, count, worth, floor)
 
-        return min(self._tried.values(), key=price_of)
+        return sorted(self._tried.values(), key=price_of)
 
 
 def with_settled_dynamics(
