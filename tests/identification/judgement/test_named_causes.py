@@ -245,3 +245,17 @@ def test_a_sweep_through_a_resonance_is_told_to_need_dynamics(hertz: float, gain
     own = hyst.identify(swept, family="hammerstein", hysteresis="pi", plays=2).verdict
     assert own.level == "good"
     assert not any("--family hammerstein" in each for each in own.sentences)
+
+
+def test_a_loop_that_dynamics_turn_clockwise_is_no_exchange_of_columns() -> None:
+    """Above its resonance an output is turned round, so that its loop is run clockwise."""
+    w = 2.0 * np.pi * 20.0
+    G = hyst.LinearDynamics.from_continuous([w**2], [1.0, 0.1 * w, w**2], 1e-3)
+    u = hyst.signals.multisine(1e-3, 6000, amplitude=10.0, band=(2.0, 60.0)).u
+    y = (G @ hyst.PrandtlIshlinskii([0.3], [2.0], 1.0))(u)
+    y = y + 0.01 * y.std() * np.random.default_rng(0).normal(size=y.size)
+    driven = hyst.Record(u, y, dt=1e-3)
+    found = hyst.identify(driven, family="hammerstein", hysteresis="pi", plays=1)
+    assert any(each.name == "run direction" for each in found.diagnosis.findings)
+    assert found.verdict.level == "good"
+    assert not any("clockwise" in each for each in found.verdict.sentences)

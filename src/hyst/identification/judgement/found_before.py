@@ -46,7 +46,7 @@ def found_before(
 
     A warning allows no better than ``fair``, unless it is of something that the model holds and
     describes until only noise is left: what its family explains, and a clockwise loop, which
-    is told all the same, for exchanged columns have such loops, too. What the family is for is no
+    is told all the same, unless the family has dynamics: exchanged columns have such loops, too. What the family is for is no
     doubt at all.
 
     Parameters
@@ -69,6 +69,8 @@ def found_before(
             continue
         if leaves_noise and each.name in family.explains and each.name != RUN_DIRECTION:
             continue
+        if leaves_noise and each.name == RUN_DIRECTION and family.answers_late:
+            continue  # its dynamics turn the loop, above a resonance for one
         if leaves_noise and each.name == RUN_DIRECTION:
             sentences.append(f"{_capital(each.sentence)} {each.advice}")
             continue
