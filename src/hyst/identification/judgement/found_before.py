@@ -46,8 +46,8 @@ def found_before(
 
     A warning allows no better than ``fair``, unless it is of something that the model holds and
     describes until only noise is left: what its family explains, and a clockwise loop, which
-    is told all the same, unless the family has dynamics: exchanged columns have such loops, too. What the family is for is no
-    doubt at all.
+    is told all the same, unless the family has dynamics: exchanged columns have such loops, too.
+    What the family is for is no doubt at all.
 
     Parameters
     ----------

@@ -94,9 +94,9 @@ class Hammerstein(Family):
         family given by name may stand beside it, as
         ``identify(record, family="hammerstein", hysteresis="gpi", plays=4)``.
     fir_order
-        ``"auto"``: the fit starts from plays on a grid of radii with dynamics behind them. A number,
-        1 to 5000: from an impulse response up to that lag, the paper's method, which the drive must
-        excite up to half the sample rate.
+        ``"auto"``: the fit starts from plays on a grid of radii with dynamics behind them. A
+        number, 1 to 5000: from an impulse response up to that lag, the paper's method, which the
+        drive must excite up to half the sample rate.
     state_order
         Number of states of G, 1 to 64, or ``"auto"``: up to 12, as many as lower the error by more
         than their numbers cost.
