@@ -98,17 +98,20 @@ class Hammerstein(Family):
         family given by name may stand beside it, as
         ``identify(record, family="hammerstein", hysteresis="gpi", plays=4)``.
     fir_order
-        Last lag of the impulse response of the first step, 1 to 5000, or ``"auto"``.
+        ``"auto"``: the fit starts from plays on a grid of radii with dynamics behind them. A
+        number, 1 to 5000: from an impulse response up to that lag, the paper's method, which the
+        drive must excite up to half the sample rate.
     state_order
-        Number of states of G, 1 to 64, or ``"auto"``: as many as lower the error noticeably.
+        Number of states of G, 1 to 64, or ``"auto"``: up to 12, as many as lower the error by more
+        than their numbers cost.
     period
         Samples of a period of the drive: all but the first are averaged. None: there is none.
     dynamics
         G where it is known, which is held at a gain of 1 at rest: a ``LinearDynamics``, a model
         with it at its output, a system of python-control or scipy.signal (continuous ones with
         their input held between samples), or a frequency response, to which dynamics are fitted
-        first (``hyst.read_frequency_response``). The drive need not excite an impulse response
-        then. None: it is identified.
+        first (``hyst.read_frequency_response``). The drive need not excite it then. None: it is
+        identified.
     front
         The hysteresis where it is known, which is held but for a gain and an offset after it: an
         operator, a result of ``hyst.identify``, or a model that ``hyst.load`` read. None: it is
