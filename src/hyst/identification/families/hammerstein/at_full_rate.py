@@ -7,12 +7,10 @@ size and independent for white drives, since powers of 1/z are nearly alike at a
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 import scipy.signal
 from numpy.typing import NDArray
 
@@ -83,10 +81,9 @@ def independent_states(poles: NDArray[np.complex128], dt: float) -> LinearDynami
         Sample time, s.
     """
     G = LinearDynamics.from_zeros_poles_gain([], poles, 1.0, dt)
-    with warnings.catch_warnings():
-        # Poles next to 1 make it ill-conditioned; it scales the states, no more.
-        warnings.simplefilter("ignore", scipy.linalg.LinAlgWarning)
-        gramian = scipy.linalg.solve_discrete_lyapunov(G.A, np.outer(G.B, G.B))
+    n = G.order
+    equation = np.eye(n * n) - np.kron(G.A, G.A)
+    gramian = np.linalg.solve(equation, np.outer(G.B, G.B).ravel()).reshape(n, n)
     values, vectors = np.linalg.eigh((gramian + gramian.T) / 2.0)
     root = vectors * np.sqrt(np.maximum(values, 1e-14 * values[-1]))
     A, B = np.linalg.solve(root, G.A @ root), np.linalg.solve(root, G.B)

@@ -55,6 +55,7 @@ from hyst.identification.families.hammerstein.record_checks import flat_tops
 from hyst.identification.families.hammerstein.result import identified_with_dynamics
 from hyst.identification.families.hammerstein.ringing import without_ringing
 from hyst.identification.families.hammerstein.settled_fit import with_settled_dynamics
+from hyst.identification.families.hammerstein.spread_stretches import spread
 from hyst.identification.families.hammerstein.without_dynamics import dynamics_doubts
 from hyst.identification.families.hammerstein.words import WORDS, words_behind
 from hyst.identification.families.linear import Linear
@@ -74,7 +75,10 @@ from hyst.signals import Record
 Array = NDArray[np.float64]
 
 MOST_FITTED = 300_000
-"""Samples whose Jacobian is held in memory; of longer records the beginning is fitted to."""
+"""Samples whose Jacobian is held in memory; longer records are fitted to in stretches."""
+
+MOST_SEARCHED, SHARE = 60_000, 10
+"""Samples at most, and what part of the record, in which order and size are searched."""
 
 _WARM_UP = 8_000
 _BURST = 12
@@ -94,17 +98,20 @@ class Hammerstein(Family):
         family given by name may stand beside it, as
         ``identify(record, family="hammerstein", hysteresis="gpi", plays=4)``.
     fir_order
-        Last lag of the impulse response of the first step, 1 to 5000, or ``"auto"``.
+        ``"auto"``: the fit starts from plays on a grid of radii with dynamics behind them. A
+        number, 1 to 5000: from an impulse response up to that lag, the paper's method, which the
+        drive must excite up to half the sample rate.
     state_order
-        Number of states of G, 1 to 64, or ``"auto"``: as many as lower the error noticeably.
+        Number of states of G, 1 to 64, or ``"auto"``: up to 12, as many as lower the error by more
+        than their numbers cost.
     period
         Samples of a period of the drive: all but the first are averaged. None: there is none.
     dynamics
         G where it is known, which is held at a gain of 1 at rest: a ``LinearDynamics``, a model
         with it at its output, a system of python-control or scipy.signal (continuous ones with
         their input held between samples), or a frequency response, to which dynamics are fitted
-        first (``hyst.read_frequency_response``). The drive need not excite an impulse response
-        then. None: it is identified.
+        first (``hyst.read_frequency_response``). The drive need not excite it then. None: it is
+        identified.
     front
         The hysteresis where it is known, which is held but for a gain and an offset after it: an
         operator, a result of ``hyst.identify``, or a model that ``hyst.load`` read. None: it is
@@ -199,12 +206,13 @@ class Hammerstein(Family):
         return replace(self, hysteresis=self.hysteresis_family.in_units(input_scale, output_scale))
 
     def searched(self, data: Data) -> Data:
-        """Give the beginning of long records: the dynamics know of every sample."""
-        return shortened(data, max(MOST_SAMPLES // len(data.records), 1))
+        """Give stretches of long records, from all over them."""
+        samples = sum(len(each) for each in data.records)
+        return spread(data, int(np.clip(samples // SHARE, MOST_SAMPLES, MOST_SEARCHED)))
 
     def fitted(self, data: Data) -> Data:
-        """Give as many samples as memory allows."""
-        return shortened(data, max(MOST_FITTED // len(data.records), 1))
+        """Give as many samples as memory allows, from all over the records."""
+        return spread(data, MOST_FITTED)
 
     def sizes(self) -> tuple[int, ...]:
         """Give the sizes of the hysteresis."""
