@@ -6,7 +6,7 @@ is the error on a drive it has not seen, a multisine below the resonances, in % 
 expected to fall below. Seconds are processor time.
 
 ``python -m benchmarks hammerstein_drives [--part drives,orders,two-mode,bouc-wen,time,bad]
-[--runs N]``
+[--runs N] [--only TEXT]``: seeds and actuators of the orders.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def main() -> None:
     options = _options()
     if options.long:
         return _long(options.long)
-    parts: dict[str, Callable[[int], None]] = {
+    parts: dict[str, Callable[[argparse.Namespace], None]] = {
         "drives": by_drive,
         "orders": by_order,
         "two-mode": two_mode_actuator,
@@ -61,7 +61,7 @@ def main() -> None:
     }
     for name in options.part.split(",") if options.part else parts:
         print(f"### {name}\n", flush=True)
-        parts[name](options.runs)
+        parts[name](options)
         print(flush=True)
     return None
 
@@ -70,11 +70,12 @@ def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser("hammerstein_drives")
     parser.add_argument("--part", default="")
     parser.add_argument("--runs", type=int, default=RUNS)
+    parser.add_argument("--only", default="")
     parser.add_argument("--long", type=int, default=0, help=argparse.SUPPRESS)
     return parser.parse_known_args(sys.argv[1:])[0]
 
 
-def by_drive(_: int) -> None:
+def by_drive(_: argparse.Namespace) -> None:
     """Print what each drive gives of one actuator."""
     plant = stage(FRONT, [(200.0, 0.03)], 1e-4, delay=3)
     other = multisine(1e-4, 1.0, 100.0, 10.0, 99)
@@ -128,16 +129,20 @@ def _ordered() -> Iterator[tuple[str, Stage, float, Callable[[int], Array], Arra
             yield name, plant, decibels, lambda k: multisine(dt, 0.0, 500.0, 10.0, k), other
 
 
-def by_order(runs: int) -> None:
+def by_order(options: argparse.Namespace) -> None:
     """Print how often the order is found, and errors over those of fits from the truth."""
-    print(f"five plays, 20,000 samples, {runs} seeds of phases and noise; rms over the runs\n")
     print(
-        f"{'actuator':26s} {'noise':>6s} {'right':>8s} {'other':>8s} {'bound':>8s} {'ratio':>6s} "
-        f"{'own':>6s} {'worst':>6s} {'s':>5s}  orders"
+        f"five plays, 20,000 samples, {options.runs} seeds of phases and noise; rms over the runs\n"
+    )
+    print(
+        f"{'actuator':24s} {'noise':>6s} {'right':>8s} {'other':>8s} {'bound':>8s} {'ratio':>6s} "
+        f"{'median':>6s} {'worst':>6s} {'own':>6s} {'s':>5s}  orders"
     )
     for name, plant, decibels, drive, other in _ordered():
+        if options.only not in f"{name} {decibels:g} dB":
+            continue
         rows, orders, seconds = [], Counter[str](), []
-        for seed in range(runs):
+        for seed in range(options.runs):
             u = drive(seed + 100)
             record = measured(plant, u, decibels, seed)
             run = identified(record)
@@ -154,18 +159,26 @@ def by_order(runs: int) -> None:
                     for each in (run.found.model, bound)
                 ]
             )
-        errors = np.sqrt(np.mean(np.square(rows), axis=0))
-        worst = float(np.max(np.divide(*np.transpose(rows)[:2])))
-        told = ", ".join(f"{order}: {count}" for order, count in orders.most_common())
-        print(
-            f"{name:26s} {decibels:3g} dB {orders[str(plant.order)]:2d} of {runs:2d} "
-            f"{errors[0]:8.4f} {errors[1]:8.4f} {errors[0] / errors[1]:6.2f} "
-            f"{errors[2] / errors[3]:6.2f} {worst:6.2f} {np.median(seconds):5.1f}  {told}",
-            flush=True,
-        )
+        _print_errors(f"{name:24s} {decibels:3g} dB", np.array(rows), seconds, orders, plant.order)
 
 
-def two_mode_actuator(_: int) -> None:
+def _print_errors(
+    name: str, rows: Array, seconds: list[float], orders: Counter[str], right: int
+) -> None:
+    """Print errors found and of the bound, on the other drive and on its own."""
+    errors = np.sqrt(np.mean(np.square(rows), axis=0))
+    ratios = rows[:, 0] / rows[:, 1]
+    told = ", ".join(f"{order}: {count}" for order, count in orders.most_common())
+    print(
+        f"{name} {orders[str(right)]:2d} of {orders.total():2d} "
+        f"{errors[0]:8.4f} {errors[1]:8.4f} {errors[0] / errors[1]:6.2f} "
+        f"{np.median(ratios):6.2f} {ratios.max():6.2f} {errors[2] / errors[3]:6.2f} "
+        f"{np.median(seconds):5.1f}  {told}",
+        flush=True,
+    )
+
+
+def two_mode_actuator(_: argparse.Namespace) -> None:
     """Print the actuator of S1: strong, stiffening hysteresis before two modes."""
     b = np.array([s1.W1**2 * s1.W2**2])
     first, second = [1.0, 2.0 * s1.Z1 * s1.W1, s1.W1**2], [1.0, 2.0 * s1.Z2 * s1.W2, s1.W2**2]
@@ -195,7 +208,7 @@ def two_mode_actuator(_: int) -> None:
         )
 
 
-def bouc_wen(_: int) -> None:
+def bouc_wen(_: argparse.Namespace) -> None:
     """Print a Bouc-Wen hysteresis in front, with its own family and with plays."""
     front = hyst.BoucWen(1.0, 0.6, 0.5, 0.3)
     plant = stage(front, [(200.0, 0.03)], 1e-4, delay=3)
@@ -217,7 +230,7 @@ def bouc_wen(_: int) -> None:
             )
 
 
-def times(_: int) -> None:
+def times(_: argparse.Namespace) -> None:
     """Print processor time and memory, beside a general least squares and FIR with ERA."""
     plant = stage(FRONT, [(200.0, 0.03)], 1e-4, delay=3)
     record = measured(plant, multisine(1e-4, 1.0, 1000.0, 10.0, 1000), 40.0, 1)
@@ -226,7 +239,7 @@ def times(_: int) -> None:
     _peer(plant, record)
     peer = time.process_time() - start
     start = time.process_time()
-    realize(fit_markov(_broad(plant, SAMPLES), 1000), 0, 1e-4, 2)
+    realize(fit_markov(_broad(plant, SAMPLES), 1000).values, 1e-4, order=2)
     paper = time.process_time() - start
     print(f"20,000 samples: {run.seconds:.1f} s (goal: 3)")
     print(f"  scipy.optimize.least_squares from one start of known structure: {peer:.1f} s")
@@ -285,7 +298,7 @@ def _peer(plant: Stage, record: hyst.Record) -> Array:
     ).x
 
 
-def bad_input(_: int) -> None:
+def bad_input(_: argparse.Namespace) -> None:
     """Print what is said of records that do not determine it, or of no such system."""
     for name, record in _bad():
         run = identified(record)
