@@ -35,10 +35,14 @@ def files(folder: Path) -> Path:
     write_csv(folder / "polar.csv", "frequency [Hz],magnitude [dB],phase [deg]", *polar)
     write_csv(folder / "parts.csv", "omega [rad/s],real,imaginary", 2e0 * np.pi * F, H.real, H.imag)
     write_csv(folder / "bare.csv", "f,mag,phase [rad]", F, np.abs(H), np.angle(H))
+    banded = "frequency [Hz],gain,gain low,gain high,phase [deg],phase low [deg],excited"
+    gain, phase = np.abs(H), np.rad2deg(np.unwrap(np.angle(H)))
+    bands = (gain, 0.5 * gain, 2.0 * gain, phase, phase - 90.0, np.ones(F.size))
+    write_csv(folder / "banded.csv", banded, F, *bands)
     return folder
 
 
-@pytest.mark.parametrize("name", ["G.json", "polar.csv", "parts.csv", "bare.csv"])
+@pytest.mark.parametrize("name", ["G.json", "polar.csv", "parts.csv", "bare.csv", "banded.csv"])
 def test_known_dynamics_come_from_a_file(run: Run, files: Path, name: str) -> None:
     ended = run("identify", files / "loop.csv", *KIND, *PI, "--dynamics", files / name, "-o", "out")
     assert ended.code == 0, ended.err

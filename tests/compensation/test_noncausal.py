@@ -141,3 +141,19 @@ def test_methods_for_dynamics_on_both_sides() -> None:
     assert hyst.compensation.methods_for(flat @ BOTH) == ()
     with pytest.raises(NotInvertibleError, match=r"the zero -1\+0j"):
         invert_trajectory(flat @ BOTH, rest_to_rest(), "noncausal")
+
+
+def test_a_band_lets_dynamics_be_inverted_that_pass_nothing_above_it() -> None:
+    """A sampled resonance has a zero next to -1: at half the sample rate it passes nothing."""
+    sampled = LinearDynamics.from_zeros_poles_gain([-0.9999], [0.9 + 0.3j, 0.9 - 0.3j], 0.05, 1e-3)
+    model = sampled @ PI @ low_pass(60.0, 0.5)
+    with pytest.raises(NotInvertibleError, match="band below"):
+        invert_trajectory(model, rest_to_rest(), "noncausal")
+    done = invert_trajectory(model, rest_to_rest(8000), "noncausal", band=200.0)
+    # The window is smooth: of the reference next to nothing lies above 200 Hz.
+    assert done.max_abs < 1e-6
+    assert "what lies below 200 Hz" in done.notes[0]
+    with pytest.raises(InputError, match="'exact' knows no band"):
+        invert_trajectory(PI, rest_to_rest(), band=200.0)
+    with pytest.raises(InputError, match="band"):
+        invert_trajectory(model, rest_to_rest(), "noncausal", band=-1.0)

@@ -265,3 +265,13 @@ def test_dynamics_without_states_are_a_gain() -> None:
     gain_found = found.model.parts[1].dc_gain()
     assert gain_found == pytest.approx(1.0, abs=1e-6)  # of the gauge, as above
     assert missed(found.model, PLAYS, multisine(0)) < 1.5e-3  # as above
+
+
+def test_loops_that_dynamics_turn_over_are_no_doubt_where_noise_is_left() -> None:
+    """A phase of more than a quarter turn makes falling output of rising input."""
+    true = PLAYS @ resonance(300.0, 0.7)
+    record = recorded(true, multisine(23))
+    assert any(each.name == "butterfly" for each in hyst.diagnose(record).findings)
+    found = hyst.fit(ROUGH @ resonance(330.0, 0.8), record, start=0)
+    assert missed(found.model, true, record.u) < 1.5e-3  # as above
+    assert found.verdict.level == "good"

@@ -93,3 +93,33 @@ def test_other_families_have_no_such_table() -> None:
     record = Record(u, hyst.PrandtlIshlinskii([0.5], [1.5], 1.0)(u), DT)
     plain = hyst.identify(record, family="pi", plays=1)
     assert hyst.report.dynamics_table(plain).rows == ()
+
+
+def test_a_drive_that_determines_no_impulse_response_has_none_in_the_report(
+    found: tuple[IdentifiedHammerstein, Record],
+) -> None:
+    assert hyst.report.dynamics_sections(found[0])[0].heading.startswith("For comparison")
+    u = multisine(DT, 3000, amplitude=10.0, band=(1.0, 150.0)).u
+    y = (G @ hyst.PrandtlIshlinskii([0.5], [1.5], 1.0))(u)
+    y = y + 0.01 * y.std() * np.random.default_rng(0).normal(size=y.size)
+    banded = hyst.identify(
+        Record(u, y, DT), family="hammerstein", hysteresis="pi", plays=1, state_order=2
+    )
+    sections = hyst.report.dynamics_sections(banded)
+    assert [each.heading for each in sections] == ["The dynamics", "The loop without a model of it"]
+    assert "does not determine an impulse response" in " ".join(sections[0].texts)
+    assert "impulse response" not in sections[0].caption
+
+
+def test_a_comparison_tells_what_its_errors_are(
+    found: tuple[IdentifiedHammerstein, Record],
+) -> None:
+    """Sizes before dynamics are scored in the sample; other families by what was left out."""
+    static = hyst.PrandtlIshlinskii([0.5], [1.5], 1.0)(U)
+    own = hyst.report.candidates_table(found[0])
+    other = hyst.report.candidates_table(
+        hyst.identify(Record(U, static, DT), family="linear,pi", plays=1)
+    )
+    assert "Bayesian" in own.title
+    assert "left out" not in own.title
+    assert "left out" in other.title

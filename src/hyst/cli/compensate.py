@@ -58,6 +58,12 @@ Method = Annotated[
 Preview = Annotated[
     int, typer.Option(metavar="N", help="Samples of the reference known ahead, of preview.")
 ]
+Band = Annotated[
+    float | None,
+    typer.Option(
+        metavar="HZ", show_default=False, help="Of noncausal: highest frequency to invert."
+    ),
+]
 RateLimit = Annotated[
     float | None,
     typer.Option(
@@ -102,6 +108,7 @@ History = Annotated[
 _FIXED = ("--method", "--outside", "--with-delay")
 _BY_METHOD = {
     "preview": ("preview",),
+    "band": ("noncausal",),
     "rate_limit": ("preview", "trajectory"),
     "allow_unconverged": ("trajectory",),
     "objective": ("trajectory",),
@@ -132,6 +139,7 @@ def compensate(
     no_limits: NoLimits = False,
     history: History = None,
     preview: Preview = 20,
+    band: Band = None,
     rate_limit: RateLimit = None,
     objective: Objective = "rms",
     roughness: Roughness = None,
@@ -158,6 +166,7 @@ def compensate(
         compensate_over(model, y_ref, s, history, input_range, despite_verdict, out, time)
         return
     _require_method_for(model, method)
+    ahead: dict[str, Any] = {"rate_limit": rate_limit, "preview": preview, "band": band}
     with progress_bar("inverting") as progress:
         done = hyst.compensation.invert_trajectory(
             model,
@@ -166,10 +175,9 @@ def compensate(
             input_range=input_range,
             outside=outside,
             history=None if history is None else history_of(history),
-            rate_limit=rate_limit,
             objective=objective,
             roughness=roughness,
-            preview=preview,
+            **ahead,
             allow_unconverged=allow_unconverged,
             despite_verdict=despite_verdict,
             progress=progress,
@@ -177,8 +185,7 @@ def compensate(
     _note_times(known, history, model)
     time = time_column(reference, rate, model.dt, done.u.size, **how)
     write_command(out, about, time, _signals(done, about, y_ref if with_delay else None))
-    _tell(done, about, input_range, with_delay)
-    tell_virgin(history is None and model.initial_state().size > 0)
+    _tell(done, about, input_range, with_delay, history is None and model.initial_state().size > 0)
     show_files([out])
 
 
@@ -255,6 +262,7 @@ def _tell(
     about: ModelDescription,
     input_range: tuple[float, float] | None,
     with_delay: bool,
+    virgin: bool,
 ) -> None:
     print(done.expectation(about.output_unit))
     for sentence in done.unknown:
@@ -282,6 +290,7 @@ def _tell(
         print(hyst.report.delay_sentence(about.delay, about.dt, about.delay_interval))
     if about.delay > 0:
         print(_with_delay_counted(done, about, with_delay))
+    tell_virgin(virgin)
 
 
 def _with_delay_counted(

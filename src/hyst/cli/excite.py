@@ -238,6 +238,12 @@ def _tell_forecast(found: hyst.identification.DriveForecast | None) -> None:
     show_table(hyst.report.forecast_table(found))
     for sentence in found.advice:
         print(f"  {sentence}")
+    if found.held:
+        others = [each for each in found.shared if each not in found.held]
+        print(
+            f"  {', '.join(found.held)} held, for no drive tells what is shared with "
+            f"{', '.join(others)}"
+        )
     if found.sufficient:
         print("  nothing stays open")
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
 import typer
 
 import hyst
@@ -100,8 +99,8 @@ class StatedActuator:
         )
 
     def _sketched(self, drive: hyst.signals.Drive) -> hyst.operators.Operator:
-        half = 0.5 * float(np.ptp(drive.u))
-        even = half * np.arange(1, _PLAYS + 1) / (_PLAYS + 1)
+        half = 0.5 * float(drive.u.max() - drive.u.min())
+        even = [half * place / (_PLAYS + 1) for place in range(1, _PLAYS + 1)]
         if half == 0.0:
             raise hyst.InputError(f"the drive rests at {drive.u[0]:.6g} and determines nothing")
         front = hyst.identification.sketched_plays(self.radii or even, self.weights or None)

@@ -43,6 +43,7 @@ def invert_trajectory(
     objective: Objective = "rms",
     roughness: float | None = None,
     preview: int = 20,
+    band: float | None = None,
     max_iterations: int = 1000,
     allow_unconverged: bool = False,
     despite_verdict: bool = False,
@@ -102,6 +103,9 @@ def invert_trajectory(
         model knows well. Left out, it is 10 % (for ``"largest"`` 2 %) of the gain of the plays.
     preview
         Samples of the reference known beyond the present one, 1 to 60, for ``preview``.
+    band
+        Of ``noncausal``: highest frequency of the reference, Hz; above it dynamics are not inverted
+        whose gain there is next to nothing, so that sensors' noise does not come back enlarged.
     max_iterations
         Of each stage of ``trajectory`` and of each window of its polish.
     allow_unconverged
@@ -149,6 +153,8 @@ def invert_trajectory(
         raise InputError(f"method {method!r} knows no rate limit; use 'preview' or 'trajectory'")
     about = model.description if isinstance(model, Operator) else ModelDescription()
     refuse_if_unfit(about.verdict, "no command is made", despite_verdict)
+    if band is not None and method != "noncausal":
+        raise InputError(f"method {method!r} knows no band; use 'noncausal'")
     task = _Task(model, y_ref, input_range, outside == "clip", history)
     if method != "trajectory" and (objective != "rms" or roughness is not None):
         raise InputError(f"method {method!r} has no objective and no roughness; use 'trajectory'")
@@ -156,6 +162,7 @@ def invert_trajectory(
         rate_limit,
         _aim(objective, roughness),
         preview,
+        band,
         max_iterations,
         allow_unconverged,
         progress or _silent,
@@ -178,11 +185,12 @@ class _Task:
 
 @dataclass(frozen=True, eq=False)
 class _Options:
-    """Of the methods for rate-dependent plays."""
+    """Of methods other than the exact one."""
 
     rate_limit: float | None
     aim: Aim
     preview: int
+    band: float | None
     max_iterations: int
     allow_unconverged: bool
     say: Callable[[float], None]
@@ -196,7 +204,7 @@ def _inverted(asked: _Task, method: str, options: _Options) -> Compensation:
         )
     if method == "noncausal":
         return invert_noncausally(
-            asked.model, asked.y_ref, asked.input_range, asked.clip, asked.history
+            asked.model, asked.y_ref, asked.input_range, asked.clip, asked.history, options.band
         )
     if method == "trajectory" and isinstance(asked.model, Operator) and turns(asked.model):
         if options.rate_limit is not None:

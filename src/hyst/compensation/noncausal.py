@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.arrays import finite_vector
 from hyst.compensation.result import Compensation
-from hyst.errors import InputError
+from hyst.errors import InputError, NotInvertibleError
 from hyst.models import LinearDynamics, StableInverse
 from hyst.models.linear_properties import settling_samples
 from hyst.operators import Composition, Operator
@@ -44,7 +44,8 @@ def invert_noncausally(
     clip
         Whether to hold the input at an end of its range instead of refusing.
     band
-        Highest frequency that is inverted, Hz; None inverts all.
+        Highest frequency that is inverted, Hz, by the dynamics behind all hysteresis, and by others
+        that are not inverted beyond it either; None inverts all.
 
     Returns
     -------
@@ -71,10 +72,7 @@ def invert_noncausally(
     reference = finite_vector(y_ref, "y_ref")
     past = None if history is None else finite_vector(history, "history")
     start = model.initial_state() if past is None else model.run(past)[1]
-    inverses = [
-        StableInverse.of(each, band=band) if isinstance(each, LinearDynamics) else None
-        for each in parts
-    ]
+    inverses = _inverses(parts, band)
     u = _inverted(parts, inverses, reference, past)
     clipped = 0
     if input_range is not None:
@@ -89,8 +87,9 @@ def invert_noncausally(
         clipped, u = int(outside.sum()), np.clip(u, low, high)
     y_predicted, _ = model.run(u, start)
     known = [each for each in inverses if each is not None]
-    inside = _interior(parts, known, reference, y_predicted)
-    where = f"exact for samples {inside[0]} to {inside[1] - 1}, and before and after"
+    inside = _interior(parts, known, reference, None if band else y_predicted)
+    how = "exact" if band is None else f"what lies below {band:.6g} Hz is exact"
+    where = f"{how} for samples {inside[0]} to {inside[1] - 1}, and before and after"
     if inside[0] == inside[1]:
         where = "the record is too short for it to be exact anywhere but"
     gains = " and ".join(f"{each.noise_gain:.3g}" for each in reversed(known))
@@ -102,6 +101,36 @@ def invert_noncausally(
     return Compensation(
         u, reference, y_predicted, "noncausal", clipped, notes=(note,), interior=inside
     )
+
+
+def _inverses(parts: Sequence[Operator], band: float | None) -> list[StableInverse | None]:
+    """Give the inverse of each stage of dynamics.
+
+    Before a hysteresis, whose inverse has corners, a band is kept only where it must be.
+    """
+    inverses = list[StableInverse | None]()
+    for i, part in enumerate(parts):
+        if not isinstance(part, LinearDynamics):
+            inverses.append(None)
+        elif band is None or _has_memory(parts[i + 1 :]):
+            inverses.append(_without_band(part, band))
+        else:
+            inverses.append(StableInverse.of(part, band=band))
+    return inverses
+
+
+def _without_band(dynamics: LinearDynamics, band: float | None) -> StableInverse:
+    try:
+        return StableInverse.of(dynamics)
+    except NotInvertibleError:
+        if band is None:
+            raise
+        return StableInverse.of(dynamics, band=band)
+
+
+def _has_memory(parts: Sequence[Operator]) -> bool:
+    """Tell whether a hysteresis is among stages."""
+    return not all(isinstance(each, LinearDynamics) or each.traits().memoryless for each in parts)
 
 
 def _inverted(
@@ -123,7 +152,7 @@ def _inverted(
 
 
 def _interior(
-    parts: Sequence[Operator], inverses: Sequence[StableInverse], reference: Array, y: Array
+    parts: Sequence[Operator], inverses: Sequence[StableInverse], reference: Array, y: Array | None
 ) -> tuple[int, int]:
     """Give the samples that what is not known of start and end does not reach."""
     dynamics = [each for each in parts if isinstance(each, LinearDynamics)]
@@ -131,7 +160,7 @@ def _interior(
     beyond = max(reference.size - sum(each.preview for each in inverses), 0)
     first = min(first, reference.size)
     behind = parts[[isinstance(each, LinearDynamics) for each in parts].index(True) :]
-    if not all(isinstance(each, LinearDynamics) or each.traits().memoryless for each in behind):
+    if y is not None and _has_memory(behind):
         # Until the dynamics before it have settled, a memory may take a branch and keep to it.
         off = np.abs(y - reference)[first:beyond] > _ON_ITS_BRANCH * float(np.ptp(reference))
         first += int(np.flatnonzero(off)[-1]) + 1 if off.any() else 0

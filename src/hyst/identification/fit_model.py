@@ -60,7 +60,7 @@ class OwnModel(Family):
     name = ""
     words = Words(full_name="model of your own", equations=(), explanations=())
     depends_on_rate = True  # nothing is known of it
-    explains = ("rate dependence", "dynamics", "run direction")
+    explains = ("rate dependence", "dynamics", "run direction", "butterfly")
 
     parametrization: ChainParametrization
     theta: Array
@@ -104,7 +104,8 @@ def fit(
         min  sum_k (model[u](k) - y(k + delay))^2    over the constants that are free
 
     with analytic derivatives and bounds. The minimum is the one next to the start: ``identify``
-    finds starts, this function does not.
+    finds starts, this function does not. Only where linear dynamics are free as a whole, plays are
+    moved out of the local minima that they make, and dynamics 10 % off will do.
 
     Parameters
     ----------
@@ -116,7 +117,10 @@ def fit(
     free
         Names of the constants that may move, as in ``model.parameters().names``; a name without its
         index, as ``"prandtl_ishlinskii.p"``, stands for all entries, that of a stage for all its
-        constants. All if left out; the others keep their values.
+        constants. All if left out; the others keep their values. Linear dynamics whose stage is
+        named, or of which all is free, move by as many numbers as there are (2n, and D unless it is
+        0 and not named): they stay stable, and are told by frequencies, damping and coefficients;
+        where no record shows their gain, it is held at that of the start.
     bounds
         By name, as for ``free``: lowest and highest value, in the constant's unit. A constant stays
         within its own bounds (``model.parameters()``) too.
@@ -135,8 +139,9 @@ def fit(
     ------
     InputError
         If the model is no operator, a name is unknown, nothing is free, bounds are upside down or
-        exclude the model's own value, a record has another sample time, or another argument cannot
-        be used.
+        exclude the model's own value or are of matrices of dynamics that are free as a whole, such
+        dynamics are not stable or not moved by their input, a record has another sample time, or
+        another argument cannot be used.
     NotIdentifiableError
         If a signal is constant, or there are no more samples than free constants.
     SolverError

@@ -38,8 +38,10 @@ def read_frequency_response(path: str | os.PathLike[str]) -> MeasuredResponse:
     path
         Any file that ``read_table`` reads, with a column ``frequency`` and either ``magnitude`` and
         ``phase`` or ``real`` and ``imaginary``, by these names or as they are shortened (``freq``,
-        ``mag``, ``re``, ``im``). Units stand in brackets: frequency in ``Hz``, the default, ``kHz``
-        or ``rad/s``; magnitude in ``dB`` or as it is; phase in ``deg``, the default, or ``rad``.
+        ``mag``, ``re``, ``im``); of several, as ``gain`` and ``gain low``, the one without more
+        words, so that a ``frequency_response.csv`` of hyst is read, too. Units stand in brackets:
+        frequency in ``Hz``, the default, ``kHz`` or ``rad/s``; magnitude in ``dB`` or as it is;
+        phase in ``deg``, the default, or ``rad``.
 
     Returns
     -------
@@ -89,6 +91,9 @@ def _unit(table: Table, place: int) -> str:
 def _place(table: Table, name: str) -> int | None:
     """Give the column of a quantity; None if there is none."""
     found = [i for i, each in enumerate(table.names) if _word(each) in _NAMES[name]]
+    # Beside a gain there may be the ends of its band, "gain low" and "gain high".
+    bare = [i for i in found if table.names[i].strip().lower() in _NAMES[name]]
+    found = bare if len(bare) == 1 else found
     if len(found) > 1:
         raise InputError(
             f"{table.source} has {len(found)} columns of {name}: "

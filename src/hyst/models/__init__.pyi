@@ -33,6 +33,8 @@ from hyst.models.maxwell_slip import MaxwellSlip as MaxwellSlip
 from hyst.models.memory_element import InverseMemoryElement as InverseMemoryElement
 from hyst.models.memory_element import MemoryElement as MemoryElement
 from hyst.models.memory_function import MemoryFunction as MemoryFunction
+from hyst.models.named_dynamics import low_pass as low_pass
+from hyst.models.named_dynamics import resonance as resonance
 from hyst.models.piecewise_linear import PiecewiseLinear as PiecewiseLinear
 from hyst.models.polynomial_curve import PolynomialCurve as PolynomialCurve
 from hyst.models.power_law import PowerLaw as PowerLaw

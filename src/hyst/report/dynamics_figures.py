@@ -54,13 +54,12 @@ def dynamics_sections(found: Identified) -> tuple[Section, ...]:
 
 def _response(found: IdentifiedHammerstein, markov: MarkovParameters) -> Section:
     return Section(
-        heading="First step: the impulse response",
+        heading="For comparison: the impulse response",
         texts=(
             f"Least squares on {markov.samples} samples with {markov.order + 1} lags; condition of "
             f"the regressors {markov.condition:.3g}. Bars are two standard errors; they count the "
-            "distortion by the hysteresis as noise. The order was cut where the singular values of "
-            "the Hankel matrix sink into the errors, or before, where a further state did not "
-            "lower the simulated error.",
+            "distortion by the hysteresis as noise. The fit starts from it where fir_order was "
+            "given, else from plays.",
         ),
         table=Table(
             "Order",
@@ -101,7 +100,8 @@ def _dynamics(found: IdentifiedHammerstein) -> Section:
         table=dynamics_table(found),
         picture="dynamics.png",
         png=draw_dynamics(found),
-        caption="Frequency response of G, before and after the refinement, with its 95 % band.",
+        caption="Frequency response of G with its 95 % band"
+        + ("." if found.first_dynamics is None else ", and that of the impulse response."),
         files={RESPONSE: found.frequency_response().to_csv().encode()},
     )
 
@@ -125,10 +125,15 @@ def dynamics_table(found: Identified) -> Table:
 def _how_known(found: IdentifiedHammerstein) -> tuple[str, ...]:
     if found.known.is_held:
         return ()
+    undetermined = (
+        "The drive does not determine an impulse response, so none is shown; the fit does not "
+        "start from one.",
+    )
     return (
         f"The drive shows G {bands_told(found.known)}. Standard errors and band count the noise "
         "and not what a model of too low an order leaves out; where the drive has no power within "
         "an octave (shaded), the response is an extrapolation by the model.",
+        *(undetermined if found.markov is None else ()),
     )
 
 

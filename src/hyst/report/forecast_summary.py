@@ -41,5 +41,5 @@ def forecast_headline(found: DriveForecast) -> str:
 
 def _row(each: ExpectedError) -> tuple[str, ...]:
     # An error of many times the number is none that means something.
-    error = number(each.error) if each.share < _OPEN else "open"
+    error = "-" if each.held else number(each.error) if each.share < _OPEN else "open"
     return each.name, number(each.value), error, each.verdict

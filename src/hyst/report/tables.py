@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from hyst.compensation import Compensation, error_parts
 from hyst.identification import Identified, RecordErrors
+from hyst.identification.families.registry import families
 from hyst.identification.result.record_errors import run_at_several_rates
 from hyst.operators import Operator
 from hyst.operators.traits import Degree
@@ -210,13 +211,14 @@ def candidates_table(identified: Identified) -> Table:
     unit = identified.description.output_unit
     candidates = identified.candidates
     marked = [k for k, each in enumerate(candidates) if each.chosen]
+    title, error = _compared_by(identified)
     return Table(
-        "Families and sizes compared by blocks left out of the fit, each block with its own offset",
+        title,
         (
             "family",
             "plays",
             "parameters",
-            with_unit("error on left-out blocks", unit and f"[{unit}]"),
+            with_unit(error, unit and f"[{unit}]"),
             "+-",
             "chosen",
         ),
@@ -232,6 +234,21 @@ def candidates_table(identified: Identified) -> Table:
             for each in candidates
         ),
         marked[0] if marked else None,
+    )
+
+
+def _compared_by(identified: Identified) -> tuple[str, str]:
+    """Give the title of a comparison and of its errors: on left-out blocks, or in the sample."""
+    compared = [families.get(each.family) for each in identified.candidates]
+    if all(each is not None and each.judged_in_sample for each in compared):
+        return (
+            "Sizes compared by the error of the fit times what each further parameter costs "
+            "(Bayesian criterion)",
+            "error with that",
+        )
+    return (
+        "Families and sizes compared by blocks left out of the fit, each block with its own offset",
+        "error on left-out blocks",
     )
 
 

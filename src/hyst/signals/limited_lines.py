@@ -19,7 +19,7 @@ from hyst.signals.drive import Limits, steps_of
 Array = NDArray[np.float64]
 
 _TURNS = 3
-_SAME_CORNER = 1e-6  # of a frequency
+_SAME_CORNER = 1e-4  # of a frequency
 _LARGEST_POWER = 30.0
 _SAME_POWER = 1e-3
 _SMALL = 1e-2  # of the largest line: what is below hardly excites

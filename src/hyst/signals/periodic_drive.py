@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,6 +17,7 @@ Array = NDArray[np.float64]
 
 KEPT = ("amplitude", "spectrum")
 
+_FINE = 12  # samples in a period of the highest line, at least
 _TURNS = 4  # of evening out and shaping, each of which changes what the other one needs
 
 
@@ -103,7 +106,12 @@ def factor_of(period: Array, amplitude: float | None, rms: float | None) -> floa
 
 
 def _evened(lines: Lines, sizes: Array, phases: Array) -> Array:
-    return even_phases(lambda tried: lines.wave(sizes, tried), lines.numbers, phases)
+    """Even out the values on as coarse a grid as shows all lines."""
+    count = 1 << (_FINE * int(lines.numbers[-1]) - 1).bit_length()  # a fast length
+    coarse = lines
+    if count < lines.count:
+        coarse = replace(lines, count=count, dt=lines.dt * lines.count / count)
+    return even_phases(lambda tried: coarse.wave(sizes, tried), lines.numbers, phases)
 
 
 def _evenness(period: Array, uniform: bool) -> tuple[str, ...]:

@@ -10,6 +10,11 @@ import pytest
 import hyst
 from hyst.errors import InputError
 from hyst.identification import DriveForecast, forecast_drive, sketched_plays, sketched_stage
+from hyst.identification.forecast.free_numbers import (
+    free_numbers,
+    frequency_and_damping,
+    poles_by_directions,
+)
 from hyst.operators import Operator
 from hyst.signals import Drive
 from identification.forecast.scatter_of_fits import DELAY, DT, NAMES, TRUE, outputs, scatter, start
@@ -52,6 +57,8 @@ def test_the_sketch_is_the_model_it_states() -> None:
             DT, 1500, amplitude=1.0, band=(1.0, 300.0), uniform=True, max_rate=60.0
         ),
         hyst.signals.swept_sine(DT, 1500, (1.0, 200.0), 1.0),
+        # About a middle of 0.8 the offset is hard to tell from the weights.
+        hyst.signals.lowpassed_noise(DT, 1500, 150.0, amplitude=1.0, offset=0.8),
     ],
     ids=lambda drive: drive.kind,
 )
@@ -67,8 +74,28 @@ def test_errors_are_the_scatter_of_fits(drive: Drive, decibels: float) -> None:
 def test_lines_near_the_resonance_alone_tell_as_much() -> None:
     # A flat band around a light resonance: nothing else is in the data to tell of it.
     found = forecast_drive(multisine(1000.0), audit_stage())
-    frequency = found.of_dynamics[0]
+    frequency, damping = found.of_dynamics
     assert frequency.by_own_lines == pytest.approx(frequency.standard_error, rel=0.2)
+    assert damping.by_own_lines == pytest.approx(damping.standard_error, rel=0.2)
+
+
+@pytest.mark.parametrize("damping", [0.02, 0.3, 0.8])
+def test_frequency_and_damping_move_with_their_poles(damping: float) -> None:
+    stage = sketched_stage(1e-3, [(60.0, damping), (150.0, 0.1)], front=sketched_plays([0.2]))
+    _, G = free_numbers(stage).dynamics[0]
+    poles, by_k = poles_by_directions(G)
+    own = int(np.argmin(np.abs(np.abs(poles) - 2.0 * np.pi * 60.0) - 1e-3 * poles.imag))
+    frequency, ratio, slopes = frequency_and_damping(complex(poles[own]), by_k[own])
+    assert (frequency, ratio) == pytest.approx((60.0, damping))
+    for place, step in enumerate(1e-6 * np.eye(G.order)):
+        moved = []
+        for sign in (1.0, -1.0):
+            s = np.log(np.linalg.eigvals(G.A + sign * np.outer(G.B, step)).astype(complex)) / 1e-3
+            nearest = s[np.argmin(np.abs(s - poles[own]))]
+            moved.append([abs(nearest) / (2.0 * np.pi), -nearest.real / abs(nearest)])
+        difference = (np.array(moved[0]) - moved[1]) / 2e-6
+        # Central differences: their square and the rounding of eigenvalues stay below 1e-5.
+        assert slopes[:, place] == pytest.approx(difference, rel=1e-4, abs=1e-4)
 
 
 @pytest.mark.parametrize("decibels", [20.0, 60.0])
@@ -190,12 +217,31 @@ def test_too_much_noise_is_told_with_what_it_takes() -> None:
     assert f"{worst / 0.1:.2g} times the amplitude" in " ".join(found.advice)
 
 
-def test_a_redundant_constant_is_open() -> None:
-    # A play of radius 0 is the input itself.
+def test_what_no_drive_tells_apart_is_shared_and_not_the_drives_fault() -> None:
+    # A play of radius 0 is the input itself; a map behind plays shares a factor with their weights.
     stage = sketched_stage(1e-4, [(200.0, 0.03)], front=sketched_plays([0.0, 0.3]))
     found = forecast_drive(multisine(1000.0), stage)
-    assert {"p0", "p[1]"} <= set(found.undetermined)
-    assert "p[2]" not in found.undetermined
+    assert found.shared == ("p0", "p[1]")
+    assert found.sufficient
+    assert len(found.held) == 1
+    # Two weights add up, so what is left has the error of their sum: that of the same stage with
+    # one weight, and some more for the radius that is free besides.
+    (other,) = set(found.shared) - set(found.held)
+    alone = sketched_stage(1e-4, [(200.0, 0.03)], front=sketched_plays([0.3], [0.8, 0.2]))
+    of_one = named(forecast_drive(multisine(1000.0), alone), "p0")
+    assert of_one <= named(found, other) <= 1.1 * of_one
+    curved = hyst.DeadZone([0.8, 0.3, 0.2], [0.01, -0.2, 0.25])
+    plays = sketched_plays([0.2, 0.4], [0.6, 0.2, 0.2])
+    mapped = sketched_stage(1e-4, [(200.0, 0.03)], front=curved @ plays)
+    wide = forecast_drive(multisine(1000.0), mapped)
+    assert {"p0", "p[1]", "p[2]"} <= set(wide.shared)
+    assert not {"r[1]", "r[2]"} & set(wide.shared)
+    assert wide.undetermined == ()
+    # The same model, and a drive to blame: two levels, or an amplitude below a radius.
+    binary = forecast_drive(hyst.signals.prbs(1e-4, 1.0, register=11, clock=5), mapped)
+    assert {"r[1]", "r[2]", "p[1]"} <= set(binary.undetermined)
+    small = forecast_drive(multisine(1000.0, amplitude=0.3), mapped)
+    assert {"r[2]", "p[2]"} <= set(small.undetermined)
 
 
 def test_models_without_dynamics_and_dynamics_alone() -> None:

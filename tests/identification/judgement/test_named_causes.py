@@ -226,3 +226,36 @@ def test_a_drive_of_one_rate_names_no_rate_and_no_dynamics() -> None:
     verdict = verdict_on(record(u, switched := bouc_wen(u) ** 3, NOISE))
     assert np.ptp(switched) > 0.0
     assert not any("on the rate" in each or "answers with" in each for each in verdict.sentences)
+
+
+@pytest.mark.parametrize(("hertz", "gain"), [(60.0, 1.0), (25.0, -3.0)])
+def test_a_sweep_through_a_resonance_is_told_to_need_dynamics(hertz: float, gain: float) -> None:
+    """A line or plays leave what no cause explains there; the diagnosis has seen it before."""
+    w = 2.0 * np.pi * hertz
+    G = hyst.LinearDynamics.from_continuous([w**2], [1.0, 0.06 * w, w**2], 1e-3, delay=2)
+    front = hyst.PrandtlIshlinskii([0.2, 0.2], [1.0, 4.0], 0.6)
+    u = hyst.signals.swept_sine(1e-3, 8000, amplitude=10.0, band=(1.0, 4.0 * hertz), max_rate=2e3).u
+    y = gain * (G @ front)(u)
+    y = y + 0.01 * y.std() * np.random.default_rng(int(hertz)).normal(size=y.size)
+    swept = hyst.Record(u, y, dt=1e-3)
+    for family in ("linear", "pi"):
+        found = hyst.identify(swept, family=family, delay=0, allow_unconverged=True)
+        assert found.verdict.level == "unfit"
+        assert sum("--family hammerstein" in each for each in found.verdict.sentences) == 1
+    own = hyst.identify(swept, family="hammerstein", hysteresis="pi", plays=2).verdict
+    assert own.level == "good"
+    assert not any("--family hammerstein" in each for each in own.sentences)
+
+
+def test_a_loop_that_dynamics_turn_clockwise_is_no_exchange_of_columns() -> None:
+    """Above its resonance an output is turned round, so that its loop is run clockwise."""
+    w = 2.0 * np.pi * 20.0
+    G = hyst.LinearDynamics.from_continuous([w**2], [1.0, 0.1 * w, w**2], 1e-3)
+    u = hyst.signals.multisine(1e-3, 6000, amplitude=10.0, band=(2.0, 60.0)).u
+    y = (G @ hyst.PrandtlIshlinskii([0.3], [2.0], 1.0))(u)
+    y = y + 0.01 * y.std() * np.random.default_rng(0).normal(size=y.size)
+    driven = hyst.Record(u, y, dt=1e-3)
+    found = hyst.identify(driven, family="hammerstein", hysteresis="pi", plays=1)
+    assert any(each.name == "run direction" for each in found.diagnosis.findings)
+    assert found.verdict.level == "good"
+    assert not any("clockwise" in each for each in found.verdict.sentences)

@@ -19,6 +19,9 @@ Array = NDArray[np.float64]
 
 REFIT_ITERATIONS = 6
 
+TO_EARN = 4.0
+"""Squared error, in residual variances, that a number must save in the samples it is fitted to."""
+
 WHITE_LAGS, WHITE_BY_CHANCE = 20, 1e-3
 """Of the test of Box and Pierce (1970)."""
 
@@ -129,10 +132,8 @@ def score_in_sample(overview: Overview, fit: Fit) -> Score:
     """Score a fit on the samples it was fitted to, dearer the more numbers it has.
 
     Behind dynamics a block that is left out takes a part of the frequencies with it, and the rest
-    says little of it. So every block has its error in the fit of all, times what Akaike's
-    criterion asks for the numbers: what an equal record is expected to show beside. A criterion
-    that asks more leaves out plays that a chirp, which is almost all fast, shows little of, and
-    that a slow drive then shows the lack of.
+    says little of it. So every block has its error in the fit of all, times what each number has to
+    earn: twice what Akaike's criterion asks, so that one of them in twenty is taken by chance.
 
     Parameters
     ----------
@@ -145,7 +146,7 @@ def score_in_sample(overview: Overview, fit: Fit) -> Score:
     blocks = overview.once("blocks", lambda: blocks_of(overview))
     errors = np.array([float(np.mean(np.square(residual[each.rows]))) for each in blocks])
     count = residual.size
-    return Score(errors * np.exp(2.0 * fit.parametrization.free_count / count))
+    return Score(errors * np.exp(TO_EARN * fit.parametrization.free_count / count))
 
 
 def residual_of(overview: Overview, fit: Fit) -> Array:

@@ -74,7 +74,7 @@ class Contender:
             A better one, of the same records.
         """
         if self.family.judged_in_sample and other.family.judged_in_sample:
-            return self.score.rms <= other.score.rms  # numbers are paid for
+            return self.score.rms <= other.score.rms  # every number has earned its place
         output_range, least = self.overview.output_range, other.score.rms
         negligible = 0.0
         if not self.overview.shows_minor_loops:

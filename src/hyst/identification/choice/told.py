@@ -85,12 +85,15 @@ def _apart(chosen: Contender, rivals: Rivals) -> list[str]:
 
 
 def _one_amplitude(chosen: Contender) -> list[str]:
-    """Say that left-out blocks of a record of one amplitude are no independent witnesses."""
+    """Say that blocks of a record of one amplitude are no independent witnesses."""
     if chosen.overview.shows_minor_loops or not chosen.family.has_memory:
         return []
+    equal = "the strokes of the records are about equally long, so "
+    if chosen.family.judged_in_sample:
+        return [f"{equal}the errors by which sizes were compared say nothing of minor loops"]
     return [
-        "the strokes of the records are about equally long, so left-out blocks repeat what others "
-        "show; the errors on them say nothing of minor loops"
+        f"{equal}left-out blocks repeat what others show; the errors on them say nothing of minor "
+        "loops"
     ]
 
 

@@ -20,7 +20,6 @@ from hyst.identification.creep.rate_dependence import widening_loops
 from hyst.identification.families.family import Fit
 from hyst.identification.fit.non_negative import non_negative
 from hyst.identification.fit.nuisance import (
-    Basis,
     Beside,
     Drift,
     Given,
@@ -29,6 +28,7 @@ from hyst.identification.fit.nuisance import (
     Settling,
 )
 from hyst.identification.fit.problem import Evaluation, model_output
+from hyst.identification.fit.projection import Basis
 from hyst.identification.judgement.general_loops import general_loops
 from hyst.identification.judgement.regression import chance, correlation_time
 from hyst.identification.judgement.remainder import Remainder, remainder_of

@@ -15,7 +15,8 @@ from hyst.identification.creep.merging import merged
 from hyst.identification.families.family import Fit
 from hyst.identification.families.staged_family import staged_of, without_stage
 from hyst.identification.fit.bounded_least_squares import Solution
-from hyst.identification.fit.nuisance import Basis, Beside, Drift, Nuisances, moments_of
+from hyst.identification.fit.nuisance import Beside, Drift, Nuisances, moments_of
+from hyst.identification.fit.projection import Basis
 from hyst.identification.fit.stages import with_stage
 from hyst.identification.judgement.regression import chance, correlation_time
 from hyst.identification.record_use.overview import Overview

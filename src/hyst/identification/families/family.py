@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from hyst.errors import InputError
 from hyst.identification.families.estimates import Estimates
 from hyst.identification.families.option import AUTO, Option
+from hyst.identification.families.words import Words
 from hyst.identification.fit.bounded_least_squares import Problem, Solution, minimize
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.fit.problem import problem_of
@@ -32,25 +33,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Start = tuple[Parametrization, Array]
 """Free parameters and the theta to start from."""
-
-
-@dataclass(frozen=True)
-class Words:
-    """What people are told of a family.
-
-    Parameters
-    ----------
-    full_name
-        As it stands in a sentence.
-    equations
-        In plain characters; ``{sign}`` stands for the sign of a falling output.
-    explanations
-        What the letters in the equations mean, in sentences.
-    """
-
-    full_name: str
-    equations: tuple[str, ...]
-    explanations: tuple[str, ...]
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
@@ -27,7 +26,9 @@ UNSEEN = 1e-9
 AT_REST = 1e-6
 """Gain at rest, over the largest one, from which the gain at rest is what is held."""
 
-_LEAST = 1e-14  # eigenvalue of the scaled covariance of the states, over their number
+_DOUBLINGS = 40  # samples that count: 10^12
+_TOO_LARGE = 1e12
+_LEAST = 1e-12  # singular value of the scaled root of their covariance, over the states' number
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,8 +214,14 @@ def _basis(base: LinearDynamics) -> Array:
     n = base.order
     if n == 0:
         return np.zeros((0, 0))
-    spread = scipy.linalg.solve_discrete_lyapunov(base.A, np.outer(base.B, base.B))
-    size = np.sqrt(np.maximum(np.diag(spread), np.finfo(float).tiny))
-    values, vectors = np.linalg.eigh(spread / np.outer(size, size))
-    root = np.sqrt(np.maximum(values, _LEAST * n))
-    return np.asarray(vectors / root / size[:, None])
+    # By doubling a root of the sum of squares: it stays one however near the circle a pole lies.
+    root, power = base.B[:, None], base.A
+    for _ in range(_DOUBLINGS):
+        if float(np.abs(power).max()) > _TOO_LARGE:  # rounding has moved a pole out of the circle
+            break
+        both = np.concatenate([root, power @ root], axis=1)
+        root, power = np.asarray(np.linalg.qr(both.T, mode="r")).T, power @ power
+    size = np.maximum(np.linalg.norm(root, axis=1), np.sqrt(np.finfo(float).tiny))
+    vectors, values, _ = np.linalg.svd(root / size[:, None])
+    values = np.pad(values, (0, n - values.size))
+    return np.asarray(vectors / np.maximum(values, _LEAST * n) / size[:, None])

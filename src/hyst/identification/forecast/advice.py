@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 
 _NOTHING = 1e-3  # of the largest line: what is below does not excite
 _ABOVE = 1.5  # times a resonance: so far a band should go beyond it
+_HOPELESS = 1e3
 _MANY = 6  # names in a sentence
 
 
@@ -153,6 +154,8 @@ def _more_of_it(each: ExpectedError) -> str:
     if not math.isfinite(each.share):
         return "give more amplitude"
     factor = each.share / SURE
+    if factor > _HOPELESS:
+        return "the output hardly shows it, so give more power"
     return (
         f"give {factor:.2g} times the amplitude, {factor:.2g} times less noise, or "
         f"{factor**2:.2g} times the samples"

@@ -34,6 +34,8 @@ class ExpectedError:
     standard_error: float
     scale: float
     by_own_lines: float = 0.0
+    shared: bool = False
+    held: bool = False
 
     @property
     def is_frequency(self) -> bool:
@@ -58,7 +60,9 @@ class ExpectedError:
 
     @property
     def verdict(self) -> str:
-        """``yes`` up to an error of a tenth, ``roughly`` up to three tenths, or ``no``."""
+        """``yes`` up to an error of a tenth, ``roughly`` up to three, ``no``, or ``held``."""
+        if self.held:
+            return "held"
         return "yes" if self.share <= SURE else "roughly" if self.determined else "no"
 
 
@@ -104,6 +108,16 @@ class DriveForecast:
     def frequencies(self) -> tuple[float, ...]:
         """Of resonances and lags, Hz."""
         return tuple(each.value for each in self.of_dynamics if each.is_frequency)
+
+    @property
+    def shared(self) -> tuple[str, ...]:
+        """Names of constants that the model itself lets be traded against one another."""
+        return tuple(each.name for each in self.errors if each.shared)
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """Those of them that are held."""
+        return tuple(each.name for each in self.errors if each.held)
 
     @property
     def undetermined(self) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,10 +16,12 @@ from hyst.identification.forecast.drive_forecast import DriveForecast, ExpectedE
 from hyst.identification.forecast.free_numbers import (
     FreeNumbers,
     free_numbers,
+    frequency_and_damping,
     poles_by_directions,
 )
 from hyst.identification.forecast.information import Information
 from hyst.identification.forecast.own_excitation import OwnLines
+from hyst.identification.forecast.shared_numbers import places_to_hold, shared_directions
 from hyst.models import LinearDynamics
 from hyst.operators import Operator
 from hyst.signals import Drive
@@ -27,6 +30,11 @@ Array = NDArray[np.float64]
 
 MOST_SAMPLES = 200_000
 """Of a drive that are looked at; a longer one can only be better."""
+
+_OFFSET = "offset"
+_SHARED = 1e-6  # of a direction of scaled constants: more than its rounding
+
+_HALF_RATE = (1.0 - 1e-9) * math.pi  # rad per sample
 
 _MOST_ENTRIES = 4e7  # of the Jacobian, 0.3 GB
 
@@ -96,14 +104,15 @@ def forecast_drive(
         )
     y = free.model(u)
     sigma = _noise_of(y, noise, noise_db)
-    known = Information.of(free.model.jacobian(u) @ free.directions, free.held)
+    jacobian = free.model.jacobian(u) @ free.directions
+    shared = shared_directions(free, u, jacobian)
+    pivots = places_to_hold(shared)
+    known = Information.of(jacobian, np.concatenate([free.held, np.eye(numbers)[pivots]]))
     dynamics = _errors_of_dynamics(free, known, sigma, drive, u)
-    front = _errors_of_front(free, known, sigma, float(y.std()))
+    front = _errors_of_front(free, known, sigma, float(y.std()), (shared, pivots))
     delayed = any(each.delay for _, each in free.dynamics)
     evidence = _delay_evidence(y, known, sigma, delayed) if free.dynamics else None
-    of_dynamics = sum(2 * each.order + int(each.D != 0.0) for _, each in free.dynamics) - len(
-        free.held
-    )
+    of_dynamics = free.count_of_dynamics - len(free.held)
     return DriveForecast(
         dynamics,
         front,
@@ -143,18 +152,16 @@ def _errors_of_dynamics(
         poles, by_k = poles_by_directions(dynamics)
         for index in np.argsort(np.abs(poles), kind="stable"):
             pole, slope = poles[index], by_k[index]
-            if pole.imag < 0.0 or not np.isfinite(pole):
+            # What turns its sign from sample to sample, or is gone after one, has no frequency.
+            if pole.imag < 0.0 or not np.isfinite(pole) or pole.imag * dynamics.dt > _HALF_RATE:
                 continue
-            size = float(np.abs(pole))
-            hertz, damping = size / (2.0 * math.pi), -float(pole.real) / size
+            hertz, damping, slopes = frequency_and_damping(complex(pole), slope)
             there = float(np.abs(dynamics.frequency_response(hertz)[0]))
             shares = own.shares(complex(pole), there)
-            by_size = np.real(np.conj(pole) * slope) / size
-            by_damping = -np.real(slope) / size - damping * by_size / size
             lag = pole.imag == 0.0
             name = f"{'lag' if lag else 'resonance'} [Hz]"
             rows = np.zeros((2, known.scale.size))
-            rows[:, first : first + slope.size] = by_size / (2.0 * math.pi), by_damping
+            rows[:, first : first + slope.size] = slopes
             errors = known.standard_errors(rows, sigma)
             found.append(_expected(name, hertz, float(errors[0]), shares[0]))
             if not lag:
@@ -183,22 +190,30 @@ def _own_lines(
 
 
 def _errors_of_front(
-    free: FreeNumbers, known: Information, sigma: float, size: float
+    free: FreeNumbers,
+    known: Information,
+    sigma: float,
+    size: float,
+    shared: tuple[Array, NDArray[np.intp]],
 ) -> tuple[ExpectedError, ...]:
     found = []
     errors = known.standard_errors(np.eye(known.scale.size), sigma)
     samples = len(known.seen)
+    is_shared = np.abs(shared[0]).max(axis=1, initial=0.0) > _SHARED
     for first, each in zip(free.first, free.leaves, strict=False):
         if isinstance(each, LinearDynamics):
             continue
         constants = each.parameters()
         for place, (name, value) in enumerate(zip(constants.names, constants.values, strict=True)):
             column = first + place
-            # What would change the output as much as all of it, for a constant that is 0.
+            # What would change the output as much as all of it.
             whole = size * math.sqrt(samples) / float(known.scale[column])
-            found.append(
-                ExpectedError(name, float(value), float(errors[column]), abs(float(value)) or whole)
-            )
+            by_chance = name == _OFFSET or value == 0.0  # its size says nothing of what matters
+            scale = max(abs(float(value)), whole) if by_chance else abs(float(value))
+            held = column in shared[1]
+            error = 0.0 if held else float(errors[column])
+            expected = ExpectedError(name, float(value), error, scale)
+            found.append(replace(expected, shared=bool(is_shared[column]), held=held))
     return tuple(found)
 
 

@@ -12,11 +12,14 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
+from hyst.errors import InputError
 from hyst.models import LinearDynamics
 from hyst.operators import Composition, Operator
 from hyst.operators.composition import leaves_of
 
 Array = NDArray[np.float64]
+
+_ONE_POLE = 1e6  # condition of the eigenvectors of balanced dynamics
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +49,15 @@ class FreeNumbers:
         return self.leaves[0] if len(self.leaves) == 1 else Composition(self.leaves)
 
     @property
+    def count_of_dynamics(self) -> int:
+        """How many directions belong to dynamics, with those that are held."""
+        return sum(
+            2 * each.order + int(each.D != 0.0)
+            for each in self.leaves
+            if isinstance(each, LinearDynamics)
+        )
+
+    @property
     def dynamics(self) -> list[tuple[int, LinearDynamics]]:
         """Those with states, with their first column."""
         return [
@@ -62,10 +74,19 @@ def free_numbers(model: Operator) -> FreeNumbers:
     ----------
     model
         Dynamics anywhere in it; all else moves with all its constants.
+
+    Raises
+    ------
+    InputError
+        If dynamics are not stable, or two of their poles are so near one another that they have no
+        frequency and damping of their own.
     """
     leaves = tuple(
         _balanced(each) if isinstance(each, LinearDynamics) else each for each in leaves_of(model)
     )
+    for each in leaves:
+        if isinstance(each, LinearDynamics) and each.order:
+            _require_usable(each)
     blocks = [
         _directions_of(each) if isinstance(each, LinearDynamics) else np.eye(len(each.parameters()))
         for each in leaves
@@ -106,7 +127,45 @@ def poles_by_directions(dynamics: LinearDynamics) -> tuple[NDArray[np.complex128
     left_b = np.linalg.solve(right, dynamics.B.astype(complex))
     by_k = left_b[:, None] * right.T
     z = z.astype(np.complex128)
+    z[z == 0.0] = np.finfo(np.float64).tiny
     return np.log(z) / dynamics.dt, by_k / (z * dynamics.dt)[:, None]
+
+
+def frequency_and_damping(pole: complex, slope: Array) -> tuple[float, float, Array]:
+    """Give frequency in Hz and damping ratio of a continuous pole, and their derivatives.
+
+    Parameters
+    ----------
+    pole
+        rad/s.
+    slope
+        Shape (n,), its derivative.
+
+    Returns
+    -------
+    frequency, damping : float
+    numpy.ndarray
+        Shape (2, n).
+    """
+    size = abs(pole)
+    damping = -pole.real / size
+    by_size = np.real(np.conj(pole) * slope) / size
+    by_damping = -np.real(slope) / size - damping * by_size / size
+    return size / (2.0 * np.pi), damping, np.array([by_size / (2.0 * np.pi), by_damping])
+
+
+def _require_usable(dynamics: LinearDynamics) -> None:
+    poles, vectors = np.linalg.eig(dynamics.A)
+    if not dynamics.is_stable():
+        raise InputError(
+            f"the stated dynamics are not stable: a pole is at |z| = {np.abs(poles).max():.6g}; "
+            "state stable ones, an integrator without its pole at 1"
+        )
+    if np.linalg.cond(vectors) > _ONE_POLE:
+        raise InputError(
+            "two poles of the stated dynamics are one, so neither has a frequency of its own; "
+            "state them one per cent apart"
+        )
 
 
 def _directions_of(dynamics: LinearDynamics) -> Array:

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from hyst.diagnosis import Diagnosis, Finding
 from hyst.diagnosis.findings.direction import NAME as RUN_DIRECTION
 from hyst.diagnosis.findings.drifting_output import NAME as DRIFT
+from hyst.diagnosis.findings.dynamics import NAME as HAS_DYNAMICS
 from hyst.diagnosis.findings.foreign_lines import NAME as FOREIGN_LINE
 from hyst.diagnosis.findings.one_amplitude import NAME as AMPLITUDES
 from hyst.diagnosis.findings.output_ahead import NAME as OUTPUT_AHEAD
 from hyst.identification.families.family import Family
+from hyst.identification.judgement.causes.dynamics import DYNAMICS
 from hyst.identification.record_use.used_samples import Data
 from hyst.operators.verdict import Level
 
@@ -28,10 +30,13 @@ class FoundBefore:
     sentences
         What makes the records doubtful, or was taken out of them; then samples that were left out;
         then what they leave open.
+    advice
+        What to do about what the family cannot hold.
     """
 
     level: Level
     sentences: tuple[str, ...]
+    advice: tuple[str, ...] = ()
 
 
 def found_before(
@@ -41,8 +46,8 @@ def found_before(
 
     A warning allows no better than ``fair``, unless it is of something that the model holds and
     describes until only noise is left: what its family explains, and a clockwise loop, which
-    is told all the same, for exchanged columns have such loops, too. What the family is for is no
-    doubt at all.
+    is told all the same, unless the family has dynamics: exchanged columns have such loops, too.
+    What the family is for is no doubt at all.
 
     Parameters
     ----------
@@ -64,6 +69,8 @@ def found_before(
             continue
         if leaves_noise and each.name in family.explains and each.name != RUN_DIRECTION:
             continue
+        if leaves_noise and each.name == RUN_DIRECTION and family.answers_late:
+            continue  # its dynamics turn the loop, above a resonance for one
         if leaves_noise and each.name == RUN_DIRECTION:
             sentences.append(f"{_capital(each.sentence)} {each.advice}")
             continue
@@ -73,7 +80,13 @@ def found_before(
     if family.has_memory:
         open_ones = diagnosis.named(AMPLITUDES)
         sentences += [f"{_capital(each.sentence)} {each.advice}" for each in open_ones]
-    return FoundBefore(level, tuple(sentences))
+    return FoundBefore(level, tuple(sentences), _advice(diagnosis, family))
+
+
+def _advice(diagnosis: Diagnosis, family: Family) -> tuple[str, ...]:
+    """Name a family with dynamics where the records show some and the model has none."""
+    shown = any(each.name == HAS_DYNAMICS for each in diagnosis.of("warning"))
+    return (DYNAMICS.advice,) if shown and HAS_DYNAMICS not in family.explains else ()
 
 
 def _warning(finding: Finding, data: Data) -> str:

@@ -136,4 +136,4 @@ def _capped(
         sentences = own + before.sentences
     else:
         sentences = seen.sentences + before.sentences + own
-    return Verdict(worst, sentences + told.advice)
+    return Verdict(worst, sentences + tuple(dict.fromkeys(before.advice + told.advice)))

@@ -81,22 +81,13 @@ def independent_states(poles: NDArray[np.complex128], dt: float) -> LinearDynami
         Sample time, s.
     """
     G = LinearDynamics.from_zeros_poles_gain([], poles, 1.0, dt)
-    gramian = _gramian(G)
+    n = G.order
+    equation = np.eye(n * n) - np.kron(G.A, G.A)
+    gramian = np.linalg.solve(equation, np.outer(G.B, G.B).ravel()).reshape(n, n)
     values, vectors = np.linalg.eigh((gramian + gramian.T) / 2.0)
     root = vectors * np.sqrt(np.maximum(values, 1e-14 * values[-1]))
     A, B = np.linalg.solve(root, G.A @ root), np.linalg.solve(root, G.B)
     return LinearDynamics(A, B, np.zeros(B.size), 0.0, dt)
-
-
-def _gramian(G: LinearDynamics) -> Array:
-    """Give the covariance of the states for a white drive; poles may lie close to the circle.
-
-    The solver of scipy prints a warning then; here a coordinate more or less well scaled is all
-    that depends on it.
-    """
-    n = G.order
-    by_states = np.eye(n * n) - np.kron(G.A, G.A)
-    return np.asarray(np.linalg.solve(by_states, np.outer(G.B, G.B).ravel()).reshape(n, n))
 
 
 def at_full_rate(

@@ -9,6 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.identification.families.estimates import Estimates
+from hyst.identification.families.hammerstein.joint import JointParametrization
 from hyst.models import LinearDynamics
 
 Array = NDArray[np.float64]
@@ -63,3 +65,28 @@ def _numerators(dynamics: LinearDynamics) -> Array:
         power = dynamics.A @ power + each * dynamics.B
         columns.append(power)
     return np.array(columns).T.reshape(dynamics.order, dynamics.order)
+
+
+def estimates_with_dynamics(
+    front: Estimates, parametrization: JointParametrization, dynamics: LinearDynamics
+) -> Estimates:
+    """Give the constants of a hysteresis and the coefficients of the dynamics behind it.
+
+    Parameters
+    ----------
+    front
+        Of the hysteresis.
+    parametrization, dynamics
+        Of both, and the dynamics it makes.
+    """
+    if parametrization.held:
+        return front
+    n, first = dynamics.order, parametrization.front.size
+    by_dynamics = coefficients_by_theta(dynamics, parametrization.feedthrough)
+    by_theta = np.zeros((len(front.names) + len(by_dynamics), parametrization.size))
+    by_theta[: len(front.names), :first] = front.by_theta
+    by_theta[len(front.names) :, first:] = by_dynamics
+    names = [f"dynamics.a[{i}]" for i in range(1, n + 1)]
+    names += [f"dynamics.b[{i}]" for i in range(n + 1)]
+    values = np.concatenate([front.values, coefficients(dynamics)])
+    return Estimates((*front.names, *names), values, by_theta)

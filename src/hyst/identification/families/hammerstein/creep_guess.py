@@ -18,7 +18,7 @@ from hyst.identification.creep.merging import merged
 from hyst.identification.families.hammerstein.first_dynamics import of_gain_one, shortened
 from hyst.identification.families.hammerstein.known_start import best_weights, filtered_by, plays_of
 from hyst.identification.fit.non_negative import non_negative
-from hyst.identification.fit.nuisance import Basis
+from hyst.identification.fit.projection import Basis
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics
 

@@ -64,7 +64,15 @@ class Wanted:
         return None if self.state_order == AUTO else (int(self.state_order),)
 
     def search(self, data: Data, plays: bool) -> OnGrid:
-        """Search the order behind plays on a grid, behind what is known, or behind a line."""
+        """Search the order behind plays on a grid, behind what is known, or behind a line.
+
+        Parameters
+        ----------
+        data
+            The records.
+        plays
+            Whether the drive goes through plays; a line otherwise.
+        """
         if self.known is not None:
             searched = Search.of(self.known.behind(data), self.delay)
         elif plays:
@@ -76,7 +84,13 @@ class Wanted:
         return search_order(searched, self.orders, float(data.measured().var()))
 
     def hysteresis(self, data: Data, dynamics: LinearDynamics) -> Operator:
-        """Give the hysteresis before dynamics: many plays, or what is known."""
+        """Give the hysteresis before dynamics: many plays, or what is known.
+
+        Parameters
+        ----------
+        data, dynamics
+            The records, and the dynamics behind it.
+        """
         if self.known is None:
             return dense_plays(data, dynamics)
         return self.known.operator.at_sample_time(data.records[0].dt)

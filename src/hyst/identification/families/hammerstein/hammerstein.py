@@ -9,14 +9,11 @@ from typing import Any, Literal, Self, final
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.checks.numbers import whole_number as as_whole_number
 from hyst.errors import InputError
 from hyst.identification.choice.cross_validation import leaves_white_noise
 from hyst.identification.families.family import Estimates, Family, Fit, Start, Words
-from hyst.identification.families.hammerstein.coefficients import (
-    coefficients,
-    coefficients_by_theta,
-)
+from hyst.identification.families.hammerstein import options
+from hyst.identification.families.hammerstein.coefficients import estimates_with_dynamics
 from hyst.identification.families.hammerstein.creeping_front import (
     CreepingFront,
     as_creeping,
@@ -35,20 +32,16 @@ from hyst.identification.families.hammerstein.first_guess import (
     fronts_of,
 )
 from hyst.identification.families.hammerstein.first_guess_of_plays import (
-    ALL,
-    FEWER,
     Wanted,
     first_dynamics_of_plays,
 )
 from hyst.identification.families.hammerstein.given_dynamics import (
     GivenDynamics,
-    as_given_dynamics,
 )
 from hyst.identification.families.hammerstein.held_doubts import doubts_about_given
 from hyst.identification.families.hammerstein.held_front import (
     DEFAULT,
     HeldFront,
-    as_held_front,
     require_one_hysteresis,
     told_of,
 )
@@ -61,24 +54,14 @@ from hyst.identification.families.hammerstein.markov import choose_markov
 from hyst.identification.families.hammerstein.record_checks import flat_tops
 from hyst.identification.families.hammerstein.result import identified_with_dynamics
 from hyst.identification.families.hammerstein.ringing import without_ringing
-from hyst.identification.families.hammerstein.settled_dynamics import (
-    ROUNDING,
-    numbers_of,
-    price,
-    samples_worth,
-    settled_dynamics,
-    simpler,
-)
+from hyst.identification.families.hammerstein.settled_fit import with_settled_dynamics
+from hyst.identification.families.hammerstein.spread_stretches import spread
 from hyst.identification.families.hammerstein.without_dynamics import dynamics_doubts
 from hyst.identification.families.hammerstein.words import WORDS, words_behind
 from hyst.identification.families.linear import Linear
 from hyst.identification.families.option import (
     AUTO,
-    Option,
-    as_text,
     option,
-    read_whole,
-    whole_number_or_auto,
 )
 from hyst.identification.fit.bounded_least_squares import CONVERGED, Problem, Solution, minimize
 from hyst.identification.record_use.one_sample_time import at_one_sample_time, finest
@@ -92,34 +75,15 @@ from hyst.signals import Record
 Array = NDArray[np.float64]
 
 MOST_FITTED = 300_000
-"""Samples whose Jacobian is held in memory; of longer records the beginning is fitted to."""
+"""Samples whose Jacobian is held in memory; longer records are fitted to in stretches."""
 
-MOST_LAGS, MOST_STATES, LONGEST_PERIOD = 5000, 64, 10**9
+MOST_SEARCHED, SHARE = 60_000, 10
+"""Samples at most, and what part of the record, in which order and size are searched."""
 
 _WARM_UP = 8_000
 _BURST = 12
 _STALLED = 0.998
-_BETTER = 0.97  # of the squared error that plays leave
 _TOLERANCE = 2e-2  # of the residual variance: at most a seventh of a standard error is left
-
-
-def _as_hysteresis(value: Any, name: str) -> Any:
-    if isinstance(value, str | Family):
-        return value
-    raise InputError(
-        f"{name} is of type {type(value).__name__}; give the name of a family, or a family of "
-        "hyst.families with its options"
-    )
-
-
-def _finest(overview: Overview) -> Overview:
-    return overview.once("finest", lambda: finest(overview))
-
-
-def _as_period(value: Any, name: str) -> int | None:
-    if value is None:
-        return None
-    return as_whole_number(value, name, 2, LONGEST_PERIOD, " samples")
 
 
 @final
@@ -134,17 +98,20 @@ class Hammerstein(Family):
         family given by name may stand beside it, as
         ``identify(record, family="hammerstein", hysteresis="gpi", plays=4)``.
     fir_order
-        Last lag of the impulse response of the first step, 1 to 5000, or ``"auto"``.
+        ``"auto"``: the fit starts from plays on a grid of radii with dynamics behind them. A
+        number, 1 to 5000: from an impulse response up to that lag, the paper's method, which the
+        drive must excite up to half the sample rate.
     state_order
-        Number of states of G, 1 to 64, or ``"auto"``: as many as lower the error noticeably.
+        Number of states of G, 1 to 64, or ``"auto"``: up to 12, as many as lower the error by more
+        than their numbers cost.
     period
         Samples of a period of the drive: all but the first are averaged. None: there is none.
     dynamics
         G where it is known, which is held at a gain of 1 at rest: a ``LinearDynamics``, a model
         with it at its output, a system of python-control or scipy.signal (continuous ones with
         their input held between samples), or a frequency response, to which dynamics are fitted
-        first (``hyst.read_frequency_response``). The drive need not excite an impulse response
-        then. None: it is identified.
+        first (``hyst.read_frequency_response``). The drive need not excite it then. None: it is
+        identified.
     front
         The hysteresis where it is known, which is held but for a gain and an offset after it: an
         operator, a result of ``hyst.identify``, or a model that ``hyst.load`` read. None: it is
@@ -160,32 +127,12 @@ class Hammerstein(Family):
     explains = ("rate dependence", "dynamics")
     wraps = "hysteresis"
 
-    hysteresis: Any = option(
-        DEFAULT,
-        Option(_as_hysteresis, "Family in front of the dynamics.", lambda text, _: text, "FAMILY"),
-    )
-    fir_order: Any = option(
-        AUTO, whole_number_or_auto(1, MOST_LAGS, "Last lag of the impulse response.")
-    )
-    state_order: Any = option(
-        AUTO, whole_number_or_auto(1, MOST_STATES, "Order of the linear dynamics.")
-    )
-    period: Any = option(
-        None,
-        Option(
-            _as_period,
-            "Samples of a period of the drive; all but the first are averaged.",
-            read_whole,
-            "N",
-        ),
-    )
-    dynamics: Any = option(
-        None, Option(as_given_dynamics, "Linear dynamics that are known, held.", as_text, "FILE")
-    )
-
-    front: Any = option(
-        None, Option(as_held_front, "Hysteresis that is known, held.", as_text, "FILE")
-    )
+    hysteresis: Any = option(DEFAULT, options.HYSTERESIS)
+    fir_order: Any = option(AUTO, options.FIR_ORDER)
+    state_order: Any = option(AUTO, options.STATE_ORDER)
+    period: Any = option(None, options.PERIOD)
+    dynamics: Any = option(None, options.DYNAMICS)
+    front: Any = option(None, options.FRONT)
 
     def __post_init__(self) -> None:
         """Check the options, and that a hysteresis is not given and asked for."""
@@ -259,12 +206,13 @@ class Hammerstein(Family):
         return replace(self, hysteresis=self.hysteresis_family.in_units(input_scale, output_scale))
 
     def searched(self, data: Data) -> Data:
-        """Give the beginning of long records: the dynamics know of every sample."""
-        return shortened(data, max(MOST_SAMPLES // len(data.records), 1))
+        """Give stretches of long records, from all over them."""
+        samples = sum(len(each) for each in data.records)
+        return spread(data, int(np.clip(samples // SHARE, MOST_SAMPLES, MOST_SEARCHED)))
 
     def fitted(self, data: Data) -> Data:
-        """Give as many samples as memory allows."""
-        return shortened(data, max(MOST_FITTED // len(data.records), 1))
+        """Give as many samples as memory allows, from all over the records."""
+        return spread(data, MOST_FITTED)
 
     def sizes(self) -> tuple[int, ...]:
         """Give the sizes of the hysteresis."""
@@ -317,8 +265,7 @@ class Hammerstein(Family):
 
     def _find_dynamics(self, overview: Overview, known: HeldFront | None) -> FirstDynamics:
         if self.starts_from_plays:
-            delay = None if overview.delay == AUTO else as_whole_delay(overview.delay)
-            wanted = Wanted(self.state_order, delay, known)
+            wanted = Wanted(self.state_order, self._wanted_delay(overview), known)
             return first_dynamics_of_plays(overview, wanted)
         orders = (self.fir_order, self.state_order)
         front = self.hysteresis_family if self.front is None else Linear()
@@ -360,41 +307,19 @@ class Hammerstein(Family):
         return replace(fit, solution=again) if again.cost < fit.solution.cost else fit
 
     def _with_settled_dynamics(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
-        """Look at delay and feedthrough again, behind the hysteresis that was found."""
+        """Look at delay, order and feedthrough again, behind the hysteresis that was found."""
         if not self.starts_from_plays or joint_of(fit).held:
             return fit
-        before, data = dynamics_of(fit), overview.data
-        rows = data.measured().size
-        delay = None if overview.delay == AUTO else as_whole_delay(overview.delay)
-        # What plays made up for by a pole, the family in front may do itself.
         whole = _finest(overview)
-        better = fit.solution.cost < _BETTER * rows * self._first_dynamics(whole).cost
-        creeps = isinstance(self.hysteresis_family, CreepingFront)
-        steps = () if self.state_order != AUTO or creeps else ALL if better else FEWER
-        operator = self._front_fit(fit).operator
-        now = settled_dynamics(whole.data, operator, before, delay, steps)
-        tried = {numbers_of(before): fit}
-        simple = (*simpler(now.best.dynamics, delay), *simpler(before, delay))
-        for each in (now.best.dynamics, *now.near, *simple):
-            if numbers_of(each) not in tried:
-                tried[numbers_of(each)] = self._behind(fit, each, data, max_iterations)
-        least = min(tried.values(), key=lambda each: each.solution.cost)
-        errors = least.problem(data).residual(least.solution.theta)[:rows]
-        worth, floor = samples_worth(errors), ROUNDING * float(data.measured().var())
+        wanted = Wanted(self.state_order, self._wanted_delay(overview))
+        creeps = isinstance(self.hysteresis_family, CreepingFront)  # whose poles are slow
+        plays = None if creeps else self._first_dynamics(whole).cost
+        return with_settled_dynamics(
+            self._front_fit(fit), fit, (overview.data, whole.data), wanted, plays, max_iterations
+        )
 
-        def price_of(each: Fit) -> float:
-            count = each.parametrization.free_count
-            return price(each.solution.cost / errors.size, count, worth, floor)
-
-        return min(tried.values(), key=price_of)
-
-    def _behind(self, fit: Fit, dynamics: LinearDynamics, data: Data, most: int) -> Fit:
-        """Fit again, from other dynamics behind the same hysteresis."""
-        front = self._front_fit(fit)
-        start = front.parametrization, front.solution.theta
-        parametrization, theta = joined(start, dynamics, held=False)
-        again = replace(fit, parametrization=parametrization)
-        return replace(again, solution=self.solve(again.problem(data), theta, most))
+    def _wanted_delay(self, overview: Overview) -> int | None:
+        return None if overview.delay == AUTO else as_whole_delay(overview.delay)
 
     def simplified(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
         """Fit again without the parts of the hysteresis that came out idle."""
@@ -432,22 +357,8 @@ class Hammerstein(Family):
 
     def estimates(self, fit: Fit) -> Estimates:
         """Give constants of the hysteresis and coefficients of the dynamics."""
-        parametrization, dynamics = joint_of(fit), dynamics_of(fit)
         front = self.hysteresis_family.estimates(self._front_fit(fit))
-        if parametrization.held:
-            return front
-        n, first = dynamics.order, parametrization.front.size
-        by_dynamics = coefficients_by_theta(dynamics, parametrization.feedthrough)
-        by_theta = np.zeros((len(front.names) + len(by_dynamics), parametrization.size))
-        by_theta[: len(front.names), :first] = front.by_theta
-        by_theta[len(front.names) :, first:] = by_dynamics
-        names = [f"dynamics.a[{i}]" for i in range(1, n + 1)]
-        names += [f"dynamics.b[{i}]" for i in range(n + 1)]
-        return Estimates(
-            (*front.names, *names),
-            np.concatenate([front.values, coefficients(dynamics)]),
-            by_theta,
-        )
+        return estimates_with_dynamics(front, joint_of(fit), dynamics_of(fit))
 
     def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
         """Add the parts, the impulse response, the poles and the loop."""
@@ -464,3 +375,7 @@ class Hammerstein(Family):
         if not isinstance(identified, IdentifiedHammerstein):
             return self.words
         return words_behind(identified.front.words)
+
+
+def _finest(overview: Overview) -> Overview:
+    return overview.once("finest", lambda: finest(overview))

@@ -209,9 +209,25 @@ def markov_if_excited(records: Sequence[Record], order: int | str) -> MarkovPara
         As of ``choose_markov``.
     """
     try:
-        return choose_markov(records, order)[0]
+        if order != "auto":
+            return choose_markov(records, order)[0]
+        return _longest_excited(records)
     except (InputError, NotIdentifiableError):
         return None
+
+
+def _longest_excited(records: Sequence[Record]) -> MarkovParameters | None:
+    """Give the shortest response that has died out; None where the inputs excite none so long."""
+    longest = min(len(record) for record in records)
+    for order in ORDERS:
+        if 8 * (order + 2) > longest:
+            return None
+        found = fit_markov(records, order)
+        if found.condition > _ILL_CONDITIONED:
+            return None
+        if found.tail < _DEAD_TAIL:
+            return found
+    return None
 
 
 def _excited(

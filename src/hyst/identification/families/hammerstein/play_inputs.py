@@ -18,7 +18,7 @@ from hyst.identification.record_use.used_samples import Data
 
 Array = NDArray[np.float64]
 
-MOST_ROWS = 40_000
+MOST_ROWS = 120_000
 """Samples that a start is looked for in, in stretches spread over longer records."""
 
 STRETCHES = 4

@@ -18,6 +18,7 @@ from hyst.identification.families.hammerstein.known_dynamics import (
     KnownDynamics,
     known_dynamics,
 )
+from hyst.identification.families.hammerstein.marginal import without_marginal
 from hyst.identification.families.hammerstein.markov import (
     MarkovParameters,
     markov_if_excited,
@@ -67,7 +68,7 @@ def identified_with_dynamics(
     verdict = lowered(identified.verdict, yardstick, records[0].output_unit)
     taken = vars(identified) | {
         "undetermined": identified.undetermined + reason + not_determined(known),
-        "verdict": verdict_on(verdict, known),
+        "verdict": without_marginal(verdict_on(verdict, known), dynamics, records),
     }
     return IdentifiedHammerstein(
         **taken,

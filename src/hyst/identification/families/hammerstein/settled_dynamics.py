@@ -24,6 +24,7 @@ Array = NDArray[np.float64]
 _ITERATIONS = 8
 _FARTHEST = 12  # samples of delay
 _UNSURE, _MOST_NEAR = 1.1, 3  # times the squared error: a hysteresis fitted with them moves it
+_HOPELESS = 4.0  # times the squared error: no hysteresis makes up for as much
 _MEANT = 2  # samples by which feedthrough may make up for a delay that is too long
 _LAGS = 100  # of the residual, for how many samples of it are worth one
 ROUNDING = 1e-14
@@ -102,7 +103,8 @@ def settled_dynamics(
     order = np.argsort(prices, kind="stable")
     best, rest = tried[order[0]], [tried[i] for i in order[1:]]
     alike = [each for each in rest if each.cost <= _UNSURE * best.cost]
-    fewer = [each for each in rest if each.dynamics.order < best.dynamics.order]
+    low = [each for each in rest if each.dynamics.order < best.dynamics.order]
+    fewer = [each for each in low if each.cost <= _HOPELESS * best.cost]
     near = [*_unlike(best, alike)[:_MOST_NEAR], *_unlike(best, fewer)[:1]]
     return Settled(best, tuple(each.dynamics for each in near))
 

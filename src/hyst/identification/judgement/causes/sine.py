@@ -58,6 +58,7 @@ SINE = Cause(
     _columns,
     _sentence,
     "A sine on the sensor is pick-up or vibration and none of the model: shield the cable, or "
-    "choose a drive frequency of which the line is no multiple.",
+    "choose a drive frequency of which the line is no multiple. Lines about one frequency that are "
+    "multiples of the drive's may be a resonance: --family hammerstein.",
     disturbs=True,
 )
