@@ -14,7 +14,15 @@ import sys  # noqa: E402
 
 import benchmarks  # noqa: E402
 
-SUPPORT = {"__main__", "measured_tasks", "peers", "plants", "resonant_stage", "timing"}
+SUPPORT = {
+    "__main__",
+    "measured_tasks",
+    "peers",
+    "plants",
+    "resonant_records",
+    "resonant_stage",
+    "timing",
+}
 
 
 def main(names: list[str]) -> None:

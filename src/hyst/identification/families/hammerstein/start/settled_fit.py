@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from hyst.identification.families.family import Fit
-from hyst.identification.families.hammerstein.creeping_front import joined
-from hyst.identification.families.hammerstein.first_guess_of_plays import ALL, FEWER, Wanted
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint_of
-from hyst.identification.families.hammerstein.settled_dynamics import (
+from hyst.identification.families.hammerstein.known.creeping_front import joined
+from hyst.identification.families.hammerstein.start.first_guess_of_plays import ALL, FEWER, Wanted
+from hyst.identification.families.hammerstein.start.settled_dynamics import (
     ROUNDING,
     Settled,
     numbers_of,

@@ -7,20 +7,27 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hyst.errors import NotIdentifiableError
-from hyst.identification.families.hammerstein.at_full_rate import Dynamic
-from hyst.identification.families.hammerstein.bent_plays import BentPlays, BentSearch, bent_plays
-from hyst.identification.families.hammerstein.dense_plays import dense_plays
-from hyst.identification.families.hammerstein.first_dynamics import behind_operator, of_gain_one
-from hyst.identification.families.hammerstein.first_guess import FirstDynamics
-from hyst.identification.families.hammerstein.grid_front import OnGrid, refined_on_grid
-from hyst.identification.families.hammerstein.held_front import HeldFront
-from hyst.identification.families.hammerstein.order_search import (
+from hyst.identification.families.hammerstein.impulse_response.first_dynamics import (
+    behind_operator,
+    of_gain_one,
+)
+from hyst.identification.families.hammerstein.impulse_response.first_guess import FirstDynamics
+from hyst.identification.families.hammerstein.known.held_front import HeldFront
+from hyst.identification.families.hammerstein.start.at_full_rate import Dynamic
+from hyst.identification.families.hammerstein.start.bent_plays import (
+    BentPlays,
+    BentSearch,
+    bent_plays,
+)
+from hyst.identification.families.hammerstein.start.dense_plays import dense_plays
+from hyst.identification.families.hammerstein.start.grid_front import OnGrid, refined_on_grid
+from hyst.identification.families.hammerstein.start.order_search import (
     Search,
     Searched,
     on_better_grid,
     search_order,
 )
-from hyst.identification.families.hammerstein.settled_dynamics import (
+from hyst.identification.families.hammerstein.start.settled_dynamics import (
     ROUNDING,
     Tried,
     numbers_of,

@@ -14,8 +14,11 @@ from numpy.typing import NDArray
 
 from hyst.checks.numbers import whole_number as as_whole_number
 from hyst.errors import NotIdentifiableError, NotInvertibleError
-from hyst.identification.families.hammerstein.markov import MarkovParameters
-from hyst.identification.families.hammerstein.realization import Realization, realize
+from hyst.identification.families.hammerstein.impulse_response.markov import MarkovParameters
+from hyst.identification.families.hammerstein.impulse_response.realization import (
+    Realization,
+    realize,
+)
 from hyst.identification.families.option import AUTO
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics, StableInverse

@@ -14,10 +14,10 @@ import scipy.signal
 from numpy.typing import NDArray
 
 from hyst.errors import NotIdentifiableError
-from hyst.identification.families.hammerstein.at_full_rate import Dynamic, at_full_rate
-from hyst.identification.families.hammerstein.grid_front import OnGrid, refined_on_grid
-from hyst.identification.families.hammerstein.output_error import Guess, steiglitz_mcbride
-from hyst.identification.families.hammerstein.play_inputs import (
+from hyst.identification.families.hammerstein.start.at_full_rate import Dynamic, at_full_rate
+from hyst.identification.families.hammerstein.start.grid_front import OnGrid, refined_on_grid
+from hyst.identification.families.hammerstein.start.output_error import Guess, steiglitz_mcbride
+from hyst.identification.families.hammerstein.start.play_inputs import (
     Piece,
     bandwidth,
     grids_of,

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.families.hammerstein.at_full_rate import Dynamic
-from hyst.identification.families.hammerstein.grid_front import OnGrid, refined_on_grid
-from hyst.identification.families.hammerstein.order_search import LARGEST_ORDER, Search
+from hyst.identification.families.hammerstein.start.at_full_rate import Dynamic
+from hyst.identification.families.hammerstein.start.grid_front import OnGrid, refined_on_grid
+from hyst.identification.families.hammerstein.start.order_search import LARGEST_ORDER, Search
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics
 

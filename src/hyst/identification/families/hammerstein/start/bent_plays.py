@@ -13,14 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst import _engine
-from hyst.identification.families.hammerstein.at_full_rate import Dynamic
-from hyst.identification.families.hammerstein.dense_plays import behind_dynamics
-from hyst.identification.families.hammerstein.first_dynamics import shortened
-from hyst.identification.families.hammerstein.grid_front import OnGrid, refined_on_grid
-from hyst.identification.families.hammerstein.order_search import NO_PLAYS, Search
-from hyst.identification.families.hammerstein.output_error import solve_scaled
-from hyst.identification.families.hammerstein.play_inputs import pieces_of
-from hyst.identification.families.hammerstein.settled_dynamics import driven_by
+from hyst.identification.families.hammerstein.impulse_response.first_dynamics import shortened
+from hyst.identification.families.hammerstein.start.at_full_rate import Dynamic
+from hyst.identification.families.hammerstein.start.dense_plays import behind_dynamics
+from hyst.identification.families.hammerstein.start.grid_front import OnGrid, refined_on_grid
+from hyst.identification.families.hammerstein.start.order_search import NO_PLAYS, Search
+from hyst.identification.families.hammerstein.start.output_error import solve_scaled
+from hyst.identification.families.hammerstein.start.play_inputs import pieces_of
+from hyst.identification.families.hammerstein.start.settled_dynamics import driven_by
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics
 

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.families.hammerstein.first_dynamics import shortened
-from hyst.identification.families.hammerstein.output_error import (
+from hyst.identification.families.hammerstein.impulse_response.first_dynamics import shortened
+from hyst.identification.families.hammerstein.start.output_error import (
     free_response,
     orthonormal,
     solve_scaled,
 )
-from hyst.identification.families.hammerstein.play_inputs import play_columns
+from hyst.identification.families.hammerstein.start.play_inputs import play_columns
 from hyst.identification.fit.non_negative import non_negative
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics, PrandtlIshlinskii
