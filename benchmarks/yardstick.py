@@ -12,8 +12,12 @@ from numpy.typing import NDArray
 
 import hyst
 from hyst.identification.families.hammerstein.joint import joint
-from hyst.identification.families.hammerstein.yardstick import Stretch, Yardstick, yardstick
-from hyst.identification.families.hammerstein.yardstick_told import level_of
+from hyst.identification.families.hammerstein.yardstick.yardstick import (
+    Stretch,
+    Yardstick,
+    yardstick,
+)
+from hyst.identification.families.hammerstein.yardstick.yardstick_told import level_of
 from hyst.identification.fit.bounded_least_squares import minimize
 from hyst.identification.fit.problem import problem_of
 from hyst.identification.fit_model import parametrize_own

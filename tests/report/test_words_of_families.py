@@ -10,7 +10,7 @@ import pytest
 
 import hyst
 from hyst.identification import Identified
-from hyst.identification.families.hammerstein.words import words_behind
+from hyst.identification.families.hammerstein.told.words import words_behind
 from hyst.report import in_short, write_report
 from hyst.report.words import command_method, lag_sentence, words_of
 

@@ -15,7 +15,7 @@ from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.selection import settled
 from hyst.identification.dynamics_estimates import chain_of, estimates_of_chain
 from hyst.identification.families.family import Estimates, Family, Fit, Start, Words
-from hyst.identification.families.hammerstein.first_dynamics import shortened
+from hyst.identification.families.hammerstein.impulse_response.first_dynamics import shortened
 from hyst.identification.fit.bounded_least_squares import Solution
 from hyst.identification.fit.chain_fit import fit_chain
 from hyst.identification.fit.chain_parametrization import (

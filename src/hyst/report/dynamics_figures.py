@@ -7,15 +7,17 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from hyst.identification import Identified
-from hyst.identification.families.hammerstein.dynamics_words import (
+from hyst.identification.families.hammerstein.impulse_response.markov import MarkovParameters
+from hyst.identification.families.hammerstein.told.dynamics_words import (
     HEADER,
     bands_told,
     continuous_of,
     polynomials_told,
     root_rows,
 )
-from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
-from hyst.identification.families.hammerstein.markov import MarkovParameters
+from hyst.identification.families.hammerstein.told.identified_hammerstein import (
+    IdentifiedHammerstein,
+)
 from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn, with_unit
 from hyst.report.frequency_response_figure import draw_dynamics
 from hyst.report.identification_report import Section

@@ -7,8 +7,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from hyst.identification.families.hammerstein.frequency_response import FrequencyResponse
-from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
+from hyst.identification.families.hammerstein.told.frequency_response import FrequencyResponse
+from hyst.identification.families.hammerstein.told.identified_hammerstein import (
+    IdentifiedHammerstein,
+)
 from hyst.models import LinearDynamics
 from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn
 

@@ -12,7 +12,7 @@ import pytest
 import hyst
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.families.hammerstein import IdentifiedHammerstein
-from hyst.identification.families.hammerstein.markov import choose_markov
+from hyst.identification.families.hammerstein.impulse_response.markov import choose_markov
 from hyst.models import LinearDynamics
 from hyst.report.words import in_short
 from hyst.signals import Record, multisine

@@ -10,16 +10,19 @@ import pytest
 import hyst
 from hyst.errors import InputError
 from hyst.identification.families.family import Fit
-from hyst.identification.families.hammerstein.drive_band import DriveBand, drive_band
-from hyst.identification.families.hammerstein.dynamics_by_theta import DynamicsByTheta
-from hyst.identification.families.hammerstein.dynamics_words import (
+from hyst.identification.families.hammerstein.joint import JointParametrization, joint
+from hyst.identification.families.hammerstein.told.drive_band import DriveBand, drive_band
+from hyst.identification.families.hammerstein.told.dynamics_by_theta import DynamicsByTheta
+from hyst.identification.families.hammerstein.told.dynamics_words import (
     not_determined,
     summary_lines,
     verdict_on,
 )
-from hyst.identification.families.hammerstein.found_root import FoundRoot, roots_found
-from hyst.identification.families.hammerstein.joint import JointParametrization, joint
-from hyst.identification.families.hammerstein.known_dynamics import KnownDynamics, known_dynamics
+from hyst.identification.families.hammerstein.told.found_root import FoundRoot, roots_found
+from hyst.identification.families.hammerstein.told.known_dynamics import (
+    KnownDynamics,
+    known_dynamics,
+)
 from hyst.identification.fit.bounded_least_squares import Solution
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.record_use.used_samples import prepare

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hyst.errors import InputError, NotIdentifiableError
-from hyst.identification.families.hammerstein.response_fit import fitted_response
+from hyst.identification.families.hammerstein.known.response_fit import fitted_response
 from hyst.models import LinearDynamics
 from hyst.signals import MeasuredResponse
 

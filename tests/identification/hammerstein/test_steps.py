@@ -16,7 +16,10 @@ from hyst.identification.families.hammerstein import (
     markov,
     realize,
 )
-from hyst.identification.families.hammerstein.markov import MarkovParameters, choose_markov
+from hyst.identification.families.hammerstein.impulse_response.markov import (
+    MarkovParameters,
+    choose_markov,
+)
 from hyst.models import LinearDynamics
 from hyst.signals import Record, multisine
 from hyst.signals.lagged import lagged_factor, lagged_gram

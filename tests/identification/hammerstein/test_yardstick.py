@@ -10,15 +10,15 @@ import scipy.signal
 
 import hyst
 from hyst.identification.families.hammerstein import IdentifiedHammerstein
-from hyst.identification.families.hammerstein.left_out_stretches import LeftOutStretches
-from hyst.identification.families.hammerstein.local_dynamics import left_by_dynamics
-from hyst.identification.families.hammerstein.yardstick import (
+from hyst.identification.families.hammerstein.yardstick.left_out_stretches import LeftOutStretches
+from hyst.identification.families.hammerstein.yardstick.local_dynamics import left_by_dynamics
+from hyst.identification.families.hammerstein.yardstick.yardstick import (
     MOST_SAMPLES,
     Stretch,
     Yardstick,
     yardstick,
 )
-from hyst.identification.families.hammerstein.yardstick_told import level_of, sentences
+from hyst.identification.families.hammerstein.yardstick.yardstick_told import level_of, sentences
 from hyst.models import LinearDynamics
 from hyst.signals import Record, multisine
 

@@ -7,7 +7,7 @@ and documentation ask it and the registry; none of them knows a family by name.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, ClassVar, Literal, Self, final
 
@@ -208,6 +208,28 @@ class Family(ABC):
             As of ``minimize``.
         """
         return minimize(problem, theta, max_iterations, tolerance)
+
+    def in_own_coordinates(
+        self, problem: Problem, theta: Array
+    ) -> tuple[Problem, Array, Callable[[Array], Array]]:
+        """Pose a problem over other numbers than the constants, where steps in those are better.
+
+        Parameters
+        ----------
+        problem
+            Over the family's free parameters, and perhaps others behind them, which stay.
+        theta
+            A start.
+
+        Returns
+        -------
+        Problem
+        theta : numpy.ndarray
+            The start in the other numbers.
+        back : callable
+            From the other numbers to theta.
+        """
+        return problem, theta, lambda other: other
 
     def renewed(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
         """Solve again where free parameters hold near a solution only, with stages or without.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, final
 
@@ -98,8 +98,15 @@ class JilesAtherton(Family):
         self, problem: Problem, theta: Array, max_iterations: int, tolerance: float = 1e-3
     ) -> Solution:
         """Fit over alpha Ms / (3 a) instead of alpha: its bound keeps every iterate a magnet."""
-        found = super().solve(_over_coupling(problem), _coupled(theta), max_iterations, tolerance)
-        return replace(found, theta=_uncoupled(found.theta))
+        posed, start, back = self.in_own_coordinates(problem, theta)
+        found = super().solve(posed, start, max_iterations, tolerance)
+        return replace(found, theta=back(found.theta))
+
+    def in_own_coordinates(
+        self, problem: Problem, theta: Array
+    ) -> tuple[Problem, Array, Callable[[Array], Array]]:
+        """Pose a problem over alpha Ms / (3 a) instead of alpha."""
+        return _over_coupling(problem), _coupled(theta), _uncoupled
 
     def notes(self, fit: Fit, data: Data) -> tuple[str, ...]:
         """Say what is an extrapolation, and what ended at a limit."""

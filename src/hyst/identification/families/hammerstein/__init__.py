@@ -5,17 +5,23 @@
 
 from __future__ import annotations
 
-from hyst.identification.families.hammerstein.distortion_levels import (
+from hyst.identification.families.hammerstein.impulse_response.markov import (
+    MarkovParameters,
+    fit_markov,
+)
+from hyst.identification.families.hammerstein.impulse_response.realization import (
+    Realization,
+    realize,
+)
+from hyst.identification.families.hammerstein.told.distortion_levels import (
     BestLinearApproximation,
     average_periods,
     best_linear_approximation,
 )
-from hyst.identification.families.hammerstein.identified_hammerstein import (
+from hyst.identification.families.hammerstein.told.identified_hammerstein import (
     IdentifiedHammerstein,
     Loop,
 )
-from hyst.identification.families.hammerstein.markov import MarkovParameters, fit_markov
-from hyst.identification.families.hammerstein.realization import Realization, realize
 
 __all__ = [
     "BestLinearApproximation",

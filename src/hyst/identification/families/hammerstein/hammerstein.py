@@ -14,50 +14,52 @@ from hyst.identification.choice.cross_validation import leaves_white_noise
 from hyst.identification.families.family import Estimates, Family, Fit, Start, Words
 from hyst.identification.families.hammerstein import options
 from hyst.identification.families.hammerstein.coefficients import estimates_with_dynamics
-from hyst.identification.families.hammerstein.creeping_front import (
+from hyst.identification.families.hammerstein.impulse_response.first_dynamics import (
+    as_whole_delay,
+    shortened,
+    signal_behind,
+)
+from hyst.identification.families.hammerstein.impulse_response.first_guess import (
+    FirstDynamics,
+    first_dynamics,
+    fronts_of,
+)
+from hyst.identification.families.hammerstein.impulse_response.markov import choose_markov
+from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
+from hyst.identification.families.hammerstein.known.creeping_front import (
     CreepingFront,
     as_creeping,
     joined,
     told_of_creep,
 )
-from hyst.identification.families.hammerstein.distortion_levels import average_periods
-from hyst.identification.families.hammerstein.first_dynamics import (
-    as_whole_delay,
-    shortened,
-    signal_behind,
-)
-from hyst.identification.families.hammerstein.first_guess import (
-    FirstDynamics,
-    first_dynamics,
-    fronts_of,
-)
-from hyst.identification.families.hammerstein.first_guess_of_plays import (
-    Wanted,
-    first_dynamics_of_plays,
-)
-from hyst.identification.families.hammerstein.given_dynamics import (
+from hyst.identification.families.hammerstein.known.given_dynamics import (
     GivenDynamics,
 )
-from hyst.identification.families.hammerstein.held_doubts import doubts_about_given
-from hyst.identification.families.hammerstein.held_front import (
+from hyst.identification.families.hammerstein.known.held_doubts import doubts_about_given
+from hyst.identification.families.hammerstein.known.held_front import (
     DEFAULT,
     HeldFront,
     require_one_hysteresis,
     told_of,
 )
-from hyst.identification.families.hammerstein.identified_hammerstein import IdentifiedHammerstein
-from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
-from hyst.identification.families.hammerstein.known_front import behind_known
-from hyst.identification.families.hammerstein.known_start import settled, told_of_delay
-from hyst.identification.families.hammerstein.known_starts import known_starts
-from hyst.identification.families.hammerstein.markov import choose_markov
+from hyst.identification.families.hammerstein.known.known_front import behind_known
+from hyst.identification.families.hammerstein.known.known_start import settled, told_of_delay
+from hyst.identification.families.hammerstein.known.known_starts import known_starts
 from hyst.identification.families.hammerstein.record_checks import flat_tops
-from hyst.identification.families.hammerstein.result import identified_with_dynamics
-from hyst.identification.families.hammerstein.ringing import without_ringing
-from hyst.identification.families.hammerstein.settled_fit import with_settled_dynamics
-from hyst.identification.families.hammerstein.spread_stretches import spread
-from hyst.identification.families.hammerstein.without_dynamics import dynamics_doubts
-from hyst.identification.families.hammerstein.words import WORDS, words_behind
+from hyst.identification.families.hammerstein.start.first_guess_of_plays import (
+    Wanted,
+    first_dynamics_of_plays,
+)
+from hyst.identification.families.hammerstein.start.ringing import without_ringing
+from hyst.identification.families.hammerstein.start.settled_fit import with_settled_dynamics
+from hyst.identification.families.hammerstein.start.spread_stretches import spread
+from hyst.identification.families.hammerstein.told.distortion_levels import average_periods
+from hyst.identification.families.hammerstein.told.identified_hammerstein import (
+    IdentifiedHammerstein,
+)
+from hyst.identification.families.hammerstein.told.result import identified_with_dynamics
+from hyst.identification.families.hammerstein.told.without_dynamics import dynamics_doubts
+from hyst.identification.families.hammerstein.told.words import WORDS, words_behind
 from hyst.identification.families.linear import Linear
 from hyst.identification.families.option import (
     AUTO,
@@ -281,13 +283,14 @@ class Hammerstein(Family):
         converged, too, when a dozen steps lower the squared error by no more than a hundredth.
         """
         before, used = np.inf, 0
+        problem, theta, back = self.hysteresis_family.in_own_coordinates(problem, theta)
         while True:
             found = minimize(problem, theta, min(_BURST, max(max_iterations - used, 1)), tolerance)
             used += found.iterations
             if found.status == CONVERGED or found.cost > _STALLED * before:
-                return Solution(found.theta, found.cost, used, CONVERGED)
+                return Solution(back(found.theta), found.cost, used, CONVERGED)
             if used >= max_iterations:
-                return replace(found, iterations=used)
+                return replace(found, theta=back(found.theta), iterations=used)
             theta, before = found.theta, found.cost
 
     def finish(self, fit: Fit, overview: Overview, max_iterations: int) -> Fit:
@@ -315,7 +318,7 @@ class Hammerstein(Family):
         creeps = isinstance(self.hysteresis_family, CreepingFront)  # whose poles are slow
         plays = None if creeps else self._first_dynamics(whole).cost
         return with_settled_dynamics(
-            self._front_fit(fit), fit, (overview.data, whole.data), wanted, plays, max_iterations
+            fit, (overview.data, whole.data), wanted, plays, max_iterations
         )
 
     def _wanted_delay(self, overview: Overview) -> int | None:

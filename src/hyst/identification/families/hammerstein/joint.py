@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.families.family import Fit, Start
-from hyst.identification.families.hammerstein.ringing import Ringing
+from hyst.identification.families.hammerstein.start.ringing import Ringing
 from hyst.identification.fit.nuisance import Nuisances
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.models import LinearDynamics

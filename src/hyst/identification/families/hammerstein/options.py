@@ -7,8 +7,8 @@ from typing import Any
 from hyst.checks.numbers import whole_number as as_whole_number
 from hyst.errors import InputError
 from hyst.identification.families.family import Family
-from hyst.identification.families.hammerstein.given_dynamics import as_given_dynamics
-from hyst.identification.families.hammerstein.held_front import as_held_front
+from hyst.identification.families.hammerstein.known.given_dynamics import as_given_dynamics
+from hyst.identification.families.hammerstein.known.held_front import as_held_front
 from hyst.identification.families.option import (
     Option,
     as_text,

@@ -20,15 +20,15 @@ from hyst import _engine
 from hyst.checks.numbers import whole_number as as_whole_number
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.families.family import Family, Start
-from hyst.identification.families.hammerstein.first_dynamics import (
+from hyst.identification.families.hammerstein.impulse_response.first_dynamics import (
     LONGEST_START,
     MOST_DELAY,
     shortened,
     signal_behind,
 )
-from hyst.identification.families.hammerstein.first_guess import first_fronts
-from hyst.identification.families.hammerstein.given_dynamics import GivenDynamics
-from hyst.identification.families.hammerstein.held_joint import joint_held
+from hyst.identification.families.hammerstein.impulse_response.first_guess import first_fronts
+from hyst.identification.families.hammerstein.known.given_dynamics import GivenDynamics
+from hyst.identification.families.hammerstein.known.held_joint import joint_held
 from hyst.identification.families.option import AUTO
 from hyst.identification.fit.problem import problem_of
 from hyst.identification.record_use.overview import Overview

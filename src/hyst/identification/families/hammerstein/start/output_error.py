@@ -13,7 +13,7 @@ import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
 
-from hyst.identification.families.hammerstein.play_inputs import Piece
+from hyst.identification.families.hammerstein.start.play_inputs import Piece
 
 Array = NDArray[np.float64]
 

@@ -15,8 +15,15 @@ from numpy.typing import NDArray
 from hyst.identification.creep.evidence import LARGEST, evenly
 from hyst.identification.creep.lags import answers, bounds_of, in_use
 from hyst.identification.creep.merging import merged
-from hyst.identification.families.hammerstein.first_dynamics import of_gain_one, shortened
-from hyst.identification.families.hammerstein.known_start import best_weights, filtered_by, plays_of
+from hyst.identification.families.hammerstein.impulse_response.first_dynamics import (
+    of_gain_one,
+    shortened,
+)
+from hyst.identification.families.hammerstein.known.known_start import (
+    best_weights,
+    filtered_by,
+    plays_of,
+)
 from hyst.identification.fit.non_negative import non_negative
 from hyst.identification.fit.projection import Basis
 from hyst.identification.record_use.used_samples import Data

@@ -11,8 +11,11 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from hyst.errors import InputError, NotIdentifiableError
-from hyst.identification.families.hammerstein.first_dynamics import of_gain_one
-from hyst.identification.families.hammerstein.response_fit import FittedResponse, fitted_response
+from hyst.identification.families.hammerstein.impulse_response.first_dynamics import of_gain_one
+from hyst.identification.families.hammerstein.known.response_fit import (
+    FittedResponse,
+    fitted_response,
+)
 from hyst.models import LinearDynamics
 from hyst.operators import Composition, Operator
 from hyst.signals import MeasuredResponse

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hyst.identification.families.hammerstein.yardstick import TELLS, Yardstick
+from hyst.identification.families.hammerstein.yardstick.yardstick import TELLS, Yardstick
 from hyst.identification.judgement.causes.dynamics import DYNAMICS
 from hyst.identification.judgement.left_over import NOT_FOUND, SAME_CYCLE
 from hyst.operators import Verdict

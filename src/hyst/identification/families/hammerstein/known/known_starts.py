@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from hyst.identification.families.family import Family, Start
-from hyst.identification.families.hammerstein.creeping_front import CreepingFront, creeping_starts
-from hyst.identification.families.hammerstein.given_dynamics import GivenDynamics
-from hyst.identification.families.hammerstein.held_front import HeldFront
 from hyst.identification.families.hammerstein.joint import joint
-from hyst.identification.families.hammerstein.known_front import starts_behind_known
-from hyst.identification.families.hammerstein.known_start import (
+from hyst.identification.families.hammerstein.known.creeping_front import (
+    CreepingFront,
+    creeping_starts,
+)
+from hyst.identification.families.hammerstein.known.given_dynamics import GivenDynamics
+from hyst.identification.families.hammerstein.known.held_front import HeldFront
+from hyst.identification.families.hammerstein.known.known_front import starts_behind_known
+from hyst.identification.families.hammerstein.known.known_start import (
     fronts_before,
     held_dynamics,
     signal_of_plays,

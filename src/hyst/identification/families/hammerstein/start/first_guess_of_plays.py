@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hyst.identification.families.hammerstein.at_full_rate import Dynamic
-from hyst.identification.families.hammerstein.dense_plays import dense_plays
-from hyst.identification.families.hammerstein.first_dynamics import behind_operator, of_gain_one
-from hyst.identification.families.hammerstein.first_guess import FirstDynamics
-from hyst.identification.families.hammerstein.grid_front import OnGrid, refined_on_grid
-from hyst.identification.families.hammerstein.held_front import HeldFront
-from hyst.identification.families.hammerstein.order_search import (
+from hyst.errors import NotIdentifiableError
+from hyst.identification.families.hammerstein.impulse_response.first_dynamics import (
+    behind_operator,
+    of_gain_one,
+)
+from hyst.identification.families.hammerstein.impulse_response.first_guess import FirstDynamics
+from hyst.identification.families.hammerstein.known.held_front import HeldFront
+from hyst.identification.families.hammerstein.start.at_full_rate import Dynamic
+from hyst.identification.families.hammerstein.start.bent_plays import (
+    BentPlays,
+    BentSearch,
+    bent_plays,
+)
+from hyst.identification.families.hammerstein.start.dense_plays import dense_plays
+from hyst.identification.families.hammerstein.start.grid_front import OnGrid, refined_on_grid
+from hyst.identification.families.hammerstein.start.order_search import (
     Search,
+    Searched,
     on_better_grid,
     search_order,
 )
-from hyst.identification.families.hammerstein.settled_dynamics import (
+from hyst.identification.families.hammerstein.start.settled_dynamics import (
     ROUNDING,
     Tried,
     numbers_of,
@@ -37,6 +47,9 @@ _ITERATIONS = 8
 ALL, FEWER = (-2, -1, 1, 2), (-2, -1)
 """Steps of the order: a resonance takes two states at once."""
 
+_LITTLE = 3e-4  # of the output's power: the rest of plays may well be noise
+_WHITE = 0.9  # of the samples that what is left is worth
+_MUCH_LESS = 0.5  # of the squared error of plays
 _FAR = 4.0  # times the error of plays: what a line leaves is not looked at closer
 
 
@@ -52,11 +65,14 @@ class Wanted:
         Samples, or None.
     known
         The hysteresis, or None: if it is known it is what drives the dynamics.
+    bent
+        Whether squares and products of plays are looked at, too.
     """
 
     state_order: int | str
     delay: int | None
     known: HeldFront | None = None
+    bent: bool = False
 
     @property
     def orders(self) -> tuple[int, ...] | None:
@@ -73,7 +89,10 @@ class Wanted:
         plays
             Whether the drive goes through plays; a line otherwise.
         """
-        if self.known is not None:
+        searched: Searched
+        if self.bent:
+            searched = BentSearch.of(data, self.delay)
+        elif self.known is not None:
             searched = Search.of(self.known.behind(data), self.delay)
         elif plays:
             searched = on_better_grid(
@@ -83,7 +102,7 @@ class Wanted:
             searched = Search.of(data, self.delay)
         return search_order(searched, self.orders, float(data.measured().var()))
 
-    def hysteresis(self, data: Data, dynamics: LinearDynamics) -> Operator:
+    def hysteresis(self, data: Data, dynamics: LinearDynamics) -> Operator | BentPlays:
         """Give the hysteresis before dynamics: many plays, or what is known.
 
         Parameters
@@ -91,6 +110,8 @@ class Wanted:
         data, dynamics
             The records, and the dynamics behind it.
         """
+        if self.bent:
+            return bent_plays(data, dynamics)
         if self.known is None:
             return dense_plays(data, dynamics)
         return self.known.operator.at_sample_time(data.records[0].dt)
@@ -112,12 +133,39 @@ def first_dynamics_of_plays(overview: Overview, wanted: Wanted) -> FirstDynamics
         If no order gives stable dynamics of a gain at rest.
     """
     data = overview.data
-    found = _settled(data, wanted)
+    found, wanted = _settled_behind_best(data, wanted)
     hysteresis = wanted.hysteresis(data, found.dynamics)
-    if wanted.known is None and _is_a_line(data, wanted, found, hysteresis):
+    if wanted.known is None and not wanted.bent and _is_a_line(data, wanted, found, hysteresis):
         hysteresis = _line_of(data, hysteresis)
     behind = Overview(behind_operator(data, hysteresis), rates_matter=True)
     return FirstDynamics(of_gain_one(found.dynamics), behind, None, found.cost)
+
+
+def _is_more_than_noise(data: Data, found: Tried) -> bool:
+    if found.cost <= _LITTLE * float(data.measured().var()):
+        return False
+    return samples_worth(found.errors) < _WHITE * found.errors.size
+
+
+def _settled_behind_best(data: Data, wanted: Wanted) -> tuple[Tried, Wanted]:
+    """Find dynamics behind plays; where these leave more than noise, behind bent ones, too."""
+    bent = replace(wanted, bent=True)
+    try:
+        found = _settled(data, wanted)
+    except NotIdentifiableError as refusal:
+        if wanted.known is not None:
+            raise
+        try:
+            return _settled(data, bent), bent
+        except NotIdentifiableError:
+            raise refusal from None
+    if wanted.known is not None or not _is_more_than_noise(data, found):
+        return found, wanted
+    try:
+        other = _settled(data, bent)
+    except NotIdentifiableError:
+        return found, wanted
+    return (other, bent) if other.cost < _MUCH_LESS * found.cost else (found, wanted)
 
 
 def _settled(data: Data, wanted: Wanted) -> Tried:
@@ -138,7 +186,9 @@ def _settled(data: Data, wanted: Wanted) -> Tried:
     return found
 
 
-def _of_best_order(data: Data, wanted: Wanted, hysteresis: Operator, found: Tried) -> Tried:
+def _of_best_order(
+    data: Data, wanted: Wanted, hysteresis: Operator | BentPlays, found: Tried
+) -> Tried:
     """Look at other orders; at fewer states with the hysteresis that goes with them."""
     settled = settled_dynamics(data, hysteresis, found.dynamics, wanted.delay, ALL)
     best, worth = settled.best, samples_worth(settled.best.errors)
@@ -153,7 +203,7 @@ def _of_best_order(data: Data, wanted: Wanted, hysteresis: Operator, found: Trie
     return best
 
 
-def _is_a_line(data: Data, wanted: Wanted, found: Tried, hysteresis: Operator) -> bool:
+def _is_a_line(data: Data, wanted: Wanted, found: Tried, hysteresis: Operator | BentPlays) -> bool:
     """Tell whether a line before dynamics, of another order perhaps, leaves as little as plays."""
     G = found.dynamics
     near = Dynamic(G, np.ones(1), np.inf)
@@ -168,14 +218,16 @@ def _is_a_line(data: Data, wanted: Wanted, found: Tried, hysteresis: Operator) -
     return of_line <= price(found.cost, numbers, worth, floor)
 
 
-def _plays_of(hysteresis: Operator) -> int:
+def _plays_of(hysteresis: Operator | BentPlays) -> int:
     """Give the plays that have a weight."""
+    if isinstance(hysteresis, BentPlays):
+        return int(np.count_nonzero(hysteresis.weights))
     return sum(
         int(np.count_nonzero(getattr(each, "p", np.empty(0)))) for each in leaves_of(hysteresis)
     )
 
 
-def _line_of(data: Data, hysteresis: Operator) -> Operator:
+def _line_of(data: Data, hysteresis: Operator | BentPlays) -> Operator:
     """Give the least squares line of a hysteresis."""
     u = data.inputs()
     v = data.joined([hysteresis(r.u)[w] for r, w in zip(data.records, data.windows(), strict=True)])

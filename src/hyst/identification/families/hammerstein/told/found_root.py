@@ -9,7 +9,7 @@ from typing import Any, Literal, final
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.families.hammerstein.drive_band import DriveBand
+from hyst.identification.families.hammerstein.told.drive_band import DriveBand
 from hyst.identification.result.fit_spread import FitSpread
 
 Complex = NDArray[np.complex128]

@@ -6,7 +6,7 @@ noncausal inverse; 4. the signal behind the hysteresis.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,12 +14,14 @@ from numpy.typing import NDArray
 
 from hyst.checks.numbers import whole_number as as_whole_number
 from hyst.errors import NotIdentifiableError, NotInvertibleError
-from hyst.identification.families.hammerstein.markov import MarkovParameters
-from hyst.identification.families.hammerstein.realization import Realization, realize
+from hyst.identification.families.hammerstein.impulse_response.markov import MarkovParameters
+from hyst.identification.families.hammerstein.impulse_response.realization import (
+    Realization,
+    realize,
+)
 from hyst.identification.families.option import AUTO
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics, StableInverse
-from hyst.operators import Operator
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
@@ -213,7 +215,7 @@ def signal_behind(data: Data, dynamics: LinearDynamics) -> Data:
     )
 
 
-def behind_operator(data: Data, hysteresis: Operator) -> Data:
+def behind_operator(data: Data, hysteresis: Callable[[Array], Array]) -> Data:
     """Give the records of the hysteresis alone: the input, and what a model of it makes of it.
 
     Parameters

@@ -7,20 +7,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
 
 from hyst.errors import NotIdentifiableError
-from hyst.identification.families.hammerstein.at_full_rate import Dynamic, at_full_rate
-from hyst.identification.families.hammerstein.grid_front import OnGrid, refined_on_grid
-from hyst.identification.families.hammerstein.output_error import Guess, steiglitz_mcbride
-from hyst.identification.families.hammerstein.play_inputs import (
+from hyst.identification.families.hammerstein.start.at_full_rate import Dynamic, at_full_rate
+from hyst.identification.families.hammerstein.start.grid_front import OnGrid, refined_on_grid
+from hyst.identification.families.hammerstein.start.output_error import Guess, steiglitz_mcbride
+from hyst.identification.families.hammerstein.start.play_inputs import (
     Piece,
     bandwidth,
     grids_of,
     pieces_of,
+    play_columns,
 )
 from hyst.identification.record_use.used_samples import Data
 
@@ -82,7 +84,23 @@ class Search:
         radii
             Of the grid, input units; none for a drive that goes straight to the dynamics.
         """
-        full = pieces_of(data, radii)
+        return cls.over(data, delay, pieces_of(data, lambda u: play_columns(u, radii)), radii)
+
+    @classmethod
+    def over(cls, data: Data, delay: int | None, full: list[Piece], radii: Array) -> Search:
+        """Search over pieces with what drives the dynamics, at rates that keep the output's band.
+
+        Parameters
+        ----------
+        data
+            The records.
+        delay
+            Samples, where it is known.
+        full
+            Pieces at the rate of the records.
+        radii
+            Of the grid, input units, where the inputs are its plays.
+        """
         rows = min(each.output.size for each in full)
         most = min(MOST_DELAY, rows // 8)
         delays = range(most + 1) if delay is None else range(delay, delay + 1)
@@ -191,7 +209,14 @@ def on_better_grid(data: Data, delay: int | None, order: int) -> Search:
     return min(searches, key=least)
 
 
-def search_order(search: Search, orders: Sequence[int] | None, power: float) -> OnGrid:
+class Searched(Protocol):
+    """What gives refined dynamics of an order."""
+
+    def refined(self, order: int) -> OnGrid | None:
+        """Give them; None where there are none."""
+
+
+def search_order(search: Searched, orders: Sequence[int] | None, power: float) -> OnGrid:
     """Choose the order by the error that refined dynamics leave.
 
     Parameters

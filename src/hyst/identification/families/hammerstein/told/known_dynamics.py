@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 from hyst.checks.arrays import finite_vector
 from hyst.errors import InputError
 from hyst.identification.families.family import Fit
-from hyst.identification.families.hammerstein.drive_band import DriveBand, drive_band
-from hyst.identification.families.hammerstein.dynamics_by_theta import DynamicsByTheta
-from hyst.identification.families.hammerstein.found_root import FoundRoot, roots_found
-from hyst.identification.families.hammerstein.frequency_response import FrequencyResponse
 from hyst.identification.families.hammerstein.joint import joint_of
+from hyst.identification.families.hammerstein.told.drive_band import DriveBand, drive_band
+from hyst.identification.families.hammerstein.told.dynamics_by_theta import DynamicsByTheta
+from hyst.identification.families.hammerstein.told.found_root import FoundRoot, roots_found
+from hyst.identification.families.hammerstein.told.frequency_response import FrequencyResponse
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.fit_spread import FitSpread
 from hyst.models import LinearDynamics

@@ -6,18 +6,17 @@ the drive of the dynamics is known, and what is left tells how many numbers it p
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.families.hammerstein.at_full_rate import Dynamic
-from hyst.identification.families.hammerstein.grid_front import OnGrid, refined_on_grid
-from hyst.identification.families.hammerstein.order_search import LARGEST_ORDER, Search
+from hyst.identification.families.hammerstein.start.at_full_rate import Dynamic
+from hyst.identification.families.hammerstein.start.grid_front import OnGrid, refined_on_grid
+from hyst.identification.families.hammerstein.start.order_search import LARGEST_ORDER, Search
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics
-from hyst.operators import Operator
 
 Array = NDArray[np.float64]
 
@@ -71,7 +70,7 @@ class Settled:
 
 def settled_dynamics(
     data: Data,
-    hysteresis: Operator,
+    hysteresis: Callable[[Array], Array],
     dynamics: LinearDynamics,
     delay: int | None,
     steps: Sequence[int] = (),
@@ -105,8 +104,15 @@ def settled_dynamics(
     alike = [each for each in rest if each.cost <= _UNSURE * best.cost]
     low = [each for each in rest if each.dynamics.order < best.dynamics.order]
     fewer = [each for each in low if each.cost <= _HOPELESS * best.cost]
-    near = [*_unlike(best, alike)[:_MOST_NEAR], *_unlike(best, fewer)[:1]]
+    near = [*_unlike(best, alike)[:_MOST_NEAR], *_first_of_each_order(fewer)]
     return Settled(best, tuple(each.dynamics for each in near))
+
+
+def _first_of_each_order(tried: Sequence[Tried]) -> list[Tried]:
+    found: dict[int, Tried] = {}
+    for each in tried:
+        found.setdefault(each.dynamics.order, each)
+    return list(found.values())
 
 
 def _unlike(best: Tried, tried: Sequence[Tried]) -> list[Tried]:
@@ -149,7 +155,7 @@ def simpler(dynamics: LinearDynamics, delay: int | None) -> Iterable[LinearDynam
         yield LinearDynamics(moved.A, moved.B, moved.C, 0.0, moved.dt, each)
 
 
-def driven_by(data: Data, hysteresis: Operator) -> Data:
+def driven_by(data: Data, hysteresis: Callable[[Array], Array]) -> Data:
     """Give the records with the output of a hysteresis as their input.
 
     Parameters

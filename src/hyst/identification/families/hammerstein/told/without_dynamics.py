@@ -8,7 +8,7 @@ import numpy as np
 
 from hyst.errors import NotIdentifiableError
 from hyst.identification.families.family import Family, Fit, Start
-from hyst.identification.families.hammerstein.first_dynamics import shortened
+from hyst.identification.families.hammerstein.impulse_response.first_dynamics import shortened
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint_of
 from hyst.identification.fit.bounded_least_squares import minimize
 from hyst.identification.fit.problem import model_output, problem_of

@@ -14,18 +14,21 @@ from hyst.identification.creep.joint_fit import IDLE
 from hyst.identification.creep.told import SLOW
 from hyst.identification.families.estimates import Estimates
 from hyst.identification.families.family import Family, Fit, Start
-from hyst.identification.families.hammerstein.creep_guess import (
+from hyst.identification.families.hammerstein.impulse_response.first_dynamics import signal_behind
+from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
+from hyst.identification.families.hammerstein.known.creep_guess import (
     CreepGuess,
     guess_of_creep,
     slowest_real,
     without_slow_poles,
 )
-from hyst.identification.families.hammerstein.dense_plays import dense_plays
-from hyst.identification.families.hammerstein.first_dynamics import signal_behind
-from hyst.identification.families.hammerstein.held_front import HeldFront
-from hyst.identification.families.hammerstein.held_joint import joint_held
-from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
-from hyst.identification.families.hammerstein.known_start import fronts_before, signal_of_plays
+from hyst.identification.families.hammerstein.known.held_front import HeldFront
+from hyst.identification.families.hammerstein.known.held_joint import joint_held
+from hyst.identification.families.hammerstein.known.known_start import (
+    fronts_before,
+    signal_of_plays,
+)
+from hyst.identification.families.hammerstein.start.dense_plays import dense_plays
 from hyst.identification.families.staged_family import StagedFamily
 from hyst.identification.fit.nuisance import Nuisances, Settling
 from hyst.identification.fit.parametrization import Parametrization

@@ -9,13 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.identification.families.family import Family
-from hyst.identification.families.hammerstein.dynamics_words import dynamics_as_data, summary_lines
-from hyst.identification.families.hammerstein.found_root import FoundRoot, plain_number
-from hyst.identification.families.hammerstein.frequency_response import FrequencyResponse
-from hyst.identification.families.hammerstein.known_dynamics import KnownDynamics
-from hyst.identification.families.hammerstein.markov import MarkovParameters
-from hyst.identification.families.hammerstein.yardstick import Yardstick
-from hyst.identification.families.hammerstein.yardstick_told import in_one_line
+from hyst.identification.families.hammerstein.impulse_response.markov import MarkovParameters
+from hyst.identification.families.hammerstein.told.dynamics_words import (
+    dynamics_as_data,
+    summary_lines,
+)
+from hyst.identification.families.hammerstein.told.found_root import FoundRoot, plain_number
+from hyst.identification.families.hammerstein.told.frequency_response import FrequencyResponse
+from hyst.identification.families.hammerstein.told.known_dynamics import KnownDynamics
+from hyst.identification.families.hammerstein.yardstick.yardstick import Yardstick
+from hyst.identification.families.hammerstein.yardstick.yardstick_told import in_one_line
 from hyst.identification.result.identified import Identified
 from hyst.models import LinearDynamics, StableInverse
 from hyst.operators import Operator

@@ -6,7 +6,7 @@ them as inputs the dynamics behind are linear in all that is unknown but their p
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,15 +86,32 @@ def grids_of(half_range: float) -> tuple[Array, Array]:
     return np.asarray(geometric), np.asarray(even)
 
 
-def pieces_of(data: Data, radii: Array, most_rows: int = MOST_ROWS) -> list[Piece]:
-    """Give the records, or stretches spread over long ones, with the drive and its plays.
+def play_columns(u: Array, radii: Array) -> Array:
+    """Give a drive and its plays, shape (samples, m).
+
+    Parameters
+    ----------
+    u
+        From rest at 0.
+    radii
+        Shape (m - 1,), input units.
+    """
+    bank = np.empty((u.size, radii.size))
+    _engine.play_outputs(radii.tolist(), np.zeros(radii.size), np.ascontiguousarray(u), bank)
+    return np.column_stack([u, bank])
+
+
+def pieces_of(
+    data: Data, columns: Callable[[Array], Array], most_rows: int = MOST_ROWS
+) -> list[Piece]:
+    """Give the records, or stretches spread over long ones, with what may drive the dynamics.
 
     Parameters
     ----------
     data
         The records.
-    radii
-        Shape (m - 1,), input units.
+    columns
+        Gives it of a drive from rest, as its plays.
     most_rows
         Samples in all.
     """
@@ -103,10 +120,7 @@ def pieces_of(data: Data, radii: Array, most_rows: int = MOST_ROWS) -> list[Piec
     for record, window, output in zip(
         data.records, data.windows(), data.brought_forward(), strict=True
     ):
-        bank = np.empty((window.stop, radii.size))
-        u = np.ascontiguousarray(record.u[: window.stop])
-        _engine.play_outputs(radii.tolist(), np.zeros(radii.size), u, bank)
-        inputs = np.column_stack([u, bank])
+        inputs = columns(record.u[: window.stop])
         for begin, end in stretches(window.start, window.stop, most):
             rows = slice(begin, end)
             pieces.append(

@@ -7,25 +7,28 @@ from numpy.typing import NDArray
 
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.families.family import Family, Fit
-from hyst.identification.families.hammerstein.dynamics_words import not_determined, verdict_on
-from hyst.identification.families.hammerstein.first_dynamics import inverse_of, realized
-from hyst.identification.families.hammerstein.identified_hammerstein import (
-    IdentifiedHammerstein,
-    Loop,
+from hyst.identification.families.hammerstein.impulse_response.first_dynamics import (
+    inverse_of,
+    realized,
 )
-from hyst.identification.families.hammerstein.joint import dynamics_of, joint_of
-from hyst.identification.families.hammerstein.known_dynamics import (
-    KnownDynamics,
-    known_dynamics,
-)
-from hyst.identification.families.hammerstein.marginal import without_marginal
-from hyst.identification.families.hammerstein.markov import (
+from hyst.identification.families.hammerstein.impulse_response.markov import (
     MarkovParameters,
     markov_if_excited,
 )
-from hyst.identification.families.hammerstein.realization import Realization
-from hyst.identification.families.hammerstein.yardstick import yardstick_of
-from hyst.identification.families.hammerstein.yardstick_told import lowered
+from hyst.identification.families.hammerstein.impulse_response.realization import Realization
+from hyst.identification.families.hammerstein.joint import dynamics_of, joint_of
+from hyst.identification.families.hammerstein.told.dynamics_words import not_determined, verdict_on
+from hyst.identification.families.hammerstein.told.identified_hammerstein import (
+    IdentifiedHammerstein,
+    Loop,
+)
+from hyst.identification.families.hammerstein.told.known_dynamics import (
+    KnownDynamics,
+    known_dynamics,
+)
+from hyst.identification.families.hammerstein.told.marginal import without_marginal
+from hyst.identification.families.hammerstein.yardstick.yardstick import yardstick_of
+from hyst.identification.families.hammerstein.yardstick.yardstick_told import lowered
 from hyst.identification.families.option import AUTO
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.result.fit_spread import spread_of_fit

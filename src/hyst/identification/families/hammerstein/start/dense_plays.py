@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst import _engine
-from hyst.identification.families.hammerstein.first_dynamics import shortened
-from hyst.identification.families.hammerstein.output_error import (
+from hyst.identification.families.hammerstein.impulse_response.first_dynamics import shortened
+from hyst.identification.families.hammerstein.start.output_error import (
     free_response,
     orthonormal,
     solve_scaled,
 )
+from hyst.identification.families.hammerstein.start.play_inputs import play_columns
 from hyst.identification.fit.non_negative import non_negative
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics, PrandtlIshlinskii
@@ -41,7 +43,9 @@ def dense_plays(data: Data, dynamics: LinearDynamics) -> Operator:
     """
     used = shortened(data, _MOST_SAMPLES // len(data.records))
     radii = data.half_range * np.linspace(0.0, _WIDEST, _PLAYS + 1)[1:]
-    columns, target = _beside_ringing(used, radii, dynamics)
+    parts = zip(used.records, used.windows(), strict=True)
+    shapes = [play_columns(r.u[: w.stop], radii) for r, w in parts]
+    columns, target = behind_dynamics(used, shapes, dynamics)
     triangle: Array = np.linalg.qr(np.column_stack([columns, target]))[1]
     matrix, wanted, rest = triangle[:-1, :-1], triangle[:-1, -1], float(triangle[-1, -1]) ** 2
     free = solve_scaled(matrix.T @ matrix, matrix.T @ wanted, _RIDGE)
@@ -57,19 +61,26 @@ def dense_plays(data: Data, dynamics: LinearDynamics) -> Operator:
     return Affine(1.0, offset) @ made
 
 
-def _beside_ringing(data: Data, radii: Array, dynamics: LinearDynamics) -> tuple[Array, Array]:
-    """Give what the dynamics answer to the drive and each play, and the output, over the windows.
+def behind_dynamics(
+    data: Data, shapes: Sequence[Array], dynamics: LinearDynamics
+) -> tuple[Array, Array]:
+    """Give what the dynamics answer to each column, and the output, over the windows.
 
     What an unknown state leaves in each record, and a constant, are taken out of both.
+
+    Parameters
+    ----------
+    data
+        The records.
+    shapes
+        Of each record, shape (samples up to the window's end, m).
+    dynamics
+        Behind them.
     """
     a = np.atleast_1d(np.poly(dynamics.A).real)
     columns, targets = [], []
-    for record, window, output in zip(data.records, data.windows(), data.outputs(), strict=True):
-        bank = np.empty((window.stop, radii.size))
-        u = np.ascontiguousarray(record.u[: window.stop])
-        _engine.play_outputs(radii.tolist(), np.zeros(radii.size), u, bank)
-        signals = np.vstack([u[None, :], bank.T])
-        answers = np.asarray(dynamics(signals)).T[window]
+    for shape, window, output in zip(shapes, data.windows(), data.outputs(), strict=True):
+        answers = np.asarray(dynamics(np.ascontiguousarray(shape.T))).T[window]
         own = orthonormal(free_response(a, output.size))
         columns.append(answers - own @ (own.T @ answers))
         targets.append(output - own @ (own.T @ output))

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.families.family import Start
-from hyst.identification.families.hammerstein.at_full_rate import Dynamic
 from hyst.identification.families.hammerstein.joint import JointParametrization, joint
+from hyst.identification.families.hammerstein.start.at_full_rate import Dynamic
 from hyst.identification.fit.bounded_least_squares import minimize
 from hyst.identification.fit.parametrization import Parametrization, selection
 from hyst.identification.fit.problem import problem_of

@@ -6,8 +6,8 @@ import math
 from typing import Any
 
 from hyst.errors import NotInvertibleError
-from hyst.identification.families.hammerstein.found_root import FoundRoot
-from hyst.identification.families.hammerstein.known_dynamics import KnownDynamics
+from hyst.identification.families.hammerstein.told.found_root import FoundRoot
+from hyst.identification.families.hammerstein.told.known_dynamics import KnownDynamics
 from hyst.models import ContinuousDynamics, LinearDynamics
 from hyst.operators import Verdict
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from hyst.identification.families.family import Fit
-from hyst.identification.families.hammerstein.first_dynamics import shortened
+from hyst.identification.families.hammerstein.impulse_response.first_dynamics import shortened
 from hyst.identification.families.hammerstein.joint import joint, joint_of
 from hyst.identification.fit.bounded_least_squares import minimize
 from hyst.identification.judgement.regression import chance, correlation_time

@@ -15,13 +15,13 @@ import scipy.signal
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
-from hyst.identification.families.hammerstein.output_error import (
+from hyst.identification.families.hammerstein.start.output_error import (
     Guess,
     free_response,
     orthonormal,
     weights_behind,
 )
-from hyst.identification.families.hammerstein.play_inputs import Piece
+from hyst.identification.families.hammerstein.start.play_inputs import Piece
 from hyst.models import LinearDynamics
 
 Array = NDArray[np.float64]

@@ -12,7 +12,7 @@ import numpy as np
 
 from hyst.errors import NotIdentifiableError
 from hyst.identification.families.family import Family, Fit, Start
-from hyst.identification.families.hammerstein.first_dynamics import (
+from hyst.identification.families.hammerstein.impulse_response.first_dynamics import (
     delay_of,
     of_gain_one,
     orders_to_try,
@@ -20,8 +20,8 @@ from hyst.identification.families.hammerstein.first_dynamics import (
     shortened,
     signal_behind,
 )
+from hyst.identification.families.hammerstein.impulse_response.markov import choose_markov
 from hyst.identification.families.hammerstein.joint import dynamics_of, joint, joint_of
-from hyst.identification.families.hammerstein.markov import choose_markov
 from hyst.identification.families.linear import Linear
 from hyst.identification.fit.bounded_least_squares import Solution, minimize
 from hyst.identification.fit.problem import problem_of

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from hyst.identification.families.family import Start
-from hyst.identification.families.hammerstein.held_front import HeldFront
 from hyst.identification.families.hammerstein.joint import joint
+from hyst.identification.families.hammerstein.known.held_front import HeldFront
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data
 from hyst.models import LinearDynamics

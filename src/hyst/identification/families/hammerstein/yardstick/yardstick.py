@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 from hyst.diagnosis.interpolation import earlier, first_comparable
 from hyst.identification.families.family import Fit
 from hyst.identification.families.hammerstein.joint import dynamics_of
-from hyst.identification.families.hammerstein.left_out_stretches import LeftOutStretches
-from hyst.identification.families.hammerstein.local_dynamics import left_by_dynamics
-from hyst.identification.families.hammerstein.richer_models import (
+from hyst.identification.families.hammerstein.yardstick.left_out_stretches import LeftOutStretches
+from hyst.identification.families.hammerstein.yardstick.local_dynamics import left_by_dynamics
+from hyst.identification.families.hammerstein.yardstick.richer_models import (
     columns_behind,
     columns_of_front,
     columns_of_output,

@@ -1,0 +1,1 @@
+"""The paper's steps: impulse response, realization, inverse, hysteresis behind it."""

@@ -1,0 +1,1 @@
+"""Parts that are known before, and creep between them."""

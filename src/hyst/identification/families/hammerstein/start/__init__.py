@@ -1,0 +1,1 @@
+"""The start of a fit: dynamics behind plays, and what is settled behind them."""

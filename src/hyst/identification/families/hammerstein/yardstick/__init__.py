@@ -1,0 +1,1 @@
+"""What richer models leave, to judge a fit by."""
