@@ -317,3 +317,25 @@ def test_a_long_delay_is_found_by_its_samples() -> None:
     found = identified(Record(U, noisy, DT), hysteresis="pi", plays=3)
     assert found.dynamics.delay == 137
     assert found.dynamics.order == 2
+
+
+def test_shares_of_the_output_are_of_the_measured_one_where_the_record_began_at_rest():
+    # The drive begins at 100 and the stage rests there: the model, which begins at 0, first rings
+    # by 70, and that is taken out as the state before the record, but is no output anybody saw.
+    dt, w = 1e-3, 2.0 * np.pi * 50.0
+    dynamics = hyst.LinearDynamics.from_continuous([w**2], [1.0, 0.06 * w, w**2], dt)
+    u = 100.0 + hyst.signals.multisine(dt, 3000, amplitude=5.0, band=(1.0, 100.0), seed=1).u
+    v = hyst.PrandtlIshlinskii([0.5], [1.0], 0.7)(u)
+    y = v[0] + dynamics(v - v[0])
+    y += 0.05 * np.random.default_rng(0).normal(size=y.size)
+
+    found = hyst.identify(
+        hyst.Record(u, y, dt), family="hammerstein", hysteresis="pi", plays=1, state_order=2
+    )
+
+    error, about = found.metrics["training"], found.description
+    fit = 100.0 * (1.0 - 0.05 / np.std(y))
+    assert error.output_range == pytest.approx(np.ptp(y), rel=1e-9)  # to rounding
+    assert error.nrmse_fit_percent == pytest.approx(fit, abs=0.1)  # of a noise of 0.05
+    assert (about.output_low, about.output_high) == pytest.approx((y.min(), y.max()), rel=1e-9)
+    assert found.verdict.level == "good"

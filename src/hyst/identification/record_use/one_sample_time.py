@@ -137,6 +137,7 @@ def finest(overview: Overview) -> Overview:
         disturbances=of(data.disturbances),
         measured_inputs=of(data.measured_inputs),
         smoothers=of(data.smoothers),
+        past=of(data.past),
     )
     return Overview(chosen, overview.delay, rates_matter=overview.rates_matter)
 

@@ -75,6 +75,9 @@ class Data:
     keeps_corners
         Whether an input that is later by part of a sample keeps its corners, as memory needs them;
         not where rates matter.
+    past
+        Shape (N,) for each record: what a past that nobody knows left in its y, taken out of it;
+        empty where nothing was.
     """
 
     records: tuple[Record, ...]
@@ -87,6 +90,7 @@ class Data:
     measured_inputs: tuple[Array, ...] = ()
     smoothers: tuple[Smoother | None, ...] = ()
     keeps_corners: bool = True
+    past: tuple[Array, ...] = ()
 
     @property
     def largest_radius(self) -> float:
@@ -243,7 +247,14 @@ class Data:
                 None if each is None else replace(each, noise=each.noise * input_scale)
                 for each in self.smoothers
             ),
+            past=tuple(each * output_scale for each in self.past),
         )
+
+    def with_past(self) -> Data:
+        """Give the records as measured, with what the past left in them."""
+        pairs = zip(self.records, self.past, strict=True) if self.past else ()
+        records = tuple(replace(each, y=each.y + part) for each, part in pairs)
+        return replace(self, records=records, past=()) if records else self
 
     def with_disturbances(self) -> Data:
         """Give the records with the drift and the sines that were taken out."""

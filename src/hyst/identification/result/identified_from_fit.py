@@ -163,6 +163,11 @@ def _validation_data(record: Record, data: Data) -> Data:
 def _pair(name: str, data: Data, operator: Operator) -> dict[str, Metrics]:
     """Errors with and without a free offset, in percent of the whole records' output range."""
     measured, modelled = data.measured(), model_output(data, operator)
+    if data.past:
+        # Shares of the output are of what was measured; what the past left is in both, so no error.
+        data = data.with_past()
+        modelled = modelled + (data.measured() - measured)
+        measured = data.measured()
     span = max(r.y.max() for r in data.records) - min(r.y.min() for r in data.records)
     return {
         name: error_metrics(measured, modelled, output_range=float(span)),
@@ -186,7 +191,7 @@ def describe(data: Data, family: str) -> ModelDescription:
     -------
     ModelDescription
     """
-    first = data.records[0]
+    first, outputs = data.records[0], data.with_past().measured()
     return ModelDescription(
         input_name=first.input_name,
         output_name=first.output_name,
@@ -194,8 +199,8 @@ def describe(data: Data, family: str) -> ModelDescription:
         output_unit=first.output_unit,
         input_low=float(min(r.u.min() for r in data.records)),
         input_high=float(max(r.u.max() for r in data.records)),
-        output_low=float(data.measured().min()),
-        output_high=float(data.measured().max()),
+        output_low=float(outputs.min()),
+        output_high=float(outputs.max()),
         dt=first.dt,
         delay=data.lag,
         family=family,

@@ -78,7 +78,8 @@ def motion_of(
     creep_is_told
         Whether the records tell that there is none, where the model has none.
     """
-    span = max(r.y.max() for r in data.records) - min(r.y.min() for r in data.records)
+    measured = data.with_past().records
+    span = max(r.y.max() for r in measured) - min(r.y.min() for r in measured)
     whole = model_output(data, operator)
     alone = without_part(operator, "creep")
     hysteresis = whole if alone is None else model_output(data, alone)

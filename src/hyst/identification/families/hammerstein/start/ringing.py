@@ -112,4 +112,5 @@ def without_ringing(data: Data, fit: Fit) -> Data:
     coefficients = Beside(data, nuisances).at(fit.solution.theta).coefficients(left)
     taken = over_whole_records(data, nuisances, fit.solution.theta, coefficients)
     pairs = zip(data.records, taken, strict=True)
-    return replace(data, records=tuple(replace(each, y=each.y - part) for each, part in pairs))
+    records = tuple(replace(each, y=each.y - part) for each, part in pairs)
+    return replace(data, records=records, past=tuple(taken))
