@@ -291,6 +291,14 @@ def test_high_orders_at_a_high_rate_stay_accurate() -> None:
             "the model's output does not move",
         ),
         (
+            lambda: forecast_drive(multisine(900.0, samples=4000, amplitude=1e300), audit_stage()),
+            r"the drive goes to 1e\+300; choose units",
+        ),
+        (
+            lambda: forecast_drive(multisine(900.0, samples=4000, amplitude=1e-200), audit_stage()),
+            "the drive goes to 1e-200; choose units",
+        ),
+        (
             lambda: sketched_stage(1e-3, [(500.0, 0.1)], front=sketched_plays([1.0])),
             "500 Hz, not below half the sample rate",
         ),

@@ -36,6 +36,8 @@ _SHARED = 1e-6  # of a direction of scaled constants: more than its rounding
 
 _HALF_RATE = (1.0 - 1e-9) * math.pi  # rad per sample
 
+_SMALLEST, _LARGEST = 1e-100, 1e100  # of a signal, whose squares are formed
+
 _MOST_ENTRIES = 4e7  # of the Jacobian, 0.3 GB
 
 
@@ -71,7 +73,7 @@ def forecast_drive(
     InputError
         If the drive or the model's output does not move, the model is for another sample time or
         has no constants, the drive has fewer samples than the model has numbers, or the noise is
-        not above 0.
+        not above 0; or a signal is in units in which its squares overflow or vanish.
 
     Notes
     -----
@@ -91,6 +93,7 @@ def forecast_drive(
     u = finite_vector(drive.u, "the drive")
     if np.ptp(u) == 0.0:
         raise InputError(f"the drive rests at {u[0]:.6g}, so it determines nothing; let it move")
+    _require_possible_size(u, "the drive")
     model.require_sample_time(drive.dt, "the drive")
     free = free_numbers(model)
     numbers = free.directions.shape[1]
@@ -103,6 +106,7 @@ def forecast_drive(
             "longer drive"
         )
     y = free.model(u)
+    _require_possible_size(y, "the model's output")
     sigma = _noise_of(y, noise, noise_db)
     jacobian = free.model.jacobian(u) @ free.directions
     shared = shared_directions(free, u, jacobian)
@@ -124,6 +128,15 @@ def forecast_drive(
         evidence,
         advice_on(drive, free.leaves, dynamics, front, evidence),
     )
+
+
+def _require_possible_size(signal: Array, what: str) -> None:
+    size = float(np.abs(signal).max())
+    if size and not _SMALLEST <= size <= _LARGEST:
+        raise InputError(
+            f"{what} goes to {size:.3g}; choose units in which that lies between {_SMALLEST:g} "
+            f"and {_LARGEST:g}"
+        )
 
 
 def _noise_of(y: Array, noise: float | None, noise_db: float) -> float:
