@@ -30,6 +30,8 @@ _TAPER = 0.1  # share of a record at either end: a chirp loses an octave or two 
 _LEAKAGE = 1e-5  # of the largest line: less is the taper's
 _QUIET = 1e-12  # of the output: what rounding leaves
 _PER_OCTAVE = 48
+_ONE_SINE = 0.999  # of the power of a drive: a triangle has 0.986 in its first line
+_BINS, _WIDTH = 4, 0.01  # of one line: its window, or the share of its frequency
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +46,14 @@ class DriveBand:
         Shape (q,), what each adds: its power at the output over the power of the noise.
     nyquist
         Half the sample rate, Hz.
+    only_line
+        Hz, of a drive that is one sine in all records; NaN of others.
     """
 
     lines: Array
     evidence: Array
     nyquist: float
+    only_line: float = float("nan")
 
     def excites(self, frequency: ArrayLike) -> NDArray[np.bool_]:
         """Tell at which frequencies the drive had power within an octave.
@@ -99,10 +104,36 @@ def drive_band(
     """
     nyquist = 0.5 / dynamics.dt
     parts = [_lines_of(each, dynamics, gain, noise_rms) for each in records]
+    sines = np.array([_one_sine(each) for each in records])
+    same = bool(np.ptp(sines) <= _WIDTH * sines.mean())  # not of NaN
     lines = np.concatenate([np.empty(0), *(each for each, _ in parts)])
     evidence = np.concatenate([np.empty(0), *(each for _, each in parts)])
     order = np.argsort(lines, kind="stable")
-    return DriveBand(lines[order], evidence[order], nyquist)
+    only = float(sines.mean()) if same else float("nan")
+    return DriveBand(lines[order], evidence[order], nyquist, only)
+
+
+def _one_sine(record: Record) -> float:
+    """Give the frequency of a drive that is one sine, Hz; NaN of another."""
+    frequency, power = _spectrum(record, np.hanning(len(record)))  # leaks to two bins
+    near = _of_the_top(frequency, power)
+    is_one = float(power[near].sum()) > _ONE_SINE * float(power.sum())
+    return float(frequency[power.argmax()]) if is_one else float("nan")
+
+
+def _of_the_top(frequency: Array, power: Array) -> NDArray[np.bool_]:
+    """Tell which frequencies are of the largest line."""
+    top = float(frequency[power.argmax()])
+    width = max(_WIDTH * top, _BINS * float(frequency[1]))
+    return np.asarray(np.abs(frequency - top) <= width)
+
+
+def _spectrum(record: Record, window: Array) -> tuple[Array, Array]:
+    """Give frequencies, Hz, and the power of a drive about its mean, through a window."""
+    u = record.u
+    middle = float(window @ u / max(float(window.sum()), 1.0))
+    power = np.square(np.abs(scipy.fft.rfft((u - middle) * window)))
+    return np.arange(power.size) / (u.size * record.dt), power
 
 
 def _lines_of(
@@ -110,11 +141,11 @@ def _lines_of(
 ) -> tuple[Array, Array]:
     """Give lines of a drive, Hz, and what each tells of the dynamics."""
     u, window = record.u, _window(len(record))
-    middle = float(window @ u / max(float(window.sum()), 1.0))
-    spectrum = np.square(np.abs(scipy.fft.rfft((u - middle) * window)))
-    frequency = np.arange(spectrum.size) / (u.size * record.dt)
+    frequency, spectrum = _spectrum(record, window)
     shown = spectrum > _LEAKAGE**2 * spectrum[1:].max(initial=0.0)
     shown[0] = False
+    if not np.isnan(_one_sine(record)):
+        shown &= _of_the_top(frequency, spectrum)  # a short taper leaks further than that
     spectrum, frequency = spectrum[shown], frequency[shown]
     at_output = gain**2 * spectrum * np.square(np.abs(_gains(G, frequency)))
     weight = float(window @ window)

@@ -9,7 +9,7 @@ from typing import Any, Literal, final
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.families.hammerstein.told.drive_band import DriveBand
+from hyst.identification.families.hammerstein.told.drive_band import OCTAVE, DriveBand
 from hyst.identification.result.fit_spread import FitSpread
 
 Complex = NDArray[np.complex128]
@@ -187,7 +187,20 @@ def _found(
     place = min(frequency, band.nyquist)
     shown = math.isnan(place) or bool(band.excites(place)[0])
     root = replace(root, is_shown=shown or not modulus_error > 0.0)
-    return replace(root, undetermined=_why_not(root))
+    return replace(root, undetermined=_why_not(root) + _taken_for_hysteresis(root, band))
+
+
+def _taken_for_hysteresis(root: FoundRoot, band: DriveBand) -> tuple[str, ...]:
+    """Tell a resonance that is as near as nothing to the only frequency that drives."""
+    if root.role == "zero" or not root.is_pair or not root.modulus_error > 0.0:
+        return ()
+    ratio = root.frequency / band.only_line
+    if not 1.0 / OCTAVE <= ratio <= OCTAVE:  # not of NaN
+        return ()
+    return (
+        f"the drive is one sine, of {band.only_line:.3g} Hz, and what resonates that near to it "
+        "is not told from gain and loop of the hysteresis",
+    )
 
 
 def _errors(spread: FitSpread, rows: NDArray[np.float64]) -> list[float]:
