@@ -124,23 +124,30 @@ def test_idle_plays_are_left_out_and_said() -> None:
 
 
 def test_a_family_the_records_cannot_serve_is_left_out_of_a_comparison_and_said() -> None:
-    """A slow sweep tells nothing of dynamics; "is it hysteresis?" still has an answer."""
-    found = hyst.identify(record(TRUE_PI, noise=0.01), family="linear,pi,hammerstein", delay=0)
+    """A slow sweep excites no impulse response; "is it hysteresis?" still has an answer."""
+    swept, families = record(TRUE_PI, noise=0.01), "linear,pi,hammerstein"
+    found = hyst.identify(swept, family=families, delay=0, fir_order=64)
     assert {each.family for each in found.candidates} == {"linear", "pi"}
     assert found.family == "pi"
     assert [each[:30] for each in found.undetermined] == ["hammerstein is not compared: th"[:30]]
 
 
 def test_a_family_the_records_cannot_serve_is_refused_where_it_is_alone() -> None:
-    with pytest.raises(hyst.NotIdentifiableError, match="impulse response"):
-        hyst.identify(record(TRUE_PI, noise=0.01), family="hammerstein")
+    with pytest.raises(hyst.NotIdentifiableError, match=r"impulse response|persistently exciting"):
+        hyst.identify(record(TRUE_PI, noise=0.01), family="hammerstein", fir_order=64)
+
+
+def test_a_record_without_dynamics_is_not_given_any_in_a_comparison() -> None:
+    found = hyst.identify(record(TRUE_PI, noise=0.01), family="linear,pi,hammerstein", delay=0)
+    assert "hammerstein" in {each.family for each in found.candidates}
+    assert found.family == "pi"
 
 
 def test_a_record_too_short_for_dynamics_can_be_compared_without_them() -> None:
     u = np.array([0.0, 1.0] * 8)
     found = hyst.identify(hyst.Record(u, 2.0 * u, 1e-3), family="linear,hammerstein", delay=0)
     assert found.family == "linear"
-    assert "16 usable samples" in found.undetermined[0]
+    assert "usable samples are too few to tell dynamics" in found.undetermined[0]
 
 
 def test_many_idle_plays_make_no_more_moves_than_as_many_at_work() -> None:

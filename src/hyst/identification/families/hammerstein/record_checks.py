@@ -7,12 +7,17 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.errors import NotIdentifiableError
+from hyst.identification.record_use.used_samples import Data
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
 
 _RUN = 4  # samples that rest at an extreme of the record before that looks like a limit
 _SHARE = 1e-3
+
+FEWEST_SAMPLES = 40
+"""That can tell a few plays and one pole apart."""
 
 
 def flat_tops(records: Sequence[Record]) -> tuple[str, ...]:
@@ -46,3 +51,24 @@ def samples_in_flat_runs(at_end: NDArray[np.bool_]) -> int:
     edges = np.flatnonzero(np.diff(np.concatenate([[0], at_end.astype(np.int8), [0]])))
     lengths = edges[1::2] - edges[::2]
     return int(lengths[lengths >= _RUN].sum())
+
+
+def require_samples(data: Data) -> None:
+    """Refuse records too short to tell dynamics from hysteresis.
+
+    Parameters
+    ----------
+    data
+        The records as they are used.
+
+    Raises
+    ------
+    NotIdentifiableError
+        If there are fewer than forty samples.
+    """
+    count = sum(window.stop - window.start for window in data.windows())
+    if count < FEWEST_SAMPLES:
+        raise NotIdentifiableError(
+            f"{count} usable samples are too few to tell dynamics from hysteresis; give at least "
+            f"{FEWEST_SAMPLES}"
+        )
