@@ -305,6 +305,18 @@ class Family(ABC):
             fit.parametrization.transform[free],
         )
 
+    def with_level(self, fit: Fit, data: Data) -> Fit:
+        """Give a fit to records that a level was taken out of as one to the records themselves.
+
+        Parameters
+        ----------
+        fit
+            The final fit, in the user's units.
+        data
+            Its records; only a family whose records to use have a level is asked.
+        """
+        return fit
+
     def without_past(self, fit: Fit, data: Data) -> Data:
         """Give the records without what a past that nobody knows has left in them.
 

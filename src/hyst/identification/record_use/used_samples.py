@@ -75,6 +75,8 @@ class Data:
     keeps_corners
         Whether an input that is later by part of a sample keeps its corners, as memory needs them;
         not where rates matter.
+    level
+        What was taken out of every y, output units, for the fit alone.
     """
 
     records: tuple[Record, ...]
@@ -87,6 +89,7 @@ class Data:
     measured_inputs: tuple[Array, ...] = ()
     smoothers: tuple[Smoother | None, ...] = ()
     keeps_corners: bool = True
+    level: float = 0.0
 
     @property
     def largest_radius(self) -> float:
@@ -239,11 +242,24 @@ class Data:
                 None if each is None else each * output_scale for each in self.disturbances
             ),
             measured_inputs=tuple(u * input_scale for u in self.measured_inputs),
+            level=self.level * output_scale,
             smoothers=tuple(
                 None if each is None else replace(each, noise=each.noise * input_scale)
                 for each in self.smoothers
             ),
         )
+
+    def without_level(self, level: float) -> Data:
+        """Give the records with a number taken out of every y.
+
+        Parameters
+        ----------
+        level
+            Output units; 0 puts back what was taken out.
+        """
+        put_back = self.level - level
+        records = tuple(replace(each, y=each.y + put_back) for each in self.records)
+        return replace(self, records=records, level=level)
 
     def with_disturbances(self) -> Data:
         """Give the records with the drift and the sines that were taken out."""

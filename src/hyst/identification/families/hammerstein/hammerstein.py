@@ -45,6 +45,10 @@ from hyst.identification.families.hammerstein.known.held_front import (
 from hyst.identification.families.hammerstein.known.known_front import behind_known
 from hyst.identification.families.hammerstein.known.known_start import settled, told_of_delay
 from hyst.identification.families.hammerstein.known.known_starts import known_starts
+from hyst.identification.families.hammerstein.large_level import (
+    raised_by,
+    without_large_level,
+)
 from hyst.identification.families.hammerstein.record_checks import flat_tops
 from hyst.identification.families.hammerstein.start.first_guess_of_plays import (
     Wanted,
@@ -178,6 +182,8 @@ class Hammerstein(Family):
             start = int(self.period)
         at_one = at_one_sample_time(records, None if self.dynamics is None else self.dynamics.dt)
         data = at_one.prepared(start)
+        if self.front is None and not isinstance(self.hysteresis_family, CreepingFront):
+            data = without_large_level(data)
         doubts = at_one.notes + flat_tops(records)
         if self.dynamics is not None:
             dt = data.records[0].dt
@@ -368,6 +374,10 @@ class Hammerstein(Family):
         return identified_with_dynamics(
             identified, fit, self.hysteresis_family, finest(overview), self.fir_order
         )
+
+    def with_level(self, fit: Fit, data: Data) -> Fit:
+        """Give the offset of the hysteresis what was taken out of the output: G has gain 1."""
+        return raised_by(fit, joint_of(fit).front, data.level)
 
     def without_past(self, fit: Fit, data: Data) -> Data:
         """Take out what the unknown state of the dynamics before each record left in it."""

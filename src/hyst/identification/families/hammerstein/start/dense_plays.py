@@ -79,7 +79,8 @@ def behind_dynamics(
     """
     a = np.atleast_1d(np.poly(dynamics.A).real)
     columns, targets = [], []
-    for shape, window, output in zip(shapes, data.windows(), data.outputs(), strict=True):
+    for each, window, output in zip(shapes, data.windows(), data.outputs(), strict=True):
+        shape = each - each[0]  # as if at rest before: what the delay held is no state
         answers = np.asarray(dynamics(np.ascontiguousarray(shape.T))).T[window]
         own = orthonormal(free_response(a, output.size))
         columns.append(answers - own @ (own.T @ answers))
