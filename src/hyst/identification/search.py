@@ -139,10 +139,7 @@ def find(
         replace(each, parametrization=_in_given_units(each, task)) for each in (fit, *choice.rivals)
     )
     notes = task.notes + left_out + choice.notes + _outlying(task, options)
-    if task.given.level:
-        fit, *rivals = (each.family.with_level(each, task.given) for each in (fit, *rivals))
-    given = task.given.without_level(0.0) if task.given.level else task.given
-    data = fit.family.without_past(fit, given)
+    data = fit.family.without_past(fit, task.given)
     return Found(fit, data, choice.candidates, notes, tuple(rivals), task.evidence)
 
 

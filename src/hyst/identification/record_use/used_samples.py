@@ -249,18 +249,6 @@ class Data:
             ),
         )
 
-    def without_level(self, level: float) -> Data:
-        """Give the records with a number taken out of every y.
-
-        Parameters
-        ----------
-        level
-            Output units; 0 puts back what was taken out.
-        """
-        put_back = self.level - level
-        records = tuple(replace(each, y=each.y + put_back) for each in self.records)
-        return replace(self, records=records, level=level)
-
     def with_disturbances(self) -> Data:
         """Give the records with the drift and the sines that were taken out."""
         if not self.disturbances:
@@ -321,6 +309,21 @@ def prepare(
     else:
         starts, settled = (_as_start(start, given),) * len(given), True
     return Data(given, starts, 0.0, half_range, settled).delayed(lag)
+
+
+def beside_level(records: Sequence[Record], data: Data) -> list[Record]:
+    """Give records without what was taken out of the y of others.
+
+    Parameters
+    ----------
+    records
+        As they were measured.
+    data
+        The others.
+    """
+    if not data.level:
+        return list(records)
+    return [replace(each, y=each.y - data.level) for each in records]
 
 
 def require_same_units(records: Sequence[Record]) -> None:

@@ -46,7 +46,9 @@ from hyst.identification.families.hammerstein.known.known_front import behind_kn
 from hyst.identification.families.hammerstein.known.known_start import settled, told_of_delay
 from hyst.identification.families.hammerstein.known.known_starts import known_starts
 from hyst.identification.families.hammerstein.large_level import (
+    at_level,
     raised_by,
+    told_of_level,
     without_large_level,
 )
 from hyst.identification.families.hammerstein.record_checks import flat_tops
@@ -184,7 +186,7 @@ class Hammerstein(Family):
         data = at_one.prepared(start)
         if self.front is None and not isinstance(self.hysteresis_family, CreepingFront):
             data = without_large_level(data)
-        doubts = at_one.notes + flat_tops(records)
+        doubts = at_one.notes + flat_tops(records) + told_of_level(data)
         if self.dynamics is not None:
             dt = data.records[0].dt
             data = settled(data, self.dynamics.at(dt)) if start == AUTO else data
@@ -375,9 +377,10 @@ class Hammerstein(Family):
             identified, fit, self.hysteresis_family, finest(overview), self.fir_order
         )
 
-    def with_level(self, fit: Fit, data: Data) -> Fit:
+    def with_level(self, identified: Identified, fit: Fit, data: Data) -> Identified:
         """Give the offset of the hysteresis what was taken out of the output: G has gain 1."""
-        return raised_by(fit, joint_of(fit).front, data.level)
+        assert isinstance(identified, IdentifiedHammerstein), "result made it"
+        return at_level(identified, raised_by(fit, joint_of(fit).front, data.level), data.level)
 
     def without_past(self, fit: Fit, data: Data) -> Data:
         """Take out what the unknown state of the dynamics before each record left in it."""

@@ -12,8 +12,12 @@ import numpy as np
 
 from hyst.errors import NotIdentifiableError
 from hyst.identification.families.family import Fit
+from hyst.identification.families.hammerstein.joint import joint_of
+from hyst.identification.families.hammerstein.told.identified_hammerstein import (
+    IdentifiedHammerstein,
+)
 from hyst.identification.fit.parametrization import Parametrization
-from hyst.identification.record_use.used_samples import Data
+from hyst.identification.record_use.used_samples import Data, beside_level
 
 _LARGE = 2.0  # times the range of the output
 
@@ -28,7 +32,27 @@ def without_large_level(data: Data) -> Data:
     """
     level = float(np.mean([each.y.mean() for each in data.records]))
     span = max(float(np.ptp(each.y)) for each in data.records)
-    return data.without_level(level) if abs(level) > _LARGE * span else data
+    if abs(level) <= _LARGE * span:
+        return data
+    records = tuple(beside_level(data.records, replace(data, level=level)))
+    return replace(data, records=records, level=level)
+
+
+def told_of_level(data: Data) -> tuple[str, ...]:
+    """Say that errors are those beside a level.
+
+    Parameters
+    ----------
+    data
+        The records.
+    """
+    if not data.level:
+        return ()
+    return (
+        f"the output is about {data.level:.6g}, far from 0 beside its range: the errors are those "
+        "beside that level, at rest before; a model that is run from a state of 0 takes as long to "
+        "come to it as its dynamics to settle",
+    )
 
 
 def raised_by(fit: Fit, front: Parametrization, level: float) -> Fit:
@@ -59,3 +83,31 @@ def raised_by(fit: Fit, front: Parametrization, level: float) -> Fit:
     theta = fit.solution.theta.copy()
     theta[places[0]] += level / row[places[0]]
     return replace(fit, solution=replace(fit.solution, theta=theta))
+
+
+def at_level(found: IdentifiedHammerstein, fit: Fit, level: float) -> IdentifiedHammerstein:
+    """Give a result beside a level as one of the records as they were measured.
+
+    Parameters
+    ----------
+    found
+        The result.
+    fit
+        With the offset.
+    level
+        Output units.
+    """
+    about = found.description
+    values = found.parameter_values.copy()
+    constants = joint_of(fit).front.template.parameters().names
+    values[found.parameter_names.index(constants[-1])] += level
+    return replace(
+        found,
+        model=fit.operator,
+        hysteresis=joint_of(fit).hysteresis(fit.solution.theta),
+        parameter_values=values,
+        loop=replace(found.loop, v=found.loop.v + level),
+        description=replace(
+            about, output_low=about.output_low + level, output_high=about.output_high + level
+        ),
+    )
