@@ -289,13 +289,15 @@ def _peer(plant: Stage, record: hyst.Record) -> Array:
         late = np.zeros(v.size)
         late[plant.delay :] = (v + p0 * record.u)[: v.size - plant.delay]
         b = [0.0, b1, 1.0 + a1 + a2 - b1]
-        return np.asarray(scipy.signal.lfilter(b, [1.0, a1, a2], late)) + offset
+        y = np.asarray(scipy.signal.lfilter(b, [1.0, a1, a2], late))
+        return np.asarray(y + offset)
 
     truth = np.concatenate([[0.6], FRONT.p, FRONT.r, plant.a[1:], [plant.b[1], 0.0]])
     start = truth * np.where(np.arange(truth.size) < 1 + 2 * names, 1.05, 1.0)
-    return scipy.optimize.least_squares(
+    found = scipy.optimize.least_squares(
         lambda theta: (output(theta) - record.y)[2000:], start, x_scale=np.abs(truth) + 1e-3
-    ).x
+    )
+    return np.asarray(found.x)
 
 
 def bad_input(_: argparse.Namespace) -> None:

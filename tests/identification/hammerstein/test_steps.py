@@ -13,9 +13,9 @@ from hyst.identification.families.hammerstein import (
     average_periods,
     best_linear_approximation,
     fit_markov,
-    markov,
     realize,
 )
+from hyst.identification.families.hammerstein.impulse_response import markov
 from hyst.identification.families.hammerstein.impulse_response.markov import (
     MarkovParameters,
     choose_markov,

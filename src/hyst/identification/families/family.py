@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, ClassVar, Literal, Self, final
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.errors import InputError
 from hyst.identification.families.estimates import Estimates
 from hyst.identification.families.option import AUTO, Option
 from hyst.identification.families.words import Words
@@ -399,28 +398,6 @@ class Fit:
         return problem_of(data, self.parametrization, chosen, self.family.root_weights(data))
 
 
-def require_this_version(family: Family) -> None:
-    """Refuse a family object that was made by another version of hyst.
-
-    Parameters
-    ----------
-    family
-        As it was given.
-
-    Raises
-    ------
-    InputError
-        If an option is missing or unknown, as in an object saved by another version.
-    """
-    known, held = set(type(family).options()), set(vars(family))
-    if known != held:
-        which = ", ".join(sorted(known ^ held))
-        raise InputError(
-            f"the family object {type(family).__name__} was made by another version of hyst (its "
-            f"options differ in {which}); make it anew with hyst.families.{type(family).__name__}"
-        )
-
-
 __all__ = [
     "AUTO",
     "Estimates",
@@ -428,5 +405,4 @@ __all__ = [
     "Fit",
     "Start",
     "Words",
-    "require_this_version",
 ]

@@ -11,7 +11,7 @@ from typing import Any
 
 from hyst.errors import InputError
 from hyst.identification import families as room
-from hyst.identification.families.family import Family, require_this_version
+from hyst.identification.families.family import Family
 from hyst.identification.families.option import Option
 
 AUTO = "auto"
@@ -352,9 +352,20 @@ def _of_this_hyst(family: Family) -> Family:
             f"the family object {type(family).__name__} is none of this hyst; choose one of "
             f"hyst.families: {', '.join(each.__name__ for each in _CLASSES)}"
         )
-    require_this_version(family)
+    _require_this_version(family)
     return replace(family)  # checks the values of an object that was stored
 
 
 def _listed(names: Sequence[str]) -> str:
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} or {names[-1]}"
+
+
+def _require_this_version(family: Family) -> None:
+    """Refuse a family object that was made by another version of hyst."""
+    known, held = set(type(family).options()), set(vars(family))
+    if known != held:
+        which = ", ".join(sorted(known ^ held))
+        raise InputError(
+            f"the family object {type(family).__name__} was made by another version of hyst (its "
+            f"options differ in {which}); make it anew with hyst.families.{type(family).__name__}"
+        )

@@ -134,13 +134,19 @@ class Identified:
     per_record: tuple[RecordErrors, ...]
     motion: tuple[OutputPart, ...]
 
+    def delay_in_words(self) -> str:
+        """Give the delay beside the model, with its interval."""
+        low, high = self.delay_interval
+        open_to = "" if low == high else f" ({low:.3g} to {high:.3g})"
+        return f"delay {self.delay:.4g}{open_to} samples"
+
     def __repr__(self) -> str:
         what = self.family or self.model.kind
         training = self.metrics.get("training")
         missed = "" if training is None else f", {training.rms_percent:.3g} % of range"
         return (
             f"{type(self).__name__}({self.verdict.level}: {self.verdict.sentences[0]!r}; "
-            f"{what}{missed}, delay {self.delay:.4g} samples, {self.status})"
+            f"{what}{missed}, {self.delay_in_words()}, {self.status})"
         )
 
     @property
@@ -335,9 +341,7 @@ class Identified:
         unit = f" {self.description.output_unit}" if self.description.output_unit else ""
         what = f"family {self.family}" if self.family else self.model.kind
         lines = [self.verdict.told()]
-        low, high = self.delay_interval
-        open_to = "" if low == high else f" ({low:.3g} to {high:.3g})"
-        lines += [f"{what}, delay {self.delay:.4g}{open_to} samples, {self.status}"]
+        lines += [f"{what}, {self.delay_in_words()}, {self.status}"]
         lines += [*self._lag_line(), ""]
         for name, each in self.metrics.items():
             lines.append(

@@ -170,7 +170,8 @@ def _settled_behind_best(data: Data, wanted: Wanted) -> tuple[Tried, Wanted]:
 
 def _settled(data: Data, wanted: Wanted) -> Tried:
     """Find dynamics and the hysteresis before them after each other, until none changes."""
-    dynamics = of_gain_one(wanted.search(data, plays=True).dynamics)
+    grid = wanted.search(data, plays=True)
+    dynamics = of_gain_one(grid.dynamics)
     looked = wanted.orders is not None
     found: Tried | None = None
     for _ in range(_ROUNDS):
@@ -180,26 +181,34 @@ def _settled(data: Data, wanted: Wanted) -> Tried:
         if numbers_of(dynamics) == numbers_of(before):
             if looked:
                 break
-            found = _of_best_order(data, wanted, hysteresis, found)
+            found = _of_best_order(data, wanted, hysteresis, found, grid.further)
             dynamics, looked = found.dynamics, True
     assert found is not None, "there is a round"
     return found
 
 
 def _of_best_order(
-    data: Data, wanted: Wanted, hysteresis: Operator | BentPlays, found: Tried
+    data: Data,
+    wanted: Wanted,
+    hysteresis: Operator | BentPlays,
+    found: Tried,
+    further: OnGrid | None,
 ) -> Tried:
-    """Look at other orders; at fewer states with the hysteresis that goes with them."""
+    """Look at other orders; at fewer states, and a pair more, with the hysteresis of their own.
+
+    A hysteresis fitted before too few states bends until it makes up for some of those that lack.
+    """
     settled = settled_dynamics(data, hysteresis, found.dynamics, wanted.delay, ALL)
     best, worth = settled.best, samples_worth(settled.best.errors)
-    for each in settled.near:
-        if each.order >= best.dynamics.order:
-            continue
+    floor = ROUNDING * float(data.measured().var())
+    others = [each for each in settled.near if each.order < best.dynamics.order]
+    if further is not None and further.dynamics.order > best.dynamics.order:
+        others.append(of_gain_one(further.dynamics))
+    for each in others:
         behind = wanted.hysteresis(data, of_gain_one(each))
-        fewer = settled_dynamics(data, behind, each, wanted.delay).best
-        floor = ROUNDING * float(data.measured().var())
-        of_fewer, of_best = (price(t.cost, t.numbers, worth, floor) for t in (fewer, best))
-        best = fewer if of_fewer <= of_best else best
+        other = settled_dynamics(data, behind, each, wanted.delay).best
+        of_other, of_best = (price(t.cost, t.numbers, worth, floor) for t in (other, best))
+        best = other if of_other <= of_best else best
     return best
 
 

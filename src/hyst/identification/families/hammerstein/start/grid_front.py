@@ -36,12 +36,15 @@ class OnGrid:
         Mean squared error over the samples compared.
     errors
         Shape (samples,), what is left of each.
+    further
+        The same with a pair of poles more, which did not pay; None if it was not tried.
     """
 
     dynamics: LinearDynamics
     hysteresis: Operator
     cost: float
     errors: Array
+    further: OnGrid | None = None
 
 
 def grid_front(radii: Array, weights: Array, offset: float) -> Start:

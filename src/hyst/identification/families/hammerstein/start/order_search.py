@@ -6,7 +6,7 @@ A resonance takes two states at once, so an order that grows by one stops before
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
@@ -238,25 +238,31 @@ def search_order(search: Searched, orders: Sequence[int] | None, power: float) -
         if not found:
             raise _nothing()
         return min(found, key=lambda each: each.cost)
-    best = _by_pairs(search.refined, power)
+    best, further = _by_pairs(search.refined, power)
     if best is None:
         raise _nothing()
     fewer = search.refined(best.dynamics.order - 1) if best.dynamics.order > 1 else None
-    return fewer if fewer is not None and fewer.cost <= _AS_GOOD * best.cost else best
+    as_good = fewer is not None and fewer.cost <= _AS_GOOD * best.cost
+    return replace(fewer if fewer is not None and as_good else best, further=further)
 
 
-def _by_pairs(refined: Callable[[int], OnGrid | None], power: float) -> OnGrid | None:
+def _by_pairs(
+    refined: Callable[[int], OnGrid | None], power: float
+) -> tuple[OnGrid | None, OnGrid | None]:
+    """Give the best, and what a pair more gave, which did not pay behind so coarse a grid."""
     best: OnGrid | None = None
+    further: OnGrid | None = None
     idle = 0
     for order in range(2, LARGEST_ORDER + 1, 2):
         found = refined(order)
         if found is not None and (best is None or found.cost < _PAYS * best.cost):
-            best, idle = found, 0
+            best, further, idle = found, None, 0
             continue
         idle += 1
+        further = further or found
         if best is not None and (best.cost < _MUCH * power or idle == 2):
             break
-    return best
+    return best, further
 
 
 def _nothing() -> NotIdentifiableError:

@@ -30,7 +30,7 @@ from hyst.models import LinearDynamics
 _BETTER = 0.97  # of the squared error that plays leave
 _ROUNDS = 4  # of fewer states
 _WALKS = 3  # of dynamics and hysteresis after each other
-_SHAPED = 0.5  # of the samples that what is left is worth: it has a shape
+_SHAPED = 0.8  # of the samples that what is left is worth: below, it has a shape
 _WORTH_SHAPED = 40.0  # a further pair of poles must lower its square by a third
 _TRIAL = 12  # iterations of a fit that may not be the one
 _NEAR, _MOST_NEAR = 1.15, 3  # times the squared error of the best: trials that may be the one

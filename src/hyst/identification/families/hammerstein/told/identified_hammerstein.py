@@ -149,6 +149,11 @@ class IdentifiedHammerstein(Identified):
         """Name of the family of the hysteresis: ``pi``, ``mpi``, ..."""
         return self.front.name
 
+    def delay_in_words(self) -> str:
+        """Give the delay of the dynamics, which is part of the model."""
+        beside = f" and {self.delay:.4g} beside the model" if self.delay else ""
+        return f"delay {self.dynamics.delay} samples in G{beside}"
+
     def to_dict(self) -> dict[str, Any]:
         """Give everything but the model as plain numbers and text.
 
