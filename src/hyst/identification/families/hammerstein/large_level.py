@@ -98,6 +98,8 @@ def at_level(found: IdentifiedHammerstein, fit: Fit, level: float) -> Identified
         Output units.
     """
     about = found.description
+    ends = (about.output_low, about.output_high)
+    low, high = (None if each is None else each + level for each in ends)
     values = found.parameter_values.copy()
     constants = joint_of(fit).front.template.parameters().names
     values[found.parameter_names.index(constants[-1])] += level
@@ -107,7 +109,5 @@ def at_level(found: IdentifiedHammerstein, fit: Fit, level: float) -> Identified
         hysteresis=joint_of(fit).hysteresis(fit.solution.theta),
         parameter_values=values,
         loop=replace(found.loop, v=found.loop.v + level),
-        description=replace(
-            about, output_low=about.output_low + level, output_high=about.output_high + level
-        ),
+        description=replace(about, output_low=low, output_high=high),
     )
