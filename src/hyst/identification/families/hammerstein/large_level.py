@@ -19,7 +19,7 @@ from hyst.identification.families.hammerstein.told.identified_hammerstein import
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.record_use.used_samples import Data, beside_level
 
-_LARGE = 2.0  # times the range of the output
+_LARGE = 1.0  # times the range of the output: it does not come near 0
 
 
 def without_large_level(data: Data) -> Data:
