@@ -79,8 +79,7 @@ def behind_dynamics(
     """
     a = np.atleast_1d(np.poly(dynamics.A).real)
     columns, targets = [], []
-    for each, window, output in zip(shapes, data.windows(), data.outputs(), strict=True):
-        shape = each - each[0]  # as if at rest before: what the delay held is no state
+    for shape, window, output in zip(shapes, data.windows(), data.outputs(), strict=True):
         answers = np.asarray(dynamics(np.ascontiguousarray(shape.T))).T[window]
         own = orthonormal(free_response(a, output.size))
         columns.append(answers - own @ (own.T @ answers))

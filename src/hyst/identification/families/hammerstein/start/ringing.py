@@ -27,8 +27,6 @@ Array = NDArray[np.float64]
 _OVER = 1e-10  # of what a state begins with
 _MOST_LEVELS = 4  # of the hysteresis before a record: an actuator at rest has one
 
-_LARGE = 0.5  # of the output's range
-
 
 @final
 @dataclass(frozen=True, eq=False)
@@ -152,18 +150,5 @@ def without_ringing(data: Data, fit: Fit) -> Data:
     left = data.measured() - model_output(data, fit.operator)
     coefficients = Beside(data, nuisances).at(fit.solution.theta).coefficients(left)
     taken = over_whole_records(data, nuisances, fit.solution.theta, coefficients)
-    records, starts = [], []
-    ends = zip(data.records, data.windows(), data.whole_lags(), strict=True)
-    for part, (record, window, late) in zip(taken, ends, strict=True):
-        start = window.start + _while_large(part[window.start + late :], record.y)
-        start = start if 2 * (start - window.start) < len(record) else window.start
-        here = np.arange(len(record)) < start + late
-        records.append(replace(record, y=np.where(here, record.y, record.y - part)))
-        starts.append(start)
-    return replace(data, records=tuple(records), starts=tuple(starts))
-
-
-def _while_large(part: Array, y: Array) -> int:
-    """Give how long what is taken out is of the output's size: beside it all would seem small."""
-    large = np.flatnonzero(np.abs(part) > _LARGE * float(np.ptp(y)))
-    return int(large[-1]) + 1 if large.size else 0
+    pairs = zip(data.records, taken, strict=True)
+    return replace(data, records=tuple(replace(each, y=each.y - part) for each, part in pairs))
