@@ -156,8 +156,6 @@ def identify(
         )
         identified = creeping.told(identified)
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
-        if found.data.level:
-            told = found.fit.family.with_level(told, found.fit, found.data)
     return traced(told, given, asked)
 
 

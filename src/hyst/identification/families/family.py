@@ -304,20 +304,6 @@ class Family(ABC):
             fit.parametrization.transform[free],
         )
 
-    def with_level(self, identified: Identified, fit: Fit, data: Data) -> Identified:
-        """Give a result of records that a level was taken out of as one of the records themselves.
-
-        Parameters
-        ----------
-        identified
-            The result.
-        fit
-            The final fit, in the user's units.
-        data
-            Its records; only a family whose records to use have a level is asked.
-        """
-        return identified
-
     def without_past(self, fit: Fit, data: Data) -> Data:
         """Give the records without what a past that nobody knows has left in them.
 

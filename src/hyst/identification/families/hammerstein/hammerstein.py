@@ -373,14 +373,13 @@ class Hammerstein(Family):
 
     def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
         """Add the parts, the impulse response, the poles and the loop."""
-        return identified_with_dynamics(
+        found = identified_with_dynamics(
             identified, fit, self.hysteresis_family, finest(overview), self.fir_order
         )
-
-    def with_level(self, identified: Identified, fit: Fit, data: Data) -> Identified:
-        """Give the offset of the hysteresis what was taken out of the output: G has gain 1."""
-        assert isinstance(identified, IdentifiedHammerstein), "result made it"
-        return at_level(identified, raised_by(fit, joint_of(fit).front, data.level), data.level)
+        level = overview.data.level
+        return (
+            at_level(found, raised_by(fit, joint_of(fit).front, level), level) if level else found
+        )
 
     def without_past(self, fit: Fit, data: Data) -> Data:
         """Take out what the unknown state of the dynamics before each record left in it."""
