@@ -21,7 +21,7 @@ from hyst.identification.lag.found_lag import as_lag, found_with_lag, search_bes
 from hyst.identification.options import Options, listed, silent
 from hyst.identification.record_use.cleaned import Cleaned, as_drift, cleaned
 from hyst.identification.record_use.overview import Overview
-from hyst.identification.record_use.used_samples import require_same_units
+from hyst.identification.record_use.used_samples import beside_level, require_same_units
 from hyst.identification.result.identified import Identified
 from hyst.identification.result.identified_from_fit import identified_from_fit, traced
 from hyst.identification.search import Found, find
@@ -148,7 +148,7 @@ def identify(
             found.data,
             found.fit,
             found.candidates,
-            judged,
+            beside_level(judged, found.data),
             found.notes,
             diagnosis,
             [each.operator for each in found.rivals],

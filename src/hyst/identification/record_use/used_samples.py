@@ -78,6 +78,8 @@ class Data:
     past
         Shape (N,) for each record: what a past that nobody knows left in its y, taken out of it;
         empty where nothing was.
+    level
+        What was taken out of every y, output units, for the fit alone.
     """
 
     records: tuple[Record, ...]
@@ -91,6 +93,7 @@ class Data:
     smoothers: tuple[Smoother | None, ...] = ()
     keeps_corners: bool = True
     past: tuple[Array, ...] = ()
+    level: float = 0.0
 
     @property
     def largest_radius(self) -> float:
@@ -243,6 +246,7 @@ class Data:
                 None if each is None else each * output_scale for each in self.disturbances
             ),
             measured_inputs=tuple(u * input_scale for u in self.measured_inputs),
+            level=self.level * output_scale,
             smoothers=tuple(
                 None if each is None else replace(each, noise=each.noise * input_scale)
                 for each in self.smoothers
@@ -316,6 +320,21 @@ def prepare(
     else:
         starts, settled = (_as_start(start, given),) * len(given), True
     return Data(given, starts, 0.0, half_range, settled).delayed(lag)
+
+
+def beside_level(records: Sequence[Record], data: Data) -> list[Record]:
+    """Give records without what was taken out of the y of others.
+
+    Parameters
+    ----------
+    records
+        As they were measured.
+    data
+        The others.
+    """
+    if not data.level:
+        return list(records)
+    return [replace(each, y=each.y - data.level) for each in records]
 
 
 def require_same_units(records: Sequence[Record]) -> None:

@@ -45,7 +45,16 @@ from hyst.identification.families.hammerstein.known.held_front import (
 from hyst.identification.families.hammerstein.known.known_front import behind_known
 from hyst.identification.families.hammerstein.known.known_start import settled, told_of_delay
 from hyst.identification.families.hammerstein.known.known_starts import known_starts
-from hyst.identification.families.hammerstein.record_checks import flat_tops
+from hyst.identification.families.hammerstein.large_level import (
+    at_level,
+    raised_by,
+    told_of_level,
+    without_large_level,
+)
+from hyst.identification.families.hammerstein.record_checks import (
+    flat_tops,
+    require_samples,
+)
 from hyst.identification.families.hammerstein.start.first_guess_of_plays import (
     Wanted,
     first_dynamics_of_plays,
@@ -178,7 +187,10 @@ class Hammerstein(Family):
             start = int(self.period)
         at_one = at_one_sample_time(records, None if self.dynamics is None else self.dynamics.dt)
         data = at_one.prepared(start)
-        doubts = at_one.notes + flat_tops(records)
+        if self.front is None and not isinstance(self.hysteresis_family, CreepingFront):
+            data = without_large_level(data)
+        require_samples(data)
+        doubts = at_one.notes + flat_tops(records) + told_of_level(data)
         if self.dynamics is not None:
             dt = data.records[0].dt
             data = settled(data, self.dynamics.at(dt)) if start == AUTO else data
@@ -365,8 +377,12 @@ class Hammerstein(Family):
 
     def result(self, identified: Identified, fit: Fit, overview: Overview) -> Identified:
         """Add the parts, the impulse response, the poles and the loop."""
-        return identified_with_dynamics(
+        found = identified_with_dynamics(
             identified, fit, self.hysteresis_family, finest(overview), self.fir_order
+        )
+        level = overview.data.level
+        return (
+            at_level(found, raised_by(fit, joint_of(fit).front, level), level) if level else found
         )
 
     def without_past(self, fit: Fit, data: Data) -> Data:

@@ -8,8 +8,8 @@ and dynamics, is a gauge: the dynamics' gain at rest is 1.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from typing import Self
 
 import numpy as np
@@ -23,7 +23,6 @@ from hyst.models import LinearDynamics
 from hyst.operators import Operator
 
 Array = NDArray[np.float64]
-Gauges = Callable[[Array], tuple[Array, Array]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,11 +118,11 @@ def joint(front: Start, base: LinearDynamics) -> Start:
         fixed=np.concatenate([hysteresis.fixed, fixed]),
         lower=np.concatenate([hysteresis.lower, -free]),
         upper=np.concatenate([hysteresis.upper, free]),
-        canonical=_canonical(hysteresis),
-        gauges=_gauges(hysteresis, base, feedthrough),
+        canonical=partial(_canonical, hysteresis),
+        gauges=partial(_gauges, hysteresis, base, feedthrough),
         gauge_count=1 + hysteresis.gauge_count,
         nuisances=Nuisances((Ringing(base, first),)) if n else None,
-        is_allowed=_is_allowed(hysteresis, base, feedthrough),
+        is_allowed=partial(_is_allowed, hysteresis, base, feedthrough),
         front=hysteresis,
         base=base,
         feedthrough=feedthrough,
@@ -156,41 +155,32 @@ def _matrices(theta: Array, base: LinearDynamics, feedthrough: bool) -> tuple[Ar
     return base.A + np.outer(base.B, k), c, float(d[0]) if feedthrough else 0.0
 
 
-def _canonical(front: Parametrization) -> Callable[[Array], Array]:
-    def canonical(theta: Array) -> Array:
-        return np.concatenate([front.canonical(theta[: front.size]), theta[front.size :]])
-
-    return canonical
+def _canonical(front: Parametrization, theta: Array) -> Array:
+    return np.concatenate([front.canonical(theta[: front.size]), theta[front.size :]])
 
 
 def _is_allowed(
-    front: Parametrization, base: LinearDynamics, feedthrough: bool
-) -> Callable[[Array], bool]:
+    front: Parametrization, base: LinearDynamics, feedthrough: bool, theta: Array
+) -> bool:
     """No model of a stable actuator is unstable."""
-
-    def is_allowed(theta: Array) -> bool:
-        A, _, _ = _matrices(theta[front.size :], base, feedthrough)
-        stable = bool(np.abs(np.linalg.eigvals(A)).max(initial=0.0) < 1.0)
-        return stable and (front.is_allowed is None or front.is_allowed(theta[: front.size]))
-
-    return is_allowed
+    A, _, _ = _matrices(theta[front.size :], base, feedthrough)
+    stable = bool(np.abs(np.linalg.eigvals(A)).max(initial=0.0) < 1.0)
+    return stable and (front.is_allowed is None or front.is_allowed(theta[: front.size]))
 
 
-def _gauges(front: Parametrization, base: LinearDynamics, feedthrough: bool) -> Gauges:
+def _gauges(
+    front: Parametrization, base: LinearDynamics, feedthrough: bool, theta: Array
+) -> tuple[Array, Array]:
     n, first = base.order, front.size
-
-    def gauges(theta: Array) -> tuple[Array, Array]:
-        A, C, D = _matrices(theta[first:], base, feedthrough)
-        x = np.linalg.solve(np.eye(n) - A, base.B)
-        row = np.zeros((1, theta.size))
-        row[0, first : first + n] = float(C @ x) * x
-        row[0, first + n : first + 2 * n] = x
-        row[0, first + 2 * n :] = 1.0
-        value = np.array([float(C @ x) + D - 1.0])
-        if front.gauges is None:
-            return value, row
-        more, rows = front.gauges(theta[:first])
-        rows = np.pad(rows, ((0, 0), (0, theta.size - first)))
-        return np.concatenate([value, more]), np.concatenate([row, rows])
-
-    return gauges
+    A, C, D = _matrices(theta[first:], base, feedthrough)
+    x = np.linalg.solve(np.eye(n) - A, base.B)
+    row = np.zeros((1, theta.size))
+    row[0, first : first + n] = float(C @ x) * x
+    row[0, first + n : first + 2 * n] = x
+    row[0, first + 2 * n :] = 1.0
+    value = np.array([float(C @ x) + D - 1.0])
+    if front.gauges is None:
+        return value, row
+    more, rows = front.gauges(theta[:first])
+    rows = np.pad(rows, ((0, 0), (0, theta.size - first)))
+    return np.concatenate([value, more]), np.concatenate([row, rows])

@@ -92,7 +92,7 @@ def settled_dynamics(
     """
     behind = driven_by(data, hysteresis)
     nearest = _at_best_delay(behind, dynamics, delay)
-    tried = [nearest, *_without_feedthrough(behind, nearest.dynamics)]
+    tried = [nearest, *_without_feedthrough(behind, nearest.dynamics, delay)]
     if steps:
         tried += _of_other_orders(behind, [dynamics.order + each for each in steps], delay)
     tried = [each for each in tried if np.isfinite(each.cost)] or [nearest]
@@ -176,7 +176,7 @@ def _of_other_orders(data: Data, orders: Sequence[int], delay: int | None) -> It
         found = search.refined(each) if 0 < each <= LARGEST_ORDER else None
         if found is not None:
             yield _tried(found, feedthrough=True)
-            yield from _without_feedthrough(data, found.dynamics)
+            yield from _without_feedthrough(data, found.dynamics, delay)
 
 
 def _at_best_delay(data: Data, dynamics: LinearDynamics, delay: int | None) -> Tried:
@@ -202,8 +202,11 @@ def _delayed(dynamics: LinearDynamics, delay: int) -> LinearDynamics:
     return LinearDynamics(G.A, G.B, G.C, G.D, G.dt, delay)
 
 
-def _without_feedthrough(data: Data, dynamics: LinearDynamics) -> Iterable[Tried]:
-    for each in range(max(dynamics.delay - 1, 0), dynamics.delay + 1):
+def _without_feedthrough(
+    data: Data, dynamics: LinearDynamics, delay: int | None
+) -> Iterable[Tried]:
+    last = dynamics.delay
+    for each in range(max(last - 1, 0), last + 1) if delay is None else (delay,):
         moved = LinearDynamics(dynamics.A, dynamics.B, dynamics.C, 0.0, dynamics.dt, each)
         yield _refined(data, moved, feedthrough=False)
 

@@ -57,6 +57,7 @@ def spread(data: Data, samples: int) -> Data:
         smoothers=tuple(smoothers) if data.smoothers else (),
         disturbances=(),
         measured_inputs=(),
+        past=(),
     )
 
 
