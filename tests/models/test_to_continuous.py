@@ -79,8 +79,8 @@ def test_python_control_samples_it_to_what_it_was() -> None:
     assert sampled(np.exp(2j * np.pi * f * dt)) == pytest.approx(ours, rel=1e-8)
     late = LinearDynamics.from_continuous(num, den, dt, 2.5).to_continuous()
     w = 2.0 * np.pi * 100.0
-    # Pade of order 3 is right to (w T / 2)^7 of some thousandths: 1e-12 at w T = 0.16; the logarithm
-    # and the exponential of matrices of norm 1e7 dt leave some 1e-9, by the kernels of the BLAS.
+    # Pade of order 3 is right to (w T / 2)^7 of some thousandths: 1e-12 at w T = 0.16; a logarithm
+    # and an exponential of matrices of norm 1e7 dt leave some 1e-9, by the kernels of the BLAS.
     assert late.to_control(pade=3)(1j * w) == pytest.approx(
         late.frequency_response(100.0)[0], rel=1e-8
     )
