@@ -37,6 +37,7 @@ from benchmarks.resonant_records import (
     measured,
     multisine,
     stage,
+    with_feedback,
 )
 from hyst.identification.families.hammerstein import fit_markov, realize
 from hyst.studies import s1_robust_tracking as s1
@@ -336,7 +337,7 @@ def _bad() -> Iterator[tuple[str, hyst.Record]]:
         most = share * np.abs(record.y).max()
         yield name, hyst.Record(record.u, np.clip(record.y, -most, most), record.dt)
     for share in (0.2, 0.5):
-        y = with_feedback(broad, share)
+        y = with_feedback(broad, share, 1e-4)
         y = y + 0.01 * y.std() * np.random.default_rng(1).normal(size=y.size)
         yield f"hysteresis in a loop, {share:g}", hyst.Record(broad, y, 1e-4)
     yield "noise alone", hyst.Record(broad, np.random.default_rng(1).normal(size=SAMPLES), 1e-4)
@@ -346,19 +347,3 @@ def _with_zeros() -> tuple[Array, Array]:
     plant = stage(FRONT, [(200.0, 0.03)], 1e-4)
     zeros = np.array([1.0, -2.0 * np.cos(2.0 * np.pi * 0.05), 1.0])
     return np.convolve(zeros / zeros.sum(), [plant.a.sum()]), plant.a
-
-
-def with_feedback(u: Array, share: float) -> Array:
-    """Simulate a mass on springs of which a share slides: the hysteresis is in the loop."""
-    w, parts = 2.0 * np.pi * 200.0, 8
-    h = 1e-4 / parts
-    r, p, z = (0.5, 1.5, 3.0, 5.0), (0.6, 0.5, 0.5, 0.4), [0.0] * 4
-    y, v, out = 0.0, 0.0, np.empty_like(u)
-    for k, now in enumerate(u.tolist()):
-        for _ in range(parts):
-            z = [max(y - a, min(y + a, b)) for a, b in zip(r, z, strict=True)]
-            force = sum(a * (y - b) for a, b in zip(p, z, strict=True))
-            v += h * (w * w * (now - (1.0 - share) * y - share * force) - 0.06 * w * v)
-            y += h * v
-        out[k] = y
-    return out

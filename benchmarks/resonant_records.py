@@ -172,6 +172,22 @@ def balanced(dynamics: LinearDynamics) -> LinearDynamics:
     return LinearDynamics(*moved, dynamics.D, dynamics.dt, dynamics.delay)
 
 
+def with_feedback(u: Array, share: float, dt: float) -> Array:
+    """Simulate a mass on springs of which a share slides: the hysteresis is in the loop."""
+    w, parts = 2.0 * np.pi * 200.0, 8
+    h = dt / parts
+    r, p, z = (0.5, 1.5, 3.0, 5.0), (0.6, 0.5, 0.5, 0.4), [0.0] * 4
+    y, v, out = 0.0, 0.0, np.empty_like(u)
+    for k, now in enumerate(u.tolist()):
+        for _ in range(parts):
+            z = [max(y - a, min(y + a, b)) for a, b in zip(r, z, strict=True)]
+            force = sum(a * (y - b) for a, b in zip(p, z, strict=True))
+            v += h * (w * w * (now - (1.0 - share) * y - share * force) - 0.06 * w * v)
+            y += h * v
+        out[k] = y
+    return out
+
+
 def _second(frequency: float, damping: float) -> list[float]:
     w = 2.0 * np.pi * frequency
     return [1.0 / w**2, 2.0 * damping / w, 1.0]

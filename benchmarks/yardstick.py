@@ -11,6 +11,7 @@ import scipy.signal
 from numpy.typing import NDArray
 
 import hyst
+from benchmarks.resonant_records import balanced, with_feedback
 from hyst.identification.families.hammerstein.joint import joint
 from hyst.identification.families.hammerstein.yardstick.yardstick import (
     Stretch,
@@ -73,8 +74,8 @@ def _plants() -> Iterator[Plant]:
     yield "Bouc-Wen as Bouc-Wen", one @ BOUC_WEN, BOUC_WEN, one
     yield "Bouc-Wen as five plays", one @ BOUC_WEN, GUESS, one
     yield "Dahl as five plays", one @ hyst.Dahl(1.5, 1.0), GUESS, one
-    yield "feedback of sliding elements, 0.5", lambda u: _with_feedback(u, 0.5), GUESS, soft
-    yield "feedback of sliding elements, 0.2", lambda u: _with_feedback(u, 0.2), GUESS, soft
+    yield "feedback of sliding elements, 0.5", lambda u: with_feedback(u, 0.5, DT), GUESS, soft
+    yield "feedback of sliding elements, 0.2", lambda u: with_feedback(u, 0.2, DT), GUESS, soft
     yield "dynamics before hysteresis", FRONT @ one, GUESS, one
 
 
@@ -85,35 +86,7 @@ def _modes(*pairs: tuple[float, float]) -> LinearDynamics:
         continuous = ([w * w], [1.0, 2.0 * damping * w, w * w])
         numerator, denominator, _ = scipy.signal.cont2discrete(continuous, DT)
         b, a = np.convolve(b, numerator.ravel()), np.convolve(a, denominator)
-    return _balanced(LinearDynamics.from_transfer_function(b, a, DT, 3))
-
-
-def _balanced(dynamics: LinearDynamics) -> LinearDynamics:
-    """Give the same dynamics in coordinates in which a fit is well conditioned."""
-    A, B, C = dynamics.A, dynamics.B[:, None], dynamics.C[None]
-    seen = scipy.linalg.solve_discrete_lyapunov(A.T, C.T @ C, "bilinear")
-    root = np.linalg.cholesky(scipy.linalg.solve_discrete_lyapunov(A, B @ B.T, "bilinear"))
-    u, s, _ = np.linalg.svd(root.T @ seen @ root)
-    T = root @ u / s**0.25
-    back = np.linalg.inv(T)
-    moved = back @ A @ T, back @ dynamics.B, dynamics.C @ T
-    return LinearDynamics(*moved, dynamics.D, dynamics.dt, dynamics.delay)
-
-
-def _with_feedback(u: Array, share: float) -> Array:
-    """Simulate a mass on springs of which a share slides: the hysteresis is in the loop."""
-    w, parts = 2.0 * np.pi * 200.0, 8
-    h = DT / parts
-    r, p, z = (0.5, 1.5, 3.0, 5.0), (0.6, 0.5, 0.5, 0.4), [0.0] * 4
-    y, v, out = 0.0, 0.0, np.empty_like(u)
-    for k, now in enumerate(u.tolist()):
-        for _ in range(parts):
-            z = [max(y - a, min(y + a, b)) for a, b in zip(r, z, strict=True)]
-            force = sum(a * (y - b) for a, b in zip(p, z, strict=True))
-            v += h * (w * w * (now - (1.0 - share) * y - share * force) - 0.06 * w * v)
-            y += h * v
-        out[k] = y
-    return out
+    return balanced(LinearDynamics.from_transfer_function(b, a, DT, 3))
 
 
 def _fitted(

@@ -37,21 +37,26 @@ def identified(record: Record, **options: Any) -> IdentifiedHammerstein:
     return found
 
 
-def require_creep(found: IdentifiedHammerstein) -> None:
-    """Within four standard errors, which say something: one run in some thousands fails."""
+def off_in_standard_errors(found: IdentifiedHammerstein) -> tuple[float, float]:
+    """Give the largest error of the lags over its standard error, and that over the truth."""
     values = dict(zip(found.parameter_names, found.parameter_values, strict=True))
     errors = dict(zip(found.parameter_names, found.standard_errors, strict=True))
+    off, unsure = [], []
     for name, truth in (("weights", WEIGHTS), ("time_constants", TIMES)):
         for i, true in enumerate(truth, 1):
             key = f"creep.{name}[{i}]"
-            assert abs(values[key] - true) < 4.0 * errors[key] < 0.5 * true, key
+            off.append(abs(values[key] - true) / errors[key])
+            unsure.append(errors[key] / true)
+    return max(off), max(unsure)
 
 
 @pytest.mark.parametrize("more", [{}, {"dynamics": RESONANCE}], ids=["free", "dynamics known"])
 def test_creep_and_a_resonance_come_back(more: dict[str, Any]) -> None:
     plant = RESONANCE @ CREEP @ PI
     found = identified(record_of(plant), creep=2, radii=RADII, **more)
-    require_creep(found)
+    off, unsure = off_in_standard_errors(found)
+    assert off < 4.0  # one run in some thousands fails
+    assert unsure < 0.125  # or the errors would say nothing
     assert found.dynamics.order == 2
     assert np.sort_complex(found.poles) == pytest.approx(
         np.sort_complex(RESONANCE.poles()), abs=1e-3
@@ -71,7 +76,9 @@ def test_without_creep_the_same_record_is_far_off() -> None:
 def test_a_lag_of_the_amplifier_stays_with_the_dynamics() -> None:
     plant = RESONANCE @ AMPLIFIER @ CREEP @ PI
     found = identified(record_of(plant), creep=2, radii=RADII, state_order=3)
-    require_creep(found)
+    off, unsure = off_in_standard_errors(found)
+    assert off < 4.0  # one run in some thousands fails
+    assert unsure < 0.125  # or the errors would say nothing
     real = found.poles[np.abs(found.poles.imag) < 1e-9].real
     assert -DT / np.log(real.max()) == pytest.approx(0.003, rel=0.02)
 
@@ -80,7 +87,9 @@ def test_what_lags_did_before_the_record_is_none_of_the_hysteresis() -> None:
     """The record begins in the middle: the lags are not at rest then, and nobody knows where."""
     plant = RESONANCE @ CREEP @ PI
     found = identified(record_of(plant, first=3000), creep=2, radii=RADII, dynamics=RESONANCE)
-    require_creep(found)
+    off, unsure = off_in_standard_errors(found)
+    assert off < 4.0  # one run in some thousands fails
+    assert unsure < 0.125  # or the errors would say nothing
 
 
 def test_known_hysteresis_creeps_too() -> None:
@@ -88,7 +97,9 @@ def test_known_hysteresis_creeps_too() -> None:
     record = record_of(plant)
     found = hyst.identify(record, family="hammerstein", front=PI, dynamics=RESONANCE, creep=2)
     assert isinstance(found, IdentifiedHammerstein)
-    require_creep(found)
+    off, unsure = off_in_standard_errors(found)
+    assert off < 4.0  # one run in some thousands fails
+    assert unsure < 0.125  # or the errors would say nothing
 
 
 def test_creep_that_is_not_there_has_no_weight() -> None:
