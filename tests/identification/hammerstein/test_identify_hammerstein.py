@@ -13,6 +13,8 @@ import hyst
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.families.hammerstein import IdentifiedHammerstein
 from hyst.identification.families.hammerstein.impulse_response.markov import choose_markov
+from hyst.identification.families.hammerstein.start.dense_plays import dense_plays
+from hyst.identification.record_use.used_samples import prepare
 from hyst.models import LinearDynamics
 from hyst.report.words import in_short
 from hyst.signals import Record, multisine
@@ -339,3 +341,14 @@ def test_shares_of_the_output_are_of_the_measured_one_where_the_record_began_at_
     assert error.nrmse_fit_percent == pytest.approx(fit, abs=0.1)  # of a noise of 0.05
     assert (about.output_low, about.output_high) == pytest.approx((y.min(), y.max()), rel=1e-9)
     assert found.verdict.level == "good"
+
+
+def test_a_play_that_stands_still_in_the_samples_used_gets_no_weight() -> None:
+    """What is left of it beside a constant is rounding, which any weight would blow up."""
+    k = np.arange(6000)
+    u = np.where(k < 400, 10.0 * np.sin(0.05 * k), 5.0 * np.sin(0.05 * k) * np.cos(0.011 * k))
+    data = prepare(Record(u, (G @ PI)(u), DT), start=1000)
+    found = dense_plays(data, G)
+    assert np.abs(found.parameters().values).max() < 10.0  # the radii themselves
+    # Forty even radii for three of any size: a hundredth of the range between them.
+    assert np.ptp((found(u) - PI(u))[1000:]) < 0.02 * np.ptp(PI(u))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from hyst.identification.families.hammerstein.impulse_response.first_dynamics import shortened
 from hyst.identification.families.hammerstein.start.output_error import (
+    NOTHING,
     free_response,
     orthonormal,
     solve_scaled,
@@ -66,7 +67,8 @@ def behind_dynamics(
 ) -> tuple[Array, Array]:
     """Give what the dynamics answer to each column, and the output, over the windows.
 
-    What an unknown state leaves in each record, and a constant, are taken out of both.
+    What an unknown state leaves in each record, and a constant, are taken out of both; a column of
+    which nothing but rounding is left is 0.
 
     Parameters
     ----------
@@ -84,4 +86,9 @@ def behind_dynamics(
         own = orthonormal(free_response(a, output.size))
         columns.append(answers - own @ (own.T @ answers))
         targets.append(output - own @ (own.T @ output))
-    return data.joined(columns), data.joined(targets)
+    joined = data.joined(columns)
+    size = np.linalg.norm(joined, axis=0)
+    joined[:, size <= NOTHING * size.max(initial=0.0)] = (
+        0.0  # plays that stand still have no weight
+    )
+    return joined, data.joined(targets)

@@ -17,6 +17,9 @@ from hyst.identification.families.hammerstein.start.play_inputs import Piece
 
 Array = NDArray[np.float64]
 
+NOTHING = 1e-9
+"""Of the largest column: less is the rounding of one that stands still."""
+
 _RIDGE = 1e-10  # of the scaled normal matrix, which is nearly singular where a drive says little
 _INSIDE = 0.9995  # where a pole outside the unit circle is put
 _FIRST_JUDGED = 3  # round whose error is looked at; the first ones are on their way
@@ -173,10 +176,12 @@ def solve_scaled(normal: Array, moment: Array, ridge: float = _RIDGE) -> Array |
         Added to the diagonal of the scaled matrix.
     """
     scale = np.sqrt(np.maximum(np.diag(normal), 0.0))
-    scale = np.where(scale > 0.0, scale, 1.0)
-    matrix = normal / np.outer(scale, scale) + ridge * np.eye(scale.size)
+    moves = scale > NOTHING * scale.max(initial=0.0)  # what stands still has no coefficient
+    scale = np.where(moves, scale, 1.0)
+    matrix = np.where(np.outer(moves, moves), normal, 0.0) / np.outer(scale, scale)
+    matrix += ridge * np.eye(scale.size)
     try:
-        solution = np.linalg.solve(matrix, moment / scale) / scale
+        solution = np.linalg.solve(matrix, np.where(moves, moment, 0.0) / scale) / scale
     except np.linalg.LinAlgError:
         return None
     return np.asarray(solution) if np.isfinite(solution).all() else None
