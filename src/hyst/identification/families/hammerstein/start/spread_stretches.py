@@ -16,6 +16,7 @@ from hyst.signals import Record
 Array = NDArray[np.float64]
 
 _EVEN, _STRONGEST = 6, 6
+_PLACES = 16
 _NOT_WORTH = 1.5  # times the samples wanted: all are taken
 _FEWEST = 6  # of a record whose memory settles just before them, or its beginning serves
 
@@ -23,7 +24,7 @@ _FEWEST = 6  # of a record whose memory settles just before them, or its beginni
 def spread(data: Data, samples: int) -> Data:
     """Give stretches of the records, each with as much before it as settles its memory.
 
-    Where few can have it, as with random drives, the beginning of the record is taken.
+    Where few can have it, as with random drives, one stretch is taken.
 
     Parameters
     ----------
@@ -74,9 +75,21 @@ def _stretches_of(data: Data, number: int, samples: int) -> list[tuple[int, int,
     chosen = sorted(even | set(strongest[:_STRONGEST]))
     pasts = [(_past_of(record, places[i], length), places[i]) for i in chosen]
     found = [(past, first, first + length) for past, first in pasts if past is not None]
-    if len(found) < _FEWEST:  # a random drive, whose beginning shows what all of it does
-        return [(0, window.start, min(window.start + samples, window.stop))]
+    if len(found) < _FEWEST:  # a random drive, of which one part shows what all of it does
+        return [_with_shortest_past(record, window, samples)]
     return found
+
+
+def _with_shortest_past(record: Record, window: slice, samples: int) -> tuple[int, int, int]:
+    """Give one stretch, where the least before it settles its memory: all of that is run, too."""
+    last = max(window.stop - samples, window.start)
+    firsts = np.unique(np.linspace(window.start, last, _PLACES).astype(int)).tolist()
+    pasts = [(_past_of(record, each, each), each) for each in firsts]
+    known = [(first - past, past, first) for past, first in pasts if past is not None]
+    if not known:
+        return 0, window.start, min(window.start + samples, window.stop)
+    _, past, first = min(known)
+    return past, first, min(first + samples, window.stop)
 
 
 def _past_of(record: Record, first: int, longest: int) -> int | None:
