@@ -20,6 +20,7 @@ from hyst.control.infinity_norm import hinf_norm
 from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
 from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.loop_system import closed_loop_poles
+from hyst.control.python_control import closed_loop_system, to_nlsys
 from hyst.control.tracking_controller import TrackingController
 
 __all__ = [
@@ -35,6 +36,7 @@ __all__ = [
     "TrackingController",
     "as_linear_system",
     "closed_loop_poles",
+    "closed_loop_system",
     "compare_inverses",
     "design_disturbance_observer",
     "discretize",
@@ -46,6 +48,7 @@ __all__ = [
     "observer_problem",
     "simulate_closed_loop",
     "slope_margin",
+    "to_nlsys",
     "uncertainty_used",
 ]
 
