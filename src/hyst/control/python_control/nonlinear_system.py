@@ -72,7 +72,8 @@ def to_nlsys(
     >>> import control
     >>> from hyst import Play
     >>> backlash = to_nlsys(Play(0.5), dt=0.1)
-    >>> control.input_output_response(backlash, [0.0, 0.1, 0.2], [1.0, 2.0, 1.8]).outputs.tolist()
+    >>> t, u = 0.1 * np.arange(3), [1.0, 2.0, 1.8]
+    >>> control.input_output_response(backlash, t, u).outputs.tolist()
     [0.5, 1.5, 1.5]
     """
     read = sampled_block(block, watch)
