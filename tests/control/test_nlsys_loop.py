@@ -56,6 +56,7 @@ CASES: dict[str, dict[str, Any]] = {
     },
     "with a plant of python-control": {"plant": control.tf(*s1.mode(*s1.MODES[0]))},
     "with a plant that answers at once": {"plant": ([1.0, 2000.0], [1.0, 4000.0])},
+    "with a delay of computation": {"delay": 1.6 * DT},
     "with a plant that is a gain": {"plant": 0.2},
 }
 
@@ -191,6 +192,13 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "a nonlinear plant of another dt": (
         {"plant": control.nlsys(lambda t, x, u, p: u, None, inputs=1, states=1, dt=2.0 * DT)},
         "the plant has dt = 0.001 s, the loop 0.0005 s",
+    ),
+    "a delay before a nonlinear plant": (
+        {
+            "plant": control.nlsys(lambda t, x, u, p: u, None, inputs=1, states=1, dt=DT),
+            "delay": DT,
+        },
+        "cannot be put into a plant of your own",
     ),
     "a hysteresis of another dt": ({"hysteresis": PLAIN}, "dt = 0.0005 s, the model 0.001 s"),
     "no hysteresis": ({"hysteresis": 3.0}, "the hysteresis is float; give what hyst has for it"),

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_sample_time
-from hyst.control.linear_system import _python_control
-from hyst.control.loop_system import held_step, plant_of
+from hyst.control.linear_system import LinearSystem, _python_control
 from hyst.control.python_control.nonlinear_system import system_of, to_nlsys
 from hyst.control.python_control.sampled_block import SampledBlock
+from hyst.control.sampled.plant import sampled_plant
 from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError
 from hyst.operators import Affine, Operator
@@ -26,6 +26,7 @@ def closed_loop_system(
     plant: Any,
     hysteresis: Any = None,
     disturbance_at: Place = "hysteresis",
+    delay: float = 0.0,
     dt: float | None = None,
     name: str = "loop",
 ) -> Any:
@@ -36,9 +37,9 @@ def closed_loop_system(
     instead, so that anything python-control can express is put into the loop.
 
     At every sample the block acts on y as it is before its new drive does, so nothing has to be
-    solved for. A plant that answers at once would close an algebraic loop, which python-control
-    refuses ("algebraic loop detected"); a linear one therefore shows w of the sample before, as it
-    does in ``simulate_closed_loop``, and one more state holds it.
+    solved for. A plant that answers at once would close an algebraic loop; a linear one therefore
+    shows w of the sample before, as in ``simulate_closed_loop``, and one more state holds it. One
+    of the user's own has to be strictly proper, or python-control says "algebraic loop detected".
 
     Parameters
     ----------
@@ -46,13 +47,15 @@ def closed_loop_system(
         A TrackingController, or a sampled system with two inputs, y_ref and y, whose first output
         is u; others are outputs of the loop too.
     plant
-        As in ``simulate_closed_loop``: linear, sampled or continuous; a continuous one is sampled
+        As ``sampled_plant`` takes it: linear, sampled or continuous; a continuous one is sampled
         with its input held between samples (zero-order hold), which is exact here, where the drive
         is held. Or a sampled ``control.NonlinearIOSystem`` from w to y.
     hysteresis
         Operator from u to w, or such a system; the identity if left out.
     disturbance_at
         ``"hysteresis"``: added to u; ``"plant"``: added to w.
+    delay
+        s, >= 0, from reading y to the drive that follows from it, as ``sampled_plant`` takes it.
     dt
         Sample time, s; that of the block if left out.
     name
@@ -88,7 +91,7 @@ def closed_loop_system(
         raise InputError(f"disturbance_at is {disturbance_at!r}; give one of {places}")
     first = _controller(block)
     time = _time_of(first, dt)
-    actuator, process = _actuator(hysteresis, time), _process(plant, time)
+    actuator, process = _actuator(hysteresis, time), _process(plant, time, delay)
     disturbed = (1, 0) if disturbance_at == "hysteresis" else (2, 0)
     return control.interconnect(
         [first, actuator, process],
@@ -141,11 +144,16 @@ def _actuator(hysteresis: Any, dt: float) -> Any:
     return _own(hysteresis, "the hysteresis", dt)
 
 
-def _process(plant: Any, dt: float) -> Any:
+def _process(plant: Any, dt: float, delay: float) -> Any:
     nonlinear = hasattr(plant, "updfcn") and not hasattr(plant, "A")
+    if nonlinear and delay != 0.0:
+        raise InputError(
+            f"the delay of {delay:.6g} s cannot be put into a plant of your own; give it the "
+            "states for it, or an operator that delays, hyst.Delay, as part of the hysteresis"
+        )
     if nonlinear:
         return _own(plant, "the plant", dt)
-    return system_of(_held_plant(held_step(plant_of(plant), dt)), dt)
+    return system_of(_strictly_proper(sampled_plant(plant, dt, delay).system), dt)
 
 
 def _own(system: Any, what: str, dt: float | None = None) -> Any:
@@ -171,21 +179,19 @@ def _own(system: Any, what: str, dt: float | None = None) -> Any:
     return system
 
 
-def _held_plant(step: Array) -> SampledBlock:
+def _strictly_proper(plant: LinearSystem) -> SampledBlock:
     """Step a plant with the sums in the order of the engine, which BLAS does not keep."""
-    n = len(step) - 1
-    columns = list(np.ascontiguousarray(step[:n].T))
-    c, feedthrough = step[n, :n].tolist(), float(step[n, n])
-    late = feedthrough != 0.0
+    n = plant.order
+    columns = list(np.hstack([plant.A, plant.B]).T.copy())
+    c = plant.C[0].tolist()
 
     def sample(state: Array, given: Array) -> tuple[Array, Array]:
-        values = state.tolist()
-        y = feedthrough * values[n] if late else 0.0
-        for weight, value in zip(c, values[:n], strict=True):
+        values, y = state.tolist(), 0.0
+        for weight, value in zip(c, values, strict=True):
             y += weight * value
         following = np.zeros(n)
-        for column, value in zip(columns, [*values[:n], float(given[0])], strict=True):
+        for column, value in zip(columns, [*values, float(given[0])], strict=True):
             following += column * value
-        return np.array([y]), np.concatenate([following, given]) if late else following
+        return np.array([y]), following
 
-    return SampledBlock("plant", None, ("w",), ("y",), np.zeros(n + late), sample)
+    return SampledBlock("plant", plant.dt, ("w",), ("y",), np.zeros(n), sample)
