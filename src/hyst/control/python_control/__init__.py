@@ -6,3 +6,7 @@ from hyst.control.python_control.loop import closed_loop_system
 from hyst.control.python_control.nonlinear_system import to_nlsys
 
 __all__ = ["closed_loop_system", "to_nlsys"]
+
+
+def __dir__() -> list[str]:
+    return __all__
