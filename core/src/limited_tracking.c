@@ -21,9 +21,7 @@ hyst_real hyst_limited_tracking_step(const hyst_limited_tracking *controller, hy
     if (hyst_is_finite(wanted)) {
         *v = applied;
         *excess = applied - wanted;
-        if ((*excess < HYST_REAL(0.0)) || (*excess > HYST_REAL(0.0))) {
-            hyst_tracking_take_back(n, controller->w, state, *excess);
-        }
+        hyst_tracking_take_back(n, controller->w, state, *excess);
     }
     return drive;
 }

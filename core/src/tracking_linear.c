@@ -39,7 +39,9 @@ void hyst_tracking_take_back(size_t order, const hyst_real *w, hyst_real *x, hys
         const hyst_real next = x[i] + w[i] * excess;
         zero += next - next;
     }
-    for (size_t i = 0; (i < order) && hyst_is_finite(zero); ++i) {
-        x[i] += w[i] * excess;
+    /* Nothing is added where there is nothing: -0 stays -0. */
+    const int adds = ((excess < HYST_REAL(0.0)) || (excess > HYST_REAL(0.0))) && hyst_is_finite(zero);
+    for (size_t i = 0; i < order; ++i) {
+        x[i] = adds ? x[i] + w[i] * excess : x[i];
     }
 }
