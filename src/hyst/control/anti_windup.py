@@ -76,7 +76,7 @@ def conditioning_gain(controller: LinearSystem) -> Array:
     Raises
     ------
     InputError
-        If a pole of C on the unit circle or outside is not reached by its input.
+        If a pole of C on the unit circle is not reached by its input.
 
     Source
     ------
