@@ -33,13 +33,14 @@ class Target:
         Shape (p,), ``w^2``, or ``tan(w dt/2)^2`` of what is sampled; infinity at half the rate.
     radius
         Shape (p,), above 0.
-    judged
-        Shape (p,), where the cover is to be tight; elsewhere it is only to be a cover.
+    tight
+        Shape (p,), what the cover is to be tight on, not below the radius; infinity where it is
+        only to be a cover.
     """
 
     x: Array
     radius: Array
-    judged: NDArray[np.bool_]
+    tight: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,8 +93,8 @@ def tightest(target: Target, order: int, ceiling: float = np.inf) -> Cover | Non
         None if the excess is above the ceiling.
     """
     problem = _Problem.of(target, order)
-    spread = target.radius.max() / target.radius.min()
-    high = min(ceiling, spread * (1.0 + 1e-6))
+    spread = float(target.radius.max() / target.tight.min())
+    high = min(ceiling, max(spread, 1.0) * (1.0 + 1e-6))
     best = problem.cover(high)
     if best is None:
         return None
@@ -135,7 +136,8 @@ class _Problem:
 
     def cover(self, factor: float) -> Cover | None:
         """Give a cover of at most this excess; None if there is none."""
-        r2, judged = np.square(self.target.radius)[:, None], self.target.judged
+        r2, judged = np.square(self.target.radius)[:, None], np.isfinite(self.target.tight)
+        limit2 = np.square(factor * self.target.tight[judged])[:, None]
         size = float(np.exp(np.mean(np.log(r2))))
         rows, far, held = self.rows, self.far, np.square(self.held)[:, None]
         n, inside = rows.shape[1], rows[judged]
@@ -143,7 +145,7 @@ class _Problem:
         # Each row is <= -margin: cover, tight, a cover beyond, finite there, and d above 0.
         blocks = [
             np.hstack([-rows * (size / r2), rows]),
-            np.hstack([inside * (size / r2[judged]), -(factor**2) * inside]),
+            np.hstack([inside * (size / limit2), -inside]),
             np.hstack([-far * (size / held), far]),
             np.hstack([far * (size / (_HIGHEST * r2.max())), -far]),
             np.hstack([zero(rows), -rows]),
@@ -176,9 +178,11 @@ class _Problem:
         ends = (found.above[0], found.below[0], found.above.sum(), found.below.sum())
         if min(n.min(), d.min(), *ends) <= 0.0:
             return None
-        ratio = np.sqrt(n / d) / self.target.radius
-        excess = float((ratio[self.target.judged] / min(ratio.min(), 1.0)).max())
-        return Cover(found.corners, found.above, found.below, excess)
+        gain = np.sqrt(n / d)
+        short = max(float((self.target.radius / gain).max()), 1.0)
+        return Cover(
+            found.corners, found.above, found.below, short * float((gain / self.target.tight).max())
+        )
 
 
 def _basis(x: Array, corners: Array) -> Array:

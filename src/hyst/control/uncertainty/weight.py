@@ -27,12 +27,13 @@ Array = NDArray[np.float64]
 MOST = 8
 """Highest order of a cover."""
 
-TIGHT = 1.25
+TIGHT = 1.5
 """Excess with which no higher order is tried."""
 
 _ALIKE = 1.1  # times the least excess of any order: as good
 _NO_GAIN = 0.95  # of the excess before: two orders that gain less are the last
 _POINTS = 300  # that a linear program takes; of more, the largest of each of so many bins
+_DIP = 2.0**0.25  # on either side of what is narrow
 _WIDE = 1.1  # ratio of neighbouring frequencies from which there are points between
 
 
@@ -47,7 +48,8 @@ class UncertaintyWeight:
         W, stable and of minimum phase; sampled if the nominal plant is, and then up to half the
         sample rate.
     excess
-        Largest ratio of ``|W|`` to the samples, where it was to be tight.
+        Largest ratio of ``|W|`` to the samples, of which dips narrower than half an octave are
+        filled: no plant is known better there than beside them.
     w
         Shape (p,), rad/s.
     radius
@@ -91,8 +93,8 @@ def uncertainty_weight(
         responses, ``frd`` of python-control, pairs (w, G) with w in rad/s and complex G, or
         systems. Samples above half the sample rate of a sampled nominal plant are left out.
     order
-        Of W, 0 to 8; None: the least that exceeds the samples by no more than a quarter, or else
-        as little as higher orders do.
+        Of W, 0 to 8; None: the least that exceeds the samples by no more than half, or else as
+        little as higher orders do.
     least
         Least deviation that is asked of W, > 0: no plant is known better.
     w
@@ -119,7 +121,7 @@ def uncertainty_weight(
     >>> one = ([1.0], [1.0, 1.0, 1.0])
     >>> two = ([25.0], np.polymul([1.0, 1.0, 1.0], [1.0, 1.0, 25.0]))
     >>> found = uncertainty_weight(one, [two])
-    >>> found.order, bool(np.all(found.gain >= found.radius)), found.excess < 1.25
+    >>> found.order, bool(np.all(found.gain >= found.radius)), found.excess < 1.5
     (2, True, True)
     """
     plant = nominal_plant(nominal)
@@ -147,9 +149,10 @@ def cover_of(
     smallest = as_positive(least, "least", "the least deviation that is asked")
     wanted = None if order is None else whole_number(order, "order", 0, MOST)
     w, radius, judged = envelope(deviations, smallest)
+    tight = np.where(judged, without_dips(w, radius), np.inf)
     x = np.square(np.tan(np.minimum(0.5 * w * dt, 0.5 * np.pi)) if dt else w)
     x[x > 1e20] = np.inf if dt else x[x > 1e20]
-    whole = Target(x, radius, judged)
+    whole = Target(x, radius, tight)
     few = _thinned(whole)
     for _ in range(4):
         cover = _of_order(few, wanted) if wanted is not None else _of_least_order(few)
@@ -158,7 +161,7 @@ def cover_of(
             break
         few = _with(few, whole, missed)
         wanted = cover.order  # what was left out adds points, no other question
-    return _made(cover, w, radius, judged, dt)
+    return _made(cover, w, radius, tight, dt)
 
 
 def envelope(
@@ -199,6 +202,28 @@ def envelope(
     return w, np.maximum(largest, least), np.isin(w, measured)
 
 
+def without_dips(w: Array, radius: Array) -> Array:
+    """Fill dips narrower than half an octave: the closing of the samples over ``ln w``.
+
+    Parameters
+    ----------
+    w
+        Shape (p,), rad/s, ascending.
+    radius
+        Shape (p,).
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (p,), nowhere below the radius; slopes and peaks stay as they are.
+    """
+    first = np.searchsorted(w, w / _DIP, side="left")
+    last = np.searchsorted(w, w * _DIP, side="right")
+    ends = list(zip(first, last, strict=True))
+    widened = np.array([radius[start:stop].max() for start, stop in ends])
+    return np.array([widened[start:stop].min() for start, stop in ends])
+
+
 def _of_least_order(target: Target) -> Cover:
     found: list[Cover] = []
     for order in range(MOST + 1):
@@ -232,7 +257,7 @@ def _thinned(target: Target) -> Target:
     for start, stop in zip(bins, [*bins[1:], target.x.size], strict=True):
         kept[start + int(np.argmax(target.radius[start:stop]))] = True
     kept[[0, -1]] = True
-    return Target(target.x[kept], target.radius[kept], target.judged[kept])
+    return Target(target.x[kept], target.radius[kept], target.tight[kept])
 
 
 def _missed(cover: Cover, target: Target) -> NDArray[np.bool_]:
@@ -248,13 +273,13 @@ def _with(few: Target, whole: Target, missed: NDArray[np.bool_]) -> Target:
     """Add what is not covered; only to be covered, not to be tight on."""
     x = np.concatenate([few.x, whole.x[missed]])
     radius = np.concatenate([few.radius, whole.radius[missed]])
-    judged = np.concatenate([few.judged, np.zeros(int(missed.sum()), dtype=bool)])
+    tight = np.concatenate([few.tight, np.full(int(missed.sum()), np.inf)])
     order = np.argsort(x, kind="stable")
-    return Target(x[order], radius[order], judged[order])
+    return Target(x[order], radius[order], tight[order])
 
 
 def _made(
-    cover: Cover, w: Array, radius: Array, judged: NDArray[np.bool_], dt: float
+    cover: Cover, w: Array, radius: Array, tight: Array, dt: float
 ) -> UncertaintyWeight:
     """Give the weight, raised by what rounding of its factors left uncovered."""
     made = UncertaintyWeight(spectral_factor(cover, dt), cover.excess, w, radius)
@@ -266,4 +291,4 @@ def _made(
         system = made.system
         raised = LinearSystem(system.A, system.B, factor * system.C, factor * system.D, dt)
         made = replace(made, system=raised)
-    return replace(made, excess=float((made.gain / radius)[judged].max()))
+    return replace(made, excess=float((made.gain / tight).max()))
