@@ -20,6 +20,7 @@ from hyst.control.inexact_inverse import first_unstable_slope, slope_margin
 from hyst.control.infinity_norm import hinf_norm
 from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
 from hyst.control.linear_system import LinearSystem, as_linear_system
+from hyst.control.plants import IdentifiedPlant, identified_plant, plant_and_delay
 from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
 from hyst.control.sampled.folding import folded_uncertainty
 from hyst.control.sampled.judged import LoopJudgement, judge_loop
@@ -29,12 +30,19 @@ from hyst.control.sampled.slopes import sampled_slope_failing, sampled_slope_pro
 from hyst.control.sampled.stress import StressTest, stress
 from hyst.control.sampled.tried import TriedLoop, try_block
 from hyst.control.tracking_controller import TrackingController
+from hyst.control.uncertainty import (
+    UncertaintyWeight,
+    identification_weight,
+    require_no_less_than_known,
+    uncertainty_weight,
+)
 
 __all__ = [
     "EXACT",
     "Certificate",
     "ClosedLoop",
     "DisturbanceObserver",
+    "IdentifiedPlant",
     "InternalModel",
     "InverseComparison",
     "LinearSystem",
@@ -46,6 +54,7 @@ __all__ = [
     "StressTest",
     "TrackingController",
     "TriedLoop",
+    "UncertaintyWeight",
     "as_linear_system",
     "closed_loop_poles",
     "compare_inverses",
@@ -56,9 +65,13 @@ __all__ = [
     "first_unstable_slope",
     "folded_uncertainty",
     "hinf_norm",
+    "identification_weight",
+    "identified_plant",
     "judge_loop",
     "loop_responses",
     "observer_problem",
+    "plant_and_delay",
+    "require_no_less_than_known",
     "sampled_certificate",
     "sampled_plant",
     "sampled_responses",
@@ -69,6 +82,7 @@ __all__ = [
     "stress",
     "try_block",
     "uncertainty_used",
+    "uncertainty_weight",
 ]
 
 

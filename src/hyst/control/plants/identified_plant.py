@@ -11,7 +11,6 @@ import numpy as np
 from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.plants.parts import delayed_by, front_and_dynamics
 from hyst.errors import InputError, NotInvertibleError
-from hyst.identification import Identified
 from hyst.models import ContinuousDynamics, LinearDynamics
 from hyst.operators import ModelDescription, Operator, operator_from_dict
 from hyst.operators.dynamics_errors import DynamicsErrors
@@ -159,7 +158,7 @@ def _model_of(source: Any) -> tuple[Operator, str]:
         except InputError as error:
             raise InputError(f"{source}: {error}") from None
         return model.with_description(saved.description), str(source)
-    model = source.model if isinstance(source, Identified) else source
+    model = getattr(source, "model", source)
     if not isinstance(model, Operator):
         raise InputError(
             f"the plant is a {type(source).__name__}; give what hyst.identify gave, its model, or "

@@ -8,7 +8,7 @@ from typing import Any
 from hyst.checks.numbers import as_not_negative
 from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.errors import InputError
-from hyst.models import ContinuousDynamics
+from hyst.models import ContinuousDynamics, LinearDynamics
 
 _A_SAMPLE = 1e-6  # as a share: nearer to a whole number of samples than this is one
 
@@ -60,15 +60,5 @@ def plant_and_delay(
             f"the delay of {name} is {further:.6g} s, {samples:.4g} samples of its dt; give a whole "
             "number of samples, or the continuous plant"
         )
-    return _delayed(system, round(samples)), 0.0
-
-
-def _delayed(system: LinearSystem, samples: int) -> LinearSystem:
-    import numpy as np
-
-    n, d = system.order, samples
-    A, B, C = np.zeros((n + d, n + d)), np.zeros((n + d, 1)), np.zeros((1, n + d))
-    A[:n, :n], C[:, :n] = system.A, system.C
-    A[:n, n], C[0, n], B[-1, 0] = system.B[:, 0], system.D[0, 0], 1.0
-    A[np.arange(n, n + d - 1), np.arange(n + 1, n + d)] = 1.0
-    return LinearSystem(A, B, C, np.zeros((1, 1)), system.dt)
+    A, B, C, D = system.A, system.B, system.C, system.D
+    return as_linear_system(LinearDynamics(A, B, C, D, system.dt, round(samples)), name), 0.0

@@ -20,6 +20,8 @@ _STEPS = 14  # of the bisection
 _ENOUGH = 1e-3  # in the logarithm of t
 _STRICT = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
 _BEYOND = np.geomspace(1.0, 1e8, 33)  # of x, on either side of the samples
+_FAR = 1e3
+_POLISHING = 5  # steps of Newton's method
 _HIGHEST = 1e4  # at infinity, in squares of the largest sample
 
 
@@ -69,10 +71,14 @@ class Cover:
 
     def roots(self, coefficients: Array) -> NDArray[np.complex128]:
         """Give the zeros in x of ``c_0 + sum c_j p_j/(x + p_j)``."""
-        scale = np.exp(np.mean(np.log(self.corners))) if self.order else 1.0
-        p = self.corners / scale
-        matrix = -np.diag(p) - np.outer(np.ones(p.size), coefficients[1:] * p) / coefficients[0]
-        return scale * np.linalg.eigvals(matrix).astype(np.complex128).reshape(self.order)
+        if self.order == 0:
+            return np.zeros(0, dtype=complex)
+        # Graded from large to small, for corners may lie twenty decades apart.
+        p, c = self.corners[::-1], coefficients[:0:-1]
+        root = np.sqrt(p / p[0])
+        matrix = -np.diag(p / p[0]) - np.outer(root, c * root) / coefficients[0]
+        found = p[0] * np.linalg.eigvals(matrix).astype(np.complex128)
+        return np.array([_polished(each, coefficients[0], c * p, p) for each in found])
 
 
 def tightest(target: Target, order: int, ceiling: float = np.inf) -> Cover | None:
@@ -126,7 +132,9 @@ class _Problem:
         x, r = target.x, target.radius
         inner = x[(x > 0.0) & np.isfinite(x)]
         low, high = (inner.min(), inner.max()) if inner.size else (1.0, 1.0)
-        corners = np.geomspace(low, high, 2 * order + 1)[1::2]
+        # At half a sample rate x is infinity: what rises towards it has corners far out.
+        outermost = high if np.isfinite(x).all() else _FAR * high
+        corners = np.geomspace(low, outermost, 2 * order + 1)[1::2]
         # What was not measured is not known: beyond the samples a cover does not fall.
         below, above = low / _BEYOND, high * _BEYOND
         far = np.concatenate([[0.0], below, above, [np.inf]])
@@ -183,6 +191,18 @@ class _Problem:
         return Cover(
             found.corners, found.above, found.below, short * float((gain / self.target.tight).max())
         )
+
+
+def _polished(x: complex, constant: float, residues: Array, corners: Array) -> complex:
+    """Improve a zero of ``constant + sum residues / (x + corners)`` by Newton's method."""
+    for _ in range(_POLISHING):
+        with np.errstate(all="ignore"):
+            terms = residues / (x + corners)
+            step = -(constant + np.sum(terms)) / np.sum(terms / (x + corners))
+        if not abs(step) < 0.1 * abs(x):  # not of NaN
+            break
+        x = complex(x - step)
+    return x
 
 
 def _basis(x: Array, corners: Array) -> Array:

@@ -129,7 +129,11 @@ def uncertainty_weight(
 
 
 def cover_of(
-    deviations: Sequence[Deviations], dt: float, order: int | None, least: float
+    deviations: Sequence[Deviations],
+    dt: float,
+    order: int | None,
+    least: float,
+    tight: float = TIGHT,
 ) -> UncertaintyWeight:
     """Cover samples of ``|P / Pn - 1|``.
 
@@ -141,6 +145,8 @@ def cover_of(
         Sample time of the weight, s; 0 of a continuous one.
     order, least
         As for ``uncertainty_weight``.
+    tight
+        Excess with which no higher order is tried.
 
     Returns
     -------
@@ -149,19 +155,19 @@ def cover_of(
     smallest = as_positive(least, "least", "the least deviation that is asked")
     wanted = None if order is None else whole_number(order, "order", 0, MOST)
     w, radius, judged = envelope(deviations, smallest)
-    tight = np.where(judged, without_dips(w, radius), np.inf)
+    limit = np.where(judged, without_dips(w, radius), np.inf)
     x = np.square(np.tan(np.minimum(0.5 * w * dt, 0.5 * np.pi)) if dt else w)
     x[x > 1e20] = np.inf if dt else x[x > 1e20]
-    whole = Target(x, radius, tight)
+    whole = Target(x, radius, limit)
     few = _thinned(whole)
     for _ in range(4):
-        cover = _of_order(few, wanted) if wanted is not None else _of_least_order(few)
+        cover = _of_order(few, wanted) if wanted is not None else _of_least_order(few, tight)
         missed = _missed(cover, whole)
         if not missed.any():
             break
         few = _with(few, whole, missed)
         wanted = cover.order  # what was left out adds points, no other question
-    return _made(cover, w, radius, tight, dt)
+    return _made(cover, w, radius, limit, dt)
 
 
 def envelope(
@@ -224,10 +230,10 @@ def without_dips(w: Array, radius: Array) -> Array:
     return np.array([widened[start:stop].min() for start, stop in ends])
 
 
-def _of_least_order(target: Target) -> Cover:
+def _of_least_order(target: Target, enough: float) -> Cover:
     found: list[Cover] = []
     for order in range(MOST + 1):
-        tight = tightest(target, order, TIGHT)
+        tight = tightest(target, order, enough)
         if tight is not None:
             return tight
         each = tightest(target, order)
