@@ -14,10 +14,17 @@ import hyst
 from hyst._files import read_small
 from hyst.checks.numbers import as_not_negative, as_positive
 from hyst.cli.arguments import load_operator
+from hyst.cli.observer_plant import (
+    block_dt,
+    load_hysteresis,
+    read_hysteresis,
+    read_plant,
+    read_uncertainty,
+)
 from hyst.cli.spec_section import Section
 
 if TYPE_CHECKING:
-    from hyst.control import InternalModel, LinearSystem
+    from hyst.control import IdentifiedPlant, InternalModel, LinearSystem
     from hyst.control.discretization import Method
     from hyst.operators import Operator
 
@@ -33,7 +40,9 @@ class ObserverSpec:
     ``plant``, ``true_plant`` (or None), ``controller``, weights ``Wu`` and ``Wp`` and
     ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
     ``inverse_name``), ``reference``, ``dt``, ``settle``, ``noise``, ``disturbance`` and ``seed``
-    what is simulated; ``filter_dt`` and ``filter_method`` say what is implemented.
+    what is simulated; ``filter_dt`` and ``filter_method`` say what is implemented. The plant is
+    sampled where it was ``identified`` (else None), continuous where it was written, with a dead
+    time ``delay`` beside it.
     """
 
     plant: LinearSystem
@@ -53,6 +62,8 @@ class ObserverSpec:
     seed: int
     filter_dt: float
     filter_method: Method
+    delay: float
+    identified: IdentifiedPlant | None
 
 
 def read_spec(path: Path) -> ObserverSpec:
@@ -80,8 +91,11 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     weights = spec.section("weights")
     simulation = spec.section("simulation")
     implemented = spec.section("filter")
-    hysteresis = _hysteresis(spec.section("hysteresis"), folder)
-    dt = simulation.number("dt", positive=True)
+    plant = read_plant(spec.section("plant"), folder)
+    hysteresis = read_hysteresis(spec, plant, folder)
+    if hysteresis is None:
+        hysteresis = _hysteresis(spec.section("hysteresis"), folder)
+    dt = simulation.number("dt", plant.dt, positive=True)
     reference = _reference(spec.section("reference"), dt, folder)
     inverse, name = _inverse(spec.section("inverse"), hysteresis, folder)
     settle = simulation.number("settle", 0.0)
@@ -94,17 +108,17 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         simulation.number("noise", 0.0), "[simulation] noise", "a standard deviation"
     )
     method = implemented.text("method", "tustin", get_args(hyst.control.discretization.Method))
-    filter_dt = implemented.number("dt", positive=True)
-    if filter_dt >= reference.size * dt - settle:
+    own_dt = block_dt(implemented, plant)
+    if own_dt >= reference.size * dt - settle:
         raise hyst.InputError(
-            f"[filter] dt is {filter_dt:g} s, and {reference.size * dt - settle:g} s are measured; "
+            f"[filter] dt is {own_dt:g} s, and {reference.size * dt - settle:g} s are measured; "
             "give a shorter one"
         )
     read = ObserverSpec(
-        plant=spec.section("plant").system(),
+        plant=plant.system,
         true_plant=spec.section("true_plant").system() if spec.has("true_plant") else None,
         controller=spec.section("controller").system(),
-        Wu=weights.section("Wu").system(),
+        Wu=read_uncertainty(weights, plant, folder),
         Wp=weights.section("Wp").system(),
         internal_model=_internal_model(spec.section("internal_model")),
         hysteresis=hysteresis,
@@ -116,8 +130,10 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         noise=noise,
         disturbance=simulation.number("disturbance", 0.0),
         seed=simulation.count("seed", 0),
-        filter_dt=filter_dt,
+        filter_dt=own_dt,
         filter_method="zoh" if method == "zoh" else "tustin",
+        delay=plant.delay,
+        identified=plant.identified,
     )
     for each in (spec, weights, simulation, implemented):
         each.done()
@@ -146,7 +162,7 @@ def _hysteresis(given: Section, folder: Path) -> Operator:
     if given.has("file"):
         path = given.text("file")
         given.done()
-        return load_operator(folder / path)
+        return load_hysteresis(folder / path)
     p, r, p0 = given.numbers("p"), given.numbers("r"), given.number("p0")
     plays = hyst.PrandtlIshlinskii(p, r, p0)
     if not given.has("envelope"):

@@ -20,7 +20,12 @@ from hyst.control.inexact_inverse import first_unstable_slope, slope_margin
 from hyst.control.infinity_norm import hinf_norm
 from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
 from hyst.control.linear_system import LinearSystem, as_linear_system
-from hyst.control.plants import IdentifiedPlant, identified_plant, plant_and_delay
+from hyst.control.plants import (
+    IdentifiedPlant,
+    has_dynamics_behind,
+    identified_plant,
+    plant_and_delay,
+)
 from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
 from hyst.control.sampled.folding import folded_uncertainty
 from hyst.control.sampled.judged import LoopJudgement, judge_loop
@@ -64,6 +69,7 @@ __all__ = [
     "evaluate_gain",
     "first_unstable_slope",
     "folded_uncertainty",
+    "has_dynamics_behind",
     "hinf_norm",
     "identification_weight",
     "identified_plant",

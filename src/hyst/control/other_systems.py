@@ -88,8 +88,8 @@ def _of_scipy(system: Any, name: str) -> Given:
     num, den = np.atleast_1d(system.num), np.atleast_1d(system.den)
     if num.ndim != 1:
         raise InputError(
-            f"{name} is a transfer function of scipy.signal with {len(num)} outputs; give its state "
-            "space (to_ss), or one output"
+            f"{name} is a transfer function of scipy.signal with {len(num)} outputs; give its "
+            "state space (to_ss), or one output"
         )
     num, den = np.trim_zeros(num, "f"), np.trim_zeros(den, "f")
     _require_proper(num.size - 1, den.size - 1, name)

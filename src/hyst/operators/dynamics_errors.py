@@ -46,9 +46,10 @@ class DynamicsErrors:
     def __post_init__(self) -> None:
         for name in ("frequency", "standard_error", "missing"):
             object.__setattr__(self, name, _numbers(name, getattr(self, name)))
-        if isinstance(self.bands, str) or not isinstance(self.bands, Sequence):
-            raise InputError(f"bands is {self.bands!r}; give pairs of frequencies")
-        bands = tuple(_numbers("a band", each) for each in self.bands)
+        given: Any = self.bands
+        if isinstance(given, str) or not isinstance(given, Sequence):
+            raise InputError(f"bands is {given!r}; give pairs of frequencies")
+        bands = tuple(_numbers("a band", each) for each in given)
         object.__setattr__(self, "bands", bands)
         if not len(self.frequency) == len(self.standard_error) == len(self.missing):
             raise InputError(
@@ -92,5 +93,4 @@ class DynamicsErrors:
 def _numbers(name: str, values: Any) -> tuple[float, ...]:
     if isinstance(values, str) or not isinstance(values, Sequence):
         raise InputError(f"{name} is {values!r}; give a list of numbers")
-    found = tuple(as_finite(f"a number in {name}", each) for each in values)
-    return found
+    return tuple(as_finite(f"a number in {name}", each) for each in values)

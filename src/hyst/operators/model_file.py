@@ -45,10 +45,13 @@ class Format:
 
 
 # Version 2 of a description: errors and provenance; version 3: a verdict, and a delay that may be a
-# fraction or negative with its interval; version 4: errors of dynamics. A model file must have one, an estimator's file of version
-# 2 may; version 1 of those knew no search beside the estimate and is not read.
+# fraction or negative with its interval; version 4: errors of dynamics. A model file must have one,
+# an estimator's file of version 2 may; version 1 of those knew no search beside the estimate and is
+# not read.
 MODEL = Format("hyst model", "model", {1: 1, 2: 2, 3: 3, 4: 4}, ("model",))
-ESTIMATOR = Format("hyst estimator", "estimator", {2: 1, 3: 2, 4: 3, 5: 4}, ("kind", "settings", "state"))
+ESTIMATOR = Format(
+    "hyst estimator", "estimator", {2: 1, 3: 2, 4: 3, 5: 4}, ("kind", "settings", "state")
+)
 _FORMATS = {each.name: each for each in (MODEL, ESTIMATOR)}
 
 

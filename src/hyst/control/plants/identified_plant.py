@@ -9,12 +9,15 @@ from typing import Any, final
 import numpy as np
 
 from hyst.control.linear_system import LinearSystem, as_linear_system
+from hyst.control.plants.far_zeros import without_far_zeros
 from hyst.control.plants.parts import delayed_by, front_and_dynamics
 from hyst.errors import InputError, NotInvertibleError
 from hyst.models import ContinuousDynamics, LinearDynamics
 from hyst.operators import ModelDescription, Operator, operator_from_dict
 from hyst.operators.dynamics_errors import DynamicsErrors
 from hyst.operators.model_file import MODEL, read_file
+
+_FAR = 3.0  # times half the sample rate: zeros beyond it are seen as dead time alone
 
 
 @final
@@ -71,23 +74,27 @@ class IdentifiedPlant:
     def continuous_plant(self) -> ContinuousDynamics:
         """Give the continuous plant, for a design in continuous time.
 
+        Zeros beyond three times half the sample rate become the dead time ``sum Re(1 / zero)`` that
+        they are there: noise trades one for the other, and both have the same samples.
+
         Raises
         ------
         InputError
-            If there is none, or it has a zero in the right half plane, which no continuous observer
-            can invert.
+            If there is none, or a zero in the right half plane is left, which no observer can
+            invert.
         """
         if self.continuous is None:
             raise InputError(
                 f"{self.name} has no continuous form: {self.notes[0]}; design in discrete time"
             )
-        right = [each for each in self.continuous.zeros() if each.real >= 0.0]
+        plant = without_far_zeros(self.continuous, _FAR * np.pi / self.dt)
+        right = [each for each in plant.zeros() if each.real >= 0.0]
         if right:
             raise InputError(
                 f"{self.name} is nonminimum phase in continuous time, zero at {_said(right[0])} "
                 "1/s; design in discrete time, or take a minimum phase plant and that zero into Wu"
             )
-        return self.continuous
+        return plant
 
 
 def identified_plant(source: Any) -> IdentifiedPlant:
@@ -184,8 +191,8 @@ def _require_stable(dynamics: LinearDynamics, name: str) -> None:
     if not dynamics.is_stable():
         worst = dynamics.poles()[0]
         raise InputError(
-            f"the dynamics of {name} are not stable: pole {_said(worst)} in the plane of z, modulus "
-            f"{abs(worst):.6g}; stabilize the actuator first and identify the stable loop"
+            f"the dynamics of {name} are not stable: pole {_said(worst)} in the plane of z, of "
+            f"modulus {abs(worst):.6g}; stabilize the actuator first and identify the stable loop"
         )
 
 

@@ -57,8 +57,8 @@ def plant_and_delay(
     samples = further / system.dt
     if abs(samples - round(samples)) > _A_SAMPLE:
         raise InputError(
-            f"the delay of {name} is {further:.6g} s, {samples:.4g} samples of its dt; give a whole "
-            "number of samples, or the continuous plant"
+            f"the delay of {name} is {further:.6g} s, {samples:.4g} samples of its dt; give a "
+            "whole number of samples, or the continuous plant"
         )
     A, B, C, D = system.A, system.B, system.C, system.D
     return as_linear_system(LinearDynamics(A, B, C, D, system.dt, round(samples)), name), 0.0

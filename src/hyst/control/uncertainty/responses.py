@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hyst.checks.numbers import as_positive
 from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.other_systems import is_frequency_response
+from hyst.control.zeros_and_poles import zeros_and_poles
 from hyst.errors import InputError
 from hyst.models import ContinuousDynamics
 
@@ -80,7 +82,10 @@ def response_at(plant: LinearSystem | ContinuousDynamics, w: Array) -> Complex:
 
 
 def deviations_of(
-    nominal: LinearSystem | ContinuousDynamics, responses: Sequence[Any], w: ArrayLike | None
+    nominal: LinearSystem | ContinuousDynamics,
+    responses: Sequence[Any],
+    w: ArrayLike | None = None,
+    matched_at: float | None = None,
 ) -> list[Deviations]:
     """Compare measured plants with the nominal one.
 
@@ -93,6 +98,8 @@ def deviations_of(
         rad/s and complex G, or systems.
     w
         Where systems are compared, rad/s; a grid about all poles if left out.
+    matched_at
+        Frequency, Hz, at which each is given the gain of the nominal plant; None: as they are.
 
     Returns
     -------
@@ -118,8 +125,31 @@ def deviations_of(
                 f"{name} begins at {at[0] / (2 * np.pi):.6g} Hz, above half the sample rate of the "
                 f"nominal plant, {highest / (2 * np.pi):.6g} Hz; measure below it"
             )
-        found.append(_deviations(at[kept], values[kept], nominal, name))
+        at, values = at[kept], values[kept]
+        if matched_at is not None:
+            values = values * _match(at, values, nominal, matched_at, name)
+        found.append(_deviations(at, values, nominal, name))
     return found
+
+
+def _match(
+    w: Array,
+    values: Complex,
+    nominal: LinearSystem | ContinuousDynamics,
+    frequency: float,
+    name: str,
+) -> float:
+    """Give the factor that a response needs to have the nominal gain at a frequency."""
+    at = 2.0 * np.pi * as_positive(frequency, "matched_at", "a frequency in Hz")
+    if not w[0] <= at <= w[-1]:
+        raise InputError(
+            f"{name} is not known at {frequency:.6g} Hz, where gains are to be matched, but from "
+            f"{w[0] / (2.0 * np.pi):.6g} to {w[-1] / (2.0 * np.pi):.6g} Hz; match them there"
+        )
+    gain = float(np.interp(at, w, np.abs(values)))
+    if gain == 0.0:
+        raise InputError(f"{name} is 0 at {frequency:.6g} Hz; match gains elsewhere")
+    return float(np.abs(response_at(nominal, np.array([at])))[0]) / gain
 
 
 def _deviations(
@@ -179,26 +209,30 @@ def _checked(w: ArrayLike, values: ArrayLike, name: str) -> tuple[Array, Complex
 
 
 def _grid(*plants: LinearSystem | ContinuousDynamics) -> Array:
-    """Give frequencies from far below all poles to far above, dense about resonances, rad/s."""
-    rates = [np.zeros(0, dtype=complex)]
-    for each in plants:
-        poles, dt = each.poles(), sample_time(each)
-        if dt:
-            poles = np.log(poles[np.abs(poles) > 1e-12]) / dt
-        rates.append(poles)
-    poles = np.concatenate(rates)
-    sizes = np.abs(poles)
-    sizes = sizes[sizes > 1e-9 * sizes.max(initial=1.0)]
-    if not sizes.size:
-        sizes = np.ones(1)
-    low, high = sizes.min() / _BEYOND, sizes.max() * _BEYOND
+    """Give frequencies from far below all poles and zeros to far above, dense about sharp ones."""
+    roots = np.concatenate([_roots(each) for each in plants])
+    sizes = np.abs(roots)
+    sizes = sizes[sizes > 1e-9 * sizes.max()] if sizes.any() else np.ones(1)
     fastest = [np.pi / sample_time(each) for each in plants if sample_time(each)]
-    high = min([high, *fastest])
-    grid = [np.geomspace(min(low, 0.1 * high), high, int(_PER_DECADE * np.log10(high / low)) + 2)]
-    sharp = poles[(poles.imag > 0.0) & (np.abs(poles.real) < 0.3 * np.abs(poles))]
+    high = min([sizes.max() * _BEYOND, *fastest])
+    low = min(sizes.min() / _BEYOND, 0.1 * high)
+    grid = [np.geomspace(low, high, int(_PER_DECADE * np.log10(high / low)) + 2)]
+    sharp = roots[(roots.imag > 0.0) & (np.abs(roots.real) < 0.3 * np.abs(roots))]
     grid += [abs(each) + abs(each.real) * _AROUND for each in sharp]
     w = np.unique(np.concatenate(grid))
-    return w[(w > 0.0) & (w <= high)]
+    return np.asarray(w[(w > 0.0) & (w <= high)])
+
+
+def _roots(plant: LinearSystem | ContinuousDynamics) -> Complex:
+    """Give poles and zeros in the plane of s, rad/s."""
+    if isinstance(plant, ContinuousDynamics):
+        return np.concatenate([plant.poles(), plant.zeros()])
+    factors = zeros_and_poles(plant)
+    roots = np.concatenate([factors.poles, factors.zeros])
+    if plant.dt == 0.0:
+        return roots
+    # A delay has its poles at 0, where no frequency is.
+    return np.asarray(np.log(roots[np.abs(roots) > 1e-9]) / plant.dt)
 
 
 def _require_single(plant: LinearSystem, name: str) -> None:

@@ -57,9 +57,7 @@ def _stable(roots: Complex) -> Complex:
     return np.array([*upper, *np.conj(upper), *real], dtype=np.complex128)
 
 
-def _realized(
-    zeros: Complex, poles: Complex, gain: float, scale: float, dt: float
-) -> LinearSystem:
+def _realized(zeros: Complex, poles: Complex, gain: float, scale: float, dt: float) -> LinearSystem:
     A, B, C, D = cascade(sections_of(zeros, poles, gain))
     B, C = B.reshape(-1, 1) * scale, C.reshape(1, -1)
     return balanced(LinearSystem(A * scale, B, C, np.array([[D]]), dt))

@@ -11,7 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.numbers import as_positive, whole_number
 from hyst.control.linear_system import LinearSystem
+from hyst.control.plants.identified_plant import IdentifiedPlant
 from hyst.control.uncertainty.cover import Cover, Target, tightest
+from hyst.control.uncertainty.left_unknown import shown_deviations
 from hyst.control.uncertainty.responses import (
     Deviations,
     deviations_of,
@@ -79,6 +81,8 @@ def uncertainty_weight(
     *,
     least: float = 0.01,
     w: ArrayLike | None = None,
+    matched_at: float | None = None,
+    identified: IdentifiedPlant | None = None,
 ) -> UncertaintyWeight:
     r"""Find the weight of least order that covers how far measured plants are from the nominal one.
 
@@ -99,6 +103,12 @@ def uncertainty_weight(
         Least deviation that is asked of W, > 0: no plant is known better.
     w
         Frequencies at which systems are compared, rad/s; a grid about their poles if left out.
+    matched_at
+        Frequency, Hz, at which each response is given the gain of the nominal plant, for the gain
+        of a hysteresis in front is no part of the plant; None: as they are.
+    identified
+        The nominal plant's identification, whose standard errors the weight bears, too, in the
+        bands that the drive showed.
 
     Returns
     -------
@@ -125,7 +135,10 @@ def uncertainty_weight(
     (2, True, True)
     """
     plant = nominal_plant(nominal)
-    return cover_of(deviations_of(plant, responses, w), sample_time(plant), order, least)
+    found = deviations_of(plant, responses, w, matched_at)
+    if identified is not None:
+        found += shown_deviations(identified)
+    return cover_of(found, sample_time(plant), order, least)
 
 
 def cover_of(
@@ -284,9 +297,7 @@ def _with(few: Target, whole: Target, missed: NDArray[np.bool_]) -> Target:
     return Target(x[order], radius[order], tight[order])
 
 
-def _made(
-    cover: Cover, w: Array, radius: Array, tight: Array, dt: float
-) -> UncertaintyWeight:
+def _made(cover: Cover, w: Array, radius: Array, tight: Array, dt: float) -> UncertaintyWeight:
     """Give the weight, raised by what rounding of its factors left uncovered."""
     made = UncertaintyWeight(spectral_factor(cover, dt), cover.excess, w, radius)
     short = float((radius / made.gain).max())

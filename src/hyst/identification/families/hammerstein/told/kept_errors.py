@@ -78,7 +78,7 @@ def missing_over_frequency(stretches: Sequence[Stretch], dt: float, frequency: A
     largest = np.zeros(frequency.size)
     for width in _WIDTHS:
         cross = np.zeros(frequency.size, dtype=complex)
-        given, left, lines = np.zeros(frequency.size), np.zeros(frequency.size), 0.0
+        given, left, lines = (np.zeros(frequency.size) for _ in range(3))
         for each in sums:
             bands = each.within(frequency / width, frequency * width)
             cross, given, left = cross + bands[0], given + bands[1], left + bands[2]
@@ -111,9 +111,7 @@ class _Sums:
         cross, given, left = (np.concatenate([[0.0], np.cumsum(each)]) for each in products)
         return cls(1.0 / (modelled.size * dt), cross, given, left)
 
-    def within(
-        self, low: Array, high: Array
-    ) -> tuple[NDArray[np.complex128], Array, Array, Array]:
+    def within(self, low: Array, high: Array) -> tuple[NDArray[np.complex128], Array, Array, Array]:
         """Give the sums of each band, and how many independent lines it has."""
         last = self.given.size - 1
         start = np.clip(np.ceil(low / self.line), 1, last).astype(int)
@@ -132,7 +130,7 @@ def _frequencies(known: KnownDynamics) -> Array:
         if each.is_pair and abs(each.damping) < 0.3:
             grid.append(each.frequency * (1.0 + abs(each.damping) * _AROUND))
     frequency = np.unique(np.concatenate(grid))
-    return frequency[(frequency >= grid[0][0]) & (frequency <= nyquist)]
+    return np.asarray(frequency[(frequency >= grid[0][0]) & (frequency <= nyquist)])
 
 
 def _bands(known: KnownDynamics) -> tuple[tuple[float, float], ...]:
