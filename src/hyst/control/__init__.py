@@ -20,6 +20,12 @@ from hyst.control.infinity_norm import hinf_norm
 from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
 from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.loop_poles import closed_loop_poles
+from hyst.control.plants import (
+    IdentifiedPlant,
+    has_dynamics_behind,
+    identified_plant,
+    plant_and_delay,
+)
 from hyst.control.python_control import closed_loop_system, to_nlsys
 from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
 from hyst.control.sampled.folding import folded_uncertainty
@@ -30,12 +36,19 @@ from hyst.control.sampled.slopes import sampled_slope_failing, sampled_slope_pro
 from hyst.control.sampled.stress import StressTest, stress
 from hyst.control.sampled.tried import TriedLoop, try_block
 from hyst.control.tracking_controller import TrackingController
+from hyst.control.uncertainty import (
+    UncertaintyWeight,
+    identification_weight,
+    require_no_less_than_known,
+    uncertainty_weight,
+)
 
 __all__ = [
     "EXACT",
     "Certificate",
     "ClosedLoop",
     "DisturbanceObserver",
+    "IdentifiedPlant",
     "InternalModel",
     "InverseComparison",
     "LinearSystem",
@@ -47,6 +60,7 @@ __all__ = [
     "StressTest",
     "TrackingController",
     "TriedLoop",
+    "UncertaintyWeight",
     "as_linear_system",
     "closed_loop_poles",
     "closed_loop_system",
@@ -57,10 +71,15 @@ __all__ = [
     "evaluate_gain",
     "first_unstable_slope",
     "folded_uncertainty",
+    "has_dynamics_behind",
     "hinf_norm",
+    "identification_weight",
+    "identified_plant",
     "judge_loop",
     "loop_responses",
     "observer_problem",
+    "plant_and_delay",
+    "require_no_less_than_known",
     "sampled_certificate",
     "sampled_plant",
     "sampled_responses",
@@ -72,6 +91,7 @@ __all__ = [
     "to_nlsys",
     "try_block",
     "uncertainty_used",
+    "uncertainty_weight",
 ]
 
 
