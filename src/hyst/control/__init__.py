@@ -20,23 +20,41 @@ from hyst.control.infinity_norm import hinf_norm
 from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
 from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.loop_system import closed_loop_poles
+from hyst.control.q_filter import (
+    DesignRow,
+    QFilter,
+    QFilterCertificate,
+    QFilterObserver,
+    RobustPerformance,
+    compare_designs,
+    design_q_filter,
+    q_filter,
+    robust_performance,
+)
 from hyst.control.tracking_controller import TrackingController
 
 __all__ = [
     "EXACT",
     "Certificate",
     "ClosedLoop",
+    "DesignRow",
     "DisturbanceObserver",
     "InternalModel",
     "InverseComparison",
     "LinearSystem",
     "LoopResponses",
     "ObserverProblem",
+    "QFilter",
+    "QFilterCertificate",
+    "QFilterObserver",
+    "RobustPerformance",
     "TrackingController",
     "as_linear_system",
     "closed_loop_poles",
+    "compare_designs",
     "compare_inverses",
     "design_disturbance_observer",
+    "design_q_filter",
     "discretize",
     "discretized_dynamics",
     "evaluate_gain",
@@ -44,6 +62,8 @@ __all__ = [
     "hinf_norm",
     "loop_responses",
     "observer_problem",
+    "q_filter",
+    "robust_performance",
     "simulate_closed_loop",
     "slope_margin",
     "uncertainty_used",
