@@ -44,10 +44,10 @@ def loop_by_control(design: QFilterObserver, plant: Any) -> Any:
         control.ss(observer, inputs=["v", "ym"], outputs=["dhat"], name="observer"),
         control.ss(C, inputs=["e"], outputs=["u"], name="C"),
         control.ss(plant, inputs=["w"], outputs=["y"], name="plant"),
-        control.summing_junction(["u", "-dhat"], "v", name="v"),
-        control.summing_junction(["v", "d"], "w", name="w"),
-        control.summing_junction(["y", "n"], "ym", name="ym"),
-        control.summing_junction(["-ym"], "e", name="e"),
+        control.summing_junction(["u", "-dhat"], "v", name="sum_v"),
+        control.summing_junction(["v", "d"], "w", name="sum_w"),
+        control.summing_junction(["y", "n"], "ym", name="sum_y"),
+        control.summing_junction(["-ym"], "e", name="sum_e"),
     ]
     return control.interconnect(blocks, inputs=["d", "n"], outputs=["v", "dhat", "w"])
 
@@ -56,7 +56,7 @@ def dense(design: QFilterObserver) -> Array:
     """Frequencies around all poles, for a norm by brute force."""
     poles = np.abs(np.concatenate([design.certificate.nominal_poles, design.problem.features]))
     poles = poles[poles > 0.0]
-    return np.geomspace(1e-2 * poles.min(), 1e2 * poles.max(), 40_000)
+    return np.geomspace(1e-2 * poles.min(), 1e3 * poles.max(), 40_000)
 
 
 @pytest.mark.parametrize("order", [1, 2, 3, 5])
@@ -193,18 +193,38 @@ def many(repaired: QFilterObserver) -> list[QFilterObserver]:
     return [repaired, *designs_of_many()]
 
 
+def test_the_loop_of_python_control_is_stable_and_agrees(many: list[QFilterObserver]) -> None:
+    # Those of higher order python-control does not balance: its values lose their digits.
+    for design in (many[0], *many[-2:]):
+        loop = loop_by_control(design, as_control(design.plant))
+        np.testing.assert_array_less(loop.poles().real, 0.0)
+        w = np.geomspace(1e-1, 1e5, 200)
+        seen = loop(1j * w)
+        v_d, v_n, d_hat = loop_by_the_observer(design, 1j * w)
+        np.testing.assert_allclose(seen[0, 0], v_d, rtol=1e-6, atol=1e-9)
+        np.testing.assert_allclose(seen[0, 1], v_n, rtol=1e-6, atol=1e-9)
+        np.testing.assert_allclose(seen[1, 0], d_hat, rtol=1e-6, atol=1e-9)
+        np.testing.assert_allclose(design.Q(1j * w), d_hat, rtol=1e-6, atol=1e-9)
+
+
+def loop_by_the_observer(design: QFilterObserver, s: Array) -> tuple[Array, Array, Array]:
+    """From d to v and d_hat and from n to v, with the observer that is handed out."""
+    Pn, C = (each.response(s)[:, 0, 0] for each in (design.plant, design.controller))
+    of_v, of_y = np.moveaxis(design.observer.response(s)[:, 0], 1, 0)
+    share = 1.0 + of_v + (C + of_y) * Pn
+    v_d, v_n = -(C + of_y) * Pn / share, -(C + of_y) / share
+    return v_d, v_n, of_v * v_d + of_y * Pn * (1.0 + v_d)
+
+
 def test_norms_are_those_of_the_loop_with_the_observer(many: list[QFilterObserver]) -> None:
-    """The certificate never closes the loop with the observer; here python-control does."""
+    """The certificate never closes the loop with the observer."""
     for design in many:
         p, c = design.problem, design.certificate
-        loop = loop_by_control(design, as_control(p.plant))
-        np.testing.assert_array_less(loop.poles().real, 0.0)
         w = dense(design)
-        s = 1j * w
-        v_d, v_n = loop(s)[0, 0], loop(s)[0, 1]
-        E = 1.0 - loop(s)[1, 0]
-        Wu, Wp, Pn = (np.abs(as_control(each)(s)) for each in (p.Wu, p.Wp, p.plant))
-        Q = np.abs(design.Q(s))
+        v_d, v_n, d_hat = loop_by_the_observer(design, 1j * w)
+        E = 1.0 - d_hat
+        Wu, Wp, Pn = (np.abs(each.response(1j * w)[:, 0, 0]) for each in (p.Wu, p.Wp, p.plant))
+        Q = np.abs(d_hat)
         both = Wp * np.abs(E) + Wu * np.abs(v_d)
         # A grid of 40,000 points has a point within 1e-3 of each peak, whose top is flat.
         for norm, values in (
@@ -226,18 +246,20 @@ def test_no_other_time_constant_is_better(many: list[QFilterObserver]) -> None:
         if design.family != "textbook":
             continue
         p = design.problem
-        w = np.unique(np.concatenate([dense(design)[::20], np.abs(p.features)]))
+        size = np.abs(p.features)
+        # As far as the fastest filter tried, for that is where its norm is reached.
+        w = np.concatenate([np.geomspace(1e-3 * size.min(), 1e6 * size.max(), 1500), size])
         s = 1j * w
-        S0 = 1.0 / (1.0 + as_control(p.plant)(s) * as_control(p.controller)(s))
-        Wu, Wp = np.abs(as_control(p.Wu)(s)), np.abs(as_control(p.Wp)(s))
-        tau = np.geomspace(1e-3 / np.abs(p.features).max(), 1e3 / np.abs(p.features).min(), 3000)
+        Pn, C, Wu, Wp = (each.response(s)[:, 0, 0] for each in (p.plant, p.controller, p.Wu, p.Wp))
+        S0 = 1.0 / (1.0 + Pn * C)
+        tau = np.geomspace(1e-3 / size.max(), 1e3 / size.min(), 2000)
         least = math.inf
         kept, m = p.kept_zeros, design.filter.order
         for each in tau:
             # Without a numerator of its own, but for one zero that is kept.
             K = np.prod(1.0 - s[:, None] / kept, axis=1)
             Q = K / (1.0 + each * s) ** m
-            stack = np.hypot(Wu * np.abs(1.0 - S0 * (1.0 - Q)), Wp * np.abs(1.0 - Q))
+            stack = np.hypot(np.abs(Wu * (1.0 - S0 * (1.0 - Q))), np.abs(Wp * (1.0 - Q)))
             least = min(least, float(stack.max()))
         # A tie within 2e-4 is given to the slower filter.
         assert design.gamma <= least * (1.0 + 4e-4)
@@ -276,7 +298,7 @@ def test_noise_is_bounded_where_it_is_asked() -> None:
     assert bounded.certificate.noise_gain <= 1.1 * (1.0 + 1e-6)
     assert bounded.gamma >= free.gamma * (1.0 - 1e-6)
     for family in ("textbook", "free"):
-        with pytest.raises(InputError, match=r"keeps \|Q/Pn\| below 0.9: it is 1/\|Pn\(0\)\|"):
+        with pytest.raises(InputError, match=r"keeps \|Q/Pn\| below 0.9: it is 1 at 0 already"):
             design_q_filter(PLANT, REPAIRED_C, WU, WP, 3, family=family, most_noise=0.9)
 
 
@@ -312,7 +334,9 @@ def test_units_of_time_and_of_signals_do_not_matter(
 def test_nonminimum_phase_plants_keep_their_zeros(many: list[QFilterObserver]) -> None:
     for design in many[-2:]:
         assert design.problem.kept_zeros == pytest.approx([50.0])
-        np.testing.assert_allclose(np.abs(design.filter.response(np.array([50.0 + 0j]))), 0.0, atol=1e-9)
+        np.testing.assert_allclose(
+            np.abs(design.filter.response(np.array([50.0 + 0j]))), 0.0, atol=1e-9
+        )
         assert "kept zeros     +50 1/s" in design.summary()
         np.testing.assert_array_less(design.observer.poles().real, 0.0)
         # No pole of the observer is at the zero: it was cancelled in the factors.

@@ -144,11 +144,12 @@ def _one(
 
     search = TimeConstantSearch(problem, of_tau, most_noise)
     found = search.run()
+    at_zero = abs(problem.plant_factors.response(np.zeros(1, complex))[0])
     if most_noise is not None and found.noise_gain > most_noise * (1.0 + 1e-6):
         raise InputError(
             f"no filter of order {m} and relative degree {rho} keeps |Q/Pn| below "
-            f"{most_noise:.4g}: it is 1/|Pn(0)| at 0 already, and {found.noise_gain:.4g} at best; "
-            "allow more noise"
+            f"{most_noise:.4g}: it is {1.0 / at_zero:.4g} at 0 already, and {found.noise_gain:.4g} "
+            "at best; allow more noise"
         )
     step = f"search         {search.evaluations} exact norms, tau = {found.tau:.6g} s"
     Q = of_tau(found.tau)

@@ -24,10 +24,12 @@ ComplexArray = NDArray[np.complex128]
 
 _SLOWER, _FASTER = 30.0, 10.0  # than all poles and zeros of the problem: bounds of the poles
 _POWERS = (4.0, 12.0, 40.0)
+_LIGHTEST, _HEAVIEST = 0.05, 20.0  # of 2 zeta: poles of a pair are not told apart further
 _ROUNDS = 8
 _FINISHED = 4
 _HOPS, _HOP = 3, 0.5  # for each zero, and how far in logarithms
 _SETTLED = 1e-6
+_NEAR = np.array([0.03, 0.1, 0.3, 0.7, 0.9, 1.0, 1.1, 1.4, 3.0])  # of the modulus of a pole
 _PENALTY = 3.0  # of the squared logarithm of what noise is above its bound
 _LARGEST_SHARE = 30.0  # bound of the shares of the numerator
 
@@ -36,9 +38,9 @@ _LARGEST_SHARE = 30.0  # bound of the shares of the numerator
 class FreeFilter:
     """Filters ``Q = K (D_0 + g_1 D_1 x + .. + g_j D_j x^j) / (D_0 + .. + x^m)``, x = s/scale.
 
-    K is the polynomial of the zeros to keep, K(0) = 1. Parameters are the logarithms a, b of each
-    factor ``x^2 + e^a x + e^b`` of the denominator and c of ``x + e^c`` if m is odd, which make all
-    stable denominators, then g_1 .. g_j: all 1 is S1 eq. 28, all 0 a numerator of 1.
+    K is the polynomial of the zeros to keep, K(0) = 1. Parameters are the logarithms of 2 zeta and
+    omega of each factor ``x^2 + 2 zeta omega x + omega^2`` of the denominator, and c of ``x + e^c``
+    if m is odd; then g_1 .. g_j: all 1 is S1 eq. 28, all 0 a numerator of 1.
     """
 
     problem: QFilterProblem
@@ -86,17 +88,18 @@ class FreeFilter:
         size = np.log(np.abs(self.problem.features) / self.scale)
         low, high = size.min() - np.log(_SLOWER), size.max() + np.log(_FASTER)
         pairs = self.order // 2
-        found = [(low, high), (2.0 * low, 2.0 * high)] * pairs
+        found = [(np.log(_LIGHTEST), np.log(_HEAVIEST)), (low, high)] * pairs
         found += [(low, high)] * (self.order % 2)
         return found + [(-_LARGEST_SHARE, _LARGEST_SHARE)] * self.degree
 
     def parameters_of(self, poles: ComplexArray, shares: Array) -> Array:
         """Give the parameters of stable poles, rad/s, and shares g."""
         unit = poles / self.scale
-        pairs = [(-2.0 * p.real, abs(p) ** 2) for p in unit if p.imag > 0.0]
+        pairs = [(-2.0 * p.real / abs(p), abs(p)) for p in unit if p.imag > 0.0]
         real = np.sort(-unit[unit.imag == 0.0].real)
         for i in range(0, real.size - 1, 2):
-            pairs.append((real[i] + real[i + 1], real[i] * real[i + 1]))
+            omega = np.sqrt(real[i] * real[i + 1])
+            pairs.append(((real[i] + real[i + 1]) / omega, omega))
         values = [each for pair in pairs for each in pair]
         if real.size % 2:
             values.append(real[-1])
@@ -249,6 +252,8 @@ def _tops(free: FreeFilter, x: Array, w: Array, most_noise: float, of_noise: boo
 
 def _judged(free: FreeFilter, x: Array, w: Array, most_noise: float) -> float:
     """Give the norm; what amplifies more noise than it may is worse than all that does not."""
+    own = np.abs(_roots(x[: free.order])) * free.scale
+    w = np.union1d(w, (own[:, None] * _NEAR).ravel())
     norm = refined_tops(_height_of(free, x, most_noise, False), w, 0.7, 3)[1][0]
     share = refined_tops(_height_of(free, x, most_noise, True), w, 0.7, 3)[1][0]
     return float(np.sqrt(norm)) + (0.0 if share < 1.0 + 1e-5 else 1e6 * float(share))
@@ -269,7 +274,10 @@ def _expanded(parameters: Array) -> tuple[Array, Array]:
     """Coefficients of the denominator, lowest power first, and their derivatives (m, m + 1)."""
     m = parameters.size
     values = np.exp(parameters)
-    factors = [np.array([values[i + 1], values[i], 1.0]) for i in range(0, m - m % 2, 2)]
+    factors = [
+        np.array([values[i + 1] ** 2, values[i] * values[i + 1], 1.0])
+        for i in range(0, m - m % 2, 2)
+    ]
     if m % 2:
         factors.append(np.array([values[-1], 1.0]))
     product = np.array([1.0])
@@ -281,9 +289,12 @@ def _expanded(parameters: Array) -> tuple[Array, Array]:
         for j, other in enumerate(factors):
             if j != i:
                 rest = np.convolve(rest, other)
-        slopes[min(2 * i + factor.size - 2, m - 1), : rest.size] = factor[0] * rest
         if factor.size == 3:
             slopes[2 * i, 1 : rest.size + 1] = factor[1] * rest
+            slopes[2 * i + 1] = slopes[2 * i]
+            slopes[2 * i + 1, : rest.size] += 2.0 * factor[0] * rest
+        else:
+            slopes[m - 1, : rest.size] = factor[0] * rest
     return product, slopes
 
 
@@ -292,7 +303,7 @@ def _roots(parameters: Array) -> ComplexArray:
     m, values = parameters.size, np.exp(parameters)
     found: list[complex] = []
     for i in range(0, m - m % 2, 2):
-        a, b = values[i], values[i + 1]
+        a, b = values[i] * values[i + 1], values[i + 1] ** 2
         inside = 0.25 * a * a - b
         if inside >= 0.0:
             large = -(0.5 * a + np.sqrt(inside))
