@@ -20,6 +20,7 @@ from hyst.control.infinity_norm import hinf_norm
 from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
 from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.loop_poles import closed_loop_poles
+from hyst.control.loop_system import closed_loop_poles
 from hyst.control.plants import (
     IdentifiedPlant,
     has_dynamics_behind,
@@ -27,6 +28,17 @@ from hyst.control.plants import (
     plant_and_delay,
 )
 from hyst.control.python_control import closed_loop_system, to_nlsys
+from hyst.control.q_filter import (
+    DesignRow,
+    QFilter,
+    QFilterCertificate,
+    QFilterObserver,
+    RobustPerformance,
+    compare_designs,
+    design_q_filter,
+    q_filter,
+    robust_performance,
+)
 from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
 from hyst.control.sampled.folding import folded_uncertainty
 from hyst.control.sampled.judged import LoopJudgement, judge_loop
@@ -47,6 +59,7 @@ __all__ = [
     "EXACT",
     "Certificate",
     "ClosedLoop",
+    "DesignRow",
     "DisturbanceObserver",
     "IdentifiedPlant",
     "InternalModel",
@@ -55,6 +68,10 @@ __all__ = [
     "LoopJudgement",
     "LoopResponses",
     "ObserverProblem",
+    "QFilter",
+    "QFilterCertificate",
+    "QFilterObserver",
+    "RobustPerformance",
     "SampledCertificate",
     "SampledPlant",
     "StressTest",
@@ -64,8 +81,10 @@ __all__ = [
     "as_linear_system",
     "closed_loop_poles",
     "closed_loop_system",
+    "compare_designs",
     "compare_inverses",
     "design_disturbance_observer",
+    "design_q_filter",
     "discretize",
     "discretized_dynamics",
     "evaluate_gain",
@@ -79,7 +98,9 @@ __all__ = [
     "loop_responses",
     "observer_problem",
     "plant_and_delay",
+    "q_filter",
     "require_no_less_than_known",
+    "robust_performance",
     "sampled_certificate",
     "sampled_plant",
     "sampled_responses",
