@@ -13,11 +13,12 @@ from hyst.control.discretization import discretize
 from hyst.control.feedback.designed_controller import ControllerDesign, Tried
 from hyst.control.feedback.frequencies import frequencies_around
 from hyst.control.feedback.gain_search import Demands, best_shape
-from hyst.control.feedback.loop_plant import LoopPlant, loop_plant, points
+from hyst.control.feedback.loop_plant import LoopPlant, as_rates, loop_plant
 from hyst.control.feedback.margins import LoopMargins, margins_of
 from hyst.control.feedback.resonances import Resonance, resonances, with_resonances_elsewhere
 from hyst.control.feedback.structures import Shape, controller_points
-from hyst.control.linear_system import LinearSystem, as_linear_system
+from hyst.control.linear_system import as_linear_system
+from hyst.control.sampled.folding import folded_uncertainty, weight_response
 from hyst.errors import InputError, SolverError
 
 Array = NDArray[np.float64]
@@ -27,6 +28,7 @@ Kind: TypeAlias = Literal["auto", "i", "pi", "pid"]
 _TIMES = 24
 _WORTH = {"i": 1.0, "pi": 1.2, "pid": 1.5}  # by how much a richer kind has to be better
 _OF_NYQUIST = 0.8
+_OFF = (-1.0, -0.5, 0.5, 1.0)  # of the mismatch
 _SHRINK, _SHRINKS = 0.98, 60
 _BELOW = 0.999  # of Ms is searched, so that what lies between two frequencies of the grid is kept
 
@@ -76,8 +78,8 @@ def design_controller(
     mismatch
         Share by which the frequency of each resonance may be off, 0 to 0.3.
     Wu
-        Weight of the uncertainty: then also ``|Wu T| < 1``. In a sampled loop Wu is that of the
-        sampled plant.
+        Weight of the uncertainty of the plant: then stability is kept for every plant within Wu,
+        ``|Wu T| < 1``, or in a sampled loop ``a |C S| < 1`` with all that folds down.
 
     Returns
     -------
@@ -126,13 +128,14 @@ def design_controller(
     times = _candidate_times(met)
     notched = () if notch is False else found
     kinds = ("i", "pi", "pid") if kind == "auto" else (kind,)
-    tried = []
+    tried: list[Tried] = []
     for each in kinds:
         shape, ki = best_shape(demands, each, times, notched, notch is True)
         if ki > 0.0:
             signed = math.copysign(ki, gain)
             plants = (met, *others)
-            tried.append(_tried(each, shape, signed, plants, peak_sensitivity, demands))
+            held = _tried(each, shape, signed, plants, peak_sensitivity, demands)
+            tried += [held] if held is not None else []
     if not tried:
         raise SolverError(
             "no integral gain keeps the demands; allow a larger peak_sensitivity, or a smaller Wu"
@@ -202,18 +205,16 @@ def _elsewhere(
     if not found or mismatch == 0.0:
         return ()
     others = []
-    for factor in (1.0 - mismatch, 1.0 + mismatch):
-        if plant.continuous is not None:
-            moved = with_resonances_elsewhere(plant.continuous, found, factor)
-            others.append(loop_plant(moved, plant.dt or None, plant.dead_time))
-        else:
-            moved = with_resonances_elsewhere(plant.core, found, factor)
-            others.append(LoopPlant(moved, plant.late, 0.0, None, plant.dead_time))
+    for share in _OFF:
+        source = plant.system if plant.continuous is None else plant.continuous
+        moved = with_resonances_elsewhere(source, found, 1.0 + share * mismatch)
+        late = 0.0 if plant.continuous is None else plant.dead_time
+        others.append(loop_plant(moved, plant.dt or None, late))
     return tuple(others)
 
 
 def _grid(plants: list[LoopPlant]) -> Array:
-    features = np.concatenate([each.features() for each in plants])
+    features = np.concatenate([as_rates(each.system) for each in plants])
     late = plants[0].dead_time
     if late:
         features = np.append(features, 1.0 / late)
@@ -222,16 +223,14 @@ def _grid(plants: list[LoopPlant]) -> Array:
 
 
 def _deviation(plant: LoopPlant, Wu: Any, w: Array) -> Array:
-    weight = as_linear_system(Wu, "Wu")
-    if weight.dt and abs(weight.dt - plant.dt) > 1e-6 * plant.dt:
-        raise InputError(f"Wu has dt = {weight.dt:g} s, the loop {plant.dt:g} s; give the same")
-    s = points(w, weight.dt)
-    return np.asarray(np.abs(weight.response(s)[:, 0, 0] * plant.response(w)))
+    if plant.sampled is not None:
+        return folded_uncertainty(plant.sampled, Wu, w)
+    return np.asarray(np.abs(weight_response(as_linear_system(Wu, "Wu"), w) * plant.response(w)))
 
 
 def _candidate_times(plant: LoopPlant) -> Array:
     """From what is fastest in the loop to a few times what is slowest."""
-    sizes = np.abs(plant.features())
+    sizes = np.abs(as_rates(plant.system))
     sizes = sizes[sizes > 0.0]
     known = [1.0 / each for each in sizes] + [each for each in (plant.dt, plant.dead_time) if each]
     if not known:
@@ -247,7 +246,7 @@ def _tried(
     plants: tuple[LoopPlant, ...],
     peak: float,
     demands: Demands,
-) -> Tried:
+) -> Tried | None:
     """Hold a candidate to its demands between the points of the grid, and lower its gain if not."""
     for _ in range(_SHRINKS):
         continuous = shape.system(ki, demands.dt)
@@ -256,7 +255,7 @@ def _tried(
         if all(_kept(each, peak, demands) for each in found):
             return Tried(kind, shape, ki, continuous, system, found[0], _worst(found))
         ki *= _SHRINK
-    raise SolverError("the demands are not kept between the frequencies of the search")
+    return None
 
 
 def _kept(found: LoopMargins, peak: float, demands: Demands) -> bool:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from hyst.control.controller_parts import feedback_controller
 from hyst.control.discretization import Method, discretize
 from hyst.control.feedback.frequencies import crossings, frequencies_around, highest
-from hyst.control.feedback.loop_plant import LoopPlant, as_rates, loop_plant, points
+from hyst.control.feedback.loop_plant import LoopPlant, as_rates, loop_plant, points, rates_of
 from hyst.control.feedback.stability import is_stable, loop_poles
 from hyst.control.linear_system import LinearSystem
 from hyst.errors import InputError
@@ -211,14 +211,12 @@ def _closed(loop: Any) -> Any:
 
 def _grid(plant: LoopPlant, controller: LinearSystem) -> Array:
     """Near all poles, those of the closed loop included, and fine enough for what delay turns."""
-    rates = [as_rates(plant.core), as_rates(controller)]
+    rates = [as_rates(plant.system), as_rates(controller)]
     if plant.delay == 0.0:
-        poles = loop_poles(plant.system(), controller)
-        if plant.dt:
-            poles = np.log(poles[np.abs(poles) > 1e-12]) / plant.dt
-        rates.append(poles)
+        poles = loop_poles(plant.system, controller)
+        rates.append(rates_of(poles, plant.dt))
     w = frequencies_around(np.concatenate(rates), plant.nyquist)
-    late = plant.delay + plant.late * plant.dt
+    late = plant.dead_time
     if not late:
         return w
     # Up to where |L| no longer matters no half turn may be missed.
@@ -239,7 +237,7 @@ def _with_ends(
         s = points(np.array([w]), plant.dt)
         if np.abs(controller.poles() - s).min(initial=1.0) < 1e-9:
             continue
-        if np.abs(plant.core.poles() - s).min(initial=1.0) < 1e-9:
+        if np.abs(plant.system.poles() - s).min(initial=1.0) < 1e-9:
             continue
         value = (plant.response(np.array([w])) * controller.response(s)[:, 0, 0])[0]
         if value.real < 0.0:

@@ -55,7 +55,7 @@ def resonances(plant: LoopPlant) -> tuple[Resonance, ...]:
     -------
     tuple of Resonance
     """
-    source = plant.core if plant.continuous is None else plant.continuous
+    source = plant.system if plant.continuous is None else plant.continuous
     at_rest = abs(static_gain(source))
     found = []
     for pole in as_rates(source):

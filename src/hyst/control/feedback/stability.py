@@ -65,16 +65,16 @@ def is_stable(plant: LoopPlant, controller: LinearSystem) -> bool:
         If the Nyquist curve passes too near -1 to be followed.
     """
     if plant.delay == 0.0:
-        return pole_margin(loop_poles(plant.system(), controller), plant.dt) > 0.0
+        return pole_margin(loop_poles(plant.system, controller), plant.dt) > 0.0
     return _encircles_nothing(plant, controller)
 
 
 def _encircles_nothing(plant: LoopPlant, controller: LinearSystem) -> bool:
     """From 0 to infinity the phase of 1 + L turns by a quarter for each integrator, if stable."""
-    feed = abs(float(plant.core.D[0, 0] * controller.D[0, 0]))
+    feed = abs(float(plant.system.D[0, 0] * controller.D[0, 0]))
     if feed >= 1.0:
         return False
-    rates = np.concatenate([as_rates(plant.core), as_rates(controller)])
+    rates = np.concatenate([as_rates(plant.system), as_rates(controller)])
     scale = float(np.abs(rates).max(initial=0.0)) or 1.0 / plant.delay
     at_origin = int(np.sum(np.abs(rates) <= 1e-9 * scale))
     if (rates.real > 1e-9 * scale).any():
