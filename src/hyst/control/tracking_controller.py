@@ -15,6 +15,7 @@ from hyst.checks.arrays import as_constants, as_signal, as_state
 from hyst.checks.numbers import as_sample_time
 from hyst.control.controller_parts import disturbance_observer_of, feedback_controller, joined
 from hyst.control.discretization import Method, discretize
+from hyst.control.feedback.feedforward import with_feedforward
 from hyst.errors import InputError
 from hyst.operators import Operator
 from hyst.operators.description import Described, ModelDescription
@@ -135,19 +136,21 @@ class TrackingController(Described):
         observer: Any = None,
         inverse: Operator | None = None,
         method: Method = "tustin",
+        feedforward: Any = None,
+        plant: Any = None,
         despite_verdict: bool = False,
     ) -> TrackingController:
         """Sample a design in continuous time.
 
         Controller and observer are sampled each by itself, and then joined:
-        ``v = C(z)(y_ref - y) - d_hat``, where the observer's feedthrough from v, which
-        ``"tustin"`` gives it, is solved for.
+        ``v = F(z) y_ref + C(z)(y_ref - y) - d_hat``, where the observer's feedthrough from v,
+        which ``"tustin"`` gives it, is solved for.
 
         Parameters
         ----------
         controller
             C(s), from the tracking error to v: a system of python-control, a LinearSystem, a pair
-            (num, den), matrices (A, B, C, D) or a number.
+            (num, den), matrices (A, B, C, D), a number, or what ``design_controller`` gave.
         dt
             Sample time, s, > 0.
         observer
@@ -157,6 +160,12 @@ class TrackingController(Described):
             Operator from v to u; ``u = v`` if left out.
         method
             How they are sampled: ``"tustin"`` or ``"zoh"``.
+        feedforward
+            F, from the reference to v: True is the static ``1 / Pn(0)``; or a stable system, such
+            as ``reference_feedforward`` gives; none if left out. It changes no pole of the loop.
+        plant
+            Pn, of which ``feedforward=True`` takes the static gain; left out, that of a designed
+            controller or observer, or a gain of 1.
         despite_verdict
             Take also an inverse of a model whose verdict is ``unfit``.
 
@@ -176,8 +185,10 @@ class TrackingController(Described):
         >>> round(pi.stepper()(1.0, 0.0), 6)
         4.004
         """
-        blocks = feedback_controller(controller), disturbance_observer_of(observer)
-        whole = joined(*(discretize(each, dt, method) for each in blocks))
+        parts = feedback_controller(controller), disturbance_observer_of(observer)
+        blocks = discretize(parts[0], dt, method), discretize(parts[1], dt, method)
+        known = (controller, observer)
+        whole = joined(with_feedforward(blocks[0], feedforward, method, plant, known), blocks[1])
         return cls(
             whole.A,
             whole.B,
