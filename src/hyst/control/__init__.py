@@ -15,6 +15,11 @@ from hyst.control.disturbance_observer import (
     evaluate_gain,
     observer_problem,
 )
+from hyst.control.feedback.comparison import ComparedLoop, LoopComparison, compare_loops
+from hyst.control.feedback.controller_design import design_controller
+from hyst.control.feedback.designed_controller import ControllerDesign
+from hyst.control.feedback.feedforward import reference_feedforward
+from hyst.control.feedback.margins import LoopMargins, loop_margins
 from hyst.control.frequency_responses import LoopResponses, loop_responses, uncertainty_used
 from hyst.control.inexact_inverse import first_unstable_slope, slope_margin
 from hyst.control.infinity_norm import hinf_norm
@@ -34,11 +39,15 @@ __all__ = [
     "EXACT",
     "Certificate",
     "ClosedLoop",
+    "ComparedLoop",
+    "ControllerDesign",
     "DisturbanceObserver",
     "InternalModel",
     "InverseComparison",
     "LinearSystem",
+    "LoopComparison",
     "LoopJudgement",
+    "LoopMargins",
     "LoopResponses",
     "ObserverProblem",
     "SampledCertificate",
@@ -49,6 +58,8 @@ __all__ = [
     "as_linear_system",
     "closed_loop_poles",
     "compare_inverses",
+    "compare_loops",
+    "design_controller",
     "design_disturbance_observer",
     "discretize",
     "discretized_dynamics",
@@ -57,8 +68,10 @@ __all__ = [
     "folded_uncertainty",
     "hinf_norm",
     "judge_loop",
+    "loop_margins",
     "loop_responses",
     "observer_problem",
+    "reference_feedforward",
     "sampled_certificate",
     "sampled_plant",
     "sampled_responses",

@@ -141,9 +141,9 @@ def design_controller(
             "no integral gain keeps the demands; allow a larger peak_sensitivity, or a smaller Wu"
         )
     best = tried[0]
-    for each in tried[1:]:
-        if abs(each.ki) > _WORTH[each.kind] * abs(best.ki):
-            best = each
+    for other in tried[1:]:
+        if abs(other.ki) > _WORTH[other.kind] * abs(best.ki):
+            best = other
     return _result(best, tuple(tried), met, others, off, found)
 
 
@@ -195,7 +195,8 @@ def _refuse_slow(plant: LoopPlant, found: tuple[Resonance, ...], mismatch: float
         raise InputError(
             f"dt = {plant.dt:.6g} s is too slow for the resonance at "
             f"{fastest.frequency / (2.0 * math.pi):.4g} Hz, which reaches {fastest.peak:.3g} times "
-            f"the static gain: sample at {math.ceil(least):d} Hz or faster, dt <= {1.0 / least:.4g} s"
+            f"the static gain; sample at {math.ceil(least):d} Hz or faster, a dt of at most "
+            f"{1.0 / math.ceil(least):.4g} s"
         )
 
 

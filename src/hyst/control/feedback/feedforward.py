@@ -137,7 +137,7 @@ def _taylor(plant: LinearSystem, degree: int) -> Array:
     # z^-1 stands before the states: Pd = (1 - d) sum of found_k d^k + D.
     series = np.array(found) - np.concatenate([[0.0], found[:-1]])
     series[0] += float(plant.D[0, 0])
-    return series
+    return np.asarray(series)
 
 
 def _nothing() -> tuple[Array, Array, Array]:
@@ -145,7 +145,7 @@ def _nothing() -> tuple[Array, Array, Array]:
 
 
 def _gain_of(plant: Any, designs: tuple[Any, ...]) -> float:
-    """Give the static gain of the plant, or of the first design that knows it; 1 where none does."""
+    """Give the static gain of the plant, or of the first design that knows it, or else 1."""
     gains = [] if plant is None else [static_gain(plant_of(plant))]
     gains += [float(each.static_gain) for each in designs if hasattr(each, "static_gain")]
     gains += [static_gain(each.problem.plant) for each in designs if hasattr(each, "problem")]

@@ -102,9 +102,7 @@ def best_shape(
     shape, gain = _best_times(demands, Shape(), rows)
     left = list(found[:_MOST_NOTCHES])
     while left:
-        tried = [
-            (*_best_notch(demands, shape, rows, each), each) for each in left
-        ]
+        tried = [(*_best_notch(demands, shape, rows, each), each) for each in left]
         better = max(tried, key=lambda each: each[1])
         if better[1] < _WORTH * gain and not needed:
             break

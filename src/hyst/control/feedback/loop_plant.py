@@ -1,4 +1,4 @@
-"""The plant as a loop meets it: with its dead time, and sampled behind a hold where a block runs."""
+"""The plant as a loop meets it: with its dead time, sampled behind a hold where a block runs."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def rates_of(poles: ComplexArray, dt: float) -> ComplexArray:
 
 
 def static_gain(system: LinearSystem) -> float:
-    """Give the output of a system with one input per constant input; infinite with an integrator."""
+    """Give the output per constant input; infinite with an integrator."""
     if system.order == 0:
         return float(system.D[0, 0])
     origin = 1.0 if system.dt else 0.0

@@ -161,7 +161,9 @@ def loop_margins(
     if met.dt:
         read = discretize(read, met.dt, method)
     elif read.dt:
-        raise InputError(f"the controller is sampled at {read.dt:g} s; give dt, or a continuous one")
+        raise InputError(
+            f"the controller is sampled at {read.dt:g} s; give dt, or a continuous one"
+        )
     return margins_of(met, read)
 
 

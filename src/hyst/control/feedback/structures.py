@@ -74,9 +74,7 @@ class Shape:
         above = np.array([self.Ti, 1.0]) if self.Ti else np.array([1.0])
         below = np.array([1.0, 0.0])
         if self.Td:
-            above = np.polyadd(
-                np.polymul(above, [self.Tf, 1.0]), [self.Ti * self.Td, 0.0, 0.0]
-            )
+            above = np.polyadd(np.polymul(above, [self.Tf, 1.0]), [self.Ti * self.Td, 0.0, 0.0])
             below = np.array([self.Tf, 1.0, 0.0])
         parts = [_realized(ki * above, below)]
         for notch in self.notches:
