@@ -76,7 +76,8 @@ def settled_start(
     Raises
     ------
     InputError
-        If the plant has no static gain, or the loop no place to rest: the reference is out of reach.
+        If the plant has no static gain, or the loop no place to rest, for the hysteresis does not
+        reach the reference.
     """
     gain = static_gain(plant.system)
     if gain == 0.0 or not np.isfinite(gain):
@@ -85,7 +86,7 @@ def settled_start(
         )
 
     def given(v: float) -> float:
-        """w for v."""
+        """Give w for v."""
         u = v if block.inverse is None else float(block.inverse(np.array([v]))[0])
         return u if hysteresis is None else float(hysteresis(np.array([u]))[0])
 
@@ -128,7 +129,7 @@ def _root(value: Any, guess: float, reference: float) -> float:
 
 
 def _resting_state(block: TrackingController, given: Array, v: float) -> Array:
-    """The smallest state that stays and gives v."""
+    """Give the smallest state that stays and gives v."""
     if block.order == 0:
         return np.zeros(0)
     # Rows of equal size, or the one that moves in small steps would hardly count.

@@ -1,8 +1,8 @@
 """Integral, PI and PID controllers with notches, as responses and as systems.
 
 ``C(s) = ki (1 + Ti s + Ti Td s^2 / (Tf s + 1)) / s  prod N_i(s)``,
-``N(s) = (s^2 + 2 d1 w s + w^2) / (s^2 + 2 d2 w s + w^2)``. Sampled by the trapezoidal rule, C is met
-at ``s = j 2 / dt tan(w dt / 2)``; notches are placed so that they end up where they should.
+``N(s) = (s^2 + 2 d1 w s + w^2) / (s^2 + 2 d2 w s + w^2)``. Sampled by the trapezoidal rule, C is
+met at ``s = j 2 / dt tan(w dt / 2)``; notches are placed so that they end up where they should.
 """
 
 from __future__ import annotations
