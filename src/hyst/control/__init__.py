@@ -14,13 +14,17 @@ from hyst.control.disturbance_observer import (
     evaluate_gain,
     observer_problem,
 )
+from hyst.control.feedback.comparison import ComparedLoop, LoopComparison, compare_loops
+from hyst.control.feedback.controller_design import design_controller
+from hyst.control.feedback.designed_controller import ControllerDesign
+from hyst.control.feedback.feedforward import reference_feedforward
+from hyst.control.feedback.margins import LoopMargins, loop_margins
 from hyst.control.frequency_responses import LoopResponses, loop_responses, uncertainty_used
 from hyst.control.inexact_inverse import first_unstable_slope, slope_margin
 from hyst.control.infinity_norm import hinf_norm
 from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
 from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.loop_poles import closed_loop_poles
-from hyst.control.loop_system import closed_loop_poles
 from hyst.control.plants import (
     IdentifiedPlant,
     has_dynamics_behind,
@@ -59,13 +63,17 @@ __all__ = [
     "EXACT",
     "Certificate",
     "ClosedLoop",
+    "ComparedLoop",
+    "ControllerDesign",
     "DesignRow",
     "DisturbanceObserver",
     "IdentifiedPlant",
     "InternalModel",
     "InverseComparison",
     "LinearSystem",
+    "LoopComparison",
     "LoopJudgement",
+    "LoopMargins",
     "LoopResponses",
     "ObserverProblem",
     "QFilter",
@@ -83,6 +91,8 @@ __all__ = [
     "closed_loop_system",
     "compare_designs",
     "compare_inverses",
+    "compare_loops",
+    "design_controller",
     "design_disturbance_observer",
     "design_q_filter",
     "discretize",
@@ -95,10 +105,12 @@ __all__ = [
     "identification_weight",
     "identified_plant",
     "judge_loop",
+    "loop_margins",
     "loop_responses",
     "observer_problem",
     "plant_and_delay",
     "q_filter",
+    "reference_feedforward",
     "require_no_less_than_known",
     "robust_performance",
     "sampled_certificate",
