@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hyst.control.closed_loop import ClosedLoop
-from hyst.control.closed_loop_poles import closed_loop_poles
+from hyst.control.loop_poles import closed_loop_poles
 from hyst.control.closed_loop_simulation import simulate_closed_loop
 from hyst.control.discretization import discretize, discretized_dynamics
 from hyst.control.disturbance_observer import (
