@@ -263,6 +263,11 @@ def plant_of_block(plant: Any, block: TrackingController, delay: float) -> Sampl
         As in ``sampled_plant``.
     block
         A TrackingController.
+
+    Raises
+    ------
+    InputError
+        If it is none, or as ``sampled_plant``.
     """
     if not isinstance(block, TrackingController):
         raise InputError(f"the block is {type(block).__name__}; give a TrackingController")
@@ -278,6 +283,11 @@ def stable_weight(weight: Any, name: str) -> LinearSystem:
         As ``as_linear_system`` takes it.
     name
         What messages call it.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, has several inputs or outputs, or is not stable.
     """
     read = as_linear_system(weight, name)
     if (read.inputs, read.outputs) != (1, 1):
