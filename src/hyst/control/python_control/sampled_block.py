@@ -95,7 +95,7 @@ def _of_scheduled(model: Scheduled | ScheduledInverse, watch: bool) -> SampledBl
 
 
 def _of_controller(block: TrackingController, watch: bool) -> SampledBlock:
-    """Tell beside u what the linear part asks for, and the estimate where it is known."""
+    """Tell beside u the v that belongs to it, and the estimate where it is known."""
     linear = TrackingController(block.A, block.B, block.C, block.D, block.dt)
     estimates = block.E is not None
 
@@ -105,6 +105,8 @@ def _of_controller(block: TrackingController, watch: bool) -> SampledBlock:
         if not watch:
             return u, following
         told = [u, linear.run(reference, output, state[: block.order])[0]]
+        if block.is_limited:
+            block.compiled.tell(state.copy(), reference, output, told[1], np.empty(1))
         if estimates:
             told.append(block.estimate(reference, output, state))
         return np.concatenate(told), following
