@@ -148,7 +148,6 @@ def test_repaired_example(repaired: QFilterObserver) -> None:
         (3, 3, None, 0.9239, 1.50),
         (3, 2, None, 0.857, 1.38),
         (4, 3, 1.3, 0.842, 1.28),
-        (4, 2, 1.38, 0.852, 1.38),
     ],
 )
 def test_free_filters_reach_what_a_free_optimisation_did(
@@ -168,9 +167,10 @@ def test_one_more_order_is_better_than_the_best_of_the_papers_observer() -> None
     classical = design_q_filter(PLANT, REPAIRED_C, WU, WP, 4)
     assert classical.gamma < 0.906 < 0.9239
     assert classical.certificate.noise_gain <= 1.478
-    free = design_q_filter(PLANT, REPAIRED_C, WU, WP, 4, family="free", most_noise=1.478)
-    assert free.gamma <= 0.85
-    assert free.certificate.noise_gain <= 1.478 * (1.0 + 1e-4)
+    # An optimisation without hyst stopped at 0.852 with a noise gain of 1.38.
+    free = design_q_filter(PLANT, REPAIRED_C, WU, WP, 4, family="free", most_noise=1.38)
+    assert free.gamma <= 0.825
+    assert free.certificate.noise_gain <= 1.38 * (1.0 + 1e-4)
 
 
 def designs_of_many() -> list[QFilterObserver]:
@@ -184,7 +184,7 @@ def designs_of_many() -> list[QFilterObserver]:
     nonminimum = ([-1.0, 50.0], [1.0, 20.0, 200.0])
     Wu, Wp = ([1.0, 10.0], [1.0, 300.0]), ([0.3, 10.0], [1.0, 0.1])
     found.append(design_q_filter(nonminimum, ([1.0, 2.0], [1.0, 0.0]), Wu, Wp))
-    found.append(design_q_filter(nonminimum, ([1.0, 2.0], [1.0, 0.0]), Wu, Wp, 4, family="free"))
+    found.append(design_q_filter(nonminimum, ([1.0, 2.0], [1.0, 0.0]), Wu, Wp, 3, family="free"))
     return found
 
 
@@ -298,7 +298,7 @@ def test_noise_is_bounded_where_it_is_asked() -> None:
     assert bounded.certificate.noise_gain <= 1.1 * (1.0 + 1e-6)
     assert bounded.gamma >= free.gamma * (1.0 - 1e-6)
     for family in ("textbook", "free"):
-        with pytest.raises(InputError, match=r"keeps \|Q/Pn\| below 0.9: it is 1 at 0 already"):
+        with pytest.raises(InputError, match=r"no filter keeps .* below 0.9: at 0 it is 1/\|Pn"):
             design_q_filter(PLANT, REPAIRED_C, WU, WP, 3, family=family, most_noise=0.9)
 
 
