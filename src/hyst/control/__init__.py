@@ -19,7 +19,8 @@ from hyst.control.inexact_inverse import first_unstable_slope, slope_margin
 from hyst.control.infinity_norm import hinf_norm
 from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
 from hyst.control.linear_system import LinearSystem, as_linear_system
-from hyst.control.loop_system import closed_loop_poles
+from hyst.control.loop_poles import closed_loop_poles
+from hyst.control.python_control import closed_loop_system, to_nlsys
 from hyst.control.q_filter import (
     DesignRow,
     QFilter,
@@ -31,6 +32,14 @@ from hyst.control.q_filter import (
     q_filter,
     robust_performance,
 )
+from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
+from hyst.control.sampled.folding import folded_uncertainty
+from hyst.control.sampled.judged import LoopJudgement, judge_loop
+from hyst.control.sampled.plant import SampledPlant, sampled_plant
+from hyst.control.sampled.responses import sampled_responses
+from hyst.control.sampled.slopes import sampled_slope_failing, sampled_slope_proof
+from hyst.control.sampled.stress import StressTest, stress
+from hyst.control.sampled.tried import TriedLoop, try_block
 from hyst.control.tracking_controller import TrackingController
 
 __all__ = [
@@ -42,15 +51,21 @@ __all__ = [
     "InternalModel",
     "InverseComparison",
     "LinearSystem",
+    "LoopJudgement",
     "LoopResponses",
     "ObserverProblem",
     "QFilter",
     "QFilterCertificate",
     "QFilterObserver",
     "RobustPerformance",
+    "SampledCertificate",
+    "SampledPlant",
+    "StressTest",
     "TrackingController",
+    "TriedLoop",
     "as_linear_system",
     "closed_loop_poles",
+    "closed_loop_system",
     "compare_designs",
     "compare_inverses",
     "design_disturbance_observer",
@@ -59,13 +74,23 @@ __all__ = [
     "discretized_dynamics",
     "evaluate_gain",
     "first_unstable_slope",
+    "folded_uncertainty",
     "hinf_norm",
+    "judge_loop",
     "loop_responses",
     "observer_problem",
     "q_filter",
     "robust_performance",
+    "sampled_certificate",
+    "sampled_plant",
+    "sampled_responses",
+    "sampled_slope_failing",
+    "sampled_slope_proof",
     "simulate_closed_loop",
     "slope_margin",
+    "stress",
+    "to_nlsys",
+    "try_block",
     "uncertainty_used",
 ]
 

@@ -147,10 +147,10 @@ def _one(
 
     search = TimeConstantSearch(problem, of_tau, most_noise)
     found = search.run()
-    if most_noise is not None and found.noise_gain > most_noise * (1.0 + 1e-6):
+    if most_noise is not None and found.noise > most_noise * (1.0 + 1e-6):
         raise InputError(
             f"no filter of order {m} and relative degree {rho} keeps |Q/Pn| below "
-            f"{most_noise:.4g}: {found.noise_gain:.4g} at best; allow more noise"
+            f"{most_noise:.4g}: {found.noise:.4g} at best; allow more noise"
         )
     step = f"search         {search.evaluations} exact norms, tau = {found.tau:.6g} s"
     Q = of_tau(found.tau)
@@ -164,14 +164,14 @@ def _free(
     textbook = _one(problem, m, m - kept, "textbook", None)
     bound = most_noise
     if bound is None:
-        bound = max(_MORE_NOISE * least, textbook.certificate.noise_gain)
+        bound = max(_MORE_NOISE * least, textbook.certificate.observer_noise_gain)
     search = FreeSearch(problem, rho, textbook.tau or 1.0, bound)
     Q = search.run(m)
     certificate = certify_filter(problem, Q)
-    if certificate.noise_gain > bound * (1.0 + 1e-4):
+    if certificate.observer_noise_gain > bound * (1.0 + 1e-4):
         raise InputError(
             f"no filter of order {m} and relative degree {rho} was found that keeps |Q/Pn| below "
-            f"{bound:.4g}; {certificate.noise_gain:.4g} at best, so allow more noise"
+            f"{bound:.4g}; {certificate.observer_noise_gain:.4g} at best, so allow more noise"
         )
     step = f"search         {search.descents} descents, |Q/Pn| bounded by {bound:.4g}"
     return QFilterObserver(problem, Q, certificate, "free", (step,))

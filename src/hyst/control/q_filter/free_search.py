@@ -63,7 +63,7 @@ class FreeSearch:
             x, _, descents = descend_free(free, starts, allowed, 0 if attempt else _HOPS)
             self.descents += descents
             Q = free.filter_of(x)
-            noise = certify_filter(self.problem, Q).noise_gain
+            noise = certify_filter(self.problem, Q).observer_noise_gain
             if noise <= self.most_noise * (1.0 + 1e-4):
                 break
             # A peak between the frequencies that were looked at: a little less is allowed.
