@@ -133,7 +133,7 @@ def test_repaired_example(repaired: QFilterObserver) -> None:
     assert repaired.name == "1/(tau s + 1)^3"
     assert repaired.gamma == pytest.approx(0.952, abs=5e-4)
     assert c.uncertainty_norm == pytest.approx(0.80, abs=5e-3)
-    assert c.noise_gain == pytest.approx(1.0, abs=1e-9)
+    assert c.observer_noise_gain == pytest.approx(1.0, abs=1e-9)
     assert repaired.feasible
     assert c.robustly_stable
     assert c.proper
@@ -148,7 +148,6 @@ def test_repaired_example(repaired: QFilterObserver) -> None:
         (3, 3, None, 0.9239, 1.50),
         (3, 2, None, 0.857, 1.38),
         (4, 3, 1.3, 0.842, 1.28),
-        (4, 2, 1.38, 0.852, 1.38),
     ],
 )
 def test_free_filters_reach_what_a_free_optimisation_did(
@@ -158,7 +157,7 @@ def test_free_filters_reach_what_a_free_optimisation_did(
         PLANT, REPAIRED_C, WU, WP, order, degree, family="free", most_noise=most_noise
     )
     assert found.gamma <= norm + 6e-4  # three printed digits
-    assert found.certificate.noise_gain <= noise + 2e-3
+    assert found.certificate.observer_noise_gain <= noise + 2e-3
     assert found.filter.order == order
     assert found.certificate.nominal_stable
 
@@ -167,10 +166,11 @@ def test_one_more_order_is_better_than_the_best_of_the_papers_observer() -> None
     """At no more noise gain than that one has, 1.478."""
     classical = design_q_filter(PLANT, REPAIRED_C, WU, WP, 4)
     assert classical.gamma < 0.906 < 0.9239
-    assert classical.certificate.noise_gain <= 1.478
-    free = design_q_filter(PLANT, REPAIRED_C, WU, WP, 4, family="free", most_noise=1.478)
-    assert free.gamma <= 0.85
-    assert free.certificate.noise_gain <= 1.478 * (1.0 + 1e-4)
+    assert classical.certificate.observer_noise_gain <= 1.478
+    # An optimisation without hyst stopped at 0.852 with a noise gain of 1.38.
+    free = design_q_filter(PLANT, REPAIRED_C, WU, WP, 4, family="free", most_noise=1.38)
+    assert free.gamma <= 0.825
+    assert free.certificate.observer_noise_gain <= 1.38 * (1.0 + 1e-4)
 
 
 def designs_of_many() -> list[QFilterObserver]:
@@ -184,7 +184,7 @@ def designs_of_many() -> list[QFilterObserver]:
     nonminimum = ([-1.0, 50.0], [1.0, 20.0, 200.0])
     Wu, Wp = ([1.0, 10.0], [1.0, 300.0]), ([0.3, 10.0], [1.0, 0.1])
     found.append(design_q_filter(nonminimum, ([1.0, 2.0], [1.0, 0.0]), Wu, Wp))
-    found.append(design_q_filter(nonminimum, ([1.0, 2.0], [1.0, 0.0]), Wu, Wp, 4, family="free"))
+    found.append(design_q_filter(nonminimum, ([1.0, 2.0], [1.0, 0.0]), Wu, Wp, 3, family="free"))
     return found
 
 
@@ -232,8 +232,8 @@ def test_norms_are_those_of_the_loop_with_the_observer(many: list[QFilterObserve
             (c.uncertainty_norm, Wu * np.abs(v_d)),
             (c.performance_norm, Wp * np.abs(E)),
             (c.robust_performance, both),
-            (c.noise_gain, Q / Pn),
-            (c.drive_noise_gain, np.abs(v_n)),
+            (c.observer_noise_gain, Q / Pn),
+            (c.noise_gain, np.abs(v_n)),
         ):
             assert values.max() <= norm * (1.0 + 1e-6)
             assert values.max() >= norm * (1.0 - 2e-4)
@@ -274,7 +274,7 @@ def test_a_first_order_plant_by_hand() -> None:
     # rises to 0.5, which no tau changes, and Q/Pn = (s + 10)/(10 (tau s + 1)).
     assert c.performance_norm == pytest.approx(0.5, rel=1e-9)
     assert c.uncertainty_norm == pytest.approx(1.0 / (1.0 + 40.0 * tau), rel=1e-6)
-    assert c.noise_gain == pytest.approx(max(1.0, 1.0 / (10.0 * tau)), rel=1e-6)
+    assert c.observer_noise_gain == pytest.approx(max(1.0, 1.0 / (10.0 * tau)), rel=1e-6)
     assert c.bandwidth == pytest.approx(1.0 / tau, rel=1e-6)
     assert found.gamma >= 0.5 * (1.0 - 1e-9)
 
@@ -288,17 +288,17 @@ def test_where_the_norm_is_flat_the_slowest_filter_is_taken() -> None:
     assert found.tau is not None
     assert found.tau > 1e-2
     noise_of_fast = np.abs(fast.response(1j * np.array([1e4])) * (1e4j + 1.0) ** 2)[0]
-    assert found.certificate.noise_gain < 0.05 * noise_of_fast
+    assert found.certificate.observer_noise_gain < 0.05 * noise_of_fast
 
 
 def test_noise_is_bounded_where_it_is_asked() -> None:
     free = design_q_filter(PLANT, REPAIRED_C, WU, WP, 5)
-    assert free.certificate.noise_gain > 1.2
+    assert free.certificate.observer_noise_gain > 1.2
     bounded = design_q_filter(PLANT, REPAIRED_C, WU, WP, 5, most_noise=1.1)
-    assert bounded.certificate.noise_gain <= 1.1 * (1.0 + 1e-6)
+    assert bounded.certificate.observer_noise_gain <= 1.1 * (1.0 + 1e-6)
     assert bounded.gamma >= free.gamma * (1.0 - 1e-6)
     for family in ("textbook", "free"):
-        with pytest.raises(InputError, match=r"keeps \|Q/Pn\| below 0.9: it is 1 at 0 already"):
+        with pytest.raises(InputError, match=r"no filter keeps .* below 0.9: at 0 it is 1/\|Pn"):
             design_q_filter(PLANT, REPAIRED_C, WU, WP, 3, family=family, most_noise=0.9)
 
 
@@ -328,7 +328,7 @@ def test_units_of_time_and_of_signals_do_not_matter(
     assert found.gamma == pytest.approx(repaired.gamma, rel=1e-7)
     # The tie lets tau move by what costs nothing in the norm.
     assert found.tau == pytest.approx(k * repaired.tau, rel=1e-3)  # type: ignore[operator]
-    assert found.certificate.noise_gain == pytest.approx(1.0 / g, rel=1e-9)
+    assert found.certificate.observer_noise_gain == pytest.approx(1.0 / g, rel=1e-9)
 
 
 def test_nonminimum_phase_plants_keep_their_zeros(many: list[QFilterObserver]) -> None:
@@ -440,8 +440,8 @@ def test_rows_beside_one_another(repaired: QFilterObserver) -> None:
     # Wp = (0.5 s + 64 pi)/(s + 0.2) is largest at 0.
     assert alone.performance_norm == pytest.approx(64.0 * np.pi / 0.2, rel=1e-9)
     assert alone.uncertainty_norm == pytest.approx(np.abs(control.tf(*WU)(s) * T).max(), rel=1e-6)
-    assert alone.drive_noise_gain == pytest.approx(np.abs(T / Pn).max(), rel=1e-6)
-    assert (alone.noise_gain, alone.bandwidth, alone.order) == (0.0, 0.0, 0)
+    assert alone.noise_gain == pytest.approx(np.abs(T / Pn).max(), rel=1e-6)
+    assert (alone.observer_noise_gain, alone.bandwidth, alone.order) == (0.0, 0.0, 0)
     assert rows[1].stacked_norm == repaired.gamma
     # The same norms from the loop with the observer's states.
     c = given.certificate
@@ -505,4 +505,4 @@ def test_a_resonant_plant_of_higher_order_and_a_gain() -> None:
     assert found.problem.kept_zeros.size == 2
     assert found.certificate.nominal_stable
     gain = design_q_filter(2.0, ([3.0], [1.0, 0.0]), Wu, Wp, 1)
-    assert gain.certificate.noise_gain == pytest.approx(0.5, rel=1e-9)
+    assert gain.certificate.observer_noise_gain == pytest.approx(0.5, rel=1e-9)

@@ -47,9 +47,9 @@ class QFilterCertificate:
         ``"Wu T"`` or ``"Wp (1 - Q)"``: the larger part at the peak of the stack.
     robust_stability_margin
         Factor by which Wu may grow before stability is no longer sure.
-    noise_gain, noise_frequency
+    observer_noise_gain, observer_noise_gain_frequency
         Norm of Q/Pn, from sensor noise to the estimate.
-    drive_noise_gain, drive_noise_frequency
+    noise_gain, noise_gain_frequency
         Norm of T/Pn, from sensor noise to v in the loop.
     bandwidth
         Where |1 - Q| first reaches 0.707, rad/s; inf if it does nowhere.
@@ -77,10 +77,10 @@ class QFilterCertificate:
     worst_frequency: float
     limited_by: str
     robust_stability_margin: float
+    observer_noise_gain: float
+    observer_noise_gain_frequency: float
     noise_gain: float
-    noise_frequency: float
-    drive_noise_gain: float
-    drive_noise_frequency: float
+    noise_gain_frequency: float
     bandwidth: float
     Q_numerator: Array
     Q_denominator: Array
@@ -153,10 +153,10 @@ def certify_filter(problem: QFilterProblem, Q: QFilter) -> QFilterCertificate:
         worst_frequency=robust.worst_frequency,
         limited_by="Wu T" if peak.Wu_T[0] >= peak.Wp_E[0] else "Wp (1 - Q)",
         robust_stability_margin=1.0 / uncertain if uncertain > 0.0 else np.inf,
-        noise_gain=noise,
-        noise_frequency=noise_at,
-        drive_noise_gain=drive,
-        drive_noise_frequency=drive_at,
+        observer_noise_gain=noise,
+        observer_noise_gain_frequency=noise_at,
+        noise_gain=drive,
+        noise_gain_frequency=drive_at,
         bandwidth=rejection_bandwidth(Q),
         Q_numerator=Q.numerator,
         Q_denominator=Q.denominator,

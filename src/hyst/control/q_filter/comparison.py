@@ -38,9 +38,9 @@ class DesignRow:
         Largest |Wp (1 - Q)| + |Wu T|; below 1 the rejection holds for every plant within Wu.
     worst_performance
         Largest |Wp (1 - Q)| / (1 - |Wu T|).
-    noise_gain
+    observer_noise_gain
         Largest |Q/Pn|, from sensor noise to the estimate.
-    drive_noise_gain
+    noise_gain
         Largest |T/Pn|, from sensor noise to v in the loop.
     bandwidth
         Where |1 - Q| first reaches 0.707, rad/s; 0 without observer.
@@ -55,8 +55,8 @@ class DesignRow:
     performance_norm: float
     robust_performance: float
     worst_performance: float
+    observer_noise_gain: float
     noise_gain: float
-    drive_noise_gain: float
     bandwidth: float
     fastest_pole: float
 
@@ -143,8 +143,8 @@ def row_of(name: str, design: Any) -> DesignRow:
         c.performance_norm,
         c.robust_performance,
         c.worst_performance,
+        c.observer_noise_gain,
         c.noise_gain,
-        c.drive_noise_gain,
         c.bandwidth,
         float(np.abs(Q.factors.poles).max()),
     )
@@ -206,8 +206,8 @@ def table_of(rows: tuple[DesignRow, ...]) -> str:
             row.performance_norm,
             row.robust_performance,
             row.worst_performance,
+            row.observer_noise_gain,
             row.noise_gain,
-            row.drive_noise_gain,
             row.bandwidth / (2.0 * np.pi),
         )
         lines.append(f"{row.name:<{width}}" + "".join(f"{each:>11.4g}" for each in values))

@@ -5,19 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from hyst.checks.numbers import as_positive, whole_number
 from hyst.control.q_filter.certificate import certify_filter
 from hyst.control.q_filter.family import LARGEST_ORDER, QFilter, q_filter
-from hyst.control.q_filter.free_filter import FreeFilter, descend_free
+from hyst.control.q_filter.free_search import FreeSearch
 from hyst.control.q_filter.problem import QFilterProblem, q_filter_problem
 from hyst.control.q_filter.result import QFilterObserver
 from hyst.control.q_filter.search import TimeConstantSearch
 from hyst.errors import InputError
-
-Array = NDArray[np.float64]
 
 FAMILIES = ("textbook", "free")
 _MORE_NOISE = 1.5  # than at frequency 0: what a free filter may amplify
@@ -135,8 +132,14 @@ def degrees(
 def _one(
     problem: QFilterProblem, m: int, rho: int, family: str, most_noise: float | None
 ) -> QFilterObserver:
+    least = 1.0 / float(abs(problem.plant_factors.response(np.zeros(1, complex))[0]))
+    if most_noise is not None and most_noise < least * (1.0 - 1e-9):
+        raise InputError(
+            f"no filter keeps |Q/Pn| below {most_noise:.4g}: at 0 it is 1/|Pn(0)| = {least:.4g}, "
+            "for Q(0) = 1; allow more noise"
+        )
     if family == "free":
-        return _free(problem, m, rho, most_noise)
+        return _free(problem, m, rho, most_noise, least)
     kept = problem.kept_zeros
 
     def of_tau(tau: float) -> QFilter:
@@ -144,65 +147,34 @@ def _one(
 
     search = TimeConstantSearch(problem, of_tau, most_noise)
     found = search.run()
-    at_zero = abs(problem.plant_factors.response(np.zeros(1, complex))[0])
-    if most_noise is not None and found.noise_gain > most_noise * (1.0 + 1e-6):
+    if most_noise is not None and found.noise > most_noise * (1.0 + 1e-6):
         raise InputError(
             f"no filter of order {m} and relative degree {rho} keeps |Q/Pn| below "
-            f"{most_noise:.4g}: it is {1.0 / at_zero:.4g} at 0 already, and {found.noise_gain:.4g} "
-            "at best; allow more noise"
+            f"{most_noise:.4g}: {found.noise:.4g} at best; allow more noise"
         )
     step = f"search         {search.evaluations} exact norms, tau = {found.tau:.6g} s"
     Q = of_tau(found.tau)
     return QFilterObserver(problem, Q, certify_filter(problem, Q), family, (step,))
 
 
-def _free(problem: QFilterProblem, m: int, rho: int, most_noise: float | None) -> QFilterObserver:
+def _free(
+    problem: QFilterProblem, m: int, rho: int, most_noise: float | None, least: float
+) -> QFilterObserver:
     kept = int(problem.kept_zeros.size)
-    size = np.abs(problem.features)
-    scale = float(2.0 ** round(float(np.mean(np.log2(size)))))
-    free = FreeFilter(problem, m, m - rho - kept, scale)
     textbook = _one(problem, m, m - kept, "textbook", None)
-    at_zero = abs(problem.plant_factors.response(np.zeros(1, complex))[0])
     bound = most_noise
     if bound is None:
-        bound = max(_MORE_NOISE / float(at_zero), textbook.certificate.noise_gain)
-    starts = _starts(free, textbook.filter.tau or 1.0 / scale)
-    # Peaks between the frequencies that were looked at are within the bound as well, or a little
-    # less is allowed the next time.
-    allowed = bound
-    for attempt in range(4):
-        x, _, descents = descend_free(free, starts, allowed, 0 if attempt else 3)
-        Q = free.filter_of(x)
-        certificate = certify_filter(problem, Q)
-        if certificate.noise_gain <= bound * (1.0 + 1e-4):
-            break
-        allowed *= min(0.9999, bound / certificate.noise_gain)
-        starts = [x]
-    else:
+        bound = max(_MORE_NOISE * least, textbook.certificate.observer_noise_gain)
+    search = FreeSearch(problem, rho, textbook.tau or 1.0, bound)
+    Q = search.run(m)
+    certificate = certify_filter(problem, Q)
+    if certificate.observer_noise_gain > bound * (1.0 + 1e-4):
         raise InputError(
-            f"no filter of order {m} and relative degree {rho} keeps |Q/Pn| below {bound:.4g}: it "
-            f"is {1.0 / at_zero:.4g} at 0 already, and {certificate.noise_gain:.4g} at best; allow "
-            "more noise"
+            f"no filter of order {m} and relative degree {rho} was found that keeps |Q/Pn| below "
+            f"{bound:.4g}; {certificate.observer_noise_gain:.4g} at best, so allow more noise"
         )
-    step = f"search         {descents} descents, |Q/Pn| bounded by {bound:.4g}"
+    step = f"search         {search.descents} descents, |Q/Pn| bounded by {bound:.4g}"
     return QFilterObserver(problem, Q, certificate, "free", (step,))
-
-
-def _starts(free: FreeFilter, tau: float) -> list[Array]:
-    """Binomial and Butterworth poles of several speeds, with and without a numerator."""
-    m = free.order
-    circle = -np.exp(1j * np.pi * (np.arange(m) - 0.5 * (m - 1)) / m)
-    circle = np.where(np.abs(circle.imag) < 1e-12, circle.real, circle).astype(np.complex128)
-    # The textbook filter itself first: nothing that is found is worse.
-    found = [free.parameters_of(-np.ones(m, dtype=np.complex128) / tau, np.zeros(free.degree))]
-    # Equal factors have equal gradients and would stay equal for ever.
-    apart = np.geomspace(0.8, 1.25, m) if m > 1 else np.ones(1)
-    for speed in (0.6, 1.5, 4.0):
-        for poles in (-apart.astype(np.complex128), circle):
-            for share in (0.2, 1.0) if free.degree else (0.0,):
-                shares = np.full(free.degree, share)
-                found.append(free.parameters_of(speed * poles / tau, shares))
-    return found
 
 
 def _best_order(

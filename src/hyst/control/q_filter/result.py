@@ -133,8 +133,8 @@ class QFilterObserver:
             f"{c.limited_by}",
             f"robust         {c.robust_performance:.4f} at {c.robust_performance_frequency:.4g} "
             f"rad/s; with the worst plant Wp (1 - Q) is {c.worst_performance:.4g}",
-            f"noise          Q/Pn {c.noise_gain:.4g} at {c.noise_frequency:.4g} rad/s; to v in the "
-            f"loop {c.drive_noise_gain:.4g} at {c.drive_noise_frequency:.4g} rad/s",
+            f"noise to v     {c.noise_gain:.4g} in the loop at {c.noise_gain_frequency:.4g} rad/s; "
+            f"Q/Pn {c.observer_noise_gain:.4g} at {c.observer_noise_gain_frequency:.4g} rad/s",
             _bandwidth(c.bandwidth),
         ]
         kept = self.problem.kept_zeros

@@ -32,7 +32,7 @@ class Tried:
     tau: float
     cost: float
     norm: float
-    noise_gain: float
+    noise: float
 
 
 @dataclass
