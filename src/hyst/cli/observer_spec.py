@@ -39,10 +39,16 @@ class ObserverSpec:
 
     ``plant``, ``true_plant`` (or None), ``controller``, weights ``Wu`` and ``Wp`` and
     ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
+<<<<<<< HEAD
     ``inverse_name``), ``reference``, ``dt``, ``settle``, ``noise``, ``disturbance`` and ``seed``
     what is simulated; ``filter_dt`` and ``filter_method`` say what is implemented. The plant is
     sampled where it was ``identified`` (else None), continuous where it was written, with a dead
     time ``delay`` beside it.
+=======
+    ``inverse_name``), ``reference``, at the samples of the block, ``settle``, ``noise``,
+    ``disturbance`` and ``seed`` what is simulated; ``filter_dt``, ``filter_method`` and ``delay``
+    say what is implemented.
+>>>>>>> main
     """
 
     plant: LinearSystem
@@ -55,7 +61,6 @@ class ObserverSpec:
     inverse: Operator | None
     inverse_name: str
     reference: Array
-    dt: float
     settle: float
     noise: float
     disturbance: float
@@ -63,7 +68,10 @@ class ObserverSpec:
     filter_dt: float
     filter_method: Method
     delay: float
+<<<<<<< HEAD
     identified: IdentifiedPlant | None
+=======
+>>>>>>> main
 
 
 def read_spec(path: Path) -> ObserverSpec:
@@ -91,11 +99,18 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     weights = spec.section("weights")
     simulation = spec.section("simulation")
     implemented = spec.section("filter")
+<<<<<<< HEAD
     plant = read_plant(spec.section("plant"), folder)
     hysteresis = read_hysteresis(spec, plant, folder)
     if hysteresis is None:
         hysteresis = _hysteresis(spec.section("hysteresis"), folder)
     dt = simulation.number("dt", plant.dt, positive=True)
+=======
+    hysteresis = _hysteresis(spec.section("hysteresis"), folder)
+    filter_dt = implemented.number("dt", positive=True)
+    # The sample time of a reference from a file; sines are taken at the block's samples.
+    dt = simulation.number("dt", filter_dt, positive=True)
+>>>>>>> main
     reference = _reference(spec.section("reference"), dt, folder)
     inverse, name = _inverse(spec.section("inverse"), hysteresis, folder)
     settle = simulation.number("settle", 0.0)
@@ -108,8 +123,12 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         simulation.number("noise", 0.0), "[simulation] noise", "a standard deviation"
     )
     method = implemented.text("method", "tustin", get_args(hyst.control.discretization.Method))
+<<<<<<< HEAD
     own_dt = block_dt(implemented, plant)
     if own_dt >= reference.size * dt - settle:
+=======
+    if filter_dt >= reference.size * dt - settle:
+>>>>>>> main
         raise hyst.InputError(
             f"[filter] dt is {own_dt:g} s, and {reference.size * dt - settle:g} s are measured; "
             "give a shorter one"
@@ -124,16 +143,19 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         hysteresis=hysteresis,
         inverse=inverse,
         inverse_name=name,
-        reference=reference,
-        dt=dt,
+        reference=_at_samples(reference, dt, filter_dt),
         settle=settle,
         noise=noise,
         disturbance=simulation.number("disturbance", 0.0),
         seed=simulation.count("seed", 0),
         filter_dt=own_dt,
         filter_method="zoh" if method == "zoh" else "tustin",
+<<<<<<< HEAD
         delay=plant.delay,
         identified=plant.identified,
+=======
+        delay=as_not_negative(implemented.number("delay", 0.0), "[filter] delay", "a time in s"),
+>>>>>>> main
     )
     for each in (spec, weights, simulation, implemented):
         each.done()
@@ -197,6 +219,14 @@ def _inverse(given: Section, hysteresis: Operator, folder: Path) -> tuple[Operat
     return inverse, name
 
 
+def _at_samples(reference: Array, dt: float, filter_dt: float) -> Array:
+    if dt == filter_dt:
+        return reference
+    end = (reference.size - 1) * dt
+    at = np.arange(0.0, end + 0.5 * filter_dt, filter_dt)
+    return np.asarray(np.interp(at, np.arange(reference.size) * dt, reference))
+
+
 def _reference(given: Section, dt: float, folder: Path) -> Array:
     if given.has("file"):
         path, column = given.text("file"), given.whole("column")
@@ -209,8 +239,8 @@ def _reference(given: Section, dt: float, folder: Path) -> Array:
     samples = round(duration / dt)
     if not 2 <= samples <= 10_000_000:
         raise hyst.InputError(
-            f"[reference] duration is {duration:g} s, {samples} samples of [simulation] dt; give "
-            "2 to 10 million"
+            f"[reference] duration is {duration:g} s, {samples} samples of {dt:g} s; give 2 to 10 "
+            "million"
         )
     t = np.arange(samples) * dt
     return np.asarray(sum(a * np.sin(2.0 * np.pi * f * t) for a, f in sines))
