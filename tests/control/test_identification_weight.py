@@ -37,23 +37,23 @@ def shown(plant: IdentifiedPlant) -> np.ndarray:
 
 @pytest.mark.parametrize("band", [None, (2.0, 300.0)], ids=["all", "to 300 Hz"])
 def test_true_plants_lie_within_three_standard_errors(band: tuple[float, float] | None) -> None:
-    u, squares, within, covered = drive(2000, band), [], [], []
-    for seed in range(25):
+    u, squares, within, covered = drive(1500, band), [], [], []
+    for seed in range(12):
         plant = fitted_from_truth(record(seed, u, 0.05))
         assert plant.errors is not None
         f = shown(plant)
         error = np.interp(f, plant.errors.frequency, plant.errors.standard_error)
         squares.append(np.mean(np.square(off(plant, f) / error)))
         within.append(np.all(off(plant, f) <= within_bands(plant.errors, f, 3.0)))
-        if seed < 8:
+        if seed < 3:
             Wu = identification_weight(plant)
             every = np.linspace(1.0, 0.999 * NYQUIST, 400)
             gain = np.abs(Wu.system.response(np.exp(2j * np.pi * every * DT))[:, 0, 0])
             covered.append(np.all(off(plant, every) <= gain))
-    # The mean of 25 squares of about three normal numbers each scatters by a fifth; twice that.
-    assert 0.6 < np.mean(squares) < 1.5
-    # 0.3 % to 1 % outside, by how many numbers there are: two of 25 come once in forty runs.
-    assert sum(within) >= 24
+    # The mean of 12 squares of about three normal numbers each scatters by a quarter; twice that.
+    assert 0.5 < np.mean(squares) < 1.7
+    # Less than 3 % outside, which three normal numbers would have: two of 12 once in twenty runs.
+    assert sum(within) >= 11
     assert all(covered)
 
 
@@ -108,7 +108,8 @@ def test_what_a_model_visibly_lacks_is_counted() -> None:
     error, lacks = np.array(plant.errors.standard_error), np.array(plant.errors.missing)
     f = np.array(plant.errors.frequency)
     wrong = off(plant, f, truth)
-    about = (f > 100.0) & (f < 0.9 * NYQUIST)
+    # At the mode that was found a wrong hysteresis makes up for wrong dynamics: only beyond it.
+    about = (f > 200.0) & (f < 0.9 * NYQUIST)
     # Noise alone would not tell: it is what is left over the drive that does.
     assert np.median((wrong / error)[about]) > 5.0
     assert np.median((lacks / wrong)[about]) > 0.5

@@ -13,6 +13,7 @@ from identified_cases import DT, PI, G, W, drive, found
 
 import hyst
 from hyst.control import (
+    TrackingController,
     as_linear_system,
     identified_plant,
     sampled_plant,
@@ -61,8 +62,9 @@ def test_the_plant_goes_wherever_a_linear_system_goes() -> None:
     plant = identified_plant(G @ PI)
     assert as_linear_system(plant) is plant.system
     assert sampled_plant(plant, DT).system.order == 4
+    block = TrackingController.from_continuous(([20.0], [1.0, 0.0]), DT)
     loop = simulate_closed_loop(
-        np.ones(200), DT, plant=plant, controller=([20.0], [1.0, 0.0]), hysteresis=plant.hysteresis
+        np.ones(200), DT, plant=plant, controller=block, hysteresis=plant.hysteresis
     )
     assert loop.diverged_at is None
 

@@ -39,16 +39,10 @@ class ObserverSpec:
 
     ``plant``, ``true_plant`` (or None), ``controller``, weights ``Wu`` and ``Wp`` and
     ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
-<<<<<<< HEAD
-    ``inverse_name``), ``reference``, ``dt``, ``settle``, ``noise``, ``disturbance`` and ``seed``
-    what is simulated; ``filter_dt`` and ``filter_method`` say what is implemented. The plant is
-    sampled where it was ``identified`` (else None), continuous where it was written, with a dead
-    time ``delay`` beside it.
-=======
     ``inverse_name``), ``reference``, at the samples of the block, ``settle``, ``noise``,
     ``disturbance`` and ``seed`` what is simulated; ``filter_dt``, ``filter_method`` and ``delay``
-    say what is implemented.
->>>>>>> main
+    say what is implemented. The plant is sampled where it was ``identified`` (else None), and
+    continuous where it was written, with its dead time in ``delay``.
     """
 
     plant: LinearSystem
@@ -68,10 +62,7 @@ class ObserverSpec:
     filter_dt: float
     filter_method: Method
     delay: float
-<<<<<<< HEAD
     identified: IdentifiedPlant | None
-=======
->>>>>>> main
 
 
 def read_spec(path: Path) -> ObserverSpec:
@@ -99,18 +90,13 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     weights = spec.section("weights")
     simulation = spec.section("simulation")
     implemented = spec.section("filter")
-<<<<<<< HEAD
     plant = read_plant(spec.section("plant"), folder)
     hysteresis = read_hysteresis(spec, plant, folder)
     if hysteresis is None:
         hysteresis = _hysteresis(spec.section("hysteresis"), folder)
-    dt = simulation.number("dt", plant.dt, positive=True)
-=======
-    hysteresis = _hysteresis(spec.section("hysteresis"), folder)
-    filter_dt = implemented.number("dt", positive=True)
+    filter_dt = block_dt(implemented, plant)
     # The sample time of a reference from a file; sines are taken at the block's samples.
     dt = simulation.number("dt", filter_dt, positive=True)
->>>>>>> main
     reference = _reference(spec.section("reference"), dt, folder)
     inverse, name = _inverse(spec.section("inverse"), hysteresis, folder)
     settle = simulation.number("settle", 0.0)
@@ -123,14 +109,9 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         simulation.number("noise", 0.0), "[simulation] noise", "a standard deviation"
     )
     method = implemented.text("method", "tustin", get_args(hyst.control.discretization.Method))
-<<<<<<< HEAD
-    own_dt = block_dt(implemented, plant)
-    if own_dt >= reference.size * dt - settle:
-=======
     if filter_dt >= reference.size * dt - settle:
->>>>>>> main
         raise hyst.InputError(
-            f"[filter] dt is {own_dt:g} s, and {reference.size * dt - settle:g} s are measured; "
+            f"[filter] dt is {filter_dt:g} s, and {reference.size * dt - settle:g} s are measured; "
             "give a shorter one"
         )
     read = ObserverSpec(
@@ -148,18 +129,18 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         noise=noise,
         disturbance=simulation.number("disturbance", 0.0),
         seed=simulation.count("seed", 0),
-        filter_dt=own_dt,
+        filter_dt=filter_dt,
         filter_method="zoh" if method == "zoh" else "tustin",
-<<<<<<< HEAD
-        delay=plant.delay,
+        delay=plant.delay + _further_delay(implemented),
         identified=plant.identified,
-=======
-        delay=as_not_negative(implemented.number("delay", 0.0), "[filter] delay", "a time in s"),
->>>>>>> main
     )
     for each in (spec, weights, simulation, implemented):
         each.done()
     return read
+
+
+def _further_delay(implemented: Section) -> float:
+    return as_not_negative(implemented.number("delay", 0.0), "[filter] delay", "a time in s")
 
 
 def _internal_model(given: Section) -> InternalModel:
