@@ -131,13 +131,16 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         seed=simulation.count("seed", 0),
         filter_dt=filter_dt,
         filter_method="zoh" if method == "zoh" else "tustin",
-        delay=plant.delay
-        + as_not_negative(implemented.number("delay", 0.0), "[filter] delay", "s"),
+        delay=plant.delay + _further_delay(implemented),
         identified=plant.identified,
     )
     for each in (spec, weights, simulation, implemented):
         each.done()
     return read
+
+
+def _further_delay(implemented: Section) -> float:
+    return as_not_negative(implemented.number("delay", 0.0), "[filter] delay", "a time in s")
 
 
 def _internal_model(given: Section) -> InternalModel:
