@@ -21,6 +21,8 @@ from hyst.errors import InputError
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
+_LEFT = math.sqrt(0.5)
+
 
 @final
 @dataclass(frozen=True, eq=False)
@@ -45,6 +47,8 @@ class SampledCertificate:
         Largest root of the sum of both squares.
     robust_performance, robust_performance_frequency
         Largest ``|Wp E| + a |K S|``: below 1, what Wp asks for holds for every plant within Wu.
+    rejection_bandwidth
+        Where ``|E|`` first is 0.707, rad/s; 0 if it is at all frequencies, infinite if at none.
     noise_gain, noise_frequency
         Largest ``|K S|``, from noise of the sensor to v, units of v for one of y.
     noise_rms, noise_jitter
@@ -67,6 +71,7 @@ class SampledCertificate:
     stacked_frequency: float
     robust_performance: float
     robust_performance_frequency: float
+    rejection_bandwidth: float
     noise_gain: float
     noise_frequency: float
     noise_rms: float
@@ -187,6 +192,7 @@ def _certified(loop: BlockLoop, Wu: LinearSystem, Wp: LinearSystem) -> SampledCe
         stacked_frequency=at_stacked,
         robust_performance=robust,
         robust_performance_frequency=at_robust,
+        rejection_bandwidth=_bandwidth(rows, w) if stable else 0.0,
         noise_gain=noise,
         noise_frequency=at_noise,
         noise_rms=rms,
@@ -223,6 +229,20 @@ class _Rows:
         return np.asarray(np.abs(self.loop.at(w).N))
 
 
+def _bandwidth(rows: _Rows, w: Array) -> float:
+    reached = np.flatnonzero(np.abs(rows.loop.at(w).E) >= _LEFT)
+    if reached.size == 0:
+        return math.inf
+    if reached[0] == 0:
+        return 0.0
+    low, high = float(w[reached[0] - 1]), float(w[reached[0]])
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        above = abs(rows.loop.at(np.array([middle])).E[0]) >= _LEFT
+        low, high = (low, middle) if above else (middle, high)
+    return high
+
+
 def _spread(loop: BlockLoop) -> tuple[float, float]:
     """Give standard deviations of v and of its change in a sample, for white noise of 1 at y."""
     closed = balanced(loop.closed())
@@ -235,14 +255,40 @@ def _spread(loop: BlockLoop) -> tuple[float, float]:
 
 
 def plant_of_block(plant: Any, block: TrackingController, delay: float) -> SampledPlant:
-    """Sample a plant at the block's rate; anything but a block is refused."""
+    """Sample a plant at the block's rate; anything but a block is refused.
+
+    Parameters
+    ----------
+    plant, delay
+        As in ``sampled_plant``.
+    block
+        A TrackingController.
+
+    Raises
+    ------
+    InputError
+        If it is none, or as ``sampled_plant``.
+    """
     if not isinstance(block, TrackingController):
         raise InputError(f"the block is {type(block).__name__}; give a TrackingController")
     return sampled_plant(plant, block.dt, delay)
 
 
 def stable_weight(weight: Any, name: str) -> LinearSystem:
-    """Read a weight; one that is not stable is refused."""
+    """Read a weight; one that is not stable is refused.
+
+    Parameters
+    ----------
+    weight
+        As ``as_linear_system`` takes it.
+    name
+        What messages call it.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, has several inputs or outputs, or is not stable.
+    """
     read = as_linear_system(weight, name)
     if (read.inputs, read.outputs) != (1, 1):
         raise InputError(
