@@ -58,6 +58,16 @@ CASES: dict[str, dict[str, Any]] = {
     "with a plant that answers at once": {"plant": ([1.0, 2000.0], [1.0, 4000.0])},
     "with a delay of computation": {"delay": 1.6 * DT},
     "with a plant that is a gain": {"plant": 0.2},
+    "with a limited drive": {
+        "block": TrackingController.from_continuous(
+            s1.CONTROLLER,
+            DT,
+            observer=s1.printed_observer(),
+            inverse=INEXACT,
+            limits=(3.0, 20.0),
+            rate=1e5,
+        )
+    },
 }
 
 

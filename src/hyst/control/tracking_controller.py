@@ -17,7 +17,6 @@ from hyst.control.block_constants import as_entries, as_matrix
 from hyst.control.controller_parts import disturbance_observer_of, feedback_controller, joined
 from hyst.control.discretization import Method, discretize
 from hyst.control.drive_limits import Limits, limited_drive, stated, within
-from hyst.control.estimate_within_limits import estimate_within_limits
 from hyst.control.feedback.feedforward import with_feedforward
 from hyst.control.linear_system import LinearSystem
 from hyst.control.saved_block import SavedBlock
@@ -325,11 +324,42 @@ class TrackingController(SavedBlock):
             raise InputError("E and F were not given, so the estimate is not known; give both")
         memory = self._checked_state(state)
         if self.W is not None:
-            matrices = (self.A, self.B, self.C, self.D, self.E, self.F, self.W, self.G)
-            signals = as_signal(y_ref, "y_ref"), as_signal(y, "y")
-            return estimate_within_limits(self.compiled, memory, matrices, signals)
+            return self._told(y_ref, y, memory)[1]
         watching = TrackingController(self.A, self.B, self.E, self.F, self.dt)
         return watching.run(y_ref, y, memory[: self.order])[0]
+
+    def applied(self, y_ref: ArrayLike, y: ArrayLike, state: ArrayLike | None = None) -> Array:
+        """Give the v that belongs to the drive applied, for the records and the state of ``run``.
+
+        Parameters
+        ----------
+        y_ref, y, state
+            As in ``run``.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (N,); without limits, or within them, the v that is wanted.
+
+        Raises
+        ------
+        InputError
+            As ``run``.
+        """
+        memory = self._checked_state(state)
+        if self.W is not None:
+            return self._told(y_ref, y, memory)[0]
+        linear = TrackingController(self.A, self.B, self.C, self.D, self.dt)
+        return linear.run(y_ref, y, memory[: self.order])[0]
+
+    def _told(self, y_ref: ArrayLike, y: ArrayLike, state: Array) -> tuple[Array, Array]:
+        self.run(y_ref, y, state)  # which refuses what cannot be used
+        reference, output = as_signal(y_ref, "y_ref"), as_signal(y, "y")
+        E, F = (self.C, self.D) if self.E is None or self.F is None else (self.E, self.F)
+        v, d_hat = np.empty_like(output), np.empty_like(output)
+        into = float(F[0]), float(F[1]), self.G
+        self.compiled.tell(state, reference, output, E.tolist(), *into, v, d_hat)
+        return v, d_hat
 
     def stepper(self, state: ArrayLike | None = None) -> _engine.TrackingStepper:
         """Give a callable that takes one sample at a time, with the same numbers as ``run``.
