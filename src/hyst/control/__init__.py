@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hyst.control.closed_loop import ClosedLoop
+from hyst.control.closed_loop_poles import closed_loop_poles
 from hyst.control.closed_loop_simulation import simulate_closed_loop
 from hyst.control.discretization import discretize, discretized_dynamics
 from hyst.control.disturbance_observer import (
@@ -19,7 +20,11 @@ from hyst.control.inexact_inverse import first_unstable_slope, slope_margin
 from hyst.control.infinity_norm import hinf_norm
 from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
 from hyst.control.linear_system import LinearSystem, as_linear_system
-from hyst.control.loop_system import closed_loop_poles
+from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
+from hyst.control.sampled.folding import folded_uncertainty
+from hyst.control.sampled.plant import SampledPlant, sampled_plant
+from hyst.control.sampled.slopes import sampled_slope_failing, sampled_slope_proof
+from hyst.control.sampled.stress import StressTest, stress
 from hyst.control.tracking_controller import TrackingController
 
 __all__ = [
@@ -32,6 +37,9 @@ __all__ = [
     "LinearSystem",
     "LoopResponses",
     "ObserverProblem",
+    "SampledCertificate",
+    "SampledPlant",
+    "StressTest",
     "TrackingController",
     "as_linear_system",
     "closed_loop_poles",
@@ -41,11 +49,17 @@ __all__ = [
     "discretized_dynamics",
     "evaluate_gain",
     "first_unstable_slope",
+    "folded_uncertainty",
     "hinf_norm",
     "loop_responses",
     "observer_problem",
+    "sampled_certificate",
+    "sampled_plant",
+    "sampled_slope_failing",
+    "sampled_slope_proof",
     "simulate_closed_loop",
     "slope_margin",
+    "stress",
     "uncertainty_used",
 ]
 

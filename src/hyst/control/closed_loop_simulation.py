@@ -19,6 +19,7 @@ from hyst.checks.numbers import (
 from hyst.control.closed_loop import ClosedLoop
 from hyst.control.controller_parts import disturbance_observer_of, feedback_controller, joined
 from hyst.control.loop_system import continuous_loop, held_step, plant_of
+from hyst.control.sampled.plant import SampledPlant, sampled_plant
 from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError, SolverError
 from hyst.operators import Operator
@@ -48,6 +49,7 @@ def simulate_closed_loop(
     settle: float = 0.0,
     algebraic_loop: AlgebraicLoop = "solve",
     limit: float | None = None,
+    delay: float = 0.0,
 ) -> ClosedLoop:
     """Simulate reference, controller, observer, inverse, hysteresis and plant, from rest.
 
@@ -95,6 +97,9 @@ def simulate_closed_loop(
     limit
         The loop has diverged once abs(y) is above it; a million times the largest reference and
         noise if left out.
+    delay
+        s, >= 0, from reading y to the drive that follows from it: with a TrackingController only,
+        whole samples or not, as ``sampled_plant`` takes it.
 
     Returns
     -------
@@ -142,8 +147,13 @@ def simulate_closed_loop(
             raise InputError(
                 "a TrackingController has its own inverse and observer; leave them out"
             )
-        end, good = _sampled(controller, plant, actuator, time, signals)
+        end, good = _sampled(controller, sampled_plant(plant, time, delay), actuator, signals)
     else:
+        if delay != 0.0:
+            raise InputError(
+                f"delay is {delay:.6g} s of a controller in continuous time, which takes none to "
+                "compute; give a TrackingController"
+            )
         part = joined(feedback_controller(controller), disturbance_observer_of(observer))
         step = held_step(continuous_loop(plant_of(plant), part), time)
         first, late = _chain(inverse, "inverse", time), algebraic_loop == "delay"
@@ -165,17 +175,16 @@ def simulate_closed_loop(
 
 def _sampled(
     controller: TrackingController,
-    plant: Any,
+    plant: SampledPlant,
     actuator: tuple[_engine.Chain, Array],
-    dt: float,
     signals: tuple[Array, Array, float],
 ) -> tuple[str, int]:
-    if abs(controller.dt - dt) > 1e-6 * dt:
+    if abs(controller.dt - plant.dt) > 1e-6 * plant.dt:
         raise InputError(
-            f"the controller has dt = {controller.dt:.6g} s, the loop {dt:.6g} s; "
+            f"the controller has dt = {controller.dt:.6g} s, the loop {plant.dt:.6g} s; "
             "give the same for both"
         )
-    step, (chain, state) = held_step(plant_of(plant), dt), actuator
+    step, (chain, state) = held_step(plant.system, plant.dt), actuator
     return _engine.run_sampled_loop(
         step, controller.compiled, chain, controller.initial_state(), state, *signals
     )
