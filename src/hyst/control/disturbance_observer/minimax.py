@@ -13,7 +13,7 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
 
-from hyst.control.disturbance_observer.stacked_gain import StackedGain
+from hyst.control.disturbance_observer.peaks import Curve
 
 Array = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ class Descent:
     evaluations: int
 
 
-def finish(gain: StackedGain, found: Descent, steps: int = 40, tolerance: float = 1e-7) -> Descent:
+def finish(gain: Curve, found: Descent, steps: int = 40, tolerance: float = 1e-7) -> Descent:
     """Take Newton steps from found while the norm falls.
 
     Parameters
@@ -57,7 +57,7 @@ def finish(gain: StackedGain, found: Descent, steps: int = 40, tolerance: float 
             )
             if promise < tolerance or damping > 1e9:
                 return Descent(x, float(np.sqrt(unit)), evaluations)
-            tried = np.clip(x + step, gain.lowest, gain.highest)
+            tried = gain.inside(x + step)
             new_peaks = gain.peaks(tried, _SHARE)
             evaluations += 1
             new_heights, new_slopes = gain.values_and_slopes(tried, gain.at(new_peaks))
@@ -72,7 +72,7 @@ def finish(gain: StackedGain, found: Descent, steps: int = 40, tolerance: float 
     return Descent(x, float(np.sqrt(heights[0])), evaluations)
 
 
-def _curvature(gain: StackedGain, x: Array, peaks: Array, weights: Array, unit: float) -> Array:
+def _curvature(gain: Curve, x: Array, peaks: Array, weights: Array, unit: float) -> Array:
     """Second derivatives of the weighted heights, each peak moving to stay a maximum."""
     held = weights > 1e-6
     w, share, n = peaks[held], weights[held], x.size
