@@ -9,9 +9,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
+from hyst.control.discretization import Method
 from hyst.control.disturbance_observer.assumptions import check_assumptions
 from hyst.control.disturbance_observer.certificate import certify, weighted_loop
 from hyst.control.disturbance_observer.descent import descend_from_many, usual_parameters
+from hyst.control.disturbance_observer.discrete.design import (
+    design_sampled_observer,
+    evaluate_sampled_gain,
+    is_discrete,
+    sampled_observer_problem,
+)
+from hyst.control.disturbance_observer.discrete.problem import SampledObserverProblem
 from hyst.control.disturbance_observer.internal_model import as_internal_model
 from hyst.control.disturbance_observer.lower_bound import lower_bound
 from hyst.control.disturbance_observer.problem import ObserverProblem
@@ -37,6 +45,9 @@ def design_disturbance_observer(
     Wp: Any,
     internal_model: Any = "integrator",
     *,
+    dt: float | None = None,
+    delay: float = 0.0,
+    discretization: Method = "tustin",
     perturbed_plant: Any = None,
     method: str = "slpmm+descent",
     starts: int | None = None,
@@ -50,18 +61,31 @@ def design_disturbance_observer(
     Systems are transfer functions or state spaces of python-control, pairs (num, den), matrices
     (A, B, C, D) or numbers, in continuous time, with one input and one output.
 
+    With a sample time the design is in discrete time: ``observer`` is then the sampled observer
+    that runs, its estimate already corrected by the y at hand; the norm is that of the sampled loop
+    with hold, delay and all aliases; no pole of Q is faster than half of Nyquist.
+
     Parameters
     ----------
     plant
-        Nominal plant Pn: strictly proper, stable, minimum phase, observable.
+        Nominal plant Pn: strictly proper, stable, minimum phase, observable. With a sample time any
+        stable one; also one that is sampled, or LinearDynamics, whose dt is then that of the
+        design.
     controller
-        C, in u = C (y_ref - y); stabilizes Pn.
+        C, in u = C (y_ref - y); stabilizes Pn. Sampled as it is, or continuous.
     Wu
         Weight of the multiplicative uncertainty, P = Pn (1 + Delta), |Delta| <= |Wu|; stable.
     Wp
         Weight of 1 - Q, what is left of the disturbance; stable.
     internal_model
         InternalModel, pair (A_d, C_d), ``"integrator"`` or ``"ramp"``; an eigenvalue at 0.
+    dt
+        Sample time of the observer, s; in continuous time if left out and the plant is continuous.
+    delay
+        From the sample of y to the drive that follows from it, s, at least 0: whole and fractional
+        samples; whole ones if the plant is sampled.
+    discretization
+        How a continuous controller is sampled: ``"tustin"`` or ``"zoh"``.
     perturbed_plant
         A plant around which the certificate also closes the loop.
     method
@@ -101,6 +125,19 @@ def design_disturbance_observer(
     """
     if method not in METHODS:
         raise InputError(f"method is {method!r}; give one of {', '.join(METHODS)}")
+    if is_discrete(plant, dt, delay):
+        return design_sampled_observer(
+            sampled_observer_problem(
+                *(plant, controller, Wu, Wp, internal_model),
+                dt=dt,
+                delay=delay,
+                discretization=discretization,
+            ),
+            perturbed_plant=perturbed_plant,
+            starts=starts,
+            seed=seed,
+            progress=progress,
+        )
     problem = observer_problem(plant, controller, Wu, Wp, internal_model)
     perturbed = _perturbed(perturbed_plant)
     # Matrices of ten rows: more threads would only wait for one another.
@@ -145,13 +182,21 @@ def _search(
 
 
 def observer_problem(
-    plant: Any, controller: Any, Wu: Any, Wp: Any, internal_model: Any = "integrator"
+    plant: Any,
+    controller: Any,
+    Wu: Any,
+    Wp: Any,
+    internal_model: Any = "integrator",
+    *,
+    dt: float | None = None,
+    delay: float = 0.0,
+    discretization: Method = "tustin",
 ) -> ObserverProblem:
     """Read and check what an observer is designed for.
 
     Parameters
     ----------
-    plant, controller, Wu, Wp, internal_model
+    plant, controller, Wu, Wp, internal_model, dt, delay, discretization
         As for ``design_disturbance_observer``.
 
     Raises
@@ -159,6 +204,13 @@ def observer_problem(
     InputError
         If one cannot be read or an assumption does not hold.
     """
+    if is_discrete(plant, dt, delay):
+        return sampled_observer_problem(
+            *(plant, controller, Wu, Wp, internal_model),
+            dt=dt,
+            delay=delay,
+            discretization=discretization,
+        )
     problem = ObserverProblem(
         _nominal(plant),
         as_linear_system(controller, "the controller"),
@@ -201,6 +253,8 @@ def evaluate_gain(
     >>> round(evaluate_gain(problem, [-117.381, 0.197, 17113.1]).gamma, 3)
     2.234
     """
+    if isinstance(problem, SampledObserverProblem):
+        return evaluate_sampled_gain(problem, gain, perturbed_plant)
     L = np.array(gain, dtype=np.float64).ravel()
     if L.size != problem.order or not np.isfinite(L).all():
         raise InputError(

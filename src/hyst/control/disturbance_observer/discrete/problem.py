@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.linalg
@@ -32,12 +32,11 @@ class SampledObserverProblem(ObserverProblem):
         Of the disturbance, in continuous time, 1/s.
     sampled
         The plant with what is known of it in continuous time.
-    noise
-        Standard deviation of white noise of the samples of y against 1 of v; 0 leaves it out.
+    Wn
+        Weight of K S, the gain from the sensor's noise to the drive; None if none is asked for.
     """
 
-    sampled: SampledPlant
-    noise: float = 0.0
+    sampled: SampledPlant = field(kw_only=True)
 
     @property
     def dt(self) -> float:
@@ -46,9 +45,8 @@ class SampledObserverProblem(ObserverProblem):
 
     @property
     def sampled_model(self) -> InternalModel:
-        """The internal model from one sample to the next: exp(A_d dt), C_d."""
-        model = self.internal_model
-        return InternalModel(scipy.linalg.expm(model.A_d * self.dt), model.C_d)
+        """The internal model from one sample to the next."""
+        return sampled_model(self.internal_model, self.dt)
 
     def augmented(self) -> tuple[Array, Array, Array, Array]:
         """Matrices of plant and internal model together, eq. 30, and the row that gives d."""
@@ -95,3 +93,8 @@ class SampledObserverProblem(ObserverProblem):
         A, B, C, of_disturbance = self.augmented()
         L, now = np.asarray(gain, dtype=np.float64).reshape(-1, 1), self.correction(gain)
         return LinearSystem(A - L @ C, B, now * C - of_disturbance, np.zeros((1, 1)), self.dt)
+
+
+def sampled_model(model: InternalModel, dt: float) -> InternalModel:
+    """Take an internal model from one sample to the next: exp(A_d dt), C_d."""
+    return InternalModel(scipy.linalg.expm(model.A_d * dt), model.C_d)
