@@ -32,8 +32,9 @@ class ObserverSpec:
 
     ``plant``, ``true_plant`` (or None), ``controller``, weights ``Wu`` and ``Wp`` and
     ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
-    ``inverse_name``), ``reference``, ``dt``, ``settle``, ``noise``, ``disturbance`` and ``seed``
-    what is simulated; ``filter_dt`` and ``filter_method`` say what is implemented.
+    ``inverse_name``), ``reference``, at the samples of the block, ``settle``, ``noise``,
+    ``disturbance`` and ``seed`` what is simulated; ``filter_dt``, ``filter_method`` and ``delay``
+    say what is implemented.
     """
 
     plant: LinearSystem
@@ -46,13 +47,13 @@ class ObserverSpec:
     inverse: Operator | None
     inverse_name: str
     reference: Array
-    dt: float
     settle: float
     noise: float
     disturbance: float
     seed: int
     filter_dt: float
     filter_method: Method
+    delay: float
 
 
 def read_spec(path: Path) -> ObserverSpec:
@@ -81,7 +82,9 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     simulation = spec.section("simulation")
     implemented = spec.section("filter")
     hysteresis = _hysteresis(spec.section("hysteresis"), folder)
-    dt = simulation.number("dt", positive=True)
+    filter_dt = implemented.number("dt", positive=True)
+    # The sample time of a reference from a file; sines are taken at the block's samples.
+    dt = simulation.number("dt", filter_dt, positive=True)
     reference = _reference(spec.section("reference"), dt, folder)
     inverse, name = _inverse(spec.section("inverse"), hysteresis, folder)
     settle = simulation.number("settle", 0.0)
@@ -94,7 +97,6 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         simulation.number("noise", 0.0), "[simulation] noise", "a standard deviation"
     )
     method = implemented.text("method", "tustin", get_args(hyst.control.discretization.Method))
-    filter_dt = implemented.number("dt", positive=True)
     if filter_dt >= reference.size * dt - settle:
         raise hyst.InputError(
             f"[filter] dt is {filter_dt:g} s, and {reference.size * dt - settle:g} s are measured; "
@@ -110,14 +112,14 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         hysteresis=hysteresis,
         inverse=inverse,
         inverse_name=name,
-        reference=reference,
-        dt=dt,
+        reference=_at_samples(reference, dt, filter_dt),
         settle=settle,
         noise=noise,
         disturbance=simulation.number("disturbance", 0.0),
         seed=simulation.count("seed", 0),
         filter_dt=filter_dt,
         filter_method="zoh" if method == "zoh" else "tustin",
+        delay=as_not_negative(implemented.number("delay", 0.0), "[filter] delay", "a time in s"),
     )
     for each in (spec, weights, simulation, implemented):
         each.done()
@@ -179,6 +181,14 @@ def _inverse(given: Section, hysteresis: Operator, folder: Path) -> tuple[Operat
         inverse, name = load_operator(folder / path), path
     given.done()
     return inverse, name
+
+
+def _at_samples(reference: Array, dt: float, filter_dt: float) -> Array:
+    if dt == filter_dt:
+        return reference
+    end = (reference.size - 1) * dt
+    at = np.arange(0.0, end + 0.5 * filter_dt, filter_dt)
+    return np.asarray(np.interp(at, np.arange(reference.size) * dt, reference))
 
 
 def _reference(given: Section, dt: float, folder: Path) -> Array:

@@ -22,9 +22,12 @@ from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_in
 from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
 from hyst.control.sampled.folding import folded_uncertainty
+from hyst.control.sampled.judged import LoopJudgement, judge_loop
 from hyst.control.sampled.plant import SampledPlant, sampled_plant
+from hyst.control.sampled.responses import sampled_responses
 from hyst.control.sampled.slopes import sampled_slope_failing, sampled_slope_proof
 from hyst.control.sampled.stress import StressTest, stress
+from hyst.control.sampled.tried import TriedLoop, try_block
 from hyst.control.tracking_controller import TrackingController
 
 __all__ = [
@@ -35,12 +38,14 @@ __all__ = [
     "InternalModel",
     "InverseComparison",
     "LinearSystem",
+    "LoopJudgement",
     "LoopResponses",
     "ObserverProblem",
     "SampledCertificate",
     "SampledPlant",
     "StressTest",
     "TrackingController",
+    "TriedLoop",
     "as_linear_system",
     "closed_loop_poles",
     "compare_inverses",
@@ -51,15 +56,18 @@ __all__ = [
     "first_unstable_slope",
     "folded_uncertainty",
     "hinf_norm",
+    "judge_loop",
     "loop_responses",
     "observer_problem",
     "sampled_certificate",
     "sampled_plant",
+    "sampled_responses",
     "sampled_slope_failing",
     "sampled_slope_proof",
     "simulate_closed_loop",
     "slope_margin",
     "stress",
+    "try_block",
     "uncertainty_used",
 ]
 

@@ -91,6 +91,16 @@ class ClosedLoop:
             return math.inf
         return float(np.abs(self.u[self._settled :]).max())
 
+    @property
+    def drive_jitter(self) -> float:
+        """Standard deviation of the drive's change in a sample after ``settle``; infinity likewise.
+
+        In units of the drive. What reference and noise do to it is both in it.
+        """
+        if self.diverged_at is not None:
+            return math.inf
+        return float(np.diff(self.u[self._settled :]).std()) if self.u.size > 1 else 0.0
+
     def summary(self) -> str:
         """Say in one line what came of it."""
         if self.diverged_at is not None:

@@ -26,8 +26,11 @@ from hyst.report.identification_report import write_report as write_report
 from hyst.report.loops_figure import draw_loops_behind as draw_loops_behind
 from hyst.report.loops_tables import loops_table as loops_table
 from hyst.report.loops_tables import repeated_loops_table as repeated_loops_table
-from hyst.report.observer_answer import ObserverAnswer as ObserverAnswer
-from hyst.report.observer_figures import draw_observer_bode as draw_observer_bode
+from hyst.report.observer.answer import ObserverAnswer as ObserverAnswer
+from hyst.report.observer.answer import TruePlant as TruePlant
+from hyst.report.observer.figures import draw_observer_bode as draw_observer_bode
+from hyst.report.observer.page import observer_page as observer_page
+from hyst.report.observer.tables import answer_tables as answer_tables
 from hyst.report.tables import Table as Table
 from hyst.report.tables import candidates_table as candidates_table
 from hyst.report.tables import compensation_table as compensation_table

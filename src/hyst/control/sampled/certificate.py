@@ -21,6 +21,8 @@ from hyst.errors import InputError
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
+_LEFT = math.sqrt(0.5)
+
 
 @final
 @dataclass(frozen=True, eq=False)
@@ -45,6 +47,8 @@ class SampledCertificate:
         Largest root of the sum of both squares.
     robust_performance, robust_performance_frequency
         Largest ``|Wp E| + a |K S|``: below 1, what Wp asks for holds for every plant within Wu.
+    rejection_bandwidth
+        Where ``|E|`` first is 0.707, rad/s; 0 if it is at all frequencies, infinite if at none.
     noise_gain, noise_frequency
         Largest ``|K S|``, from noise of the sensor to v, units of v for one of y.
     noise_rms, noise_jitter
@@ -67,6 +71,7 @@ class SampledCertificate:
     stacked_frequency: float
     robust_performance: float
     robust_performance_frequency: float
+    rejection_bandwidth: float
     noise_gain: float
     noise_frequency: float
     noise_rms: float
@@ -187,6 +192,7 @@ def _certified(loop: BlockLoop, Wu: LinearSystem, Wp: LinearSystem) -> SampledCe
         stacked_frequency=at_stacked,
         robust_performance=robust,
         robust_performance_frequency=at_robust,
+        rejection_bandwidth=_bandwidth(rows, w) if stable else 0.0,
         noise_gain=noise,
         noise_frequency=at_noise,
         noise_rms=rms,
@@ -221,6 +227,20 @@ class _Rows:
 
     def noise(self, w: Array) -> Array:
         return np.asarray(np.abs(self.loop.at(w).N))
+
+
+def _bandwidth(rows: _Rows, w: Array) -> float:
+    reached = np.flatnonzero(np.abs(rows.loop.at(w).E) >= _LEFT)
+    if reached.size == 0:
+        return math.inf
+    if reached[0] == 0:
+        return 0.0
+    low, high = float(w[reached[0] - 1]), float(w[reached[0]])
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        above = abs(rows.loop.at(np.array([middle])).E[0]) >= _LEFT
+        low, high = (low, middle) if above else (middle, high)
+    return high
 
 
 def _spread(loop: BlockLoop) -> tuple[float, float]:
