@@ -91,6 +91,7 @@ def _check_plant(plant: LinearSystem) -> None:
 
 
 def check_internal_model(model: InternalModel) -> None:
+    """Refuse an internal model that its output does not show, or without an eigenvalue at 0."""
     eigenvalues = np.linalg.eigvals(model.A_d).astype(complex)
     hidden = least_seen(model.A_d, model.C_d, eigenvalues)
     if hidden is not None:

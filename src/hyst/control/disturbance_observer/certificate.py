@@ -263,6 +263,7 @@ def _larger_part(closed: LinearSystem, frequency: float) -> str:
 
 
 def plain(value: Any) -> Any:
+    """Give numbers and lists of them that JSON can hold."""
     if isinstance(value, np.ndarray) and np.iscomplexobj(value):
         return [[float(each.real), float(each.imag)] for each in value]
     if isinstance(value, np.ndarray):

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.control.closed_loop_poles import closed_loop_poles
 from hyst.control.disturbance_observer.certificate import plain
 from hyst.control.disturbance_observer.discrete.problem import SampledObserverProblem
 from hyst.control.disturbance_observer.stacked_gain import feedback_matrix
 from hyst.control.linear_system import LinearSystem
-from hyst.control.closed_loop_poles import closed_loop_poles
 from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
 from hyst.control.sampled.folding import folded_uncertainty, weight_response
 from hyst.control.sampled.plant import SampledPlant
@@ -190,7 +190,8 @@ def _poles(matrix: Array) -> ComplexArray:
 def _factored_q(problem: SampledObserverProblem, gain: Array) -> ZerosAndPoles:
     """Factor Q(z): its zeros are those of the plant, of z C_d (z - A_d)^-1 A_d^-1 L_d, and 0."""
     model, plant = problem.sampled_model, zeros_and_poles(problem.plant)
-    M_d = np.linalg.solve(model.A_d, np.asarray(gain)[problem.plant.order :, None])
+    L_d = np.asarray(gain, dtype=np.float64)[problem.plant.order :, None]
+    M_d = np.asarray(np.linalg.solve(model.A_d, L_d), dtype=np.float64)
     branch = zeros_and_poles(LinearSystem(model.A_d, M_d, model.C_d, np.zeros((1, 1))))
     zeros = np.concatenate([plant.zeros, branch.zeros, np.zeros(1, complex)])
     return ZerosAndPoles(zeros, problem.q_filter(gain).poles(), plant.gain * branch.gain)

@@ -48,8 +48,8 @@ def is_discrete(plant: Any, dt: float | None, delay: float) -> bool:
         return True
     if delay != 0.0:
         raise InputError(
-            f"delay is {delay!r} s with a plant in continuous time; give dt, the sample time, too: a "
-            "delay is taken into a design in discrete time"
+            f"delay is {delay!r} s with a plant in continuous time; give dt, the sample time, too: "
+            "a delay is taken into a design in discrete time"
         )
     return False
 

@@ -105,14 +105,14 @@ def _payable(gain: SampledStackedGain, gamma: float) -> bool:
 
 
 def _slack(kernel: Array, most: Array, angle: Array) -> float:
-    """What the ends that the grid leaves out, and the trapezoids, may add at most."""
+    """Allow for the ends that the grid leaves out, and for the error of the trapezoids."""
     ends = kernel[0] * abs(most[0]) * angle[0] + kernel[-1] * abs(most[-1]) * (np.pi - angle[-1])
     coarse = np.trapezoid((kernel * most)[::2], angle[::2])
     return float(2.0 * ends + abs(np.trapezoid(kernel * most, angle) - coarse))
 
 
 def _of_T(gain: SampledStackedGain) -> Array:
-    """The square of the weight of T: of K S over that of Pd."""
+    """Give the square of the weight of T: of K S over that of Pd."""
     at = gain.grid
     return np.asarray(at.Wu2 / np.maximum(np.abs(gain.sampled.response(1j * at.w)) ** 2, 1e-300))
 

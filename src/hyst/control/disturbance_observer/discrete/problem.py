@@ -55,7 +55,7 @@ class SampledObserverProblem(ObserverProblem):
         ).augmented()
 
     def correction(self, gain: Array) -> float:
-        """What the sample of y itself corrects in the estimate, ``C_d A_d^-1 L_d``.
+        """Give what the sample of y itself corrects in the estimate, ``C_d A_d^-1 L_d``.
 
         Parameters
         ----------

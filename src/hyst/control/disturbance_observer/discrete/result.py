@@ -49,8 +49,9 @@ class SampledDisturbanceObserver(DisturbanceObserver):
         unstable = self._unstable()
         if self.gamma < 1.0:
             return (
-                f"gamma = {self.gamma:.4g} < 1 at {c.stacked_frequency:.4g} rad/s: the sampled loop "
-                f"is stable for every plant within Wu, {c.robust_stability_margin:.3g} times over"
+                f"gamma = {self.gamma:.4g} < 1 at {c.stacked_frequency:.4g} rad/s: the sampled "
+                "loop is stable for every plant within Wu, "
+                f"{c.robust_stability_margin:.3g} times over"
                 f"{unstable}"
             )
         of_all = (

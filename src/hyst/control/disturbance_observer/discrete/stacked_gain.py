@@ -161,7 +161,7 @@ class SampledStackedGain(StackedGain):
         return np.unique(np.concatenate([even, sharp, size]))
 
     def _interpolated(self) -> CubicSpline:
-        """Logarithms of ``a^2 + Wn^2`` and ``|Wp|^2`` over log W; the certificate has them exact."""
+        """Interpolate the weights, logarithms over log W; only the certificate has them exact."""
         problem, size = self.problem, np.abs(self.features)
         low, high = np.log10(size.min() / 1e3), np.log10(10.0 * _HIGHEST)
         even = np.logspace(low, high, int(_DENSE * (high - low)) + 1)
@@ -272,13 +272,13 @@ class SampledStackedGain(StackedGain):
         values = np.exp(parameters[self.order :])
         pairs = 2 * (self.free // 2)
         for a, b in zip(values[0:pairs:2], values[1:pairs:2], strict=True):
-            s = self.scale * np.roots([1.0, a, b]).astype(complex)
-            rates = np.log(from_w_plane(s)) / dt
+            roots = np.asarray(np.roots([1.0, a, b]), dtype=np.complex128)
+            rates = np.log(from_w_plane(self.scale * roots)) / dt
             size, decay = float(np.sqrt(np.prod(rates).real)), float(rates.sum().real)
             A_d = np.array([[0.0, size], [-size, decay]])
             model = model + InternalModel(A_d, np.array([[1.0, 0.0]]))
         for c in values[pairs:]:
-            rate = float(np.log(from_w_plane(np.array([-self.scale * c]))).real[0]) / dt
+            rate = float(np.log(from_w_plane(np.array([-self.scale * c + 0.0j]))).real[0]) / dt
             model = model + InternalModel(np.array([[rate]]), np.array([[1.0]]))
         return model
 

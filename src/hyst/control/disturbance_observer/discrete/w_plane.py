@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.control.infinity_norm import bilinear
-from hyst.control.linear_system import LinearSystem
+from hyst.control.linear_system import LinearSystem, balanced
 from hyst.control.zeros_and_poles import ZerosAndPoles, zeros_and_poles
 from hyst.errors import InputError
 
@@ -47,7 +47,8 @@ def poles_in_w_plane(A: Array) -> ComplexArray:
 
 def factored(system: LinearSystem) -> ZerosAndPoles:
     """Factor a sampled system with one input and one output in the w-plane."""
-    mapped = bilinear(system)
+    # Canonical forms have states of very different size, and would look as if singular.
+    mapped = bilinear(balanced(system))
     if mapped is None:
         raise InputError("a pole lies at z = -1, half the sample rate; sample faster")
     parts = zeros_and_poles(mapped)
