@@ -6,11 +6,13 @@ odd. All stable polynomials have this form.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+Roots = NDArray[Any]
 
 
 def polynomial(parameters: Array) -> tuple[Array, Array]:
@@ -36,7 +38,7 @@ def polynomial(parameters: Array) -> tuple[Array, Array]:
     return x, slopes
 
 
-def parameters_of(roots: ComplexArray) -> Array:
+def parameters_of(roots: Roots) -> Array:
     """Give the parameters of stable roots."""
     pairs = [(-2.0 * p.real, abs(p) ** 2) for p in roots if p.imag > 0.0]
     real = np.sort(-roots[roots.imag == 0.0].real)

@@ -91,7 +91,7 @@ class StackedGain:
     def __init__(
         self, problem: ObserverProblem, free: int = 0, fastest_pole: float | None = None
     ) -> None:
-        self.problem, self.free = problem, free
+        self.problem, self.free, self.fastest_pole = problem, free, fastest_pole
         self.order = problem.order + free
         self.plant = zeros_and_poles(problem.plant)
         self.Wu, self.Wp = zeros_and_poles(problem.Wu), zeros_and_poles(problem.Wp)
@@ -139,6 +139,10 @@ class StackedGain:
             np.concatenate([of_poles[0], of_model[0]]),
             np.concatenate([of_poles[1], of_model[1]]),
         )
+
+    def enlarged(self) -> StackedGain:
+        """Give the same with one free eigenvalue more."""
+        return StackedGain(self.problem, self.free + 1, self.fastest_pole)
 
     def inside(self, parameters: Array) -> Array:
         """Take the parameters into their bounds, and poles to where none is too fast."""
@@ -261,6 +265,10 @@ class StackedGain:
     def poles(self, parameters: Array) -> ComplexArray:
         """Give the poles of Q, 1/s."""
         return np.asarray(np.roots(self.solved(parameters).x) * self.scale, dtype=complex)
+
+    def eigenvalues(self, parameters: Array) -> ComplexArray:
+        """Give the free eigenvalues of the internal model, 1/s."""
+        return np.asarray(np.roots(self.solved(parameters).r) * self.scale, dtype=complex)
 
     def peaks(self, parameters: Array, share: float = 0.9, rounds: int = 4) -> Array:
         """Frequencies of the local maxima that reach a share of the largest, highest first.

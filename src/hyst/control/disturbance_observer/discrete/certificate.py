@@ -14,6 +14,7 @@ from hyst.control.disturbance_observer.certificate import plain
 from hyst.control.disturbance_observer.discrete.problem import SampledObserverProblem
 from hyst.control.disturbance_observer.stacked_gain import feedback_matrix
 from hyst.control.linear_system import LinearSystem
+from hyst.control.sampled.block_loop import BlockLoop, largest
 from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
 from hyst.control.sampled.folding import folded_uncertainty, weight_response
 from hyst.control.sampled.plant import SampledPlant
@@ -36,7 +37,7 @@ class SampledObserverCertificate:
     loop
         Norms of the block that the gain makes.
     limited_by
-        ``"Wu T"`` or ``"Wp (1 - Q)"``: the larger part at the peak of the stack.
+        ``"Wu T"``, ``"Wp (1 - Q)"`` or ``"Wn K S"``: the largest at the peak of what was minimized.
     Q_numerator, Q_denominator
         Polynomials in z, highest power first.
     Q_at_zero
@@ -51,6 +52,14 @@ class SampledObserverCertificate:
         Poles of the whole loop around the given perturbed plant; None if none was given.
     perturbed_poles_without_observer
         The same of plant and controller alone.
+    observer_noise_gain, observer_noise_gain_frequency
+        sup |Q/Pd|, what the observer alone makes of the sensor's noise.
+    controller_noise_gain
+        sup |C S0|, of the loop without the observer.
+    noise_norm, noise_frequency
+        Norm of Wn K S; None where noise was given no weight.
+    minimized_norm, minimized_frequency
+        That of all rows; without Wn the stacked norm.
     """
 
     loop: SampledCertificate
@@ -64,6 +73,13 @@ class SampledObserverCertificate:
     nominal_poles: ComplexArray
     perturbed_poles: ComplexArray | None
     perturbed_poles_without_observer: ComplexArray | None
+    observer_noise_gain: float
+    observer_noise_gain_frequency: float
+    controller_noise_gain: float
+    noise_norm: float | None
+    noise_frequency: float | None
+    minimized_norm: float
+    minimized_frequency: float
 
     @property
     def stacked_norm(self) -> float:
@@ -104,6 +120,16 @@ class SampledObserverCertificate:
     def noise_gain(self) -> float:
         """Largest gain from noise of the sensor to v."""
         return self.loop.noise_gain
+
+    @property
+    def noise_gain_frequency(self) -> float:
+        """Where it is reached."""
+        return self.loop.noise_frequency
+
+    @property
+    def fastest_pole(self) -> float:
+        """Speed of the fastest pole of the block, rad/s; pi/dt is half the sample rate."""
+        return self.loop.fastest_pole
 
     @property
     def nominal_stable(self) -> bool:
@@ -164,9 +190,21 @@ def certify_sampled(
     )
     loop = sampled_certificate(block, problem.sampled, problem.Wu, problem.Wp)
     Q, plant = _factored_q(problem, gain), zeros_and_poles(problem.plant)
+    rows = _Rows(problem, gain)
+    w = BlockLoop(block, problem.sampled).grid(problem.Wu, problem.Wp)
+    through, at_through = largest(rows.through_observer, w)
+    noise: tuple[float | None, float | None] = (None, None)
+    whole = loop.stacked_norm, loop.stacked_frequency
+    if problem.Wn is not None:
+        noise, whole = largest(rows.noise, w), largest(rows.whole, w)
+        if not loop.nominal_stable:
+            noise = whole = np.inf, 0.0
+    alone = None
+    if perturbed is not None:
+        alone = feedback_matrix(perturbed.system, problem.controller)
     return SampledObserverCertificate(
         loop=loop,
-        limited_by=_larger_part(problem, gain, loop.stacked_frequency),
+        limited_by=rows.largest_part(whole[1]),
         Q_numerator=np.real(Q.gain * np.atleast_1d(np.poly(Q.zeros))),
         Q_denominator=np.real(np.poly(Q.poles)),
         Q_at_zero=float(problem.q_filter(gain).response(np.ones(1, complex))[0, 0, 0].real),
@@ -175,11 +213,14 @@ def certify_sampled(
         observer_poles=Q.poles,
         nominal_poles=loop.poles,
         perturbed_poles=None if perturbed is None else closed_loop_poles(perturbed.system, block),
-        perturbed_poles_without_observer=(
-            None
-            if perturbed is None
-            else _poles(feedback_matrix(perturbed.system, problem.controller))
-        ),
+        perturbed_poles_without_observer=None if alone is None else _poles(alone),
+        observer_noise_gain=through,
+        observer_noise_gain_frequency=at_through,
+        controller_noise_gain=largest(rows.without_observer, w)[0],
+        noise_norm=noise[0],
+        noise_frequency=noise[1],
+        minimized_norm=whole[0],
+        minimized_frequency=whole[1],
     )
 
 
@@ -197,14 +238,45 @@ def _factored_q(problem: SampledObserverProblem, gain: Array) -> ZerosAndPoles:
     return ZerosAndPoles(zeros, problem.q_filter(gain).poles(), plant.gain * branch.gain)
 
 
-def _larger_part(problem: SampledObserverProblem, gain: Array, frequency: float) -> str:
-    w = np.array([frequency if 0.0 < frequency <= np.pi / problem.dt else 1e-6 / problem.dt])
-    z = np.exp(1j * w * problem.dt)
-    Pd, C, Q = (
-        each.response(z)[:, 0, 0]
-        for each in (problem.plant, problem.controller, problem.q_filter(gain))
-    )
-    drive = (C + Q / Pd) / (1.0 + C * Pd)
-    uncertain = folded_uncertainty(problem.sampled, problem.Wu, w) * np.abs(drive)
-    left = np.abs(weight_response(problem.Wp, w) * (1.0 - Q))
-    return "Wu T" if uncertain[0] >= left[0] else "Wp (1 - Q)"
+class _Rows:
+    """Rows of what was minimized, from the responses of plant, controller and Q."""
+
+    def __init__(self, problem: SampledObserverProblem, gain: Array) -> None:
+        self.problem = problem
+        self.systems = problem.plant, problem.controller, problem.q_filter(gain)
+
+    def _values(self, w: Array) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        z = np.exp(1j * w * self.problem.dt)
+        Pd, C, Q = (each.response(z)[:, 0, 0] for each in self.systems)
+        return Pd, C, Q
+
+    def through_observer(self, w: Array) -> Array:
+        Pd, _, Q = self._values(w)
+        return np.abs(Q / Pd)
+
+    def without_observer(self, w: Array) -> Array:
+        Pd, C, _ = self._values(w)
+        return np.abs(C / (1.0 + C * Pd))
+
+    def noise(self, w: Array) -> Array:
+        return self._all(w)[2]
+
+    def whole(self, w: Array) -> Array:
+        return np.asarray(np.sqrt((self._all(w) ** 2).sum(axis=0)))
+
+    def largest_part(self, frequency: float) -> str:
+        nyquist = np.pi / self.problem.dt
+        w = np.array([frequency if 0.0 < frequency <= nyquist else 1e-6 * nyquist])
+        return ("Wu T", "Wp (1 - Q)", "Wn K S")[int(np.argmax(self._all(w)[:, 0]))]
+
+    def _all(self, w: Array) -> Array:
+        p, (Pd, C, Q) = self.problem, self._values(w)
+        drive = np.abs((C + Q / Pd) / (1.0 + C * Pd))
+        Wn = 0.0 if p.Wn is None else np.abs(weight_response(p.Wn, w))
+        return np.array(
+            [
+                folded_uncertainty(p.sampled, p.Wu, w) * drive,
+                np.abs(weight_response(p.Wp, w) * (1.0 - Q)),
+                Wn * drive,
+            ]
+        )

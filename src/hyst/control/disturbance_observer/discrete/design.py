@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -11,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
 from hyst.control.discretization import Method, discretize
-from hyst.control.disturbance_observer.descent import descend_from_many
 from hyst.control.disturbance_observer.discrete.assumptions import (
     check_controller,
     check_plant,
@@ -23,16 +21,17 @@ from hyst.control.disturbance_observer.discrete.certificate import certify_sampl
 from hyst.control.disturbance_observer.discrete.lower_bound import sampled_lower_bound
 from hyst.control.disturbance_observer.discrete.problem import SampledObserverProblem
 from hyst.control.disturbance_observer.discrete.result import SampledDisturbanceObserver
+from hyst.control.disturbance_observer.discrete.search import search_sampled
+from hyst.control.disturbance_observer.discrete.shortfall import sampled_shortfall
 from hyst.control.disturbance_observer.discrete.stacked_gain import SampledStackedGain
 from hyst.control.disturbance_observer.internal_model import as_internal_model
+from hyst.control.disturbance_observer.noise_weight import noise_weight
+from hyst.control.disturbance_observer.search import Search
 from hyst.control.sampled.certificate import stable_weight
 from hyst.control.sampled.plant import SampledPlant, sampled_plant
 from hyst.errors import InputError
 
 Array = NDArray[np.float64]
-
-# Poles of the delay that are searched like the others: more of them gain little.
-_FREED = 2
 
 
 def is_discrete(plant: Any, dt: float | None, delay: float) -> bool:
@@ -64,12 +63,14 @@ def sampled_observer_problem(
     dt: float | None = None,
     delay: float = 0.0,
     discretization: Method = "tustin",
+    noise: Any = None,
+    jitter: float | None = None,
 ) -> SampledObserverProblem:
     """Read and check what a sampled observer is designed for.
 
     Parameters
     ----------
-    plant, controller, Wu, Wp, internal_model, dt, delay, discretization
+    plant, controller, Wu, Wp, internal_model, dt, delay, discretization, noise, jitter
         As for ``design_disturbance_observer``.
 
     Raises
@@ -94,55 +95,48 @@ def sampled_observer_problem(
         sampled=sampled,
     )
     check_problem(problem)
-    return problem
+    if noise is None and jitter is None:
+        return problem
+    Wn = stable_weight(noise_weight(problem, noise, jitter), "the noise weight")
+    check_weight("the noise weight", Wn, sampled.dt)
+    return replace(problem, Wn=Wn)
 
 
 def design_sampled_observer(
     problem: SampledObserverProblem,
-    *,
-    order: int | None = None,
+    how: Search,
     perturbed_plant: Any = None,
-    starts: int | None = None,
-    seed: int = 0,
-    progress: Callable[[str, int, float], None] | None = None,
+    noise: float | None = None,
 ) -> SampledDisturbanceObserver:
-    """Find the gain of least stacked norm of a sampled observer, and certify it.
+    """Find the gain of least norm of a sampled observer, and certify it.
 
     Parameters
     ----------
     problem
         Of ``sampled_observer_problem``.
-    order
-        States of the observer; those above the problem's own are stable eigenvalues that the
-        internal model gets besides, searched together with the poles. The problem's if left out.
+    how
+        How to search; SLPMM is of the continuous design, its method is left out here.
     perturbed_plant
         A plant around which the certificate also closes the loop, sampled in the same way.
-    starts, seed, progress
-        As for ``design_disturbance_observer``.
+    noise
+        Standard deviation of the sensor's noise, for the summary.
 
     Raises
     ------
     InputError
-        If the order is below the problem's own, or the perturbed plant cannot be read.
+        If SLPMM alone is asked for, or the perturbed plant cannot be read.
     """
-    free = 0 if order is None else order - problem.order
-    if free < 0:
+    if how.method == "slpmm":
         raise InputError(
-            f"the order is {order}; plant with delay and internal model have {problem.order} "
-            "states, give that or more"
+            "method 'slpmm' is of the design in continuous time; use 'descent', or leave dt out"
         )
     perturbed = _perturbed(perturbed_plant, problem)
     # Matrices of ten rows: more threads would only wait for one another.
     with threadpool_limits(1, user_api="blas"):
-        gain = SampledStackedGain(problem, free, _FREED)
-        reported = None
-        if progress is not None:
-            reported = lambda step, value: progress("descent", step, value)  # noqa: E731
-        best = descend_from_many(gain, [], starts, seed, reported)
-        steps = (f"descent        {best.norm:.4f} after {best.evaluations} evaluations",)
-        found = gain.gain_of(best.parameters)
-        of_found = replace(problem, internal_model=gain.internal_model(best.parameters))
-        return _certified(of_found, found, gain, perturbed, "descent", steps)
+        found = search_sampled(problem, how)
+        whole = found.problem
+        assert isinstance(whole, SampledObserverProblem)
+        return _certified(whole, found.gain, perturbed, "descent", found.steps, noise)
 
 
 def evaluate_sampled_gain(
@@ -174,22 +168,26 @@ def evaluate_sampled_gain(
         )
     perturbed = _perturbed(perturbed_plant, problem)
     with threadpool_limits(1, user_api="blas"):
-        return _certified(problem, L, SampledStackedGain(problem), perturbed, "given", ())
+        return _certified(problem, L, perturbed, "given")
 
 
 def _certified(
     problem: SampledObserverProblem,
     L: Array,
-    gain: SampledStackedGain,
     perturbed: SampledPlant | None,
     method: str,
-    steps: tuple[str, ...],
+    steps: tuple[str, ...] = (),
+    noise: float | None = None,
 ) -> SampledDisturbanceObserver:
     certificate = certify_sampled(problem, L, perturbed)
     reached = certificate.stacked_norm
+    # The bound is of both rows; noise only adds to them.
+    gain = SampledStackedGain(replace(problem, Wn=None))
     bound = sampled_lower_bound(gain, reached if np.isfinite(reached) else 1e3)
     return SampledDisturbanceObserver(
-        problem, L, certificate, bound.value, method, steps, bound_reason=bound.reason
+        *(problem, L, certificate, bound.value, method, steps),
+        noise=noise,
+        shortfall=sampled_shortfall(certificate, bound),
     )
 
 

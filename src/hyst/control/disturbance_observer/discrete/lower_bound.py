@@ -49,7 +49,8 @@ def sampled_lower_bound(gain: SampledStackedGain, reached: float) -> LowerBound:
             middle = 0.5 * (low + high)
             low, high = (low, middle) if _payable(gain, middle) else (middle, high)
         best = LowerBound(
-            low, "what Wp rejects has to be paid below half the sample rate, where Wu forbids it"
+            low,
+            "what Wp rejects has to be paid below half the sample rate, and Wu forbids it there",
         )
     return LowerBound(min(best.value, reached), best.reason)
 

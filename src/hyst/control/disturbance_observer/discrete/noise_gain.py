@@ -1,4 +1,4 @@
-"""What the sampled block makes of the sensor's noise in the drive: the square of |K S|."""
+"""What the sampled block makes of the sensor's noise in the drive: the square of |Q / Pd|."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 class SampledNoiseGain:
-    """Square of |K S|, and its gradient, for the same parameters as the stacked gain."""
+    """Square of |Q / Pd|, and its gradient, for the same parameters as the stacked gain."""
 
     def __init__(self, gain: SampledStackedGain) -> None:
         self._gain = gain
@@ -34,19 +34,18 @@ class SampledNoiseGain:
         return self._gain.inside(parameters)
 
     def values(self, parameters: Array, at: SampledFrequencies) -> Array:
-        """Square of |K S| at each frequency."""
+        """Square of |Q / Pd| at each frequency."""
         solved = self._gain.solved(parameters)
-        return np.asarray(
-            np.abs(self._gain.drive(solved, at, self._gain.below(solved, at.powers))) ** 2
-        )
+        above = at.powers[:, -solved.l.size :] @ solved.l * at.over
+        return np.asarray(np.abs(above / self._gain.below(solved, at.powers)) ** 2)
 
     def values_and_slopes(self, parameters: Array, at: SampledFrequencies) -> tuple[Array, Array]:
-        """Square of |K S| at each frequency, and its derivatives by the parameters."""
+        """Square of |Q / Pd| at each frequency, and its derivatives by the parameters."""
         solved = self._gain.solved(parameters)
         below = self._gain.below(solved, at.powers)
-        N = self._gain.drive(solved, at, below)
-        of_l, of_x = np.conj(N) * at.S0 * at.over / below, np.conj(N) * (N - at.plain) / below
-        return np.asarray(np.abs(N) ** 2), self._gain.derivatives(solved, at, of_l, of_x)
+        V = at.powers[:, -solved.l.size :] @ solved.l * at.over / below
+        of_l, of_x = np.conj(V) * at.over / below, np.abs(V) ** 2 / below
+        return np.asarray(np.abs(V) ** 2), self._gain.derivatives(solved, at, of_l, of_x)
 
     def peaks(self, parameters: Array, share: float = 0.9, rounds: int = 4) -> Array:
         """Frequencies of the local maxima that reach a share of the largest, highest first."""

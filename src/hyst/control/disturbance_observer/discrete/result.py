@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -24,13 +24,12 @@ class SampledDisturbanceObserver(DisturbanceObserver):
     ----------
     problem, gain, certificate, lower_bound, method, steps
         As there; L is of the observer that predicts, whose estimate the sample at hand corrects.
-    bound_reason
-        What makes the lower bound.
+    lower_bound_at_noise, noise, shortfall
+        As there, but no bound at the noise gain is known here: None.
     """
 
     problem: SampledObserverProblem
     certificate: SampledObserverCertificate  # type: ignore[assignment]
-    bound_reason: str = field(default="", kw_only=True)
 
     @property
     def dt(self) -> float:
@@ -47,22 +46,17 @@ class SampledDisturbanceObserver(DisturbanceObserver):
         """One sentence: whether the loop is safe, or what stands in the way."""
         c = self.certificate
         unstable = self._unstable()
-        if self.gamma < 1.0:
+        if c.stacked_norm < 1.0 and (c.noise_norm is None or c.noise_norm < 1.0):
             return (
-                f"gamma = {self.gamma:.4g} < 1 at {c.stacked_frequency:.4g} rad/s: the sampled "
-                "loop is stable for every plant within Wu, "
-                f"{c.robust_stability_margin:.3g} times over"
-                f"{unstable}"
+                f"gamma = {self.gamma:.4g}{' < 1' * (self.gamma < 1.0)} at "
+                f"{c.minimized_frequency:.4g} rad/s: the sampled loop is stable for every plant "
+                f"within Wu, {c.robust_stability_margin:.3g} times over{unstable}"
             )
-        of_all = (
-            f"no observer of any order reaches below {self.lower_bound:.4g}: {self.bound_reason}"
-            if self.lower_bound >= 1.0
-            else f"lower bound {self.lower_bound:.4g}"
-        )
         return (
             f"no gain {'found ' if self.lower_bound < 1.0 else ''}reaches gamma < 1 at dt = "
             f"{self.dt:.4g} s and {self.delay:.4g} s of delay; best found {self.gamma:.4g} at "
-            f"{c.stacked_frequency:.4g} rad/s, limited by {c.limited_by}; {of_all}{unstable}"
+            f"{c.minimized_frequency:.4g} rad/s, limited by {c.limited_by}; no observer of any "
+            f"order reaches below {self.lower_bound:.4g}; {self.shortfall}{unstable}"
         )
 
     def _unstable(self) -> str:
@@ -84,11 +78,7 @@ class SampledDisturbanceObserver(DisturbanceObserver):
 
     def to_dict(self) -> dict[str, Any]:
         """Give gain, certificate, bound and search as plain numbers, lists and texts."""
-        return super().to_dict() | {
-            "dt": self.dt,
-            "delay": self.delay,
-            "bound_reason": self.bound_reason,
-        }
+        return super().to_dict() | {"dt": self.dt, "delay": self.delay}
 
     def summary(self) -> str:
         """Say in words what was found."""
@@ -105,8 +95,8 @@ class SampledDisturbanceObserver(DisturbanceObserver):
             f"stacked        {c.stacked_norm:.4f} at {c.stacked_frequency:.4g} rad/s, "
             f"limited by {c.limited_by}; lower bound {self.lower_bound:.4f}",
             f"margin         Wu may grow {c.robust_stability_margin:.3f} times",
-            f"noise          of the sensor to v at most {c.noise_gain:.4g} times, at "
-            f"{c.loop.noise_frequency:.4g} rad/s; standard deviation {c.loop.noise_rms:.4g} times",
+            *self._noise_lines(),
+            f"white noise    {c.loop.noise_rms:.4g} times its standard deviation in v",
             f"Q(z)           order {c.Q_denominator.size - 1}, relative degree "
             f"{c.Q_relative_degree}, Q(1) = {c.Q_at_zero:.9g}",
             f"nominal loop   {'stable' if c.nominal_stable else 'UNSTABLE'}, slowest pole of the "

@@ -50,6 +50,7 @@ ComplexArray = NDArray[np.complex128]
 
 _PER_DECADE = 24
 _SLOWER = 100.0  # than all poles and zeros of the problem
+_FREE_SHARE = 0.5  # of the limit of poles: that of free eigenvalues
 _LOWEST, _HIGHEST = 1e-9, 1e3  # of W on the grid
 _DENSE, _CLOSE = 100, np.linspace(-4.0, 4.0, 33)  # of what is interpolated
 
@@ -80,12 +81,21 @@ class SampledStackedGain(StackedGain):
         Number of stable eigenvalues that the internal model has besides its own.
     freed
         Of the delay's poles so many are searched like the others.
+    fastest_pole
+        A lower limit of the poles of Q, rad/s.
     """
 
     problem: SampledObserverProblem
 
-    def __init__(self, problem: SampledObserverProblem, free: int = 0, freed: int = 0) -> None:
-        self.problem, self.free = problem, free
+    def __init__(
+        self,
+        problem: SampledObserverProblem,
+        free: int = 0,
+        freed: int = 0,
+        fastest_pole: float | None = None,
+    ) -> None:
+        self.problem, self.free, self.freed = problem, free, freed
+        self.fastest_pole = fastest_pole
         self.sampled = factored(problem.plant)
         delays = int((self.sampled.poles == -1.0).sum())
         self.at_zero = delays - min(freed, delays)
@@ -102,7 +112,9 @@ class SampledStackedGain(StackedGain):
         self.plant = ZerosAndPoles(zeros, self.sampled.poles[self.sampled.poles != -1.0], 1.0)
         self.Wu, self.Wp = (_features_of(each, problem.dt) for each in (problem.Wu, problem.Wp))
         self.Wn = None if problem.Wn is None else _features_of(problem.Wn, problem.dt)
-        self.features = self._features()
+        found = self._features()
+        # Those that no pole of Q may reach show peaks, but are no places to start from.
+        self.sharp, self.features = found, found[np.abs(found) <= 1.0]
         self.scale = float(np.exp(np.mean(np.log(np.abs(self.features)))))
         self.model = np.real(np.poly(self.model_poles / self.scale))
         # z b of the plant; its size is kept in l, so a factor common to all is harmless.
@@ -113,13 +125,17 @@ class SampledStackedGain(StackedGain):
         self._latest = None
         self._weights = self._interpolated()
         self.grid = self.at(self._grid())
-        self.fastest = float(np.log(1.0 / self.scale))
+        self.fastest = float(np.log(_limit(fastest_pole, problem.dt) / self.scale))
         self.lowest, self.highest = self._box()
 
     @cached_property
     def noise(self) -> SampledNoiseGain:  # type: ignore[override]
-        """The square of |K S|, what becomes of the sensor's noise in the drive."""
+        """The square of |Q / Pd|, what the observer makes of the sensor's noise in the drive."""
         return SampledNoiseGain(self)
+
+    def enlarged(self) -> SampledStackedGain:
+        """Give the same with one free eigenvalue more."""
+        return SampledStackedGain(self.problem, self.free + 1, self.freed, self.fastest_pole)
 
     def _sensitivity(self) -> ZerosAndPoles:
         """1 / (1 + C Pd): 1 at z = infinity, that is s = 1, for Pd is strictly proper."""
@@ -138,7 +154,7 @@ class SampledStackedGain(StackedGain):
     def _box(self) -> tuple[Array, Array]:
         slow = float(np.log(np.abs(self.features).min() / self.scale / _SLOWER))
         of_poles = pole_parameters.bounds(self.order, slow, self.fastest + float(np.log(2.0)))
-        of_model = pole_parameters.bounds(self.free, slow, self.fastest - float(np.log(2.0)))
+        of_model = pole_parameters.bounds(self.free, slow, self.fastest + np.log(_FREE_SHARE))
         return (
             np.concatenate([of_poles[0], of_model[0]]),
             np.concatenate([of_poles[1], of_model[1]]),
@@ -148,7 +164,7 @@ class SampledStackedGain(StackedGain):
         """Take the parameters into their bounds, and poles to where none is too fast."""
         held = super().inside(parameters)
         held[self.order :] = pole_parameters.slowed(
-            held[self.order :], self.fastest - float(np.log(2.0))
+            held[self.order :], self.fastest + float(np.log(_FREE_SHARE))
         )
         return held
 
@@ -156,7 +172,7 @@ class SampledStackedGain(StackedGain):
         size = np.abs(self.features)
         low, high = np.log10(size.min() / 100.0), np.log10(_HIGHEST)
         even = np.logspace(low, high, int(_PER_DECADE * (high - low)) + 1)
-        sharp = np.abs(self.features.imag)[:, None] + np.abs(self.features.real)[:, None] * AROUND
+        sharp = np.abs(self.sharp.imag)[:, None] + np.abs(self.sharp.real)[:, None] * AROUND
         sharp = sharp[(sharp > 10.0**low) & (sharp < 10.0**high)]
         return np.unique(np.concatenate([even, sharp, size]))
 
@@ -165,7 +181,7 @@ class SampledStackedGain(StackedGain):
         problem, size = self.problem, np.abs(self.features)
         low, high = np.log10(size.min() / 1e3), np.log10(10.0 * _HIGHEST)
         even = np.logspace(low, high, int(_DENSE * (high - low)) + 1)
-        around = np.abs(self.features.imag)[:, None] + np.abs(self.features.real)[:, None] * _CLOSE
+        around = np.abs(self.sharp.imag)[:, None] + np.abs(self.sharp.real)[:, None] * _CLOSE
         around = around[(around > 10.0**low) & (around < 10.0**high)]
         w = np.unique(np.concatenate([even, around]))
         w = w[np.concatenate([[True], np.diff(w) > 1e-5 * w[1:]])]
@@ -266,6 +282,25 @@ class SampledStackedGain(StackedGain):
             by_x = of_x[:, None] * (at.powers @ solved.x_slopes.T)
             return np.asarray(2.0 * np.real(by_l - by_x))
 
+    def poles(self, parameters: Array) -> ComplexArray:
+        """Give the poles of Q that are searched, in the w-plane."""
+        x = pole_parameters.polynomial(parameters[: self.order])[0]
+        return np.asarray(np.roots(x) * self.scale, dtype=np.complex128)
+
+    def parameters_of(self, poles: ComplexArray, free: ComplexArray | None = None) -> Array:
+        """Give the parameters of stable poles and of free eigenvalues of the w-plane.
+
+        Eigenvalues that are too fast are slowed, with the poles that cancel them.
+        """
+        if free is None:
+            return super().parameters_of(poles)
+        most = _FREE_SHARE * self.scale * float(np.exp(self.fastest))
+        slowed = [np.asarray(each, dtype=complex).copy() for each in (poles, free)]
+        for value in slowed[1][np.abs(slowed[1]) > most]:
+            for each in slowed:
+                each[each == value] = -most
+        return super().parameters_of(*slowed)
+
     def internal_model(self, parameters: Array) -> InternalModel:
         """Give the internal model in continuous time with the eigenvalues that were free."""
         model, dt = self.problem.internal_model, self.problem.dt
@@ -314,6 +349,13 @@ class SampledStackedGain(StackedGain):
             product = np.convolve(product, [sigma, 2.0])
         size = plant.gain / np.prod(1.0 - plant.poles) / sigma**n
         return np.real(product * size)
+
+
+def _limit(fastest_pole: float | None, dt: float) -> float:
+    """Limit of |s| for poles of Q: 1, half of Nyquist, or less."""
+    if fastest_pole is None or 0.5 * fastest_pole * dt >= 0.25 * np.pi:
+        return 1.0
+    return float(np.tan(0.5 * fastest_pole * dt))
 
 
 def _around_one(system: LinearSystem) -> ZerosAndPoles:
