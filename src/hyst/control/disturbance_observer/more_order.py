@@ -32,7 +32,7 @@ def with_one_more(gain: StackedGain, found: Descent, noise: float) -> tuple[Stac
     noise
         Limit of sup |Q / Pn|, to 0.1 %.
     """
-    larger = StackedGain(gain.problem, gain.free + 1, gain.fastest_pole)
+    larger = gain.enlarged()
     poles, free = gain.poles(found.parameters), gain.eigenvalues(found.parameters)
     size = np.abs(gain.features)
     ends: list[Descent] = []

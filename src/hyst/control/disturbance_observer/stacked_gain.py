@@ -143,6 +143,10 @@ class StackedGain:
             np.concatenate([of_poles[1], of_model[1]]),
         )
 
+    def enlarged(self) -> StackedGain:
+        """Give the same with one free eigenvalue more."""
+        return StackedGain(self.problem, self.free + 1, self.fastest_pole)
+
     def inside(self, parameters: Array) -> Array:
         """Take the parameters into their bounds, and poles to where none is too fast."""
         held = np.clip(parameters, self.lowest, self.highest)
