@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.control.closed_loop_poles import closed_loop_poles
 from hyst.control.disturbance_observer.certificate import plain
 from hyst.control.disturbance_observer.discrete.problem import SampledObserverProblem
 from hyst.control.disturbance_observer.stacked_gain import feedback_matrix
 from hyst.control.linear_system import LinearSystem
+from hyst.control.loop_poles import closed_loop_poles
 from hyst.control.sampled.block_loop import BlockLoop, largest
 from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
 from hyst.control.sampled.folding import folded_uncertainty, weight_response
