@@ -21,7 +21,7 @@ from hyst.control import (
     TriedLoop,
 )
 from hyst.report.observer.words import finite, hertz, told
-from hyst.report.tables import number
+from hyst.report.table import number
 
 ComplexArray = NDArray[np.complex128]
 

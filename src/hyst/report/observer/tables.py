@@ -7,7 +7,7 @@ import numpy as np
 from hyst.control import SampledCertificate, TriedLoop
 from hyst.report.observer.answer import ObserverAnswer
 from hyst.report.observer.words import STANDINGS, bandwidth_told, hertz, rightmost, told
-from hyst.report.tables import Table, number
+from hyst.report.table import Table, number
 
 THIS = "this block"
 

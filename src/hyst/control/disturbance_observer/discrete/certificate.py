@@ -252,14 +252,14 @@ class _Rows:
 
     def through_observer(self, w: Array) -> Array:
         Pd, _, Q = self._values(w)
-        return np.abs(Q / Pd)
+        return np.asarray(np.abs(Q / Pd))
 
     def without_observer(self, w: Array) -> Array:
         Pd, C, _ = self._values(w)
         return np.abs(C / (1.0 + C * Pd))
 
     def noise(self, w: Array) -> Array:
-        return self._all(w)[2]
+        return np.asarray(self._all(w)[2])
 
     def whole(self, w: Array) -> Array:
         return np.asarray(np.sqrt((self._all(w) ** 2).sum(axis=0)))
