@@ -17,6 +17,7 @@ from hyst.control.disturbance_observer.search import MOST_MORE, PAYS, USUAL, Fou
 
 # Poles of the delay that are searched like the others: more of them gain little.
 _FREED = 2
+_UNMET = 3.0  # times the noise gain, where the norm is above 1
 
 
 def search_sampled(problem: SampledObserverProblem, how: Search) -> Found:
@@ -45,7 +46,9 @@ def _more(
     """Add stable eigenvalues: as many as asked for, or while each brings enough."""
     if how.order is None:
         return gain, best
-    noise, auto = noise_of(gain, best), how.order == "auto"
+    # Weights that are not met yet are worth some noise.
+    noise = noise_of(gain, best) * (1.0 if best.norm < 1.0 else _UNMET)
+    auto = how.order == "auto"
     most = gain.problem.order + MOST_MORE if how.order == "auto" else how.order
     while gain.total < most:
         larger, more = with_one_more(gain, best, noise)

@@ -137,6 +137,11 @@ class SampledStackedGain(StackedGain):
         """Give the same with one free eigenvalue more."""
         return SampledStackedGain(self.problem, self.free + 1, self.freed, self.fastest_pole)
 
+    def rates(self) -> tuple[float, float]:
+        """Ends of the band in which free eigenvalues may start, in the w-plane."""
+        most = _FREE_SHARE * self.scale * float(np.exp(self.fastest))
+        return min(self.scale / 3.0, 0.1 * most), most
+
     def _sensitivity(self) -> ZerosAndPoles:
         """1 / (1 + C Pd): 1 at z = infinity, that is s = 1, for Pd is strictly proper."""
         opened = np.concatenate([self.sampled.poles, self.controller.poles])
