@@ -41,8 +41,8 @@ class ObserverSpec:
     ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
     ``inverse_name``), ``reference``, at the samples of the block, ``settle``, ``noise``,
     ``disturbance`` and ``seed`` what is simulated; ``filter_dt``, ``filter_method`` and ``delay``
-    say what is implemented. The plant is sampled where it was ``identified`` (else None), and
-    continuous where it was written, with its dead time in ``delay``.
+    say what is implemented. The plant is sampled where it was ``identified`` (else None),
+    continuous where it was written; ``delay`` is its dead time and that of the block together.
     """
 
     plant: LinearSystem

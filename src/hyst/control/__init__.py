@@ -14,6 +14,11 @@ from hyst.control.disturbance_observer import (
     evaluate_gain,
     observer_problem,
 )
+from hyst.control.feedback.comparison import ComparedLoop, LoopComparison, compare_loops
+from hyst.control.feedback.controller_design import design_controller
+from hyst.control.feedback.designed_controller import ControllerDesign
+from hyst.control.feedback.feedforward import reference_feedforward
+from hyst.control.feedback.margins import LoopMargins, loop_margins
 from hyst.control.frequency_responses import LoopResponses, loop_responses, uncertainty_used
 from hyst.control.inexact_inverse import first_unstable_slope, slope_margin
 from hyst.control.infinity_norm import hinf_norm
@@ -27,6 +32,17 @@ from hyst.control.plants import (
     plant_and_delay,
 )
 from hyst.control.python_control import closed_loop_system, to_nlsys
+from hyst.control.q_filter import (
+    DesignRow,
+    QFilter,
+    QFilterCertificate,
+    QFilterObserver,
+    RobustPerformance,
+    compare_designs,
+    design_q_filter,
+    q_filter,
+    robust_performance,
+)
 from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
 from hyst.control.sampled.folding import folded_uncertainty
 from hyst.control.sampled.judged import LoopJudgement, judge_loop
@@ -47,14 +63,23 @@ __all__ = [
     "EXACT",
     "Certificate",
     "ClosedLoop",
+    "ComparedLoop",
+    "ControllerDesign",
+    "DesignRow",
     "DisturbanceObserver",
     "IdentifiedPlant",
     "InternalModel",
     "InverseComparison",
     "LinearSystem",
+    "LoopComparison",
     "LoopJudgement",
+    "LoopMargins",
     "LoopResponses",
     "ObserverProblem",
+    "QFilter",
+    "QFilterCertificate",
+    "QFilterObserver",
+    "RobustPerformance",
     "SampledCertificate",
     "SampledPlant",
     "StressTest",
@@ -64,8 +89,12 @@ __all__ = [
     "as_linear_system",
     "closed_loop_poles",
     "closed_loop_system",
+    "compare_designs",
     "compare_inverses",
+    "compare_loops",
+    "design_controller",
     "design_disturbance_observer",
+    "design_q_filter",
     "discretize",
     "discretized_dynamics",
     "evaluate_gain",
@@ -76,10 +105,14 @@ __all__ = [
     "identification_weight",
     "identified_plant",
     "judge_loop",
+    "loop_margins",
     "loop_responses",
     "observer_problem",
     "plant_and_delay",
+    "q_filter",
+    "reference_feedforward",
     "require_no_less_than_known",
+    "robust_performance",
     "sampled_certificate",
     "sampled_plant",
     "sampled_responses",

@@ -75,6 +75,8 @@ class LinearSystem:
 
     def poles(self) -> ComplexArray:
         """Eigenvalues of A."""
+        if self.order == 0:  # which scipy 1.11 has no eigenvalues for
+            return np.zeros(0, dtype=np.complex128)
         return np.asarray(scipy.linalg.eigvals(self.A), dtype=np.complex128).reshape(self.order)
 
     def response(self, s: Points) -> ComplexArray:
