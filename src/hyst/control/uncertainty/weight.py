@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.numbers import as_positive, whole_number
 from hyst.control.linear_system import LinearSystem
-from hyst.control.plants.identified_plant import IdentifiedPlant
+from hyst.control.plants.identified import IdentifiedPlant
 from hyst.control.uncertainty.cover import Cover, Target, tightest
 from hyst.control.uncertainty.left_unknown import shown_deviations
 from hyst.control.uncertainty.responses import (
