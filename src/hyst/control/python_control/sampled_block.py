@@ -95,16 +95,15 @@ def _of_scheduled(model: Scheduled | ScheduledInverse, watch: bool) -> SampledBl
 
 
 def _of_controller(block: TrackingController, watch: bool) -> SampledBlock:
-    """Beside u, tell what the linear part asks for, and the estimate where it is known."""
-    watched = {"v": (block.C, block.D)} if watch else {}
+    """Beside u, tell the v that belongs to it, and the estimate where it is known."""
+    watched = {"v": block.applied} if watch else {}
     if watch and block.E is not None and block.F is not None:
-        watched["d_hat"] = block.E, block.F
-    watching = [TrackingController(block.A, block.B, *each, block.dt) for each in watched.values()]
+        watched["d_hat"] = block.estimate
 
     def sample(state: Array, given: Array) -> tuple[Array, Array]:
         reference, output = given[:1], given[1:]
         u, following = block.run(reference, output, state)
-        told = [each.run(reference, output, state[: each.order])[0] for each in watching]
+        told = [each(reference, output, state) for each in watched.values()]
         return np.concatenate([u, *told]), following
 
     names, outputs = ("y_ref", "y"), ("u", *watched)
