@@ -17,6 +17,8 @@ from hyst.control.block_constants import as_entries, as_matrix
 from hyst.control.controller_parts import disturbance_observer_of, feedback_controller, joined
 from hyst.control.discretization import Method, discretize
 from hyst.control.drive_limits import Limits, limited_drive, stated, within
+from hyst.control.feedback.feedforward import with_feedforward
+from hyst.control.linear_system import LinearSystem
 from hyst.control.saved_block import SavedBlock
 from hyst.errors import InputError
 from hyst.operators import Operator
@@ -163,19 +165,21 @@ class TrackingController(SavedBlock):
         limits: Limits | None = None,
         rate: float | None = None,
         hysteresis: Operator | None = None,
+        feedforward: Any = None,
+        plant: Any = None,
         despite_verdict: bool = False,
     ) -> TrackingController:
         """Sample a design in continuous time.
 
         Controller and observer are sampled each by itself, and then joined:
-        ``v = C(z)(y_ref - y) - d_hat``, where the observer's feedthrough from v, which
-        ``"tustin"`` gives it, is solved for.
+        ``v = F(z) y_ref + C(z)(y_ref - y) - d_hat``, where the observer's feedthrough from v,
+        which ``"tustin"`` gives it, is solved for.
 
         Parameters
         ----------
         controller
             C(s), from the tracking error to v: a system of python-control, a LinearSystem, a pair
-            (num, den), matrices (A, B, C, D) or a number.
+            (num, den), matrices (A, B, C, D), a number, or what ``design_controller`` gave.
         dt
             Sample time, s, > 0.
         observer
@@ -188,6 +192,12 @@ class TrackingController(SavedBlock):
         limits, rate, hysteresis
             Of the drive, as the class takes them. Neither C nor the observer then winds up: W and
             G are those of ``anti_windup``.
+        feedforward
+            F, from the reference to v: True is the static ``1 / Pn(0)``; or a stable system, such
+            as ``reference_feedforward`` gives; none if left out. It changes no pole of the loop.
+        plant
+            Pn, of which ``feedforward=True`` takes the static gain; left out, that of a designed
+            controller or observer, or a gain of 1.
         despite_verdict
             Take also an inverse of a model whose verdict is ``unfit``.
 
@@ -210,9 +220,10 @@ class TrackingController(SavedBlock):
         """
         parts = feedback_controller(controller), disturbance_observer_of(observer)
         blocks = discretize(parts[0], dt, method), discretize(parts[1], dt, method)
-        whole = joined(*blocks)
+        steered = with_feedforward(blocks[0], feedforward, method, plant, (controller, observer))
+        whole = joined(steered, blocks[1])
         is_limited = limits is not None or rate is not None
-        W, G = anti_windup(*blocks) if is_limited else (None, 0.0)
+        W, G = anti_windup(_from_reference(steered), blocks[1]) if is_limited else (None, 0.0)
         return cls(
             whole.A,
             whole.B,
@@ -394,3 +405,10 @@ class TrackingController(SavedBlock):
         start = self.initial_state() if state is None else state
         memory: Array = as_state(start, self.compiled.state_length, None)[0]
         return memory
+
+
+def _from_reference(controller: LinearSystem) -> LinearSystem:
+    """Keep of a controller its way from the reference."""
+    return LinearSystem(
+        controller.A, controller.B[:, :1], controller.C, controller.D[:, :1], controller.dt
+    )
