@@ -14,7 +14,17 @@ from hyst.control.linear_system import LinearSystem
 
 @dataclass(frozen=True, eq=False)
 class Tried:
-    """The best controller of one kind, with its margins and its worst ones."""
+    """The best controller of one kind.
+
+    Parameters
+    ----------
+    kind, shape, ki
+        As in ``ControllerDesign``.
+    continuous, system
+        C(s), and C as the loop has it.
+    margins, worst
+        Of the loop it was designed for, and of the worst of those with resonances elsewhere.
+    """
 
     kind: str
     shape: Shape

@@ -154,7 +154,7 @@ def loop_margins(
     >>> round(found.gain_margin, 9), found.stable
     (2.0, True)
     >>> round(loop_margins(([1.0], [1.0, 2.0, 1.0]), ([1.0], [1.0, 0.0]), 0.5).gain_margin, 3)
-    1.514
+    1.384
     """
     met = loop_plant(plant, dt, delay)
     read = feedback_controller(controller)
