@@ -162,11 +162,7 @@ def simulate_closed_loop(
             )
         end, good = _sampled(controller, sampled_plant(plant, time, delay), actuator, signals)
     else:
-        if delay != 0.0:
-            raise InputError(
-                f"delay is {delay:.6g} s of a controller in continuous time, which takes none to "
-                "compute; give a TrackingController"
-            )
+        _refuse_late(delay)
         part = joined(feedback_controller(controller), disturbance_observer_of(observer))
         step = held_step(continuous_loop(plant_of(plant), part), time)
         first, late = _chain(inverse, "inverse", time), algebraic_loop == "delay"
@@ -180,6 +176,14 @@ def simulate_closed_loop(
         d_hat = controller.estimate(r, y + spread)
     diverged_at = good * time if end == "diverged" else None
     return ClosedLoop(time, r, y, spread, v, u, eta, d_hat, d, settled, diverged_at)
+
+
+def _refuse_late(delay: float) -> None:
+    if delay != 0.0:
+        raise InputError(
+            f"delay is {delay:.6g} s of a controller in continuous time, which takes none to "
+            "compute; give a TrackingController"
+        )
 
 
 def _refuse_unsolved(end: str, at: float) -> None:
