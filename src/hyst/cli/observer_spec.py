@@ -203,8 +203,8 @@ def _reference(given: Section, dt: float, folder: Path) -> Array:
     samples = round(duration / dt)
     if not 2 <= samples <= 10_000_000:
         raise hyst.InputError(
-            f"[reference] duration is {duration:g} s, {samples} samples of [simulation] dt; give "
-            "2 to 10 million"
+            f"[reference] duration is {duration:g} s, {samples} samples of {dt:g} s; give 2 to 10 "
+            "million"
         )
     t = np.arange(samples) * dt
     return np.asarray(sum(a * np.sin(2.0 * np.pi * f * t) for a, f in sines))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from hyst.control.closed_loop import ClosedLoop
-from hyst.control.closed_loop_poles import closed_loop_poles
 from hyst.control.closed_loop_simulation import simulate_closed_loop
 from hyst.control.discretization import discretize, discretized_dynamics
 from hyst.control.disturbance_observer import (
@@ -25,6 +24,8 @@ from hyst.control.inexact_inverse import first_unstable_slope, slope_margin
 from hyst.control.infinity_norm import hinf_norm
 from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
 from hyst.control.linear_system import LinearSystem, as_linear_system
+from hyst.control.loop_poles import closed_loop_poles
+from hyst.control.python_control import closed_loop_system, to_nlsys
 from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
 from hyst.control.sampled.folding import folded_uncertainty
 from hyst.control.sampled.judged import LoopJudgement, judge_loop
@@ -57,6 +58,7 @@ __all__ = [
     "TriedLoop",
     "as_linear_system",
     "closed_loop_poles",
+    "closed_loop_system",
     "compare_inverses",
     "compare_loops",
     "design_controller",
@@ -80,6 +82,7 @@ __all__ = [
     "simulate_closed_loop",
     "slope_margin",
     "stress",
+    "to_nlsys",
     "try_block",
     "uncertainty_used",
 ]

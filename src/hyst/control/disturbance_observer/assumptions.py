@@ -50,6 +50,19 @@ def check_assumptions(problem: ObserverProblem) -> None:
     _check_controller(problem.plant, problem.controller)
 
 
+def check_noise_weight(weight: LinearSystem | None) -> None:
+    """Refuse a weight of noise that is no stable system of one input and output.
+
+    Raises
+    ------
+    InputError
+        If the weight is not.
+    """
+    if weight is not None:
+        _check_kind("the noise weight", weight)
+        _check_weight("the noise weight", weight)
+
+
 def _check_kind(name: str, system: LinearSystem) -> None:
     if (system.inputs, system.outputs) != (1, 1):
         raise InputError(

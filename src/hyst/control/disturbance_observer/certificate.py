@@ -9,6 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.control.disturbance_observer.noise_loop import (
+    all_rows,
+    noise_through_observer,
+    noise_to_drive,
+    noise_without_observer,
+)
 from hyst.control.disturbance_observer.problem import ObserverProblem
 from hyst.control.disturbance_observer.stacked_gain import feedback_matrix
 from hyst.control.infinity_norm import hinf_norm
@@ -34,7 +40,7 @@ class Certificate:
     performance_norm, performance_frequency
         Those of Wp (1 - Q), eq. 27.
     limited_by
-        ``"Wu T"`` or ``"Wp (1 - Q)"``: the larger part at the peak of the stack.
+        ``"Wu T"``, ``"Wp (1 - Q)"`` or ``"Wn K S"``: the largest at the peak of what was minimized.
     robust_stability_margin
         Factor by which Wu may grow before stability is no longer sure, 1 / uncertainty_norm.
     Q_numerator, Q_denominator
@@ -51,6 +57,17 @@ class Certificate:
         Poles of the whole loop around the given perturbed plant; None if none was given.
     perturbed_poles_without_observer
         The same of plant and controller alone: an unstable one is the controller's doing.
+    noise_gain, noise_gain_frequency
+        sup |K S|, the largest gain from sensor noise to the drive, with K the controller and the
+        observer together: noise of standard deviation 1 makes at most that in v.
+    observer_noise_gain, observer_noise_gain_frequency
+        sup |Q/Pn|, what the observer alone makes of it.
+    controller_noise_gain
+        sup |C S0|, of the loop without the observer.
+    noise_norm, noise_frequency
+        H-infinity norm of Wn K S; None where noise was given no weight.
+    minimized_norm, minimized_frequency
+        That of all rows, [Wu T; Wp (1 - Q); Wn K S]; without Wn the stacked norm.
     """
 
     stacked_norm: float
@@ -70,6 +87,15 @@ class Certificate:
     nominal_poles: ComplexArray
     perturbed_poles: ComplexArray | None
     perturbed_poles_without_observer: ComplexArray | None
+    noise_gain: float
+    noise_gain_frequency: float
+    observer_noise_gain: float
+    observer_noise_gain_frequency: float
+    controller_noise_gain: float
+    noise_norm: float | None
+    noise_frequency: float | None
+    minimized_norm: float
+    minimized_frequency: float
 
     @property
     def nominal_stable(self) -> bool:
@@ -82,6 +108,11 @@ class Certificate:
         if self.perturbed_poles is None:
             return None
         return bool(self.perturbed_poles.real.max() < 0.0)
+
+    @property
+    def fastest_pole(self) -> float:
+        """Size of the fastest pole of the observer, rad/s; a block samples above twice that."""
+        return float(np.abs(self.observer_poles).max())
 
     @property
     def robustly_stable(self) -> bool:
@@ -104,6 +135,7 @@ class Certificate:
             name: _plain(getattr(self, name)) for name in self.__dataclass_fields__
         }
         for name in (
+            "fastest_pole",
             "nominal_stable",
             "perturbed_stable",
             "robustly_stable",
@@ -138,6 +170,13 @@ def certify(
     performance, at_performance = _checked_norm(_output(closed, 1))
     plant = zeros_and_poles(problem.plant)
     Q = _factored_q(problem, gain, plant)
+    noise, at_noise = _checked_norm(noise_to_drive(problem, gain))
+    through, at_through = _checked_norm(noise_through_observer(problem, gain))
+    rows, row, at_row, whole, at_whole = None, None, None, stacked, at
+    if problem.Wn is not None:
+        rows = all_rows(problem, gain)
+        row, at_row = _checked_norm(_output(rows, 2))
+        whole, at_whole = _checked_norm(rows)
     return Certificate(
         stacked_norm=stacked,
         stacked_frequency=at,
@@ -145,7 +184,7 @@ def certify(
         uncertainty_frequency=at_uncertain,
         performance_norm=performance,
         performance_frequency=at_performance,
-        limited_by=_larger_part(closed, at),
+        limited_by=_largest_part(closed if rows is None else rows, at_whole),
         robust_stability_margin=1.0 / uncertain if uncertain > 0.0 else np.inf,
         Q_numerator=np.real(Q.gain * np.atleast_1d(np.poly(Q.zeros))),
         Q_denominator=np.real(np.poly(Q.poles)),
@@ -164,6 +203,15 @@ def certify(
                 complex
             )
         ),
+        noise_gain=noise,
+        noise_gain_frequency=at_noise,
+        observer_noise_gain=through,
+        observer_noise_gain_frequency=at_through,
+        controller_noise_gain=_checked_norm(noise_without_observer(problem))[0],
+        noise_norm=row,
+        noise_frequency=at_row,
+        minimized_norm=whole,
+        minimized_frequency=at_whole,
     )
 
 
@@ -257,9 +305,9 @@ def _output(system: LinearSystem, i: int) -> LinearSystem:
     return LinearSystem(system.A, system.B, system.C[i : i + 1], system.D[i : i + 1])
 
 
-def _larger_part(closed: LinearSystem, frequency: float) -> str:
+def _largest_part(closed: LinearSystem, frequency: float) -> str:
     value = closed.D if np.isinf(frequency) else closed.response(np.array([1j * frequency]))[0]
-    return "Wu T" if abs(value[0, 0]) >= abs(value[1, 0]) else "Wp (1 - Q)"
+    return ("Wu T", "Wp (1 - Q)", "Wn K S")[int(np.argmax(np.abs(value[:, 0])))]
 
 
 def _plain(value: Any) -> Any:

@@ -97,8 +97,7 @@ def descend_from_many(
     rng = np.random.default_rng(seed)
     for _ in range(_HOPS):
         best = min(found, key=lambda descent: descent.norm)
-        x = best.parameters + rng.normal(0.0, _HOP, gain.order)
-        x = np.clip(x, gain.lowest, gain.highest)
+        x = gain.inside(best.parameters + rng.normal(0.0, _HOP, best.parameters.size))
         note(finish(gain, Descent(x, norm_and_slope(gain, x)[0], 1)))
     note(descend(gain, min(found, key=lambda descent: descent.norm).parameters))
     best = min(found, key=lambda descent: descent.norm)
@@ -127,7 +126,7 @@ def usual_parameters(gain: StackedGain, kept: int = 2) -> list[Array]:
                 close = others - shift * np.where(np.abs(others) > 0.0, np.abs(others), bandwidth)
                 poles = np.concatenate([bandwidth * circle, close, taken])
                 poles = np.where(np.abs(poles.imag) < 1e-9 * np.abs(poles), poles.real, poles)
-                values = np.clip(gain.parameters_of(poles), gain.lowest, gain.highest)
+                values = gain.inside(gain.parameters_of(poles))
                 drawn.append((float(gain.values(values, gain.grid).max()), values))
         if kind.size or kind is kinds[0]:
             starts += sorted(drawn, key=lambda each: each[0])[:kept]
@@ -169,7 +168,7 @@ def _without_one_at_zero(poles: Array) -> Array:
 
 
 def _bfgs(gain: StackedGain, start: Array, steps: int) -> Descent:
-    x = np.clip(start, gain.lowest, gain.highest)
+    x = gain.inside(start)
     f, slope = norm_and_slope(gain, x)
     inverse, evaluations = np.eye(x.size), 1
     for _ in range(steps):
@@ -202,7 +201,7 @@ def _weak_wolfe(
     for tried in range(1, 21):
         point = x + step * direction
         f_new, new_slope = (np.inf, slope)
-        if np.all((point >= gain.lowest) & (point <= gain.highest)):
+        if np.array_equal(point, gain.inside(point)):
             f_new, new_slope = norm_and_slope(gain, point)
         if not f_new <= f + 1e-4 * step * along:
             high = step

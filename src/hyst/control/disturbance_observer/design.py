@@ -3,31 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from dataclasses import replace
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
-from hyst.control.disturbance_observer.assumptions import check_assumptions
-from hyst.control.disturbance_observer.certificate import certify, weighted_loop
-from hyst.control.disturbance_observer.descent import descend_from_many, usual_parameters
+from hyst.checks.numbers import as_not_negative, as_positive, whole_number
+from hyst.control.disturbance_observer.assumptions import check_assumptions, check_noise_weight
+from hyst.control.disturbance_observer.certificate import certify
 from hyst.control.disturbance_observer.internal_model import as_internal_model
-from hyst.control.disturbance_observer.lower_bound import lower_bound
+from hyst.control.disturbance_observer.lower_bound import lower_bound, lower_bound_at_noise
+from hyst.control.disturbance_observer.noise_weight import noise_weight
 from hyst.control.disturbance_observer.problem import ObserverProblem
 from hyst.control.disturbance_observer.result import DisturbanceObserver
-from hyst.control.disturbance_observer.slpmm import slpmm
+from hyst.control.disturbance_observer.search import MOST_MORE, Search, search
+from hyst.control.disturbance_observer.shortfall import shortfall
 from hyst.control.disturbance_observer.stacked_gain import StackedGain
-from hyst.control.infinity_norm import hinf_norm
 from hyst.control.linear_system import LinearSystem, as_linear_system
-from hyst.errors import InputError, SolverError
+from hyst.errors import InputError
 
 Array = NDArray[np.float64]
 
 METHODS = ("slpmm+descent", "slpmm", "descent")
-# Iterations of SLPMM: all of them, as many as the paper's, or a few where each takes long and the
-# descent that follows needs no more than a start.
-_FULL, _FEW, _LARGE = 14, 2, 5
 
 
 def design_disturbance_observer(
@@ -37,6 +36,11 @@ def design_disturbance_observer(
     Wp: Any,
     internal_model: Any = "integrator",
     *,
+    noise: Any = None,
+    jitter: float | None = None,
+    order: int | Literal["auto"] | None = None,
+    fastest_pole: float | None = None,
+    flat: float = 0.01,
     perturbed_plant: Any = None,
     method: str = "slpmm+descent",
     starts: int | None = None,
@@ -45,7 +49,7 @@ def design_disturbance_observer(
 ) -> DisturbanceObserver:
     r"""Find the gain of a disturbance observer that rejects most within a given uncertainty.
 
-    ``min over L of || [Wu T; Wp (1 - Q)] ||_inf``
+    ``min over L of || [Wu T; Wp (1 - Q); Wn K S] ||_inf``, the last row only where noise is given.
 
     Systems are transfer functions or state spaces of python-control, pairs (num, den), matrices
     (A, B, C, D) or numbers, in continuous time, with one input and one output.
@@ -62,10 +66,27 @@ def design_disturbance_observer(
         Weight of 1 - Q, what is left of the disturbance; stable.
     internal_model
         InternalModel, pair (A_d, C_d), ``"integrator"`` or ``"ramp"``; an eigenvalue at 0.
+    noise
+        Standard deviation of the sensor's noise, in the unit of y, or a system as the weight Wn of
+        ``K S``, the gain from that noise to v. A standard deviation gives the constant weight
+        ``noise / jitter``, for noise of any spectrum makes at most ``noise sup |K S|`` of v.
+    jitter
+        Standard deviation that the noise may have in v. Left out it is ten times what no observer
+        avoids: ``noise / |Pn(0)|``, or ``noise sup |C / (1 + Pn C)|`` if that is more.
+    order
+        Of the observer; more than the states of plant and internal model add stable eigenvalues to
+        the internal model, searched for the least norm at no more of ``sup |Q / Pn|``. ``"auto"``
+        adds them while each lowers the norm by 5 %. Left out it is the paper's, none.
+    fastest_pole
+        Limit of the poles of Q, rad/s; a block at sample time dt cannot hold any beyond pi/dt.
+    flat
+        Share of the norm given up for the least ``sup |Q / Pn|``, where that at least halves it
+        and the norm stays below 1; 1e-4 are always given. 0 is the least norm and nothing else.
     perturbed_plant
         A plant around which the certificate also closes the loop.
     method
-        ``"slpmm"`` (the appendix's), ``"descent"`` or ``"slpmm+descent"``.
+        ``"slpmm"`` (the appendix's, which knows neither noise nor order), ``"descent"`` or
+        ``"slpmm+descent"``.
     starts
         Number of random starts of the descent; by the order if left out.
     seed
@@ -81,7 +102,7 @@ def design_disturbance_observer(
     Raises
     ------
     InputError
-        If an assumption does not hold, or method is unknown.
+        If an assumption does not hold, method is unknown, or an option cannot be met.
     SolverError
         If the semidefinite program of the method "slpmm" fails.
 
@@ -99,59 +120,79 @@ def design_disturbance_observer(
     >>> found.feasible, round(found.gamma, 2)
     (True, 0.92)
     """
-    if method not in METHODS:
-        raise InputError(f"method is {method!r}; give one of {', '.join(METHODS)}")
-    problem = observer_problem(plant, controller, Wu, Wp, internal_model)
+    problem = observer_problem(
+        plant, controller, Wu, Wp, internal_model, noise=noise, jitter=jitter
+    )
+    how = Search(method, starts, seed, order, fastest_pole, flat, progress)
+    _check(problem, how)
     perturbed = _perturbed(perturbed_plant)
     # Matrices of ten rows: more threads would only wait for one another.
     with threadpool_limits(1, user_api="blas"):
-        return _search(problem, perturbed, method, starts, seed, progress)
+        found = search(problem, how)
+        return _certified(
+            found.problem, found.gain, perturbed, _deviation(noise), method, found.steps
+        )
 
 
-def _search(
+def _check(problem: ObserverProblem, how: Search) -> None:
+    """Refuse options that cannot be met."""
+    if how.method not in METHODS:
+        raise InputError(f"method is {how.method!r}; give one of {', '.join(METHODS)}")
+    as_not_negative(how.flat, "flat", "a share of the norm that may be given up")
+    if how.fastest_pole is not None:
+        as_positive(how.fastest_pole, "fastest_pole", "a limit of the poles in rad/s")
+    if how.order not in (None, "auto"):
+        least = problem.order
+        whole_number(how.order, "order", least, least + MOST_MORE, "'auto' or ")
+    asked = {"noise": problem.Wn, "fastest_pole": how.fastest_pole, "order": how.order}
+    named = [name for name, value in asked.items() if value is not None]
+    if how.method == "slpmm" and named:
+        raise InputError(f"method 'slpmm' knows no {' and no '.join(named)}; use 'slpmm+descent'")
+
+
+def _certified(
     problem: ObserverProblem,
+    gain: Array,
     perturbed: LinearSystem | None,
+    noise: float | None,
     method: str,
-    starts: int | None,
-    seed: int,
-    progress: Callable[[str, int, float], None] | None,
+    steps: tuple[str, ...] = (),
 ) -> DisturbanceObserver:
-    gain = StackedGain(problem)
-    steps: list[str] = []
-    given: list[Array] = []
-    found = gain.gain_of(usual_parameters(gain, 1)[0])
-    if "slpmm" in method:
-        try:
-            iterations = _FULL if method == "slpmm" or problem.order < _LARGE else _FEW
-            linear = slpmm(problem, found, iterations, progress=_reported(progress, "slpmm"))
-            steps.append(
-                f"SLPMM          {linear.norm:.4f} after {linear.iterations} iterations, "
-                f"trace(P R) - n = {linear.distances[-1]:.2g}"
-            )
-            found = linear.gain
-            given = [gain.parameters_of(problem.q_filter(found).poles())]
-        except SolverError as reason:
-            if method == "slpmm":
-                raise
-            steps.append(f"SLPMM          failed: {reason}")
-    if "descent" in method:
-        best = descend_from_many(gain, given, starts, seed, _reported(progress, "descent"))
-        steps.append(f"descent        {best.norm:.4f} after {best.evaluations} evaluations")
-        lower = gain.gain_of(best.parameters)
-        found = min(found, lower, key=lambda L: hinf_norm(weighted_loop(problem, L))[0])
-    certificate = certify(problem, found, perturbed)
-    bound = lower_bound(gain, certificate.stacked_norm)
-    return DisturbanceObserver(problem, found, certificate, bound, method, tuple(steps))
+    certificate = certify(problem, gain, perturbed)
+    stacked = StackedGain(problem)
+    finite = np.isfinite(certificate.stacked_norm)
+    reached = certificate.stacked_norm if finite else 1e3
+    bound = lower_bound(stacked, reached)
+    at_noise = None
+    if finite:
+        at_noise = lower_bound_at_noise(stacked, reached, certificate.observer_noise_gain)
+        at_noise = max(bound, at_noise)
+    why = shortfall(stacked, certificate, bound) if finite else ""
+    return DisturbanceObserver(
+        problem, gain, certificate, bound, method, steps, at_noise, noise, why
+    )
+
+
+def _deviation(noise: Any) -> float | None:
+    is_number = isinstance(noise, int | float | np.number)
+    return float(noise) if is_number else None
 
 
 def observer_problem(
-    plant: Any, controller: Any, Wu: Any, Wp: Any, internal_model: Any = "integrator"
+    plant: Any,
+    controller: Any,
+    Wu: Any,
+    Wp: Any,
+    internal_model: Any = "integrator",
+    *,
+    noise: Any = None,
+    jitter: float | None = None,
 ) -> ObserverProblem:
     """Read and check what an observer is designed for.
 
     Parameters
     ----------
-    plant, controller, Wu, Wp, internal_model
+    plant, controller, Wu, Wp, internal_model, noise, jitter
         As for ``design_disturbance_observer``.
 
     Raises
@@ -167,6 +208,10 @@ def observer_problem(
         as_internal_model(internal_model),
     )
     check_assumptions(problem)
+    if noise is None and jitter is None:
+        return problem
+    problem = replace(problem, Wn=noise_weight(problem, noise, jitter))
+    check_noise_weight(problem.Wn)
     return problem
 
 
@@ -210,10 +255,7 @@ def evaluate_gain(
         )
     perturbed = _perturbed(perturbed_plant)
     with threadpool_limits(1, user_api="blas"):
-        certificate = certify(problem, L, perturbed)
-        reached = certificate.stacked_norm
-        bound = lower_bound(StackedGain(problem), reached if np.isfinite(reached) else 1e3)
-    return DisturbanceObserver(problem, L, certificate, bound, "given")
+        return _certified(problem, L, perturbed, None, "given")
 
 
 def _nominal(plant: Any) -> LinearSystem:
@@ -239,11 +281,3 @@ def _perturbed(plant: Any) -> LinearSystem | None:
             f"{read.dt:g} s; give one of each, in continuous time"
         )
     return read
-
-
-def _reported(
-    progress: Callable[[str, int, float], None] | None, stage: str
-) -> Callable[..., None] | None:
-    if progress is None:
-        return None
-    return lambda step, *values: progress(stage, step, values[-1])

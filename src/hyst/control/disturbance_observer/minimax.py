@@ -13,7 +13,7 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
 
-from hyst.control.disturbance_observer.stacked_gain import StackedGain
+from hyst.control.disturbance_observer.peaks import Curve
 
 Array = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ class Descent:
     evaluations: int
 
 
-def finish(gain: StackedGain, found: Descent, steps: int = 40, tolerance: float = 1e-7) -> Descent:
+def finish(gain: Curve, found: Descent, steps: int = 40, tolerance: float = 1e-7) -> Descent:
     """Take Newton steps from found while the norm falls.
 
     Parameters
@@ -50,14 +50,14 @@ def finish(gain: StackedGain, found: Descent, steps: int = 40, tolerance: float 
     weights = np.eye(peaks.size)[0]
     for _ in range(steps):
         unit = heights[0]
-        curvature = _curvature(gain, x, peaks, weights, unit)
+        curvature = curvature_of(gain, x, peaks, weights, unit)
         while True:
             step, promise, new_weights = _quadratic_step(
                 heights / unit, slopes / unit, curvature + damping * np.eye(x.size)
             )
             if promise < tolerance or damping > 1e9:
                 return Descent(x, float(np.sqrt(unit)), evaluations)
-            tried = np.clip(x + step, gain.lowest, gain.highest)
+            tried = gain.inside(x + step)
             new_peaks = gain.peaks(tried, _SHARE)
             evaluations += 1
             new_heights, new_slopes = gain.values_and_slopes(tried, gain.at(new_peaks))
@@ -67,12 +67,12 @@ def finish(gain: StackedGain, found: Descent, steps: int = 40, tolerance: float 
             damping *= 6.0
         if gained > 0.7 * promise:
             damping = max(damping / 6.0, 1e-9)
-        weights = _carried(peaks, new_weights, new_peaks)
+        weights = carried(peaks, new_weights, new_peaks)
         x, peaks, heights, slopes = tried, new_peaks, new_heights, new_slopes
     return Descent(x, float(np.sqrt(heights[0])), evaluations)
 
 
-def _curvature(gain: StackedGain, x: Array, peaks: Array, weights: Array, unit: float) -> Array:
+def curvature_of(gain: Curve, x: Array, peaks: Array, weights: Array, unit: float) -> Array:
     """Second derivatives of the weighted heights, each peak moving to stay a maximum."""
     held = weights > 1e-6
     w, share, n = peaks[held], weights[held], x.size
@@ -117,9 +117,9 @@ def _quadratic_step(heights: Array, slopes: Array, curvature: Array) -> tuple[Ar
     return step, float(heights.max()) - level, m
 
 
-def _carried(peaks: Array, weights: Array, new_peaks: Array) -> Array:
+def carried(peaks: Array, weights: Array, new_peaks: Array) -> Array:
     """Weights of the old peaks, given to the nearest of the new."""
-    carried = np.zeros(new_peaks.size)
+    given = np.zeros(new_peaks.size)
     for w, share in zip(peaks, weights, strict=True):
-        carried[np.argmin(np.abs(np.log(new_peaks / w)))] += share
-    return carried
+        given[np.argmin(np.abs(np.log(new_peaks / w)))] += share
+    return given

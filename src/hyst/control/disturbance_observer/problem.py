@@ -28,6 +28,8 @@ class ObserverProblem:
         Weights of the multiplicative uncertainty and of 1 - Q.
     internal_model
         Of the disturbance.
+    Wn
+        Weight of the gain from the sensor's noise to the drive; None if none is asked for.
     """
 
     plant: LinearSystem
@@ -35,6 +37,7 @@ class ObserverProblem:
     Wu: LinearSystem
     Wp: LinearSystem
     internal_model: InternalModel
+    Wn: LinearSystem | None = None
 
     @property
     def order(self) -> int:

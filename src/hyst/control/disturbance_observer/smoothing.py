@@ -54,7 +54,7 @@ def descend_smoothed(
             )
         if np.isfinite(found.x).all():
             z = found.x
-    return np.asarray(np.clip(from_damping @ z, gain.lowest, gain.highest))
+    return gain.inside(from_damping @ z)
 
 
 def _damping_and_frequency(gain: StackedGain) -> tuple[Array, Array, Array]:

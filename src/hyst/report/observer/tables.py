@@ -115,7 +115,7 @@ def tracking_table(answer: ObserverAnswer) -> Table:
     -------
     Table
     """
-    rows = []
+    rows: list[tuple[str, ...]] = []
     marked = 0
     for name in answer.observed:
         for observer, of in (("no", answer.without), ("yes", answer.observed)):
