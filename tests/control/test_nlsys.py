@@ -127,6 +127,13 @@ def test_a_scheduled_model_and_its_inverse_take_the_second_signal() -> None:
     assert back.tobytes() == inverse.run(y, s).y.tobytes()
 
 
+def test_their_product_is_the_composition() -> None:
+    f, g, u = EXAMPLES["creep"], EXAMPLES["play with memory"], walk(30)
+    product = to_nlsys(f) * to_nlsys(g)
+    y = control.input_output_response(product, 0.01 * np.arange(30), u).outputs
+    assert y.tobytes() == (f @ g).run(u)[0].tobytes()
+
+
 def test_sample_times() -> None:
     lag = hyst.Lag(0.013, dt=0.01)
     assert to_nlsys(lag).dt == 0.01

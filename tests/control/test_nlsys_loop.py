@@ -76,6 +76,36 @@ def test_the_loop_has_the_bits_of_the_simulation(case: str) -> None:
         assert (there[name] + 0.0).tobytes() == (getattr(here, name) + 0.0).tobytes(), name
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_so_has_a_loop_at_random(seed: int) -> None:
+    """Any dt, plant, controller and hysteresis; slow enough to be stable."""
+    draw = np.random.default_rng(seed)
+    dt = 10.0 ** draw.uniform(-5.0, 0.0)
+    poles = -draw.uniform(0.05, 1.0, 1 + seed % 4) / dt
+    plant = [float(np.prod(-poles))], np.poly(poles)
+    p, r = draw.uniform(0.0, 0.4, 3), np.sort(draw.uniform(0.1, 3.0, 3))
+    stage = hyst.PrandtlIshlinskii(p, r, 0.5, z0=np.clip(draw.normal(), -r, r))
+    controller = ([draw.uniform(0.0, 0.1), 0.02 / dt], [1.0, 0.0])
+    block = TrackingController.from_continuous(controller, dt, inverse=stage.inverse())
+    signals = np.cumsum(draw.normal(size=60)), 0.1 * draw.normal(size=60), draw.normal(size=60)
+    place = ("hysteresis", "plant")[seed % 2]
+    loop = closed_loop_system(block, plant=plant, hysteresis=stage, disturbance_at=place)
+    there = outputs_of(loop, *signals)
+    here = simulate_closed_loop(
+        signals[0],
+        dt,
+        plant=plant,
+        controller=block,
+        hysteresis=stage,
+        noise=signals[1],
+        disturbance=signals[2],
+        disturbance_at=place,
+    )
+    assert here.diverged_at is None
+    assert (there["y"] + 0.0).tobytes() == (here.y + 0.0).tobytes()
+    assert (there["u"] + 0.0).tobytes() == (here.u + 0.0).tobytes()
+
+
 def test_a_loop_that_the_user_joins_by_names_is_the_same_to_rounding() -> None:
     block = block_of(s1.printed_observer())
     sampled = control.c2d(as_linear_system(s1.PLANT).as_control(), DT, "zoh")

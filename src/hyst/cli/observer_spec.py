@@ -14,10 +14,17 @@ import hyst
 from hyst._files import read_small
 from hyst.checks.numbers import as_not_negative, as_positive
 from hyst.cli.arguments import load_operator
+from hyst.cli.observer_plant import (
+    block_dt,
+    load_hysteresis,
+    read_hysteresis,
+    read_plant,
+    read_uncertainty,
+)
 from hyst.cli.spec_section import Section
 
 if TYPE_CHECKING:
-    from hyst.control import InternalModel, LinearSystem
+    from hyst.control import IdentifiedPlant, InternalModel, LinearSystem
     from hyst.control.discretization import Method
     from hyst.operators import Operator
 
@@ -34,7 +41,8 @@ class ObserverSpec:
     ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
     ``inverse_name``), ``reference``, at the samples of the block, ``settle``, ``noise``,
     ``disturbance`` and ``seed`` what is simulated; ``filter_dt``, ``filter_method`` and ``delay``
-    say what is implemented.
+    say what is implemented. The plant is sampled where it was ``identified`` (else None),
+    continuous where it was written; ``delay`` is its dead time and that of the block together.
     """
 
     plant: LinearSystem
@@ -54,6 +62,7 @@ class ObserverSpec:
     filter_dt: float
     filter_method: Method
     delay: float
+    identified: IdentifiedPlant | None
 
 
 def read_spec(path: Path) -> ObserverSpec:
@@ -81,8 +90,11 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     weights = spec.section("weights")
     simulation = spec.section("simulation")
     implemented = spec.section("filter")
-    hysteresis = _hysteresis(spec.section("hysteresis"), folder)
-    filter_dt = implemented.number("dt", positive=True)
+    plant = read_plant(spec.section("plant"), folder)
+    hysteresis = read_hysteresis(spec, plant, folder)
+    if hysteresis is None:
+        hysteresis = _hysteresis(spec.section("hysteresis"), folder)
+    filter_dt = block_dt(implemented, plant)
     # The sample time of a reference from a file; sines are taken at the block's samples.
     dt = simulation.number("dt", filter_dt, positive=True)
     reference = _reference(spec.section("reference"), dt, folder)
@@ -103,10 +115,10 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
             "give a shorter one"
         )
     read = ObserverSpec(
-        plant=spec.section("plant").system(),
+        plant=plant.system,
         true_plant=spec.section("true_plant").system() if spec.has("true_plant") else None,
         controller=spec.section("controller").system(),
-        Wu=weights.section("Wu").system(),
+        Wu=read_uncertainty(weights, plant, folder),
         Wp=weights.section("Wp").system(),
         internal_model=_internal_model(spec.section("internal_model")),
         hysteresis=hysteresis,
@@ -119,7 +131,9 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         seed=simulation.count("seed", 0),
         filter_dt=filter_dt,
         filter_method="zoh" if method == "zoh" else "tustin",
-        delay=as_not_negative(implemented.number("delay", 0.0), "[filter] delay", "a time in s"),
+        delay=plant.delay
+        + as_not_negative(implemented.number("delay", 0.0), "[filter] delay", "s"),
+        identified=plant.identified,
     )
     for each in (spec, weights, simulation, implemented):
         each.done()
@@ -148,7 +162,7 @@ def _hysteresis(given: Section, folder: Path) -> Operator:
     if given.has("file"):
         path = given.text("file")
         given.done()
-        return load_operator(folder / path)
+        return load_hysteresis(folder / path)
     p, r, p0 = given.numbers("p"), given.numbers("r"), given.number("p0")
     plays = hyst.PrandtlIshlinskii(p, r, p0)
     if not given.has("envelope"):

@@ -25,7 +25,24 @@ from hyst.control.infinity_norm import hinf_norm
 from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
 from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.loop_poles import closed_loop_poles
+from hyst.control.plants import (
+    IdentifiedPlant,
+    has_dynamics_behind,
+    identified_plant,
+    plant_and_delay,
+)
 from hyst.control.python_control import closed_loop_system, to_nlsys
+from hyst.control.q_filter import (
+    DesignRow,
+    QFilter,
+    QFilterCertificate,
+    QFilterObserver,
+    RobustPerformance,
+    compare_designs,
+    design_q_filter,
+    q_filter,
+    robust_performance,
+)
 from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
 from hyst.control.sampled.folding import folded_uncertainty
 from hyst.control.sampled.judged import LoopJudgement, judge_loop
@@ -35,6 +52,12 @@ from hyst.control.sampled.slopes import sampled_slope_failing, sampled_slope_pro
 from hyst.control.sampled.stress import StressTest, stress
 from hyst.control.sampled.tried import TriedLoop, try_block
 from hyst.control.tracking_controller import TrackingController
+from hyst.control.uncertainty import (
+    UncertaintyWeight,
+    identification_weight,
+    require_no_less_than_known,
+    uncertainty_weight,
+)
 
 __all__ = [
     "EXACT",
@@ -42,7 +65,9 @@ __all__ = [
     "ClosedLoop",
     "ComparedLoop",
     "ControllerDesign",
+    "DesignRow",
     "DisturbanceObserver",
+    "IdentifiedPlant",
     "InternalModel",
     "InverseComparison",
     "LinearSystem",
@@ -51,29 +76,43 @@ __all__ = [
     "LoopMargins",
     "LoopResponses",
     "ObserverProblem",
+    "QFilter",
+    "QFilterCertificate",
+    "QFilterObserver",
+    "RobustPerformance",
     "SampledCertificate",
     "SampledPlant",
     "StressTest",
     "TrackingController",
     "TriedLoop",
+    "UncertaintyWeight",
     "as_linear_system",
     "closed_loop_poles",
     "closed_loop_system",
+    "compare_designs",
     "compare_inverses",
     "compare_loops",
     "design_controller",
     "design_disturbance_observer",
+    "design_q_filter",
     "discretize",
     "discretized_dynamics",
     "evaluate_gain",
     "first_unstable_slope",
     "folded_uncertainty",
+    "has_dynamics_behind",
     "hinf_norm",
+    "identification_weight",
+    "identified_plant",
     "judge_loop",
     "loop_margins",
     "loop_responses",
     "observer_problem",
+    "plant_and_delay",
+    "q_filter",
     "reference_feedforward",
+    "require_no_less_than_known",
+    "robust_performance",
     "sampled_certificate",
     "sampled_plant",
     "sampled_responses",
@@ -85,6 +124,7 @@ __all__ = [
     "to_nlsys",
     "try_block",
     "uncertainty_used",
+    "uncertainty_weight",
 ]
 
 

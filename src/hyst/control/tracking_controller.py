@@ -19,6 +19,7 @@ from hyst.control.discretization import Method, discretize
 from hyst.control.drive_limits import Limits, limited_drive, stated, within
 from hyst.control.estimate_within_limits import estimate_within_limits
 from hyst.control.feedback.feedforward import with_feedforward
+from hyst.control.linear_system import LinearSystem
 from hyst.control.saved_block import SavedBlock
 from hyst.errors import InputError
 from hyst.operators import Operator
@@ -162,11 +163,11 @@ class TrackingController(SavedBlock):
         observer: Any = None,
         inverse: Operator | None = None,
         method: Method = "tustin",
-        feedforward: Any = None,
-        plant: Any = None,
         limits: Limits | None = None,
         rate: float | None = None,
         hysteresis: Operator | None = None,
+        feedforward: Any = None,
+        plant: Any = None,
         despite_verdict: bool = False,
     ) -> TrackingController:
         """Sample a design in continuous time.
@@ -189,15 +190,15 @@ class TrackingController(SavedBlock):
             Operator from v to u; ``u = v`` if left out.
         method
             How they are sampled: ``"tustin"`` or ``"zoh"``.
+        limits, rate, hysteresis
+            Of the drive, as the class takes them. Neither C nor the observer then winds up: W and
+            G are those of ``anti_windup``.
         feedforward
             F, from the reference to v: True is the static ``1 / Pn(0)``; or a stable system, such
             as ``reference_feedforward`` gives; none if left out. It changes no pole of the loop.
         plant
             Pn, of which ``feedforward=True`` takes the static gain; left out, that of a designed
             controller or observer, or a gain of 1.
-        limits, rate, hysteresis
-            Of the drive, as the class takes them. Neither C nor the observer then winds up: W and
-            G are those of ``anti_windup``.
         despite_verdict
             Take also an inverse of a model whose verdict is ``unfit``.
 
@@ -220,11 +221,10 @@ class TrackingController(SavedBlock):
         """
         parts = feedback_controller(controller), disturbance_observer_of(observer)
         blocks = discretize(parts[0], dt, method), discretize(parts[1], dt, method)
-        known = (controller, observer)
-        fed = with_feedforward(blocks[0], feedforward, method, plant, known)
-        whole = joined(fed, blocks[1])
+        steered = with_feedforward(blocks[0], feedforward, method, plant, (controller, observer))
+        whole = joined(steered, blocks[1])
         is_limited = limits is not None or rate is not None
-        W, G = anti_windup(fed, blocks[1]) if is_limited else (None, 0.0)
+        W, G = anti_windup(_from_reference(steered), blocks[1]) if is_limited else (None, 0.0)
         return cls(
             whole.A,
             whole.B,
@@ -375,3 +375,10 @@ class TrackingController(SavedBlock):
         start = self.initial_state() if state is None else state
         memory: Array = as_state(start, self.compiled.state_length, None)[0]
         return memory
+
+
+def _from_reference(controller: LinearSystem) -> LinearSystem:
+    """Keep of a controller its way from the reference."""
+    return LinearSystem(
+        controller.A, controller.B[:, :1], controller.C, controller.D[:, :1], controller.dt
+    )

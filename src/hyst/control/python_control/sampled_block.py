@@ -95,20 +95,29 @@ def _of_scheduled(model: Scheduled | ScheduledInverse, watch: bool) -> SampledBl
 
 
 def _of_controller(block: TrackingController, watch: bool) -> SampledBlock:
-    """Beside u, tell what the linear part asks for, and the estimate where it is known."""
-    watched = {"v": (block.C, block.D)} if watch else {}
-    if watch and block.E is not None and block.F is not None:
-        watched["d_hat"] = block.E, block.F
-    watching = [TrackingController(block.A, block.B, *each, block.dt) for each in watched.values()]
+    """Tell beside u what the linear part asks for, and the estimate where it is known."""
+    linear = TrackingController(block.A, block.B, block.C, block.D, block.dt)
+    estimates = block.E is not None
 
     def sample(state: Array, given: Array) -> tuple[Array, Array]:
         reference, output = given[:1], given[1:]
         u, following = block.run(reference, output, state)
-        told = [each.run(reference, output, state[: each.order])[0] for each in watching]
-        return np.concatenate([u, *told]), following
+        if not watch:
+            return u, following
+        told = [u, linear.run(reference, output, state[: block.order])[0]]
+        if estimates:
+            told.append(block.estimate(reference, output, state))
+        return np.concatenate(told), following
 
-    names, outputs = ("y_ref", "y"), ("u", *watched)
-    return SampledBlock("controller", block.dt, names, outputs, block.initial_state(), sample)
+    outputs = ("u", "v", "d_hat") if estimates else ("u", "v")
+    return SampledBlock(
+        "controller",
+        block.dt,
+        ("y_ref", "y"),
+        outputs if watch else ("u",),
+        block.initial_state(),
+        sample,
+    )
 
 
 def _word(kind: str) -> str:
