@@ -110,15 +110,18 @@ class ControllerDesign:
         """
         return self.controller.as_control()
 
-    def rows(self) -> tuple[tuple[str, str], ...]:
-        """Give what it is and what it keeps, in words."""
+    def told(self) -> tuple[tuple[str, str], ...]:
+        """Give what it is and what it keeps where resonances are elsewhere, in words."""
         off = f", resonances off by {100.0 * self.mismatch:.3g} %" if self.mismatch else ""
         return (
             ("controller", self._told()),
             *((f"notch {k + 1}", _notch(each)) for k, each in enumerate(self.notches)),
-            *self.margins.rows(),
             (f"worst modulus margin{off}", self._worst()),
         )
+
+    def rows(self) -> tuple[tuple[str, str], ...]:
+        """Give that, and the margins of its loop."""
+        return (*self.told(), *self.margins.rows())
 
     def _told(self) -> str:
         parts = {"ki": self.ki, "kp": self.kp, "kd": self.kd, "Tf": self.shape.Tf}

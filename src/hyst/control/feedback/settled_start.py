@@ -158,9 +158,10 @@ def _static_gains(block: TrackingController) -> tuple[float, float]:
 
 def _root(value: Any, guess: float, reference: float) -> float:
     """Bracket a root around the guess and find it."""
-    if value(guess) == 0.0:
+    missed = value(guess)
+    if missed == 0.0:
         return guess
-    reach = 0.1 * max(abs(guess), abs(reference), 1e-300)
+    reach = 0.1 * max(abs(guess), abs(reference), abs(missed))
     for _ in range(_WIDENINGS):
         low, high = guess - reach, guess + reach
         ends = value(low), value(high)
