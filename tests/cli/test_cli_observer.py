@@ -192,8 +192,8 @@ MISTAKES = {
         "Wu = { num = [-1.0, -960.0, 0.0], den", "Wu = { num = [1.0], d"
     ),
     "[weights] Wp num is": change("Wp = { num = [0.5", 'Wp = { num = ["a"'),
-    "[reference] sines has shape (1, 3)": change(
-        "[[18.0, 1.0], [28.0, 3.0]]", "[[18.0, 1.0, 2.0]]"
+    "[reference] sines has [18.0, 1.0, 2.0, 3.0]": change(
+        "[[18.0, 1.0], [28.0, 3.0]]", "[[18.0, 1.0, 2.0, 3.0]]"
     ),
     "[reference] duration is 1e+07 s": change("duration = 3.0", "duration = 1e7"),
     "[internal_model] kind is 'sine'": change('"integrator"\n', '"sine"\n'),

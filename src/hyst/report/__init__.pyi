@@ -19,6 +19,8 @@ from hyst.report.drive_summary import drive_table as drive_table
 from hyst.report.dynamics_figures import dynamics_sections as dynamics_sections
 from hyst.report.dynamics_figures import dynamics_table as dynamics_table
 from hyst.report.estimation_figure import draw_estimates as draw_estimates
+from hyst.report.feedback_tables import margins_table as margins_table
+from hyst.report.feedback_tables import parts_table as parts_table
 from hyst.report.forc_figure import draw_forc_diagram as draw_forc_diagram
 from hyst.report.forecast_summary import forecast_table as forecast_table
 from hyst.report.identification_report import Section as Section
