@@ -19,8 +19,6 @@ from hyst.report.drive_summary import drive_table as drive_table
 from hyst.report.dynamics_figures import dynamics_sections as dynamics_sections
 from hyst.report.dynamics_figures import dynamics_table as dynamics_table
 from hyst.report.estimation_figure import draw_estimates as draw_estimates
-from hyst.report.feedback_tables import margins_table as margins_table
-from hyst.report.feedback_tables import parts_table as parts_table
 from hyst.report.forc_figure import draw_forc_diagram as draw_forc_diagram
 from hyst.report.forecast_summary import forecast_table as forecast_table
 from hyst.report.identification_report import Section as Section
@@ -30,6 +28,8 @@ from hyst.report.loops_tables import loops_table as loops_table
 from hyst.report.loops_tables import repeated_loops_table as repeated_loops_table
 from hyst.report.observer.answer import ObserverAnswer as ObserverAnswer
 from hyst.report.observer.answer import TruePlant as TruePlant
+from hyst.report.observer.feedback_tables import margins_table as margins_table
+from hyst.report.observer.feedback_tables import parts_table as parts_table
 from hyst.report.observer.figures import draw_observer_bode as draw_observer_bode
 from hyst.report.observer.page import observer_page as observer_page
 from hyst.report.observer.tables import answer_tables as answer_tables

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from hyst.control import SampledCertificate, TriedLoop
-from hyst.report.feedback_tables import margins_table, parts_table
 from hyst.report.observer.answer import ObserverAnswer
+from hyst.report.observer.feedback_tables import margins_table, parts_table
 from hyst.report.observer.words import STANDINGS, bandwidth_told, hertz, rightmost, told
 from hyst.report.table import Table, number
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hyst.control import ControllerDesign, LoopComparison, LoopMargins
-from hyst.report.tables import Table
+from hyst.report.table import Table
 
 
 def margins_table(

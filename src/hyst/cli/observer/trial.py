@@ -8,7 +8,7 @@ import hyst
 from hyst.cli.console import at_work, progress_bar
 
 if TYPE_CHECKING:
-    from hyst.cli.observer_spec import ObserverSpec
+    from hyst.cli.observer.spec import ObserverSpec
     from hyst.compensation import ErrorBound
     from hyst.control import (
         LoopComparison,

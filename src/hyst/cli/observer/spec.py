@@ -14,16 +14,16 @@ import hyst
 from hyst._files import read_small
 from hyst.checks.numbers import as_not_negative, as_positive
 from hyst.cli.arguments import load_operator
-from hyst.cli.controller_spec import read_controller
-from hyst.cli.observer_design import HowToDesign, read_design
-from hyst.cli.observer_plant import (
+from hyst.cli.observer.controller import read_controller
+from hyst.cli.observer.design import HowToDesign, read_design
+from hyst.cli.observer.plant import (
     block_dt,
     load_hysteresis,
     read_hysteresis,
     read_plant,
     read_uncertainty,
 )
-from hyst.cli.reference_spec import read_reference, resting_output
+from hyst.cli.observer.reference import read_reference, resting_output
 from hyst.cli.spec_section import Section
 
 if TYPE_CHECKING:
