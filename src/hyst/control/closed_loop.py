@@ -31,9 +31,10 @@ class ClosedLoop:
     noise
         Of the measurement, shape (N,); the controller is given ``y + noise``.
     v
-        Output wanted of the hysteresis, which is the input wanted of the plant, shape (N,).
+        Output wanted of the hysteresis, which is the input wanted of the plant, shape (N,); where a
+        TrackingController limits its drive, the v that belongs to the drive applied.
     u
-        Drive, the output of the inverse, shape (N,).
+        Drive, the output of the inverse, shape (N,), within the limits of a TrackingController.
     eta
         What the hysteresis gives, shape (N,), in units of v.
     d_hat

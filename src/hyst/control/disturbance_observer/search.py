@@ -31,7 +31,10 @@ MOST_MORE = 6  # eigenvalues
 
 @dataclass(frozen=True)
 class Search:
-    """How to search: the arguments of ``design_disturbance_observer``."""
+    """How to search: the arguments of ``design_disturbance_observer``.
+
+    These are ``method``, ``starts``, ``seed``, ``order``, ``fastest_pole``, ``flat``, ``progress``.
+    """
 
     method: str
     starts: int | None
@@ -44,7 +47,7 @@ class Search:
 
 @dataclass(frozen=True)
 class Found:
-    """A gain, the problem whose internal model it is for, and a line for each stage."""
+    """A ``gain``, the ``problem`` whose internal model it is for, and ``steps``, a line a stage."""
 
     problem: ObserverProblem
     gain: Array

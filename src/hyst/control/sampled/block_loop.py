@@ -60,9 +60,12 @@ class BlockLoop:
         )
 
     def closed(self, slope: float = 1.0) -> LinearSystem:
-        """Close the loop with a gain at the plant's input; from noise at y to v.
+        """Close the loop; from noise at y to v, states those of the block, then of the plant.
 
-        States are those of the block, then those of the plant.
+        Parameters
+        ----------
+        slope
+            Of hysteresis after inverse: a gain at the plant's input.
         """
         K, P = self.feedback, self.plant.system
         m, n = K.order, P.order
@@ -73,12 +76,26 @@ class BlockLoop:
         return LinearSystem(A, B, np.hstack([K.C, K.D @ P.C]), K.D, self.dt)
 
     def poles(self, slope: float = 1.0) -> ComplexArray:
-        """Poles of the closed loop, the largest modulus first."""
+        """Give the poles of the closed loop, the largest modulus first.
+
+        Parameters
+        ----------
+        slope
+            As in ``closed``.
+        """
         poles = self.closed(slope).poles()
         return poles[np.argsort(-np.abs(poles))]
 
     def at(self, w: Array, slope: float = 1.0) -> LoopValues:
-        """Evaluate the loop at frequencies in rad/s, above 0 and at most pi/dt."""
+        """Evaluate the loop over frequency.
+
+        Parameters
+        ----------
+        w
+            rad/s, above 0 and at most pi/dt, shape (K,).
+        slope
+            As in ``closed``.
+        """
         z = np.exp(1j * w * self.dt)
         K, Pd = -self.feedback.response(z)[:, 0, 0], self.plant.system.response(z)[:, 0, 0]
         alone = -self.controller.response(z)[:, 0, 0]
@@ -86,7 +103,13 @@ class BlockLoop:
         return LoopValues(w, Pd, K / below, 1.0 / below, (1.0 + slope * alone * Pd) / below)
 
     def grid(self, *weights: LinearSystem) -> Array:
-        """Frequencies that show all poles of loop, plant and weights, folded below pi/dt."""
+        """Give frequencies that show all poles of loop, plant and weights, folded below pi/dt.
+
+        Parameters
+        ----------
+        weights
+            Continuous or sampled.
+        """
         nyquist = np.pi / self.dt
         sampled = [self.closed().poles(), self.plant.system.poles(), self.feedback.poles()]
         poles = [_continuous(each, self.dt) for each in sampled]
@@ -120,7 +143,12 @@ class LoopValues:
 def largest(function: Callable[[Array], Array], w: Array) -> tuple[float, float]:
     """Give the largest value of a function of frequency and where it is, closed in on.
 
-    ``function`` takes frequencies, shape (K,), and gives values of this shape; w is the grid.
+    Parameters
+    ----------
+    function
+        Takes frequencies, shape (K,), and gives values of this shape.
+    w
+        The grid to start from, rising.
     """
     values = np.asarray(function(w))
     if not np.isfinite(values).all():

@@ -255,14 +255,40 @@ def _spread(loop: BlockLoop) -> tuple[float, float]:
 
 
 def plant_of_block(plant: Any, block: TrackingController, delay: float) -> SampledPlant:
-    """Sample a plant at the block's rate; anything but a block is refused."""
+    """Sample a plant at the block's rate; anything but a block is refused.
+
+    Parameters
+    ----------
+    plant, delay
+        As in ``sampled_plant``.
+    block
+        A TrackingController.
+
+    Raises
+    ------
+    InputError
+        If it is none, or as ``sampled_plant``.
+    """
     if not isinstance(block, TrackingController):
         raise InputError(f"the block is {type(block).__name__}; give a TrackingController")
     return sampled_plant(plant, block.dt, delay)
 
 
 def stable_weight(weight: Any, name: str) -> LinearSystem:
-    """Read a weight; one that is not stable is refused."""
+    """Read a weight; one that is not stable is refused.
+
+    Parameters
+    ----------
+    weight
+        As ``as_linear_system`` takes it.
+    name
+        What messages call it.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, has several inputs or outputs, or is not stable.
+    """
     read = as_linear_system(weight, name)
     if (read.inputs, read.outputs) != (1, 1):
         raise InputError(

@@ -63,7 +63,15 @@ def folded_uncertainty(plant: SampledPlant, Wu: Any, w: Array) -> Array:
 
 
 def weight_response(weight: LinearSystem, w: Array) -> NDArray[np.complex128]:
-    """Give the values of a weight, continuous or sampled, at frequencies in rad/s."""
+    """Give the values of a weight over frequency.
+
+    Parameters
+    ----------
+    weight
+        Continuous or sampled.
+    w
+        rad/s, shape (K,).
+    """
     points = np.exp(1j * w * weight.dt) if weight.dt > 0.0 else 1j * w
     return np.asarray(weight.response(points)[:, 0, 0])
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.control.closed_loop_poles import closed_loop_poles
 from hyst.control.disturbance_observer.certificate import plain
 from hyst.control.disturbance_observer.discrete.problem import SampledObserverProblem
 from hyst.control.disturbance_observer.stacked_gain import feedback_matrix
 from hyst.control.linear_system import LinearSystem
+from hyst.control.loop_poles import closed_loop_poles
 from hyst.control.sampled.block_loop import BlockLoop, largest
 from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
 from hyst.control.sampled.folding import folded_uncertainty, weight_response
@@ -252,14 +252,14 @@ class _Rows:
 
     def through_observer(self, w: Array) -> Array:
         Pd, _, Q = self._values(w)
-        return np.abs(Q / Pd)
+        return np.asarray(np.abs(Q / Pd))
 
     def without_observer(self, w: Array) -> Array:
         Pd, C, _ = self._values(w)
         return np.abs(C / (1.0 + C * Pd))
 
     def noise(self, w: Array) -> Array:
-        return self._all(w)[2]
+        return np.asarray(self._all(w)[2])
 
     def whole(self, w: Array) -> Array:
         return np.asarray(np.sqrt((self._all(w) ** 2).sum(axis=0)))
