@@ -3,7 +3,8 @@
 Prints, for one machine and one run of the repaired example of S1 (two-mode plant, PI controller,
 printed observer, 10 plays, inverse at 0.7),
 - nanoseconds a step with the controller in continuous time and as a target runs it, and ratios to
-  the same equations in a NumPy loop, compiled by numba, and in python-control,
+  the same equations in a NumPy loop, compiled by numba, and in python-control, by hand and as
+  ``closed_loop_system`` joins them there,
 - the step of the TrackingController from Python,
 - outputs over dt against the finest, with either controller.
 """
@@ -21,7 +22,7 @@ from numpy.typing import NDArray
 
 import hyst
 from benchmarks.timing import interleaved, ratio
-from hyst.control import TrackingController, simulate_closed_loop
+from hyst.control import TrackingController, closed_loop_system, simulate_closed_loop
 
 Array = NDArray[np.float64]
 
@@ -217,3 +218,10 @@ def print_control(ours: float) -> None:
     a_step = 1e9 * (time.process_time() - begin) / samples
     print(f"{'python-control':26s} {a_step:10.0f} {a_step / ours:11.2f}")
     assert np.abs(y - simulated(samples, DT)).max() < 1e-6
+    block = TrackingController.from_continuous(CONTROLLER, DT, observer=OBSERVER, inverse=INVERSE)
+    joined = closed_loop_system(block, plant=PLANT, hysteresis=HYSTERESIS)
+    begin = time.process_time()
+    y = control.input_output_response(joined, t, [r, 0.0, 0.0]).outputs[0]
+    a_step = 1e9 * (time.process_time() - begin) / samples
+    print(f"{'closed_loop_system':26s} {a_step:10.0f} {a_step / ours:11.2f}")
+    assert np.array_equal(y, simulated(samples, DT, block))

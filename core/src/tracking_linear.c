@@ -31,3 +31,17 @@ hyst_real hyst_tracking_controller_linear(const hyst_tracking_controller *contro
     }
     return finite ? v : zero;
 }
+
+void hyst_tracking_take_back(size_t order, const hyst_real *w, hyst_real *x, hyst_real excess)
+{
+    hyst_real zero = HYST_REAL(0.0); /* unless something is not finite: then NaN */
+    for (size_t i = 0; i < order; ++i) {
+        const hyst_real next = x[i] + w[i] * excess;
+        zero += next - next;
+    }
+    /* Nothing is added where there is nothing: -0 stays -0. */
+    const int adds = ((excess < HYST_REAL(0.0)) || (excess > HYST_REAL(0.0))) && hyst_is_finite(zero);
+    for (size_t i = 0; i < order; ++i) {
+        x[i] = adds ? x[i] + w[i] * excess : x[i];
+    }
+}

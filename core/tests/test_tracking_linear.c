@@ -32,9 +32,23 @@ static void test_state_stays_where_something_is_not_finite(void)
     CHECK_EQUAL(state[0], REAL_MAX / R(4.0));
 }
 
+static void test_takes_back_all_or_nothing(void)
+{
+    const hyst_real w[] = {R(0.5), R(-2.0)};
+    hyst_real x[] = {R(1.0), R(3.0)};
+    hyst_tracking_take_back(2, w, x, R(4.0));
+    CHECK_EQUAL(x[0], R(3.0));
+    CHECK_EQUAL(x[1], R(-5.0));
+    hyst_tracking_take_back(2, w, x, REAL_MAX); /* x[1] would overflow */
+    CHECK_EQUAL(x[0], R(3.0));
+    CHECK_EQUAL(x[1], R(-5.0));
+    hyst_tracking_take_back(0, NULL, NULL, R(1.0));
+}
+
 int main(void)
 {
     test_inputs_and_columns_are_not_mixed_up();
     test_state_stays_where_something_is_not_finite();
+    test_takes_back_all_or_nothing();
     return check_result();
 }

@@ -26,7 +26,7 @@ void require(bool holds, const char *message) {
     if (!holds) throw std::invalid_argument(message);
 }
 
-// The core's controller with the memory its constants live in. The chain is kept alive by Python.
+// The core's controller with the memory its constants live in. The chains are kept alive by Python.
 class Controller {
 public:
     Controller(std::vector<double> a, std::vector<double> b, std::vector<double> c, double d_ref,
@@ -40,47 +40,120 @@ public:
     Controller(const Controller &) = delete;
     Controller &operator=(const Controller &) = delete;
 
-    const hyst_tracking_controller &view() const { return view_; }
-    std::size_t state_length() const { return hyst_tracking_controller_state_length(&view_); }
-
-    // Index of the first sample that could not be answered, or -1.
-    std::ptrdiff_t run(Vector state, Signal y_ref, Signal y, Vector u) const {
-        const std::size_t samples = u.shape(0);
-        require(state.shape(0) == state_length(), "state has the wrong length");
-        require(y_ref.shape(0) == samples && y.shape(0) == samples, "lengths differ");
-        const nb::gil_scoped_release released;
-        hyst_guard guard = {0.0, 0};
-        for (std::size_t k = 0; k < samples; ++k) {
-            u(k) = hyst_guarded_tracking_step(&view_, state.data(), &guard, y_ref(k), y(k));
-            if (guard.fault != 0) return static_cast<std::ptrdiff_t>(k);
-        }
-        return -1;
+    // change: 0 for drives that may jump.
+    void limit(std::vector<double> w, const Chain &forward, double low, double high,
+               double change) {
+        require(w.size() == c_.size() && low <= high && change >= 0.0, "the limits cannot be used");
+        w_ = std::move(w);
+        limited_view_ = {view_, w_.data(), {view_.inverse, forward.view(), {low, high, change}}};
+        is_limited_ = true;
     }
 
+    bool is_limited() const { return is_limited_; }
+    const hyst_tracking_controller &view() const { return view_; }
+    const hyst_limited_tracking &limited_view() const { return limited_view_; }
+    std::size_t state_length() const {
+        return is_limited_ ? hyst_limited_tracking_state_length(&limited_view_)
+                           : hyst_tracking_controller_state_length(&view_);
+    }
+
+    // Index of the first sample that could not be answered, or -1.
+    std::ptrdiff_t run(Vector state, Signal y_ref, Signal y, Vector u) const;
+    // The same for v, the one that belongs to the drive, and the estimate e x + f [y_ref; y] and g times
+    // v minus the v wanted.
+    std::ptrdiff_t tell(Vector state, Signal y_ref, Signal y, const std::vector<double> &e,
+                        double f_ref, double f, double g, Vector v, Vector d_hat) const;
+
 private:
-    std::vector<double> a_, b_, c_;
+    std::vector<double> a_, b_, c_, w_;
     hyst_tracking_controller view_;
+    hyst_limited_tracking limited_view_{};
+    bool is_limited_ = false;
 };
+
+// One sample after the other, with or without limits.
+class Steps {
+public:
+    Steps(const Controller &controller, double *state)
+        : controller_(controller), state_(state) {
+        if (!controller.is_limited()) return;
+        before_.resize(controller.state_length());
+        guard_.guard.y_last = state_[controller.state_length() - 1];
+    }
+    double step(double y_ref, double y) {
+        if (!controller_.is_limited()) {
+            return hyst_guarded_tracking_step(&controller_.view(), state_, &guard_.guard, y_ref, y);
+        }
+        return hyst_limited_tracking_step(&controller_.limited_view(), state_, before_.data(),
+                                          &guard_, y_ref, y, &v_, &excess_);
+    }
+    bool fault() const { return guard_.guard.fault != 0; }
+    bool limited() const { return guard_.limited != 0; }
+    void clear_fault() { guard_.guard.fault = 0, guard_.limited = 0; }
+    double v() const { return v_; }
+    double excess() const { return excess_; }
+
+private:
+    const Controller &controller_;
+    double *state_;
+    std::vector<double> before_;
+    hyst_limited_guard guard_ = {{0.0, 0}, 0};
+    double v_ = 0.0, excess_ = 0.0;
+};
+
+std::ptrdiff_t Controller::run(Vector state, Signal y_ref, Signal y, Vector u) const {
+    const std::size_t samples = u.shape(0);
+    require(state.shape(0) == state_length(), "state has the wrong length");
+    require(y_ref.shape(0) == samples && y.shape(0) == samples, "lengths differ");
+    const nb::gil_scoped_release released;
+    Steps steps(*this, state.data());
+    for (std::size_t k = 0; k < samples; ++k) {
+        u(k) = steps.step(y_ref(k), y(k));
+        if (steps.fault()) return static_cast<std::ptrdiff_t>(k);
+    }
+    return -1;
+}
+
+std::ptrdiff_t Controller::tell(Vector state, Signal y_ref, Signal y, const std::vector<double> &e,
+                                double f_ref, double f, double g, Vector v, Vector d_hat) const {
+    const std::size_t samples = v.shape(0), n = c_.size();
+    require(is_limited_ && state.shape(0) == state_length() && e.size() == n,
+            "state has the wrong length");
+    require(y_ref.shape(0) == samples && y.shape(0) == samples && d_hat.shape(0) == samples,
+            "lengths differ");
+    const nb::gil_scoped_release released;
+    Steps steps(*this, state.data());
+    for (std::size_t k = 0; k < samples; ++k) {
+        // In the order of the core's linear part, so that without limits the bits are its own.
+        double estimate = f_ref * y_ref(k) + f * y(k);
+        for (std::size_t j = 0; j < n; ++j) estimate += e[j] * state(j);
+        steps.step(y_ref(k), y(k));
+        if (steps.excess() != 0.0) estimate += g * steps.excess();
+        v(k) = steps.v(), d_hat(k) = estimate;
+        if (steps.fault()) return static_cast<std::ptrdiff_t>(k);
+    }
+    return -1;
+}
 
 class ControllerStepper {
 public:
     ControllerStepper(const Controller &controller, nb::object owner)
-        : controller_(controller), owner_(std::move(owner)),
-          state_(nb::cast<Vector>(owner_, /* convert = */ false)) {
-        require(state_.shape(0) == controller.state_length(), "state has the wrong length");
-    }
-    double step(double y_ref, double y) {
-        return hyst_guarded_tracking_step(&controller_.view(), state_.data(), &guard_, y_ref, y);
-    }
+        : owner_(std::move(owner)), state_(nb::cast<Vector>(owner_, /* convert = */ false)),
+          steps_(controller, checked(state_, controller)) {}
+    double step(double y_ref, double y) { return steps_.step(y_ref, y); }
     nb::object state() const { return owner_; }
-    bool fault() const { return guard_.fault != 0; }
-    void clear_fault() { guard_.fault = 0; }
+    bool fault() const { return steps_.fault(); }
+    bool limited() const { return steps_.limited(); }
+    void clear_fault() { steps_.clear_fault(); }
 
 private:
-    const Controller &controller_;
+    static double *checked(const Vector &state, const Controller &controller) {
+        require(state.shape(0) == controller.state_length(), "state has the wrong length");
+        return state.data();
+    }
     nb::object owner_;  // the array itself, so that Python gets back what it gave
     Vector state_;
-    hyst_guard guard_ = {0.0, 0};
+    Steps steps_;
 };
 
 // in: r, noise, disturbance before and behind the hysteresis. out: v, u, eta, y, d_hat.
@@ -130,8 +203,12 @@ nb::tuple sampled(Matrix step, const Controller &controller, const Chain &hyster
     LoopResult result;
     {
         const nb::gil_scoped_release released;
-        result = run_sampled_loop(step.shape(0) - 1, step.data(), controller.view(), hysteresis,
-                                  first, second, signals, limit);
+        const std::size_t n = step.shape(0) - 1;
+        result = controller.is_limited()
+                     ? run_limited_loop(n, step.data(), controller.limited_view(), hysteresis,
+                                        first, second, signals, limit)
+                     : run_sampled_loop(n, step.data(), controller.view(), hysteresis, first,
+                                        second, signals, limit);
     }
     return told(result);
 }
@@ -144,14 +221,20 @@ void bind_closed_loop(nb::module_ &module) {
                       const Chain &>(),
              nb::arg("a"), nb::arg("b"), nb::arg("c"), nb::arg("d_ref"), nb::arg("d"),
              nb::arg("inverse"), nb::keep_alive<1, 7>())
+        .def("limit", &Controller::limit, nb::arg("w"), nb::arg("forward"), nb::arg("low"),
+             nb::arg("high"), nb::arg("change"), nb::keep_alive<1, 3>())
         .def_prop_ro("state_length", &Controller::state_length)
         .def("run", &Controller::run, nb::arg("state").noconvert(), nb::arg("y_ref").noconvert(),
-             nb::arg("y").noconvert(), nb::arg("u").noconvert());
+             nb::arg("y").noconvert(), nb::arg("u").noconvert())
+        .def("tell", &Controller::tell, nb::arg("state").noconvert(), nb::arg("y_ref").noconvert(),
+             nb::arg("y").noconvert(), nb::arg("e"), nb::arg("f_ref"), nb::arg("f"), nb::arg("g"),
+             nb::arg("v").noconvert(), nb::arg("d_hat").noconvert());
     nb::class_<ControllerStepper>(module, "TrackingStepper")
         .def(nb::init<const Controller &, nb::object>(), nb::arg("controller"), nb::arg("state"),
              nb::keep_alive<1, 2>())
         .def_prop_ro("state", &ControllerStepper::state)
         .def_prop_ro("fault", &ControllerStepper::fault)
+        .def_prop_ro("limited", &ControllerStepper::limited)
         .def("clear_fault", &ControllerStepper::clear_fault)
         .def("__call__", &ControllerStepper::step, nb::arg("y_ref"), nb::arg("y"));
     module.def("run_continuous_loop", &continuous, nb::arg("step").noconvert(), nb::arg("delayed"),

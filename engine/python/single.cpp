@@ -47,13 +47,23 @@ class Stepper {
 public:
     Stepper(const std::vector<Description> &stages, const std::vector<double> &start)
         : state_(start.begin(), start.end()) {
-        std::size_t length = 0;
+        std::size_t length = 0, forward = 0;
         for (const Description &each : stages) {
             const std::string &name = std::get<0>(each);
             if (name == "tracking_controller") {
                 controls_.push_back(rounded(each));
                 add_controller(controls_.back());
                 length += controller_.order;
+            } else if (name == "drive_limits") {
+                const hyst::kinds::Constants limits = rounded(each);
+                limited_.inverse.limits = {limits.number("low"), limits.number("high"),
+                                           limits.number("change")};
+                forward = limits.choice("forward");
+                length += 1;
+                is_limited_ = true;
+            } else if (name == "anti_windup") {
+                controls_.push_back(rounded(each));
+                limited_.w = controls_.back().table("w");
             } else {
                 add_stage(hyst::kinds::known_kind(name), rounded(each));
             }
@@ -61,6 +71,7 @@ public:
         for (const hyst_stage &each : stages_) length += hyst_stage_state_length(&each);
         if (length != state_.size()) throw std::invalid_argument("start has the wrong length");
         controller_.inverse = {stages_.size(), stages_.data()};
+        if (is_limited_) limit(forward);
     }
     Stepper(const Stepper &) = delete;
     Stepper &operator=(const Stepper &) = delete;
@@ -72,14 +83,34 @@ public:
     }
     double step_controller(double y_ref, double y) {
         if (!has_two_inputs_) throw std::invalid_argument("this block takes u");
+        if (is_limited_) {
+            return hyst_limited_tracking_step(&limited_, state_.data(), before_.data(),
+                                              &limited_guard_, static_cast<float>(y_ref),
+                                              static_cast<float>(y), &v_, &excess_);
+        }
         return hyst_guarded_tracking_step(&controller_, state_.data(), &guard_,
                                           static_cast<float>(y_ref), static_cast<float>(y));
     }
     std::vector<double> state() const { return {state_.begin(), state_.end()}; }
-    bool fault() const { return guard_.fault != 0; }
-    void clear_fault() { guard_.fault = 0; }
+    bool fault() const { return guard_.fault != 0 || limited_guard_.guard.fault != 0; }
+    bool limited() const { return limited_guard_.limited != 0; }
+    void clear_fault() {
+        guard_.fault = limited_guard_.guard.fault = 0;
+        limited_guard_.limited = 0;
+    }
 
 private:
+    // The last `forward` stages are those from the drive to v.
+    void limit(std::size_t forward) {
+        if (forward > stages_.size()) throw std::invalid_argument("too few stages");
+        const std::size_t count = stages_.size() - forward;
+        limited_.linear = controller_;
+        limited_.inverse.inverse = {count, stages_.data()};
+        limited_.inverse.forward = {forward, stages_.data() + count};
+        before_.resize(state_.size());
+        limited_guard_.guard.y_last = state_.back();
+    }
+
     void add_controller(const hyst::kinds::Constants &of) {
         controller_ = {of.size("c"),
                        of.table("a"),
@@ -112,6 +143,11 @@ private:
     hyst_tracking_controller controller_{};
     hyst_guard guard_{};
     bool has_two_inputs_ = false;
+    bool is_limited_ = false;
+    hyst_limited_tracking limited_{};
+    hyst_limited_guard limited_guard_{};
+    std::vector<float> before_;
+    float v_ = 0.0f, excess_ = 0.0f;
 };
 
 // Stages whose constants follow a second signal: what each knot has of them.
@@ -215,6 +251,7 @@ NB_MODULE(_single, module) {
         .def("__call__", &Stepper::step_controller, nb::arg("y_ref"), nb::arg("y"))
         .def_prop_ro("state", &Stepper::state)
         .def_prop_ro("fault", &Stepper::fault)
+        .def_prop_ro("limited", &Stepper::limited)
         .def("clear_fault", &Stepper::clear_fault);
     nb::class_<MovingStepper>(module, "MovingStepper")
         .def(nb::init<const std::vector<double> &, const std::vector<std::vector<Description>> &,

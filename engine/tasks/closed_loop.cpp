@@ -134,6 +134,30 @@ bool rising_root(const Function &f, double start, double &root) {
     return true;
 }
 
+// A sampled controller, `answer`, from (y_ref, y) to u and v, around a plant.
+template <typename Answer>
+LoopResult run_around(std::size_t n, const double *step, const Answer &answer,
+                      const Chain &hysteresis, std::vector<double> &hysteresis_state,
+                      const LoopSignals &signals, double limit) {
+    const Product product(n + 1, n + 1, step);
+    const hyst_chain plant_hysteresis = hysteresis.view();
+    std::vector<double> z(n + 1, 0.0), sums(product.rows(), 0.0);
+    for (std::size_t k = 0; k < signals.samples; ++k) {
+        double y = product.at(n, n) * z[n];
+        for (std::size_t j = 0; j < n; ++j) y += product.at(n, j) * z[j];
+        double v = 0.0;
+        const double u = answer(signals.r[k], y + signals.noise[k], v);
+        const double eta = hyst_chain_step(&plant_hysteresis, hysteresis_state.data(),
+                                           u + signals.before[k]);
+        if (!within(limit, y, v, u, eta)) return {LoopEnd::diverged, k};
+        signals.v[k] = v, signals.u[k] = u, signals.eta[k] = eta, signals.y[k] = y;
+        z[n] = eta + signals.behind[k];
+        product.clear_and_add(sums.data(), z.data(), n + 1);
+        std::copy_n(sums.begin(), n, z.begin());
+    }
+    return {LoopEnd::done, signals.samples};
+}
+
 }  // namespace
 
 LoopResult run_continuous_loop(std::size_t n, const double *step, bool delayed,
@@ -176,25 +200,27 @@ LoopResult run_sampled_loop(std::size_t n, const double *step,
                             std::vector<double> &controller_state,
                             std::vector<double> &hysteresis_state, const LoopSignals &signals,
                             double limit) {
-    const Product product(n + 1, n + 1, step);
-    const hyst_chain plant_hysteresis = hysteresis.view();
-    std::vector<double> z(n + 1, 0.0), sums(product.rows(), 0.0);
-    double *inverse_state = controller_state.data() + controller.order;
-    for (std::size_t k = 0; k < signals.samples; ++k) {
-        double y = product.at(n, n) * z[n];
-        for (std::size_t j = 0; j < n; ++j) y += product.at(n, j) * z[j];
-        const double v = hyst_tracking_controller_linear(&controller, controller_state.data(),
-                                                         signals.r[k], y + signals.noise[k]);
-        const double u = hyst_chain_step(&controller.inverse, inverse_state, v);
-        const double eta = hyst_chain_step(&plant_hysteresis, hysteresis_state.data(),
-                                           u + signals.before[k]);
-        if (!within(limit, y, v, u, eta)) return {LoopEnd::diverged, k};
-        signals.v[k] = v, signals.u[k] = u, signals.eta[k] = eta, signals.y[k] = y;
-        z[n] = eta + signals.behind[k];
-        product.clear_and_add(sums.data(), z.data(), n + 1);
-        std::copy_n(sums.begin(), n, z.begin());
-    }
-    return {LoopEnd::done, signals.samples};
+    double *const x = controller_state.data(), *const memory = x + controller.order;
+    const auto answer = [&](double y_ref, double y, double &v) {
+        v = hyst_tracking_controller_linear(&controller, x, y_ref, y);
+        return hyst_chain_step(&controller.inverse, memory, v);
+    };
+    return run_around(n, step, answer, hysteresis, hysteresis_state, signals, limit);
+}
+
+LoopResult run_limited_loop(std::size_t n, const double *step,
+                            const hyst_limited_tracking &controller, const Chain &hysteresis,
+                            std::vector<double> &controller_state,
+                            std::vector<double> &hysteresis_state, const LoopSignals &signals,
+                            double limit) {
+    std::vector<double> before(controller_state.size());
+    hyst_limited_guard guard = {{controller_state.back(), 0}, 0};
+    double excess = 0.0;
+    const auto answer = [&](double y_ref, double y, double &v) {
+        return hyst_limited_tracking_step(&controller, controller_state.data(), before.data(),
+                                          &guard, y_ref, y, &v, &excess);
+    };
+    return run_around(n, step, answer, hysteresis, hysteresis_state, signals, limit);
 }
 
 }  // namespace hyst

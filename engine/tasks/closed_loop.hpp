@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "../chain.hpp"
+#include "hyst/limited_tracking.h"
 #include "hyst/tracking_controller.h"
 
 namespace hyst {
@@ -39,6 +40,13 @@ LoopResult run_continuous_loop(std::size_t n, const double *step, bool delayed,
 // controller is given y before its new drive acts: feedthrough of the plant shows w_{k-1}.
 LoopResult run_sampled_loop(std::size_t n, const double *step,
                             const hyst_tracking_controller &controller, const Chain &hysteresis,
+                            std::vector<double> &controller_state,
+                            std::vector<double> &hysteresis_state, const LoopSignals &signals,
+                            double limit);
+
+// The same with a drive that is limited; v is the one that belongs to the drive applied.
+LoopResult run_limited_loop(std::size_t n, const double *step,
+                            const hyst_limited_tracking &controller, const Chain &hysteresis,
                             std::vector<double> &controller_state,
                             std::vector<double> &hysteresis_state, const LoopSignals &signals,
                             double limit);

@@ -1,29 +1,25 @@
-"""What the answer of an observer says of Q."""
+"""Words of the answer of an observer."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
-import pytest
 
-from hyst.report.observer_words import bandwidth_told, rejection_bandwidth
-
-
-def test_bandwidth_of_a_second_order_filter_by_hand() -> None:
-    # 1 - Q = s (s + 2 z w0) / (s^2 + 2 z w0 s + w0^2); with w0 = 1, z = sqrt(1/2) and x = w^2,
-    # |1 - Q|^2 = x (x + 2) / (1 + x^2) is 1/2 at x^2 + 4 x - 1 = 0, x = sqrt(5) - 2.
-    Q = np.array([1.0]), np.array([1.0, math.sqrt(2.0), 1.0])
-    expected = math.sqrt(math.sqrt(5.0) - 2.0) / (2.0 * math.pi)
-    # Bisection in double.
-    assert rejection_bandwidth(*Q) == pytest.approx(expected, rel=1e-12)
-    # In other units of time it scales along.
-    fast = np.array([1e6]), np.array([1.0, 1e3 * math.sqrt(2.0), 1e6])
-    assert rejection_bandwidth(*fast) == pytest.approx(1e3 * expected, rel=1e-12)
-    assert bandwidth_told(*fast) == "77.33 Hz, where |1 - Q| first is 0.707"
+from hyst.report.observer.words import bandwidth_told, finite, hertz, rightmost, told
 
 
-def test_a_filter_that_never_lets_go() -> None:
-    # Q = (s + 2) / (2 s + 2), so that |1 - Q| = |s / (2 s + 2)| < 1/2.
-    assert rejection_bandwidth(np.array([1.0, 2.0]), np.array([2.0, 2.0])) == math.inf
-    assert "at all frequencies" in bandwidth_told(np.array([1.0, 2.0]), np.array([2.0, 2.0]))
+def test_bandwidths() -> None:
+    assert bandwidth_told(0.0) == "none"
+    assert bandwidth_told(math.inf) == "|E| stays below 0.707 at all frequencies"
+    assert bandwidth_told(2.0 * math.pi * 77.33) == "77.33 Hz, where |E| first is 0.707"
+
+
+def test_numbers() -> None:
+    assert hertz(2.0 * math.pi) == "1 Hz"
+    assert told(math.inf) == "diverges"
+    assert told(0.25) == "0.25"
+    assert finite(math.inf) == "inf"
+    assert finite(None) is None
+    assert rightmost(np.array([-3.0 + 4.0j, -3.0 - 4.0j, -5.0])) == "-3 +- 4j"
+    assert rightmost(np.array([], dtype=complex)) == "none"

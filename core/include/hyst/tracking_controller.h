@@ -35,6 +35,10 @@ size_t hyst_tracking_controller_state_length(const hyst_tracking_controller *con
 hyst_real hyst_tracking_controller_linear(const hyst_tracking_controller *controller, hyst_real *x,
                                           hyst_real y_ref, hyst_real y);
 
+/* What the linear part takes back where `excess` was added to its v behind it: x += w excess. A sum that
+ * is not finite is left out as a whole. */
+void hyst_tracking_take_back(size_t order, const hyst_real *w, hyst_real *x, hyst_real excess);
+
 /* One sample: reference and measured output in, drive out. Both must be finite. */
 hyst_real hyst_tracking_controller_step(const hyst_tracking_controller *controller,
                                         hyst_real *state, hyst_real y_ref, hyst_real y);

@@ -14,10 +14,18 @@ import hyst
 from hyst._files import read_small
 from hyst.checks.numbers import as_not_negative, as_positive
 from hyst.cli.arguments import load_operator
+from hyst.cli.observer_design import HowToDesign, read_design
+from hyst.cli.observer_plant import (
+    block_dt,
+    load_hysteresis,
+    read_hysteresis,
+    read_plant,
+    read_uncertainty,
+)
 from hyst.cli.spec_section import Section
 
 if TYPE_CHECKING:
-    from hyst.control import InternalModel, LinearSystem
+    from hyst.control import IdentifiedPlant, InternalModel, LinearSystem
     from hyst.control.discretization import Method
     from hyst.operators import Operator
 
@@ -32,8 +40,11 @@ class ObserverSpec:
 
     ``plant``, ``true_plant`` (or None), ``controller``, weights ``Wu`` and ``Wp`` and
     ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
-    ``inverse_name``), ``reference``, ``dt``, ``settle``, ``noise``, ``disturbance`` and ``seed``
-    what is simulated; ``filter_dt`` and ``filter_method`` say what is implemented.
+    ``inverse_name``), ``reference``, at the samples of the block, ``settle``, ``noise``,
+    ``disturbance`` and ``seed`` what is simulated; ``filter_dt``, ``filter_method`` and ``delay``
+    say what is implemented; ``design`` how, ``limits`` and ``rate`` what its drive may do. The
+    plant is sampled where it was ``identified`` (else None),
+    continuous where it was written; ``delay`` is its dead time and that of the block together.
     """
 
     plant: LinearSystem
@@ -46,13 +57,17 @@ class ObserverSpec:
     inverse: Operator | None
     inverse_name: str
     reference: Array
-    dt: float
     settle: float
     noise: float
     disturbance: float
     seed: int
     filter_dt: float
     filter_method: Method
+    delay: float
+    design: HowToDesign
+    limits: tuple[float, float] | None
+    rate: float | None
+    identified: IdentifiedPlant | None
 
 
 def read_spec(path: Path) -> ObserverSpec:
@@ -80,8 +95,13 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     weights = spec.section("weights")
     simulation = spec.section("simulation")
     implemented = spec.section("filter")
-    hysteresis = _hysteresis(spec.section("hysteresis"), folder)
-    dt = simulation.number("dt", positive=True)
+    plant = read_plant(spec.section("plant"), folder)
+    hysteresis = read_hysteresis(spec, plant, folder)
+    if hysteresis is None:
+        hysteresis = _hysteresis(spec.section("hysteresis"), folder)
+    filter_dt = block_dt(implemented, plant)
+    # The sample time of a reference from a file; sines are taken at the block's samples.
+    dt = simulation.number("dt", filter_dt, positive=True)
     reference = _reference(spec.section("reference"), dt, folder)
     inverse, name = _inverse(spec.section("inverse"), hysteresis, folder)
     settle = simulation.number("settle", 0.0)
@@ -94,34 +114,60 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         simulation.number("noise", 0.0), "[simulation] noise", "a standard deviation"
     )
     method = implemented.text("method", "tustin", get_args(hyst.control.discretization.Method))
-    filter_dt = implemented.number("dt", positive=True)
     if filter_dt >= reference.size * dt - settle:
         raise hyst.InputError(
             f"[filter] dt is {filter_dt:g} s, and {reference.size * dt - settle:g} s are measured; "
             "give a shorter one"
         )
+    limits, rate = _limits(spec)
     read = ObserverSpec(
-        plant=spec.section("plant").system(),
+        plant=plant.system,
         true_plant=spec.section("true_plant").system() if spec.has("true_plant") else None,
         controller=spec.section("controller").system(),
-        Wu=weights.section("Wu").system(),
+        Wu=read_uncertainty(weights, plant, folder),
         Wp=weights.section("Wp").system(),
         internal_model=_internal_model(spec.section("internal_model")),
         hysteresis=hysteresis,
         inverse=inverse,
         inverse_name=name,
-        reference=reference,
-        dt=dt,
+        reference=_at_samples(reference, dt, filter_dt),
         settle=settle,
         noise=noise,
         disturbance=simulation.number("disturbance", 0.0),
         seed=simulation.count("seed", 0),
         filter_dt=filter_dt,
         filter_method="zoh" if method == "zoh" else "tustin",
+        delay=plant.delay + _further_delay(implemented),
+        design=read_design(spec, plant.identified is not None and plant.system.dt > 0.0),
+        limits=limits,
+        rate=rate,
+        identified=plant.identified,
     )
     for each in (spec, weights, simulation, implemented):
         each.done()
     return read
+
+
+def _further_delay(implemented: Section) -> float:
+    return as_not_negative(implemented.number("delay", 0.0), "[filter] delay", "a time in s")
+
+
+def _limits(spec: Section) -> tuple[tuple[float, float] | None, float | None]:
+    """Read ``[limits]``, which may be left out: ``drive = [low, high]`` and ``rate``, units a s."""
+    if not spec.has("limits"):
+        return None, None
+    given = spec.section("limits")
+    drive = None
+    if given.has("drive"):
+        values = given.numbers("drive")
+        if values.size != 2 or values[0] >= values[1]:
+            raise hyst.InputError(
+                f"[limits] drive is {values.tolist()}; give [low, high], the lower one first"
+            )
+        drive = (float(values[0]), float(values[1]))
+    rate = given.number("rate", positive=True) if given.has("rate") else None
+    given.done()
+    return drive, rate
 
 
 def _internal_model(given: Section) -> InternalModel:
@@ -146,7 +192,7 @@ def _hysteresis(given: Section, folder: Path) -> Operator:
     if given.has("file"):
         path = given.text("file")
         given.done()
-        return load_operator(folder / path)
+        return load_hysteresis(folder / path)
     p, r, p0 = given.numbers("p"), given.numbers("r"), given.number("p0")
     plays = hyst.PrandtlIshlinskii(p, r, p0)
     if not given.has("envelope"):
@@ -181,6 +227,14 @@ def _inverse(given: Section, hysteresis: Operator, folder: Path) -> tuple[Operat
     return inverse, name
 
 
+def _at_samples(reference: Array, dt: float, filter_dt: float) -> Array:
+    if dt == filter_dt:
+        return reference
+    end = (reference.size - 1) * dt
+    at = np.arange(0.0, end + 0.5 * filter_dt, filter_dt)
+    return np.asarray(np.interp(at, np.arange(reference.size) * dt, reference))
+
+
 def _reference(given: Section, dt: float, folder: Path) -> Array:
     if given.has("file"):
         path, column = given.text("file"), given.whole("column")
@@ -193,8 +247,8 @@ def _reference(given: Section, dt: float, folder: Path) -> Array:
     samples = round(duration / dt)
     if not 2 <= samples <= 10_000_000:
         raise hyst.InputError(
-            f"[reference] duration is {duration:g} s, {samples} samples of [simulation] dt; give "
-            "2 to 10 million"
+            f"[reference] duration is {duration:g} s, {samples} samples of {dt:g} s; give 2 to 10 "
+            "million"
         )
     t = np.arange(samples) * dt
     return np.asarray(sum(a * np.sin(2.0 * np.pi * f * t) for a, f in sines))

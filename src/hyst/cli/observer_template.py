@@ -45,12 +45,12 @@ r = [4.0, 8.0, 12.0, 16.0, 20.0, 24.0, 28.0, 32.0, 36.0, 40.0]
 kind = "scaled"
 factor = 0.7
 
-[reference]  # sines of [amplitude, Hz], or file = "reference.csv" and column = "y_ref"
+[reference]  # sines of [amplitude, Hz], or file = "reference.csv" and column = "y_ref",
+# sampled at dt of [simulation]
 sines = [[18.0, 1.0], [28.0, 3.0]]
 duration = 3.0
 
 [simulation]
-dt = 5e-5
 settle = 1.0        # left out of the errors
 noise = 0.0         # of the measurement, standard deviation
 disturbance = 0.0   # constant, before the hysteresis
@@ -59,4 +59,5 @@ seed = 0
 [filter]  # the controller to implement: C, observer and inverse in one sampled block
 dt = 1e-4
 method = "tustin"   # or "zoh"
+delay = 0.0         # s, from reading y to the drive that follows from it
 """

@@ -31,9 +31,10 @@ class ClosedLoop:
     noise
         Of the measurement, shape (N,); the controller is given ``y + noise``.
     v
-        Output wanted of the hysteresis, which is the input wanted of the plant, shape (N,).
+        Output wanted of the hysteresis, which is the input wanted of the plant, shape (N,); where a
+        TrackingController limits its drive, the v that belongs to the drive applied.
     u
-        Drive, the output of the inverse, shape (N,).
+        Drive, the output of the inverse, shape (N,), within the limits of a TrackingController.
     eta
         What the hysteresis gives, shape (N,), in units of v.
     d_hat
@@ -90,6 +91,16 @@ class ClosedLoop:
         if self.diverged_at is not None:
             return math.inf
         return float(np.abs(self.u[self._settled :]).max())
+
+    @property
+    def drive_jitter(self) -> float:
+        """Standard deviation of the drive's change in a sample after ``settle``; infinity likewise.
+
+        In units of the drive. What reference and noise do to it is both in it.
+        """
+        if self.diverged_at is not None:
+            return math.inf
+        return float(np.diff(self.u[self._settled :]).std()) if self.u.size > 1 else 0.0
 
     def summary(self) -> str:
         """Say in one line what came of it."""

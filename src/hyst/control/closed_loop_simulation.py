@@ -18,7 +18,9 @@ from hyst.checks.numbers import (
 )
 from hyst.control.closed_loop import ClosedLoop
 from hyst.control.controller_parts import disturbance_observer_of, feedback_controller, joined
+from hyst.control.feedback.settled_start import settled_start
 from hyst.control.loop_system import continuous_loop, held_step, plant_of
+from hyst.control.sampled.plant import SampledPlant, sampled_plant
 from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError, SolverError
 from hyst.operators import Operator
@@ -27,6 +29,7 @@ Array = NDArray[np.float64]
 
 Place: TypeAlias = Literal["hysteresis", "plant"]
 AlgebraicLoop: TypeAlias = Literal["solve", "delay"]
+Start: TypeAlias = Literal["rest", "settled"]
 
 # An output this many times larger than the reference has left for good.
 _FAR = 1e6
@@ -48,6 +51,8 @@ def simulate_closed_loop(
     settle: float = 0.0,
     algebraic_loop: AlgebraicLoop = "solve",
     limit: float | None = None,
+    delay: float = 0.0,
+    start: Start = "rest",
 ) -> ClosedLoop:
     """Simulate reference, controller, observer, inverse, hysteresis and plant, from rest.
 
@@ -95,6 +100,12 @@ def simulate_closed_loop(
     limit
         The loop has diverged once abs(y) is above it; a million times the largest reference and
         noise if left out.
+    delay
+        s, >= 0, from reading y to the drive that follows from it: with a TrackingController only,
+        whole samples or not, as ``sampled_plant`` takes it.
+    start
+        ``"rest"``: all states are 0, or what the operators say. ``"settled"``, with a
+        TrackingController only: the loop has come to rest at the first value of the reference.
 
     Returns
     -------
@@ -128,9 +139,23 @@ def simulate_closed_loop(
     """
     time, r = as_sample_time(dt), one_record(reference, "reference")
     settled = _settling(settle, r.size, time)
+    _refuse_other(start, get_args(Start), "start")
     _refuse_other(disturbance_at, get_args(Place), "disturbance_at")
     _refuse_other(algebraic_loop, get_args(AlgebraicLoop), "algebraic_loop")
     spread, d = _noise(noise, r.size, seed), _signal(disturbance, r.size, "disturbance")
+    if start == "settled":
+        if not isinstance(controller, TrackingController):
+            raise InputError(
+                "start='settled' is for blocks as they run; give a TrackingController as controller"
+            )
+        met = sampled_plant(plant, time, delay)
+        begun = settled_start(controller, met, hysteresis, float(r[0]))
+        loop = simulate_closed_loop(
+            r, time, plant=met, controller=begun.block, hysteresis=begun.hysteresis(hysteresis),
+            inverse=inverse, observer=observer, noise=spread + begun.y, disturbance=d,
+            disturbance_at=disturbance_at, settle=settle, limit=limit, delay=met.delay,
+        )  # fmt: skip
+        return begun.at_rest_again(loop)
     # Rows: r, noise, disturbance before and behind the hysteresis.
     inputs, outputs = np.zeros((4, r.size)), np.zeros((5, r.size))
     inputs[0], inputs[1] = r, spread
@@ -142,8 +167,13 @@ def simulate_closed_loop(
             raise InputError(
                 "a TrackingController has its own inverse and observer; leave them out"
             )
-        end, good = _sampled(controller, plant, actuator, time, signals)
+        end, good = _sampled(controller, sampled_plant(plant, time, delay), actuator, signals)
     else:
+        if delay != 0.0:
+            raise InputError(
+                f"delay is {delay:.6g} s of a controller in continuous time, which takes none to "
+                "compute; give a TrackingController"
+            )
         part = joined(feedback_controller(controller), disturbance_observer_of(observer))
         step = held_step(continuous_loop(plant_of(plant), part), time)
         first, late = _chain(inverse, "inverse", time), algebraic_loop == "delay"
@@ -165,17 +195,16 @@ def simulate_closed_loop(
 
 def _sampled(
     controller: TrackingController,
-    plant: Any,
+    plant: SampledPlant,
     actuator: tuple[_engine.Chain, Array],
-    dt: float,
     signals: tuple[Array, Array, float],
 ) -> tuple[str, int]:
-    if abs(controller.dt - dt) > 1e-6 * dt:
+    if abs(controller.dt - plant.dt) > 1e-6 * plant.dt:
         raise InputError(
-            f"the controller has dt = {controller.dt:.6g} s, the loop {dt:.6g} s; "
+            f"the controller has dt = {controller.dt:.6g} s, the loop {plant.dt:.6g} s; "
             "give the same for both"
         )
-    step, (chain, state) = held_step(plant_of(plant), dt), actuator
+    step, (chain, state) = held_step(plant.system, plant.dt), actuator
     return _engine.run_sampled_loop(
         step, controller.compiled, chain, controller.initial_state(), state, *signals
     )

@@ -20,7 +20,8 @@ def feedback_controller(system: Any) -> LinearSystem:
     Parameters
     ----------
     system
-        As ``as_linear_system`` takes it; None is a gain of one.
+        As ``as_linear_system`` takes it, or a design that has it as ``controller``; None is a gain
+        of one.
 
     Returns
     -------
@@ -31,7 +32,8 @@ def feedback_controller(system: Any) -> LinearSystem:
     InputError
         If it cannot be read, is improper, or has not one input and one output.
     """
-    read = as_linear_system(1.0 if system is None else system, "the controller")
+    given = getattr(system, "controller", system)  # of a design
+    read = as_linear_system(1.0 if given is None else given, "the controller")
     if (read.inputs, read.outputs) != (1, 1):
         raise InputError(
             f"the controller has {read.inputs} inputs and {read.outputs} outputs; "
@@ -105,7 +107,7 @@ def joined(controller: LinearSystem, observer: LinearSystem) -> LinearSystem:
     Parameters
     ----------
     controller
-        One input, one output.
+        One input, the error, or two, y_ref and y; one output.
     observer
         Two inputs, one output; both continuous, or both sampled with one dt.
 
@@ -130,7 +132,7 @@ def joined(controller: LinearSystem, observer: LinearSystem) -> LinearSystem:
         if controller.order + observer.order
         else np.zeros((0, 0))
     )
-    difference = np.array([[1.0, -1.0]])
+    difference = np.array([[1.0, -1.0]]) if controller.inputs == 1 else np.eye(2)
     only_y = np.array([[0.0, 1.0]])
     B = np.vstack([controller.B @ difference, observer.B[:, 1:] @ only_y])
     into = np.vstack([np.zeros((controller.order, 1)), observer.B[:, :1]])  # of v

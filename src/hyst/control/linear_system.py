@@ -12,6 +12,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from hyst.checks.arrays import finite_array
+from hyst.control.other_systems import matrices_of_other
 from hyst.errors import InputError, MissingExtraError
 from hyst.models.realizations import companion
 
@@ -74,6 +75,8 @@ class LinearSystem:
 
     def poles(self) -> ComplexArray:
         """Eigenvalues of A."""
+        if self.order == 0:  # which scipy 1.11 has no eigenvalues for
+            return np.zeros(0, dtype=np.complex128)
         return np.asarray(scipy.linalg.eigvals(self.A), dtype=np.complex128).reshape(self.order)
 
     def response(self, s: Points) -> ComplexArray:
@@ -134,9 +137,9 @@ def balanced_matrices(A: Array, B: Array, C: Array) -> tuple[Array, Array, Array
     return scales[:, None] * A / scales, scales[:, None] * B, C / scales
 
 
-def transfer_function_of(num: Array, den: Array) -> Any:
+def transfer_function_of(num: Array, den: Array, dt: float = 0.0) -> Any:
     """Give the ``control.TransferFunction`` of the polynomials num and den, highest power first."""
-    return _python_control().tf(num, den)
+    return _python_control().tf(num, den, dt)
 
 
 def as_linear_system(system: Any, name: str = "the system") -> LinearSystem:
@@ -145,7 +148,9 @@ def as_linear_system(system: Any, name: str = "the system") -> LinearSystem:
     Parameters
     ----------
     system
-        A transfer function or state space of python-control, a LinearSystem, a pair (num, den) of
+        A transfer function or state space of python-control or of scipy.signal (``lti``, ``dlti``),
+        a LinearSystem or a plant that has one as ``system``, a ``hyst.LinearDynamics``, whose delay
+        becomes states, a ``ContinuousDynamics`` without dead time, a pair (num, den) of
         polynomials, a quadruple (A, B, C, D), or a number.
     name
         What messages call it.
@@ -154,9 +159,21 @@ def as_linear_system(system: Any, name: str = "the system") -> LinearSystem:
     ------
     InputError
         If it is none of these, or has more zeros than poles.
+
+    Examples
+    --------
+    >>> import scipy.signal
+    >>> as_linear_system(scipy.signal.ZerosPolesGain([], [-2.0], 6.0)).D.tolist()
+    [[0.0]]
     """
     if isinstance(system, LinearSystem):
         return system
+    carried = getattr(system, "system", None)
+    if isinstance(carried, LinearSystem):
+        return carried
+    other = matrices_of_other(system, name)
+    if other is not None:
+        return _read(*other, name)
     if hasattr(system, "A") and hasattr(system, "D"):
         return _read(system.A, system.B, system.C, system.D, getattr(system, "dt", 0.0), name)
     if hasattr(system, "num") and hasattr(system, "den"):
@@ -172,7 +189,7 @@ def as_linear_system(system: Any, name: str = "the system") -> LinearSystem:
         return LinearSystem(A, B, C, D)
     raise InputError(
         f"{name} is {type(system).__name__}; give a transfer function or state space of "
-        "python-control, a pair (num, den) or matrices (A, B, C, D)"
+        "python-control or scipy.signal, a pair (num, den) or matrices (A, B, C, D)"
     )
 
 

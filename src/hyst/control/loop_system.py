@@ -7,10 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.control.controller_parts import disturbance_observer_of, feedback_controller, joined
 from hyst.control.discretization import held
 from hyst.control.linear_system import LinearSystem, as_linear_system
-from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError
 from hyst.models import LinearDynamics
 
@@ -125,60 +123,6 @@ def held_step(system: LinearSystem, dt: float) -> Array:
     else:
         A, B, C, D = held(system, dt)
     return np.ascontiguousarray(np.block([[A, B], [C, D]]))
-
-
-def closed_loop_poles(plant: Any, controller: Any, observer: Any = None) -> ComplexArray:
-    """Give the poles of the loop in which the inverse cancels the hysteresis perfectly.
-
-    With a TrackingController these are poles of the sampled loop.
-
-    Parameters
-    ----------
-    plant, controller, observer
-        As in ``simulate_closed_loop``.
-
-    Returns
-    -------
-    numpy.ndarray
-        The least stable first: the largest real part, or the largest modulus.
-
-    Raises
-    ------
-    InputError
-        If a block cannot be used.
-
-    Examples
-    --------
-    >>> closed_loop_poles(([1.0], [1.0, 1.0]), 4.0).real.round(9).tolist()
-    [-5.0]
-    """
-    process = plant_of(plant)
-    if isinstance(controller, TrackingController):
-        poles = _sampled_poles(held_step(process, controller.dt), controller)
-        return np.asarray(poles[np.argsort(-np.abs(poles))])
-    part = joined(feedback_controller(controller), disturbance_observer_of(observer))
-    loop = continuous_loop(process, part)
-    share = 1.0 - loop.D[0, 2]
-    if abs(share) < 1e-12:
-        raise InputError("the feedthrough round the loop is 1, so it has no solution; add a pole")
-    poles = np.linalg.eigvals(loop.A + np.outer(loop.B[:, 2], loop.C[0]) / share)
-    return np.asarray(poles[np.argsort(-poles.real)], dtype=np.complex128)
-
-
-def _sampled_poles(step: Array, controller: TrackingController) -> ComplexArray:
-    """At sample k the controller is given y before its new drive acts, hence w one sample old."""
-    n, m = step.shape[0] - 1, controller.order
-    Ap, Bp, Cp, feedthrough = step[:n, :n], step[:n, n], step[n, :n], step[n, n]
-    A = np.zeros((m + n + 1, m + n + 1))
-    y = np.concatenate([np.zeros(m), Cp, [feedthrough]])
-    v = np.concatenate([controller.C, np.zeros(n + 1)]) + controller.D[1] * y
-    A[:m, :m] = controller.A
-    A[:m] += np.outer(controller.B[:, 1], y)
-    A[m : m + n, m : m + n] = Ap
-    A[m : m + n] += np.outer(Bp, v)
-    A[-1] = v
-    size = m + n + 1 if feedthrough else m + n
-    return np.asarray(np.linalg.eigvals(A[:size, :size]), dtype=np.complex128)
 
 
 def _through_sum(matrix: Array, plant: LinearSystem) -> Array:

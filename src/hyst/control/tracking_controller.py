@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import os
 from dataclasses import dataclass
 from typing import Any, final
 
@@ -12,30 +11,35 @@ from numpy.typing import ArrayLike, NDArray
 
 from hyst import _engine
 from hyst.checks.arrays import as_constants, as_signal, as_state
-from hyst.checks.numbers import as_sample_time
+from hyst.checks.numbers import as_number, as_sample_time
+from hyst.control.anti_windup import anti_windup
+from hyst.control.block_constants import as_entries, as_matrix
 from hyst.control.controller_parts import disturbance_observer_of, feedback_controller, joined
 from hyst.control.discretization import Method, discretize
+from hyst.control.drive_limits import Limits, limited_drive, stated, within
+from hyst.control.feedback.feedforward import with_feedforward
+from hyst.control.linear_system import LinearSystem
+from hyst.control.saved_block import SavedBlock
 from hyst.errors import InputError
 from hyst.operators import Operator
-from hyst.operators.description import Described, ModelDescription
-from hyst.operators.model_file import MODEL, write_file
-from hyst.operators.registry import entries, operator_from_dict
 from hyst.operators.verdict import refuse_if_unfit
 
 Array = NDArray[np.float64]
 
-KIND = "tracking-controller"
 _LARGEST_ORDER = 64  # HYST_LARGEST_ORDER of the core
 
 
 @final
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class TrackingController(Described):
+class TrackingController(SavedBlock):
     """Drive from reference and measured output, sample by sample.
 
     ``v_k = C x_k + D [y_ref_k, y_k]``, ``x_{k+1} = A x_k + B [y_ref_k, y_k]``,
     ``u_k = inverse(v_k)``. The estimate of the disturbance, which is already taken off in v, is
     ``d_hat_k = E x_k + F [y_ref_k, y_k]``; it is for looking at and is not exported.
+
+    With ``limits`` or a ``rate`` the drive u_a is the nearest to u that may be, v_a the v that
+    belongs to it, and ``x_{k+1}`` and ``d_hat_k`` take ``W (v_a - v)`` and ``G (v_a - v)`` more.
 
     It is no operator, for it has two inputs. ``from_continuous`` makes it from a design.
 
@@ -57,6 +61,15 @@ class TrackingController(Described):
         Shapes (n,) and (2,), or neither.
     x0
         Shape (n,), state before the first sample; zeros if left out.
+    limits
+        Lowest and highest drive; none if left out.
+    rate
+        The most the drive moves in a second; any if left out.
+    hysteresis
+        Operator from u to v of which ``inverse`` is the exact inverse; where left out, the inverse
+        of ``inverse``. Needed with limits or a rate only.
+    W, G
+        Shape (n,), and a number: with limits or a rate W must be given; G belongs to E and F.
     despite_verdict
         Take also an inverse of a model whose verdict is ``unfit``.
 
@@ -64,7 +77,8 @@ class TrackingController(Described):
     ------
     InputError
         If shapes do not fit, a number is not finite, n is above 64, dt is not above 0, the inverse
-        is no operator, has another dt or is of a model whose verdict is ``unfit``.
+        is no operator, has another dt or is of a model whose verdict is ``unfit``, limits do not
+        ascend, or there is no operator of which the inverse is the exact inverse.
 
     Source
     ------
@@ -86,6 +100,12 @@ class TrackingController(Described):
     E: Array | None
     F: Array | None
     x0: Array
+    limits: Limits | None
+    rate: float | None
+    hysteresis: Operator | None
+    W: Array | None
+    G: float
+    forward: Operator | None
 
     def __init__(
         self,
@@ -99,6 +119,11 @@ class TrackingController(Described):
         E: ArrayLike | None = None,
         F: ArrayLike | None = None,
         x0: ArrayLike | None = None,
+        limits: Limits | None = None,
+        rate: float | None = None,
+        hysteresis: Operator | None = None,
+        W: ArrayLike | None = None,
+        G: float = 0.0,
         despite_verdict: bool = False,
     ) -> None:
         c = as_constants(C, "C")
@@ -113,15 +138,17 @@ class TrackingController(Described):
             inverse.require_sample_time(time, "the controller")
             refuse_if_unfit(inverse.description.verdict, "no controller is made", despite_verdict)
         values: dict[str, Any] = {
-            "A": _matrix(A, (n, n), "A"),
-            "B": _matrix(B, (n, 2), "B"),
+            "A": as_matrix(A, (n, n), "A"),
+            "B": as_matrix(B, (n, 2), "B"),
             "C": c,
-            "D": _vector(D, 2, "D"),
+            "D": as_entries(D, 2, "D"),
             "dt": time,
             "inverse": inverse,
-            "E": None if E is None else _vector(E, n, "E"),
-            "F": None if F is None else _vector(F, 2, "F"),
-            "x0": _vector(np.zeros(n) if x0 is None else x0, n, "x0"),
+            "E": None if E is None else as_entries(E, n, "E"),
+            "F": None if F is None else as_entries(F, 2, "F"),
+            "x0": as_entries(np.zeros(n) if x0 is None else x0, n, "x0"),
+            **limited_drive(inverse, limits, rate, hysteresis, W, n, time),
+            "G": as_number(G, "G"),
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -135,19 +162,24 @@ class TrackingController(Described):
         observer: Any = None,
         inverse: Operator | None = None,
         method: Method = "tustin",
+        limits: Limits | None = None,
+        rate: float | None = None,
+        hysteresis: Operator | None = None,
+        feedforward: Any = None,
+        plant: Any = None,
         despite_verdict: bool = False,
     ) -> TrackingController:
         """Sample a design in continuous time.
 
         Controller and observer are sampled each by itself, and then joined:
-        ``v = C(z)(y_ref - y) - d_hat``, where the observer's feedthrough from v, which
-        ``"tustin"`` gives it, is solved for.
+        ``v = F(z) y_ref + C(z)(y_ref - y) - d_hat``, where the observer's feedthrough from v,
+        which ``"tustin"`` gives it, is solved for.
 
         Parameters
         ----------
         controller
             C(s), from the tracking error to v: a system of python-control, a LinearSystem, a pair
-            (num, den), matrices (A, B, C, D) or a number.
+            (num, den), matrices (A, B, C, D), a number, or what ``design_controller`` gave.
         dt
             Sample time, s, > 0.
         observer
@@ -157,6 +189,15 @@ class TrackingController(Described):
             Operator from v to u; ``u = v`` if left out.
         method
             How they are sampled: ``"tustin"`` or ``"zoh"``.
+        limits, rate, hysteresis
+            Of the drive, as the class takes them. Neither C nor the observer then winds up: W and
+            G are those of ``anti_windup``.
+        feedforward
+            F, from the reference to v: True is the static ``1 / Pn(0)``; or a stable system, such
+            as ``reference_feedforward`` gives; none if left out. It changes no pole of the loop.
+        plant
+            Pn, of which ``feedforward=True`` takes the static gain; left out, that of a designed
+            controller or observer, or a gain of 1.
         despite_verdict
             Take also an inverse of a model whose verdict is ``unfit``.
 
@@ -168,7 +209,8 @@ class TrackingController(Described):
         ------
         InputError
             If a block cannot be read, is improper, has other inputs or outputs or another sample
-            time, the observer is unstable, or the inverse is of a model whose verdict is ``unfit``.
+            time, the observer is unstable, the inverse is of a model whose verdict is ``unfit``, or
+            limits cannot be used.
 
         Examples
         --------
@@ -176,8 +218,12 @@ class TrackingController(Described):
         >>> round(pi.stepper()(1.0, 0.0), 6)
         4.004
         """
-        blocks = feedback_controller(controller), disturbance_observer_of(observer)
-        whole = joined(*(discretize(each, dt, method) for each in blocks))
+        parts = feedback_controller(controller), disturbance_observer_of(observer)
+        blocks = discretize(parts[0], dt, method), discretize(parts[1], dt, method)
+        steered = with_feedforward(blocks[0], feedforward, method, plant, (controller, observer))
+        whole = joined(steered, blocks[1])
+        is_limited = limits is not None or rate is not None
+        W, G = anti_windup(_from_reference(steered), blocks[1]) if is_limited else (None, 0.0)
         return cls(
             whole.A,
             whole.B,
@@ -187,6 +233,11 @@ class TrackingController(Described):
             inverse,
             E=whole.C[1],
             F=whole.D[1],
+            limits=limits,
+            rate=rate,
+            hysteresis=hysteresis,
+            W=W,
+            G=G,
             despite_verdict=despite_verdict,
         )
 
@@ -195,10 +246,21 @@ class TrackingController(Described):
         """Number of states of the linear part, n."""
         return int(self.C.size)
 
+    @property
+    def is_limited(self) -> bool:
+        """Whether the drive has limits or a largest rate."""
+        return self.limits is not None or self.rate is not None
+
     def initial_state(self) -> Array:
-        """Give the state before the first sample: x0, then that of the inverse; a fresh array."""
-        memory = np.zeros(0) if self.inverse is None else self.inverse.initial_state()
-        return np.concatenate([self.x0, memory])
+        """Give the state before the first sample, a fresh array.
+
+        x0, then that of the inverse; with limits also that of its inverse, and the last drive,
+        which is the allowed one nearest to 0.
+        """
+        operators = (self.inverse, self.forward)
+        memory = [each.initial_state() for each in operators if each is not None]
+        last = [np.array([within(self.limits, 0.0)])] if self.is_limited else []
+        return np.concatenate([self.x0, *memory, *last])
 
     def run(
         self, y_ref: ArrayLike, y: ArrayLike, state: ArrayLike | None = None
@@ -260,9 +322,44 @@ class TrackingController(Described):
         """
         if self.E is None or self.F is None:
             raise InputError("E and F were not given, so the estimate is not known; give both")
-        memory = self._checked_state(state)[: self.order]
+        memory = self._checked_state(state)
+        if self.W is not None:
+            return self._told(y_ref, y, memory)[1]
         watching = TrackingController(self.A, self.B, self.E, self.F, self.dt)
-        return watching.run(y_ref, y, memory)[0]
+        return watching.run(y_ref, y, memory[: self.order])[0]
+
+    def applied(self, y_ref: ArrayLike, y: ArrayLike, state: ArrayLike | None = None) -> Array:
+        """Give the v that belongs to the drive applied, for the records and the state of ``run``.
+
+        Parameters
+        ----------
+        y_ref, y, state
+            As in ``run``.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (N,); without limits, or within them, the v that is wanted.
+
+        Raises
+        ------
+        InputError
+            As ``run``.
+        """
+        memory = self._checked_state(state)
+        if self.W is not None:
+            return self._told(y_ref, y, memory)[0]
+        linear = TrackingController(self.A, self.B, self.C, self.D, self.dt)
+        return linear.run(y_ref, y, memory[: self.order])[0]
+
+    def _told(self, y_ref: ArrayLike, y: ArrayLike, state: Array) -> tuple[Array, Array]:
+        self.run(y_ref, y, state)  # which refuses what cannot be used
+        reference, output = as_signal(y_ref, "y_ref"), as_signal(y, "y")
+        E, F = (self.C, self.D) if self.E is None or self.F is None else (self.E, self.F)
+        v, d_hat = np.empty_like(output), np.empty_like(output)
+        into = float(F[0]), float(F[1]), self.G
+        self.compiled.tell(state, reference, output, E.tolist(), *into, v, d_hat)
+        return v, d_hat
 
     def stepper(self, state: ArrayLike | None = None) -> _engine.TrackingStepper:
         """Give a callable that takes one sample at a time, with the same numbers as ``run``.
@@ -278,7 +375,8 @@ class TrackingController(Described):
         Returns
         -------
         TrackingStepper
-            ``step(y_ref, y) -> u``, with the live ``state``, ``fault`` and ``clear_fault()``.
+            ``step(y_ref, y) -> u``, with the live ``state``, ``fault`` and ``clear_fault()``, which
+            also lowers ``limited``: whether a drive since then has been held at its limits.
 
         Raises
         ------
@@ -286,69 +384,6 @@ class TrackingController(Described):
             If ``state`` cannot be used.
         """
         return _engine.TrackingStepper(self.compiled, self._checked_state(state))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give a dictionary of plain numbers, lists and text that ``from_dict`` understands."""
-        data: dict[str, Any] = {"kind": KIND, "dt": self.dt}
-        data |= {name: getattr(self, name).tolist() for name in ("A", "B", "C", "D")}
-        if self.E is not None and self.F is not None:
-            data |= {"E": self.E.tolist(), "F": self.F.tolist()}
-        if self.x0.any():
-            data["x0"] = self.x0.tolist()
-        if self.inverse is not None:
-            data["inverse"] = self.inverse.to_dict()
-        return data
-
-    @classmethod
-    def from_dict(cls, data: dict[str, Any]) -> TrackingController:
-        """Rebuild from ``to_dict()``.
-
-        Parameters
-        ----------
-        data
-            What ``to_dict()`` gave, or the same read from a model file.
-
-        Raises
-        ------
-        InputError
-            If an entry is missing, unknown or not allowed.
-        """
-        if not isinstance(data, dict) or data.get("kind") != KIND:
-            kind = data.get("kind") if isinstance(data, dict) else data
-            raise InputError(f"the kind is {kind!r}; give the dictionary of a {KIND}")
-        given = entries(data, ("dt", "A", "B", "C", "D"), ("E", "F", "x0", "inverse"))
-        if "inverse" in given:
-            given["inverse"] = operator_from_dict(given["inverse"])
-        return cls(**given)
-
-    def save(
-        self, path: str | os.PathLike[str], description: ModelDescription | None = None
-    ) -> None:
-        """Write a model file, every double exact; ``hyst.load`` reads it.
-
-        Parameters
-        ----------
-        path
-            The file to create or replace; it is written whole or not at all.
-        description
-            What the numbers mean; that of the controller itself if left out.
-
-        Raises
-        ------
-        InputError
-            If the folder does not exist.
-        """
-        about = self.description if description is None else description
-        write_file(path, MODEL, {"model": self.to_dict()}, about)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, TrackingController) and self.to_dict() == other.to_dict()
-
-    def __hash__(self) -> int:
-        return hash((KIND, self.dt, *self.A.ravel().tolist(), *self.C.tolist()))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return TrackingController.from_dict, (self.to_dict(),), self._carried()
 
     def __repr__(self) -> str:
         return f"TrackingController(order={self.order}, dt={self.dt!r}, inverse={self.inverse!r})"
@@ -358,9 +393,13 @@ class TrackingController(Described):
         """The block in the engine."""
         chain = _engine.Chain(() if self.inverse is None else self.inverse.stages())
         columns, b = self.A.T.ravel().tolist(), self.B.T.ravel().tolist()
-        return _engine.TrackingController(
+        block = _engine.TrackingController(
             columns, b, self.C.tolist(), float(self.D[0]), float(self.D[1]), chain
         )
+        if self.W is not None:
+            forward = _engine.Chain(() if self.forward is None else self.forward.stages())
+            block.limit(self.W.tolist(), forward, *stated(self.limits, self.rate, self.dt))
+        return block
 
     def _checked_state(self, state: ArrayLike | None) -> Array:
         start = self.initial_state() if state is None else state
@@ -368,19 +407,8 @@ class TrackingController(Described):
         return memory
 
 
-def _matrix(values: ArrayLike, shape: tuple[int, int], name: str) -> Array:
-    if 0 in shape and np.asarray(values, dtype=object).size == 0:
-        return np.zeros(shape)
-    matrix = as_signal(values, name)
-    if matrix.shape != shape:
-        raise InputError(f"{name} has shape {matrix.shape}; C has {shape[0]} entries, give {shape}")
-    matrix = matrix.copy()
-    matrix.flags.writeable = False
-    return matrix
-
-
-def _vector(values: ArrayLike, length: int, name: str) -> Array:
-    vector = as_constants(values, name)
-    if vector.size != length:
-        raise InputError(f"{name} has {vector.size} entries; give {length}")
-    return vector
+def _from_reference(controller: LinearSystem) -> LinearSystem:
+    """Keep of a controller its way from the reference."""
+    return LinearSystem(
+        controller.A, controller.B[:, :1], controller.C, controller.D[:, :1], controller.dt
+    )

@@ -160,7 +160,13 @@ def mex_files(tool: ToolBlock, name: str, about: ModelDescription) -> dict[str, 
         "bad_sample": "changes no parameter"
         if tool.estimates
         else "is answered with the last output, leaves the memory as it is",
-        **(_estimates(tool, name) if tool.estimates else _NO_ESTIMATES),
+        **(_estimates(tool, name) if tool.estimates else _limited(block, name)),
+        "bad": f"{name}_fault(state)"
+        if block.limits is None
+        else f"({name}_fault(state) & ~{name.upper()}_OUT_OF_RANGE)",
+        "bad_here": f"{name}_fault(&state)"
+        if block.limits is None
+        else f"({name}_fault(&state) & ~{name.upper()}_OUT_OF_RANGE)",
         "license": _commented(_LICENSE.read_text(encoding="utf-8"), " *"),
         "meaning": _meaning(common["signals"]),
         "rows": _rows(block, common["signals"], about),
@@ -175,7 +181,21 @@ def mex_files(tool: ToolBlock, name: str, about: ModelDescription) -> dict[str, 
     return files | {MANIFEST: _manifest(block, name, files)}
 
 
-_NO_ESTIMATES = {"estimate_in_c": "", "estimate_in_m": ""}
+def _limited(block: Block, name: str) -> dict[str, str]:
+    """Give what tells whether a drive was held at its limits, where there are any."""
+    if block.limits is None:
+        return {"estimate_in_c": "", "estimate_in_m": ""}
+    return {
+        "estimate_in_c": f"""    }} else if (strcmp(command, "limited") == 0) {{
+        plhs[0] = mxCreateLogicalScalar(
+            (mxLogical)(({name}_fault(&state) & {name.upper()}_OUT_OF_RANGE) != 0u));
+""",
+        "estimate_in_m": f"""        function raised = limited(self)
+            % True since the drive was held at its limits or its rate.
+            raised = {name}_mex('limited', self.state);
+        end
+""",
+    }
 
 
 def _estimates(tool: ToolBlock, name: str) -> dict[str, str]:

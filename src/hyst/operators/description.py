@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any, ClassVar, Self, final
 
 from hyst.errors import InputError
+from hyst.operators.dynamics_errors import DynamicsErrors
 from hyst.operators.plain_data import (
     as_finite,
     as_finite_or_none,
@@ -55,6 +56,8 @@ class ModelDescription:
     smallest_swing
         Least way of the input between two turns in the records, input units: of smaller loops they
         show nothing.
+    dynamics_errors
+        How well linear dynamics behind a hysteresis are known, if they were identified.
 
     Raises
     ------
@@ -79,6 +82,7 @@ class ModelDescription:
     verdict: Verdict | None = None
     delay_interval: tuple[float, float] | None = None
     smallest_swing: float | None = None
+    dynamics_errors: DynamicsErrors | None = None
 
     # Of the file format: entries that files of a version may have are those of it and before.
     ADDED: ClassVar[dict[str, int]] = {
@@ -87,6 +91,7 @@ class ModelDescription:
         "verdict": 3,
         "delay_interval": 3,
         "smallest_swing": 3,
+        "dynamics_errors": 4,
     }
 
     def __post_init__(self) -> None:
@@ -105,6 +110,12 @@ class ModelDescription:
                 )
 
     @property
+    def version(self) -> int:
+        """The first version of a description that has all entries given here, at least 3."""
+        given = [name for name in self.to_dict() if name in self.ADDED]
+        return max([_ANY_DELAY, *(self.ADDED[name] for name in given)])
+
+    @property
     def is_unfit(self) -> bool:
         """Whether no command should come from the model, because its verdict says so."""
         return self.verdict is not None and self.verdict.level == UNFIT
@@ -112,13 +123,15 @@ class ModelDescription:
     def to_dict(self) -> dict[str, Any]:
         """Give what there is to say as values of JSON; what is not known is left out."""
         plain = asdict(self)
-        plain["verdict"] = None if self.verdict is None else self.verdict.to_dict()
+        for name in ("verdict", "dynamics_errors"):
+            given = getattr(self, name)
+            plain[name] = None if given is None else given.to_dict()
         if self.delay_interval is not None:
             plain["delay_interval"] = list(self.delay_interval)
         return {key: value for key, value in plain.items() if value not in (None, {})}
 
     @classmethod
-    def from_dict(cls, data: Any, version: int = 3) -> ModelDescription:
+    def from_dict(cls, data: Any, version: int = 4) -> ModelDescription:
         """Rebuild a description from ``to_dict()``.
 
         Parameters
@@ -127,7 +140,7 @@ class ModelDescription:
             What ``to_dict()`` gave, or the same read from a file.
         version
             Of the description: 1 has neither errors nor provenance, 2 neither verdict nor what
-            records leave open, and both know whole delays from 0 only.
+            records leave open, and both know whole delays from 0 only; 3 has no errors of dynamics.
 
         Raises
         ------
@@ -172,11 +185,12 @@ class ModelDescription:
             output_high=self.input_high,
             errors={},
             smallest_swing=None,
+            dynamics_errors=None,
         )
 
     def of_other_constants(self) -> ModelDescription:
         """Give what still holds when the constants change: no errors, origin or verdict."""
-        return replace(self, errors={}, provenance=None, verdict=None)
+        return replace(self, errors={}, provenance=None, verdict=None, dynamics_errors=None)
 
     def of_estimate(self) -> ModelDescription:
         """Give what holds of an estimate that starts here: where this is unfit, its shape stays so.
@@ -266,6 +280,11 @@ def _as_verdict(name: str, value: Any) -> Verdict | None:
     return value if value is None or isinstance(value, Verdict) else Verdict.from_dict(value)
 
 
+def _as_dynamics_errors(name: str, value: Any) -> DynamicsErrors | None:
+    known = value is None or isinstance(value, DynamicsErrors)
+    return value if known else DynamicsErrors.from_dict(value)
+
+
 # How each entry is checked; one that has a structure gives back what is plain and its own.
 _CHECKS: dict[str, Callable[[str, Any], Any]] = {
     **dict.fromkeys(("input_name", "output_name", "input_unit", "output_unit", "family"), as_text),
@@ -277,6 +296,7 @@ _CHECKS: dict[str, Callable[[str, Any], Any]] = {
     "verdict": _as_verdict,
     "delay_interval": as_finite_pair_or_none,
     "smallest_swing": as_finite_or_none,
+    "dynamics_errors": _as_dynamics_errors,
 }
 _ANY_DELAY = 3  # the version from which on a delay may be a fraction or negative
 _NOTHING_SAID = ModelDescription()

@@ -32,7 +32,8 @@ class Format:
     holds
         What messages call it.
     versions
-        Those that can be read, by the version their descriptions have; the last one is written.
+        Those that can be read, by the version their descriptions have; the first one that has all
+        that is to be told is written, so that what has nothing new is read by older ones, too.
     entries
         What it must have beside format, version and description.
     """
@@ -44,10 +45,13 @@ class Format:
 
 
 # Version 2 of a description: errors and provenance; version 3: a verdict, and a delay that may be a
-# fraction or negative with its interval. A model file must have one, an estimator's file of version
-# 2 may; version 1 of those knew no search beside the estimate and is not read.
-MODEL = Format("hyst model", "model", {1: 1, 2: 2, 3: 3}, ("model",))
-ESTIMATOR = Format("hyst estimator", "estimator", {2: 1, 3: 2, 4: 3}, ("kind", "settings", "state"))
+# fraction or negative with its interval; version 4: errors of dynamics. A model file must have one,
+# an estimator's file of version 2 may; version 1 of those knew no search beside the estimate and is
+# not read.
+MODEL = Format("hyst model", "model", {1: 1, 2: 2, 3: 3, 4: 4}, ("model",))
+ESTIMATOR = Format(
+    "hyst estimator", "estimator", {2: 1, 3: 2, 4: 3, 5: 4}, ("kind", "settings", "state")
+)
 _FORMATS = {each.name: each for each in (MODEL, ESTIMATOR)}
 
 
@@ -95,8 +99,10 @@ def write_file(
     InputError
         If the folder does not exist or the path is a folder, or the description is none.
     """
-    about = as_description(description).to_dict()
-    whole = {"format": form.name, "version": max(form.versions), "description": about, **content}
+    about = as_description(description)
+    version = min(each for each, own in form.versions.items() if own >= about.version)
+    told = {"version": version, "description": about.to_dict()}
+    whole = {"format": form.name, **told, **content}
     text = json.dumps(whole, indent=2, allow_nan=False, ensure_ascii=False)
     with replacing(path) as temporary:
         temporary.write_text(_lists_on_one_line(text) + "\n", encoding="utf-8")

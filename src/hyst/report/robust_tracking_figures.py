@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from hyst.control import ClosedLoop, DisturbanceObserver, InverseComparison, LinearSystem
 from hyst.control.frequency_responses import loop_responses
 from hyst.operators import Affine, Operator
-from hyst.report.observer_figures import draw_observer_bode, error_panel, output_panel
+from hyst.report.observer.figures import draw_observer_bode, error_panel, output_panel
 from hyst.report.panels import Panel, draw_panels
 
 Array = NDArray[np.float64]

@@ -8,10 +8,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, final
 
+import numpy as np
+from numpy.typing import NDArray
+
 from hyst import _single
-from hyst.control.tracking_controller import KIND, TrackingController
+from hyst.control.drive_limits import stated, within
+from hyst.control.saved_block import KIND
+from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError
 from hyst.export.c.core_stage import CoreStage, core_stages
+from hyst.export.c.limited import OUT_OF_RANGE, LimitedStages, limits_in
 from hyst.export.c.numbers import Precision
 from hyst.export.c.scheduled import OFF_SCHEDULE, scheduled_code, second_values
 from hyst.export.c.stage_code import StageCode
@@ -20,9 +26,11 @@ from hyst.models.scheduled import Scheduled
 from hyst.models.scheduled_inverse import ScheduledInverse
 from hyst.models.stable_inverse import StableInverse
 from hyst.online import JointEstimator
-from hyst.operators import Affine, ModelDescription, Operator
+from hyst.operators import Affine, ModelDescription, Operator, Play
 from hyst.operators.registry import compose
 from hyst.operators.verdict import refuse_if_unfit
+
+Array = NDArray[np.float64]
 
 Model = Operator | ScheduledSystem | TrackingController | StableInverse | JointEstimator
 
@@ -72,6 +80,11 @@ class Block:
         Its name and unit.
     faults
         C that defines further bits of the fault.
+    written
+        Makes the body anew of the stages' C, for constants in another place; where the body is not
+        one call of the stages after the other.
+    limits
+        Lowest and highest output, in numbers of the target; None without limits.
     """
 
     kind: str
@@ -93,6 +106,8 @@ class Block:
     second: tuple[float, ...] = ()
     second_meaning: tuple[str, str] = ("", "")
     faults: str = ""
+    written: Callable[[StageCode], str] | None = None
+    limits: tuple[float, float] | None = None
 
     def sha256(self) -> str:
         """Give the hash of the model."""
@@ -243,9 +258,12 @@ def _scheduled(model: Scheduled | ScheduledInverse, precision: Precision) -> Blo
 
 def _controller(model: TrackingController, precision: Precision) -> Block:
     inverse = () if model.inverse is None else core_stages(model.inverse)
-    code = StageCode((_linear_part(model), *inverse), precision)
     # What the test signal passes: the gain from y_ref to v, then the inverse.
     gain = Affine(abs(float(model.D[0])) or 1.0)
+    passed = gain if model.inverse is None else compose((gain, model.inverse))
+    if model.W is not None:
+        return _limited(model, model.W, inverse, passed, precision)
+    code = StageCode((_linear_part(model), *inverse), precision)
     return Block(
         kind=KIND,
         inputs=("y_ref", "y"),
@@ -259,8 +277,43 @@ def _controller(model: TrackingController, precision: Precision) -> Block:
         dt=model.dt,
         model=model.to_dict(),
         stages=code.stages,
-        chain=gain if model.inverse is None else compose((gain, model.inverse)),
+        chain=passed,
         stepper=model.stepper,
+    )
+
+
+def _limited(
+    model: TrackingController,
+    W: Array,
+    inverse: tuple[CoreStage, ...],
+    passed: Operator,
+    precision: Precision,
+) -> Block:
+    forward = () if model.forward is None else core_stages(model.forward)
+    numbers = limits_in(precision, *stated(model.limits, model.rate, model.dt))
+    stages = LimitedStages(_linear_part(model), inverse, forward, numbers, tuple(W.tolist()))
+    code = StageCode(stages.all, precision)
+    low, high, _ = numbers
+    last = within((low, high), 0.0)
+    reach = [abs(each) for each in model.limits or () if each != 0.0]
+    return Block(
+        kind=KIND,
+        inputs=("y_ref", "y"),
+        output="u",
+        head=code.declarations(),
+        body=stages.body(code),
+        signal="v",
+        headers=code.headers(),
+        start=(*model.initial_state()[:-1].tolist(), last),
+        dt=model.dt,
+        model=model.to_dict(),
+        stages=code.stages,
+        # Far enough to meet the limits, too.
+        chain=compose((passed, Play(max(reach)))) if reach else passed,
+        stepper=model.stepper,
+        faults=OUT_OF_RANGE,
+        written=stages.body,
+        limits=(low, high),
     )
 
 

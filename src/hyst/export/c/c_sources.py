@@ -48,7 +48,10 @@ def places(
         "saved_bytes": str(12 + WORD_BYTES[precision] * (length + 1)),
         "word": "uint32_t" if single else "uint64_t",
         "word_bytes": str(WORD_BYTES[precision]),
-        "zero": "HYST_REAL(0.0)",
+        "zero": "HYST_REAL(0.0)" if block.limits is None else _rest(block, precision),
+        "rest": "0" if block.limits is None else _rest(block, precision),
+        "fault_there": _fault(block, name, "state"),
+        "fault_here": _fault(block, name, "&state"),
         "identity": f"0x{block.identity(precision):08x}",
         "wrong_precision": "ifndef" if single else "ifdef",
         "how_to_compile": "compile every file with -DHYST_SINGLE"
@@ -63,9 +66,7 @@ def places(
         "samples": str(SAMPLES),
         "signals": _signals(block, about),
         "more_faults": block.faults.replace("@{NAME}", name.upper()),
-        "raised": f"({name.upper()}_NOT_FINITE | {name.upper()}_OFF_SCHEDULE)"
-        if block.second
-        else f"{name.upper()}_NOT_FINITE",
+        "raised": _raised(block, name.upper()),
         "sample_time": _sample_time(block, name),
         # What a refused sample leaves in an estimator's scratch area is of no use.
         "saved_number": "hyst_is_finite(state->memory[i]) ? state->memory[i] : HYST_REAL(0.0)"
@@ -149,6 +150,26 @@ def vectors(block: Block, test: SelfTest, places: dict[str, str], precision: Pre
         "expected": table(test.expected.tolist(), precision, "expected"),
     }
     return filled("selftest_vectors.h", places | more)
+
+
+def _rest(block: Block, precision: Precision) -> str:
+    """Give the last drive of a limited block before the first sample, which ends its memory."""
+    return f"({literal(block.start[-1], precision, 'start')})"
+
+
+def _fault(block: Block, name: str, state: str) -> str:
+    """Give the fault as the self-test reads it: its input need not meet limits."""
+    fault = f"{name}_fault({state})"
+    return fault if block.limits is None else f"({fault} | {name.upper()}_OUT_OF_RANGE)"
+
+
+def _raised(block: Block, prefix: str) -> str:
+    bits = [f"{prefix}_NOT_FINITE"]
+    if block.second:
+        bits.append(f"{prefix}_OFF_SCHEDULE")
+    if block.limits is not None:
+        bits.append(f"{prefix}_OUT_OF_RANGE")
+    return bits[0] if len(bits) == 1 else f"({' | '.join(bits)})"
 
 
 def _template(block: Block) -> str:

@@ -56,7 +56,9 @@ def readme(
         "usage": _ESTIMATOR_USAGE if block.is_estimator else _USAGE,
         "faults": _ESTIMATOR_FAULTS
         if block.is_estimator
-        else _FAULTS + (_SCHEDULE_FAULTS if block.second else ""),
+        else _FAULTS
+        + (_SCHEDULE_FAULTS if block.second else "")
+        + (_LIMIT_FAULTS if block.limits is not None else ""),
         "in_precision": " in single precision" if places["precision"] == "single" else "",
         "elements": ", ".join(block.inputs),
     }
@@ -123,6 +125,11 @@ memory it did not reach stays as it was, and `@{name}_fault` gives `@{NAME}_NOT_
 _SCHEDULE_FAULTS = """\
 Constants follow the second signal by straight lines; outside the values they are known at they are
 held at the nearer end, and `@{name}_fault` gives `@{NAME}_OFF_SCHEDULE` too.
+"""
+_LIMIT_FAULTS = """\
+The drive never leaves its limits, before `@{name}_init` and after bad samples neither; where more
+was asked for it is held there, and `@{name}_fault` gives `@{NAME}_OUT_OF_RANGE` too. That is no
+error: the controller goes on with what was applied.
 """
 _ESTIMATOR_USAGE = """\
     u = @{name}_command(&state, y_ref);               /* the input for the output that is wanted */

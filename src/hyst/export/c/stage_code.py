@@ -111,8 +111,8 @@ class StageCode:
                 lines += _in_lines(f"static const {self._written(stage.structure, stage, index)}")
         return "\n".join(lines) + "\n" if lines else ""
 
-    def calls(self, signal: str = "u", memory: str = "memory") -> str:
-        """Give the statements that take one sample through all stages.
+    def calls(self, signal: str = "u", memory: str = "memory", only: range | None = None) -> str:
+        """Give the statements that take one sample through all stages, or some of them.
 
         Parameters
         ----------
@@ -120,6 +120,8 @@ class StageCode:
             The variable that holds the input, and afterwards the output.
         memory
             Points to the first number of memory.
+        only
+            Places of the stages that are called, one after the other; all if left out.
 
         Returns
         -------
@@ -130,6 +132,9 @@ class StageCode:
         offset = 0
         first = _first_inside(self.stages)
         for index, stage in enumerate(self.stages):
+            if only is not None and index not in only:
+                offset += stage.state_length
+                continue
             lines += [
                 f"const hyst_real {_input(self.stages[around], around)} = {signal};"
                 for around in first.get(index, ())

@@ -96,7 +96,11 @@ def fmu_model(model: Model) -> FmuModel:
     code = StageCode(block.stages, "double", _HELD_BY)
     if block.is_estimator:
         return FmuModel(tool, code)
-    body = block.body.replace(fixed, code.calls(block.signal))
+    body = (
+        block.body.replace(fixed, code.calls(block.signal))
+        if block.written is None
+        else block.written(code)
+    )
     return FmuModel(replace(tool, block=replace(block, head="", body=body)), code)
 
 
@@ -162,6 +166,7 @@ def _model_header(model: FmuModel, common: dict[str, str], token: str) -> str:
         "estimate": f"(state)->memory[{common['NAME']}_THETA + (place)]"
         if tool.estimates
         else "HYST_REAL(0.0)",
+        "out_of_range": "0u" if tool.block.limits is None else f"{common['NAME']}_OUT_OF_RANGE",
         "count": str(len(values)),
         "size": str(max(len(values), 1)),
         "sample_time": "" if dt is None else f"#define HYST_FMU_DT {dt!r} /* seconds */\n",

@@ -199,7 +199,8 @@ static hyst_fmu_status hyst_fmu_step(hyst_fmu_instance *fmu, double time, double
         fmu->now.output = hyst_fmu_evaluate(&fmu->now.stage, &fmu->now.constant, fmu->now.input);
     }
     fmu->now.time = time + step;
-    fault = hyst_fmu_fault(&fmu->now.stage);
+    /* A drive held at its limits is told by the variable alone. */
+    fault = hyst_fmu_fault(&fmu->now.stage) & ~(uint32_t)HYST_FMU_OUT_OF_RANGE;
     if ((fault & ~fmu->fault_reported) == 0) {
         return HYST_FMU_OK;
     }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,12 +24,16 @@ from hyst.identification.families.hammerstein.told.identified_hammerstein import
     IdentifiedHammerstein,
     Loop,
 )
+from hyst.identification.families.hammerstein.told.kept_errors import kept_errors
 from hyst.identification.families.hammerstein.told.known_dynamics import (
     KnownDynamics,
     known_dynamics,
 )
 from hyst.identification.families.hammerstein.told.marginal import without_marginal
-from hyst.identification.families.hammerstein.yardstick.yardstick import yardstick_of
+from hyst.identification.families.hammerstein.yardstick.yardstick import (
+    stretches_of,
+    yardstick,
+)
 from hyst.identification.families.hammerstein.yardstick.yardstick_told import lowered
 from hyst.identification.families.option import AUTO
 from hyst.identification.record_use.overview import Overview
@@ -67,9 +73,12 @@ def identified_with_dynamics(
     spread = spread_of_fit(overview.data, fit)
     known = known_dynamics(fit, overview.data, spread)
     poles, pole_errors = _poles(known)
-    yardstick = yardstick_of(fit, overview.data)
-    verdict = lowered(identified.verdict, yardstick, records[0].output_unit)
+    stretches = stretches_of(fit, overview.data)
+    left = yardstick(stretches, dynamics)
+    verdict = lowered(identified.verdict, left, records[0].output_unit)
+    about = replace(identified.description, dynamics_errors=kept_errors(known, stretches))
     taken = vars(identified) | {
+        "description": about,
         "undetermined": identified.undetermined + reason + not_determined(known),
         "verdict": without_marginal(verdict_on(verdict, known), dynamics, records),
     }
@@ -89,7 +98,7 @@ def identified_with_dynamics(
         front=front,
         noise_rms=spread.noise_rms,
         known=known,
-        yardstick=yardstick,
+        yardstick=left,
     )
 
 

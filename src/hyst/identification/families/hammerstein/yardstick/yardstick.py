@@ -182,6 +182,19 @@ def yardstick_of(fit: Fit, data: Data) -> Yardstick:
     data
         Its records, in its units.
     """
+    return yardstick(stretches_of(fit, data), dynamics_of(fit))
+
+
+def stretches_of(fit: Fit, data: Data) -> list[Stretch]:
+    """Give the records as a yardstick takes them, with the output of a fit of them.
+
+    Parameters
+    ----------
+    fit
+        The final fit.
+    data
+        Its records, in its units.
+    """
     stretches = []
     passes = zip(data.records, data.windows(), data.brought_forward(), data.counted(), strict=True)
     most = max(MOST_PERIODIC // len(data.records), 1)
@@ -194,7 +207,7 @@ def yardstick_of(fit: Fit, data: Data) -> Yardstick:
             y[out] = modelled[out]
         if stop - window.start > 1:
             stretches.append(Stretch(record.u[:stop], y, modelled, window.start))
-    return yardstick(stretches, dynamics_of(fit))
+    return stretches
 
 
 def yardstick(stretches: Sequence[Stretch], dynamics: LinearDynamics) -> Yardstick:

@@ -1,0 +1,1 @@
+"""The loop that people use: its margins, a designed controller, feedforward, a comparison."""

@@ -1,0 +1,106 @@
+"""Frequencies at which a response is looked at, and where on them something is crossed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+_AROUND = np.concatenate([-np.geomspace(0.02, 6.0, 14)[::-1], [0.0], np.geomspace(0.02, 6.0, 14)])
+_BISECTIONS = 60
+
+
+def frequencies_around(
+    features: ComplexArray, highest: float, per_decade: int = 60, beyond: float = 1e3
+) -> Array:
+    """Give frequencies that miss no resonance: a logarithmic grid, and closer ones near each pole.
+
+    Parameters
+    ----------
+    features
+        Poles and zeros of interest, 1/s.
+    highest
+        End of the grid, rad/s; infinite for ``beyond`` times the fastest.
+    per_decade
+        Of the grid.
+    beyond
+        How far below the slowest and above the fastest the grid goes.
+
+    Returns
+    -------
+    numpy.ndarray
+        Ascending, rad/s.
+    """
+    sizes = np.abs(features)
+    sizes = sizes[sizes > 1e-9 * sizes.max(initial=0.0)]
+    if sizes.size == 0:
+        sizes = np.array([1.0 if np.isinf(highest) else 0.1 * highest])
+    end = float(sizes.max() * beyond) if np.isinf(highest) else highest
+    begin = min(float(sizes.min()), end) / beyond
+    grid = np.geomspace(begin, end, int(per_decade * np.log10(end / begin)) + 2)
+    near = np.abs(features.imag)[:, None] + np.abs(features.real)[:, None] * _AROUND
+    near = near[(near > begin) & (near < end)]
+    return np.union1d(grid, near)
+
+
+def crossings(w: Array, value: Callable[[Array], Array]) -> Array:
+    """Give the frequencies at which a real function of frequency changes its sign on a grid.
+
+    Parameters
+    ----------
+    w
+        Grid, rad/s, ascending.
+    value
+        The function.
+
+    Returns
+    -------
+    numpy.ndarray
+        To rounding; ascending.
+    """
+    at = value(w)
+    where = np.flatnonzero((at[:-1] > 0.0) != (at[1:] > 0.0))
+    low, high, rising = w[where].copy(), w[where + 1].copy(), at[where + 1] > 0.0
+    if where.size == 0:
+        return low
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        above = (value(middle) > 0.0) == rising
+        high, low = np.where(above, middle, high), np.where(above, low, middle)
+    return np.asarray(0.5 * (low + high))
+
+
+def highest(w: Array, value: Callable[[Array], Array]) -> tuple[float, float]:
+    """Give the largest value of a function on a grid, searched between its points, and where it is.
+
+    Parameters
+    ----------
+    w
+        Grid, rad/s, ascending.
+    value
+        The function.
+
+    Returns
+    -------
+    value, frequency
+    """
+    at = value(w)
+    inside = np.flatnonzero((at[1:-1] >= at[:-2]) & (at[1:-1] >= at[2:])) + 1
+    inside = inside[np.argsort(-at[inside])][:4]
+    best, place = float(at.max()), float(w[int(np.argmax(at))])
+    low, high = w[inside - 1].copy(), w[inside + 1].copy()
+    for _ in range(4 if inside.size else 0):
+        tried = low + (high - low) * np.linspace(0.0, 1.0, 21)[:, None]
+        values = value(tried.ravel()).reshape(tried.shape)
+        k = np.argmax(values, axis=0)
+        columns = np.arange(inside.size)
+        top = values[k, columns]
+        if top.max() > best:
+            best, place = float(top.max()), float(tried[k[top.argmax()], top.argmax()])
+        low = tried[np.maximum(k - 1, 0), columns]
+        high = tried[np.minimum(k + 1, 20), columns]
+    return best, place

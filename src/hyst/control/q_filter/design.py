@@ -1,0 +1,197 @@
+"""Design of a classical Q-filter: one time constant, searched on the exact norm."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from hyst.checks.numbers import as_positive, whole_number
+from hyst.control.q_filter.certificate import certify_filter
+from hyst.control.q_filter.family import LARGEST_ORDER, QFilter, q_filter
+from hyst.control.q_filter.free_search import FreeSearch
+from hyst.control.q_filter.problem import QFilterProblem, q_filter_problem
+from hyst.control.q_filter.result import QFilterObserver
+from hyst.control.q_filter.textbook import time_constant_search
+from hyst.errors import InputError
+
+FAMILIES = ("textbook", "free")
+_MORE_NOISE = 1.5  # than at frequency 0: what a free filter may amplify
+_AUTO_MORE = 3  # orders tried above the least
+_WORTH = 0.02  # an order more is taken for that much less of the norm
+
+
+def design_q_filter(
+    plant: Any,
+    controller: Any,
+    Wu: Any,
+    Wp: Any,
+    order: int | str | None = None,
+    relative_degree: int | None = None,
+    *,
+    family: str = "textbook",
+    most_noise: float | None = None,
+) -> QFilterObserver:
+    r"""Find the Q-filter that rejects most within a given uncertainty.
+
+    ``min over tau of || [Wu T; Wp (1 - Q)] ||_inf`` for the filters of S1 eq. 28 with binomial
+    coefficients, or over all coefficients of a free filter of given order and relative degree.
+
+    Systems are transfer functions or state spaces of python-control, pairs (num, den), matrices
+    (A, B, C, D) or numbers, in continuous time, with one input and one output. A zero of the plant
+    that is not in the open left half plane is kept as a zero of Q, for Q/Pn must be stable; the
+    summary says which.
+
+    Parameters
+    ----------
+    plant
+        Nominal plant Pn: stable.
+    controller
+        C, in u = C (y_ref - y); stabilizes Pn.
+    Wu
+        Weight of the multiplicative uncertainty, P = Pn (1 + Delta), |Delta| <= |Wu|; stable.
+    Wp
+        Weight of 1 - Q, what is left of the disturbance; stable.
+    order
+        m; ``"auto"`` tries from the least to three more and takes one more where it lowers the
+        norm by a fiftieth; one above the least if left out.
+    relative_degree
+        rho, at least that of the plant. If left out, the largest there is for the textbook filter,
+        1/(tau s + 1)^m, and that of the plant, at least 1, for the free one.
+    family
+        ``"textbook"`` or ``"free"``.
+    most_noise
+        Bound on the largest |Q/Pn|. If left out there is none for the textbook filter, and for the
+        free one 1.5/|Pn(0)|, or what the textbook filter of that order has if that is more.
+
+    Returns
+    -------
+    QFilterObserver
+        Also when gamma is above 1: ``feasible`` and ``message`` say so.
+
+    Raises
+    ------
+    InputError
+        If a system cannot be used, the order is too low for the relative degree of the plant and
+        the zeros Q must keep, or no filter keeps noise below its bound.
+
+    Source
+    ------
+    El-Shaer, Al Janaideh, Krejci and Tomizuka 2013, sec. 4.3.
+
+    Examples
+    --------
+    >>> w = 565.5
+    >>> plant = ([w * w], [1.0, 1.6 * w, w * w])
+    >>> Wu = ([1.0, 960.0, 0.0], [1.0, 960.0, 5.76e6])
+    >>> Wp = ([0.5, 201.1], [1.0, 0.2])
+    >>> found = design_q_filter(plant, ([4.0, 8.0], [1.0, 0.0]), Wu, Wp)
+    >>> found.name, round(found.gamma, 2)
+    ('1/(tau s + 1)^3', 0.95)
+    """
+    if family not in FAMILIES:
+        raise InputError(f"family is {family!r}; give one of {', '.join(FAMILIES)}")
+    problem = q_filter_problem(plant, controller, Wu, Wp)
+    bound = None if most_noise is None else as_positive(most_noise, "most_noise", "a gain of Q/Pn")
+    with threadpool_limits(1, user_api="blas"):
+        if order == "auto":
+            return _best_order(problem, relative_degree, family, bound)
+        m, rho = degrees(problem, order, relative_degree, family)
+        return _one(problem, m, rho, family, bound)
+
+
+def degrees(
+    problem: QFilterProblem, order: int | str | None, relative_degree: int | None, family: str
+) -> tuple[int, int]:
+    """Give order and relative degree of the filter, or refuse what the plant does not allow."""
+    least, kept = max(problem.plant_relative_degree, 1), int(problem.kept_zeros.size)
+    if order is None:
+        m = least + kept + 1
+        if relative_degree is not None:
+            m = max(m, relative_degree + kept)
+    else:
+        m = whole_number(order, "order", 1, LARGEST_ORDER)
+    if relative_degree is None:
+        rho = m - kept if family == "textbook" else min(least, m - kept)
+    else:
+        rho = whole_number(relative_degree, "relative_degree", 1, LARGEST_ORDER)
+    if rho < least:
+        raise InputError(
+            f"the filter has relative degree {rho}, below {least} of the plant, so Q/Pn cannot be "
+            f"realized; give order {least + kept} and relative degree {least} at least"
+        )
+    if rho + kept > m:
+        raise InputError(
+            f"relative degree {rho} and {kept} kept zeros need order {rho + kept} at least, not "
+            f"{m}; raise the order"
+        )
+    return m, rho
+
+
+def _one(
+    problem: QFilterProblem, m: int, rho: int, family: str, most_noise: float | None
+) -> QFilterObserver:
+    least = 1.0 / float(abs(problem.plant_factors.response(np.zeros(1, complex))[0]))
+    if most_noise is not None and most_noise < least * (1.0 - 1e-9):
+        raise InputError(
+            f"no filter keeps |Q/Pn| below {most_noise:.4g}: at 0 it is 1/|Pn(0)| = {least:.4g}, "
+            "for Q(0) = 1; allow more noise"
+        )
+    if family == "free":
+        return _free(problem, m, rho, most_noise, least)
+    kept = problem.kept_zeros
+
+    def of_tau(tau: float) -> QFilter:
+        return q_filter(m, tau=tau, relative_degree=rho, kept_zeros=kept)
+
+    search = time_constant_search(problem, of_tau, most_noise)
+    tau, _ = search.run()
+    Q = of_tau(tau)
+    certificate = certify_filter(problem, Q)
+    if most_noise is not None and certificate.observer_noise_gain > most_noise * (1.0 + 1e-6):
+        raise InputError(
+            f"no filter of order {m} and relative degree {rho} keeps |Q/Pn| below "
+            f"{most_noise:.4g}: {certificate.observer_noise_gain:.4g} at best; allow more noise"
+        )
+    step = f"search         {search.evaluations} exact norms, tau = {tau:.6g} s"
+    return QFilterObserver(problem, Q, certificate, family, (step,))
+
+
+def _free(
+    problem: QFilterProblem, m: int, rho: int, most_noise: float | None, least: float
+) -> QFilterObserver:
+    kept = int(problem.kept_zeros.size)
+    textbook = _one(problem, m, m - kept, "textbook", None)
+    bound = most_noise
+    if bound is None:
+        bound = max(_MORE_NOISE * least, textbook.certificate.observer_noise_gain)
+    search = FreeSearch(problem, rho, textbook.tau or 1.0, bound)
+    Q = search.run(m)
+    certificate = certify_filter(problem, Q)
+    if certificate.observer_noise_gain > bound * (1.0 + 1e-4):
+        raise InputError(
+            f"no filter of order {m} and relative degree {rho} was found that keeps |Q/Pn| below "
+            f"{bound:.4g}; {certificate.observer_noise_gain:.4g} at best, so allow more noise"
+        )
+    step = f"search         {search.descents} descents, |Q/Pn| bounded by {bound:.4g}"
+    return QFilterObserver(problem, Q, certificate, "free", (step,))
+
+
+def _best_order(
+    problem: QFilterProblem, relative_degree: int | None, family: str, most_noise: float | None
+) -> QFilterObserver:
+    m, _ = degrees(problem, None, relative_degree, family)
+    best: QFilterObserver | None = None
+    for order in range(m - 1, m + _AUTO_MORE):
+        try:
+            m_rho = degrees(problem, order, relative_degree, family)
+            found = _one(problem, *m_rho, family, most_noise)
+        except InputError:
+            if order == m + _AUTO_MORE - 1 and best is None:
+                raise
+            continue
+        if best is None or found.gamma < (1.0 - _WORTH) * best.gamma:
+            best = found
+    assert best is not None
+    return best

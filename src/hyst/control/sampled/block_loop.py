@@ -1,0 +1,183 @@
+"""Frequency responses of the loop that a sampled block closes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst.control.linear_system import LinearSystem
+from hyst.control.sampled.plant import SampledPlant
+from hyst.control.tracking_controller import TrackingController
+from hyst.errors import InputError
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+_PER_DECADE, _EVEN = 60, 400
+_AROUND = np.array([-8.0, -4.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0])
+_ROUNDS, _POINTS, _TOPS = 6, 21, 12
+
+
+@dataclass(frozen=True)
+class BlockLoop:
+    """A block around the plant it samples, with a perfect inverse in between.
+
+    ``v = -K y`` is what the block does with the output; ``d_hat`` is its observer's estimate.
+    """
+
+    block: TrackingController
+    plant: SampledPlant
+
+    def __post_init__(self) -> None:
+        if abs(self.block.dt - self.plant.dt) > 1e-6 * self.plant.dt:
+            raise InputError(
+                f"the block has dt = {self.block.dt:.6g} s, the plant {self.plant.dt:.6g} s; give "
+                "the same for both"
+            )
+
+    @property
+    def dt(self) -> float:
+        """Sample time, s."""
+        return self.block.dt
+
+    @property
+    def feedback(self) -> LinearSystem:
+        """From y to v, which is -K."""
+        b = self.block
+        return LinearSystem(b.A, b.B[:, 1:], b.C[None, :], np.array([[b.D[1]]]), b.dt)
+
+    @property
+    def controller(self) -> LinearSystem:
+        """From y to v + d_hat: minus the controller alone, as if there were no observer."""
+        b = self.block
+        if b.E is None or b.F is None:
+            return self.feedback
+        return LinearSystem(
+            b.A, b.B[:, 1:], (b.C + b.E)[None, :], np.array([[b.D[1] + b.F[1]]]), b.dt
+        )
+
+    def closed(self, slope: float = 1.0) -> LinearSystem:
+        """Close the loop; from noise at y to v, states those of the block, then of the plant.
+
+        Parameters
+        ----------
+        slope
+            Of hysteresis after inverse: a gain at the plant's input.
+        """
+        K, P = self.feedback, self.plant.system
+        m, n = K.order, P.order
+        A = np.zeros((m + n, m + n))
+        A[:m, :m], A[:m, m:] = K.A, K.B @ P.C
+        A[m:, :m], A[m:, m:] = slope * P.B @ K.C, P.A + slope * P.B @ K.D @ P.C
+        B = np.vstack([K.B, slope * P.B @ K.D])
+        return LinearSystem(A, B, np.hstack([K.C, K.D @ P.C]), K.D, self.dt)
+
+    def poles(self, slope: float = 1.0) -> ComplexArray:
+        """Give the poles of the closed loop, the largest modulus first.
+
+        Parameters
+        ----------
+        slope
+            As in ``closed``.
+        """
+        poles = self.closed(slope).poles()
+        return poles[np.argsort(-np.abs(poles))]
+
+    def at(self, w: Array, slope: float = 1.0) -> LoopValues:
+        """Evaluate the loop over frequency.
+
+        Parameters
+        ----------
+        w
+            rad/s, above 0 and at most pi/dt, shape (K,).
+        slope
+            As in ``closed``.
+        """
+        z = np.exp(1j * w * self.dt)
+        K, Pd = -self.feedback.response(z)[:, 0, 0], self.plant.system.response(z)[:, 0, 0]
+        alone = -self.controller.response(z)[:, 0, 0]
+        below = 1.0 + slope * K * Pd
+        return LoopValues(w, Pd, K / below, 1.0 / below, (1.0 + slope * alone * Pd) / below)
+
+    def grid(self, *weights: LinearSystem) -> Array:
+        """Give frequencies that show all poles of loop, plant and weights, folded below pi/dt.
+
+        Parameters
+        ----------
+        weights
+            Continuous or sampled.
+        """
+        nyquist = np.pi / self.dt
+        sampled = [self.closed().poles(), self.plant.system.poles(), self.feedback.poles()]
+        poles = [_continuous(each, self.dt) for each in sampled]
+        systems = [*weights] if self.plant.continuous is None else [self.plant.continuous, *weights]
+        for each in systems:
+            poles.append(_continuous(each.poles(), each.dt) if each.dt > 0.0 else each.poles())
+        features = np.concatenate(poles) if poles else np.zeros(0, complex)
+        features = features[np.isfinite(features)]
+        sharp = features.imag[:, None] + np.abs(features.real)[:, None] * _AROUND
+        size = np.abs(features)
+        folded = np.abs(_folded(np.concatenate([sharp.ravel(), size]), nyquist))
+        slow = min(float(size[size > 1e-9 * nyquist].min(initial=nyquist)) / 100.0, 1e-3 * nyquist)
+        even = np.linspace(0.0, nyquist, _EVEN + 1)[1:]
+        decades = np.log10(nyquist / slow)
+        log = np.geomspace(slow, nyquist, int(_PER_DECADE * decades) + 2)
+        w = np.unique(np.concatenate([even, log, folded]))
+        return np.asarray(w[(w >= slow) & (w <= nyquist)])
+
+
+@dataclass(frozen=True)
+class LoopValues:
+    """Values over frequency ``w``: ``Pd``, ``N = K S``, ``S``, and what is left, ``E``."""
+
+    w: Array
+    Pd: ComplexArray
+    N: ComplexArray
+    S: ComplexArray
+    E: ComplexArray
+
+
+def largest(function: Callable[[Array], Array], w: Array) -> tuple[float, float]:
+    """Give the largest value of a function of frequency and where it is, closed in on.
+
+    Parameters
+    ----------
+    function
+        Takes frequencies, shape (K,), and gives values of this shape.
+    w
+        The grid to start from, rising.
+    """
+    values = np.asarray(function(w))
+    if not np.isfinite(values).all():
+        return np.inf, float(w[int(np.argmax(~np.isfinite(values)))])
+    best, where = float(values.max()), float(w[int(values.argmax())])
+    if best <= 0.0:
+        return 0.0, where
+    padded = np.concatenate([[-np.inf], values, [-np.inf]])
+    tops = np.flatnonzero((values >= padded[:-2]) & (values >= padded[2:]) & (values > 0.8 * best))
+    tops = tops[np.argsort(-values[tops])][:_TOPS]
+    low, high = w[np.maximum(tops - 1, 0)], w[np.minimum(tops + 1, w.size - 1)]
+    for _ in range(_ROUNDS):
+        points = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, _POINTS)
+        found = np.asarray(function(points.ravel())).reshape(points.shape)
+        index = found.argmax(axis=1)
+        rows = np.arange(tops.size)
+        if found.max() > best:
+            row = int(found.max(axis=1).argmax())
+            best, where = float(found[row, index[row]]), float(points[row, index[row]])
+        low = points[rows, np.maximum(index - 1, 0)]
+        high = points[rows, np.minimum(index + 1, _POINTS - 1)]
+    return best, where
+
+
+def _continuous(poles: ComplexArray, dt: float) -> ComplexArray:
+    """Give the continuous poles that samples at dt show at z; those at 0 die within a sample."""
+    away = poles[np.abs(poles) > 1e-12]
+    return np.asarray(np.log(away.astype(complex)) / dt)
+
+
+def _folded(w: Array, nyquist: float) -> Array:
+    return np.asarray((w + nyquist) % (2.0 * nyquist) - nyquist)

@@ -1,0 +1,180 @@
+"""The C of a tracking controller whose drive is limited, as the core has it, without chains."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from hyst.errors import InputError
+from hyst.export.c.core_stage import CoreStage
+from hyst.export.c.numbers import Precision
+from hyst.export.c.stage_code import StageCode
+from hyst.export.c.templating import indented
+
+OUT_OF_RANGE = (
+    "#define @{NAME}_OUT_OF_RANGE 16u /* the drive asked for was beyond its limits or its rate: "
+    "held */\n"
+)
+
+
+def limits_in(
+    precision: Precision, low: float, high: float, change: float
+) -> tuple[float, float, float]:
+    """Give limits in numbers of a precision, none of them wider than they are.
+
+    Parameters
+    ----------
+    precision
+        Of the target.
+    low, high, change
+        As the core takes them.
+
+    Raises
+    ------
+    InputError
+        If no number of that precision is left between them, or of the change.
+    """
+    if precision == "double":
+        return low, high, change
+    inner = _not_below(low), -_not_below(-high), -_not_below(-change)
+    if not inner[0] < inner[1] or (change > 0.0 and inner[2] <= 0.0):
+        raise InputError(
+            f"the limits {low:.9g} to {high:.9g}, {change:.9g} a sample, leave no number of single "
+            "precision; choose double, or wider limits"
+        )
+    return inner
+
+
+def _not_below(value: float) -> float:
+    largest = np.finfo(np.float32).max
+    nearest = np.float32(np.clip(value, -float(largest), float(largest)))
+    below = float(nearest) < value and nearest < largest
+    return float(np.nextafter(nearest, np.float32(np.inf)) if below else nearest)
+
+
+@final
+@dataclass(frozen=True)
+class LimitedStages:
+    """What a sample passes.
+
+    Parameters
+    ----------
+    linear
+        The linear part.
+    inverse, forward
+        The stages from v to the drive, and back.
+    limits
+        Lowest and highest drive, and most change in a sample.
+    w
+        What the states of the linear part take back.
+    """
+
+    linear: CoreStage
+    inverse: tuple[CoreStage, ...]
+    forward: tuple[CoreStage, ...]
+    limits: tuple[float, float, float]
+    w: tuple[float, ...]
+
+    @property
+    def all(self) -> tuple[CoreStage, ...]:
+        """All of them, in the order of their memory."""
+        numbers = dict(zip(("low", "high", "change"), self.limits, strict=True))
+        limits = CoreStage(
+            kind="drive_limits",
+            numbers=numbers,
+            tables={},
+            choices={"forward": _outermost(self.forward)},
+            form="",
+            state_length=1,
+            offers=dict.fromkeys(numbers, (0, "")),
+            feeds_through=True,
+            header="hyst/drive_limits.h",
+            structure="hyst_drive_limits $model = {$low, $high, $change};",
+            call="$signal = hyst_limited_drive(&$model, $memory, $signal);",
+        )
+        windup = CoreStage(
+            kind="anti_windup",
+            numbers={},
+            tables={"w": self.w},
+            choices={},
+            form="",
+            state_length=0,
+            offers={"w": (0, "")},
+            feeds_through=True,
+            header="hyst/tracking_controller.h",
+            structure="",
+            call="hyst_tracking_take_back(#w, $w, memory, $signal);",
+        )
+        return (self.linear, *self.inverse, *self.forward, limits, windup)
+
+    def body(self, code: StageCode) -> str:
+        """Give the statements that take ``y_ref`` and ``y`` and leave the drive in ``v``."""
+        first = 1 + len(self.inverse)
+        last = first + len(self.forward)
+        memory = sum(each.state_length for each in self.inverse)
+        there = f"memory[{sum(each.state_length for each in self.all) - 1}]"
+        inverse = range(1, first)
+        inner = [
+            "const hyst_real wanted = v;",
+            "hyst_real u = v;",
+            "hyst_real applied;",
+            "int held = 0;",
+            *self._copied("before", "memory", memory, declared=True),
+            *(["{", indented(code.calls("u", only=inverse)), "}"] if self.inverse else []),
+            "if (!hyst_is_finite(u)) { /* no drive belongs to v: the last one is kept */",
+            "    held = 1;",
+            "    state->fault |= @{NAME}_NOT_FINITE;",
+            f"    u = {there};",
+            "}",
+            "v = u;",
+            code.calls("v", only=range(last, last + 1)).rstrip("\n"),
+            "applied = v;",
+            code.calls("applied", only=range(first, last)).rstrip("\n"),
+            "if (!hyst_is_finite(applied)) {",
+            "    state->fault |= @{NAME}_NOT_FINITE;",
+            "    applied = wanted;",
+            "}",
+            "if ((held != 0) || (v < u) || (v > u)) { /* on with the v of the drive */",
+            *(["    hyst_real again = applied;"] if self.inverse else []),
+            "    const hyst_real excess = applied - wanted;",
+            *(f"    {line}" for line in self._copied("memory", "before", memory)),
+            indented(code.calls("again", only=inverse)),
+            *(["    (void)again;"] if self.inverse else []),
+            indented(code.calls("excess", only=range(last + 1, last + 2))),
+            "    state->fault |= @{NAME}_OUT_OF_RANGE;",
+            "}",
+        ]
+        return (
+            "hyst_real v = (y_ref - y_ref) + (y - y); /* 0, or NaN if one is not finite */\n"
+            + code.calls("v", only=range(1))
+            + "if (hyst_is_finite(v)) {\n"
+            + indented("\n".join(line for line in inner if line.strip()))
+            + "\n}\n"
+        )
+
+    def _copied(self, to: str, source: str, count: int, declared: bool = False) -> list[str]:
+        """C that copies the memory of the inverse, which stands behind that of the linear part."""
+        if count == 0:
+            return []
+        offset = self.linear.state_length
+        place = {
+            "memory": f"memory[{offset}u + i]" if offset else "memory[i]",
+            "before": "before[i]",
+        }
+        lines = [f"hyst_real before[{count}];", "size_t i;"] if declared else []
+        return [
+            *lines,
+            f"for (i = 0; i < {count}u; ++i) {{",
+            f"    {place[to]} = {place[source]};",
+            "}",
+        ]
+
+
+def _outermost(stages: tuple[CoreStage, ...]) -> int:
+    """Count stages; those inside another one count with it."""
+    count = 0
+    for stage in stages:
+        count += 1 - stage.inside
+    return count

@@ -1,0 +1,1 @@
+"""The answer of an observer: is the loop that runs safe, what does it buy, what is it."""

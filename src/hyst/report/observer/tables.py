@@ -1,0 +1,235 @@
+"""Tables of the answer of an observer, the same for the terminal and for the page."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hyst.control import SampledCertificate, TriedLoop
+from hyst.report.observer.answer import ObserverAnswer
+from hyst.report.observer.words import STANDINGS, bandwidth_told, hertz, rightmost, told
+from hyst.report.table import Table, number
+
+THIS = "this block"
+
+
+def answer_tables(answer: ObserverAnswer) -> tuple[Table, ...]:
+    """Give the four tables of an answer: safety, tracking, other designs, what it is.
+
+    Parameters
+    ----------
+    answer
+        Of ``hyst observer``.
+
+    Returns
+    -------
+    tuple of Table
+    """
+    return checks_table(answer), tracking_table(answer), rivals_table(answer), filter_table(answer)
+
+
+def checks_table(answer: ObserverAnswer) -> Table:
+    """List the conditions of safety, and what else is known beside them.
+
+    Parameters
+    ----------
+    answer
+        Of ``hyst observer``.
+
+    Returns
+    -------
+    Table
+    """
+    rows = [(what, "yes" if holds else "NO", said) for what, holds, said in answer.checks()]
+    rows += _proof(answer) + _design(answer) + _true_plant(answer) + _range(answer)
+    c = answer.certificate
+    rows.append(
+        (
+            "observer rejects what Wp asks for",
+            "yes" if answer.meets_demand else "NO",
+            f"norm of Wp E {number(c.performance_norm)} at {hertz(c.performance_frequency)}",
+        )
+    )
+    robust = f"{number(c.robust_performance)} at {hertz(c.robust_performance_frequency)}"
+    rows.append(
+        (
+            "it does so for every plant within Wu",
+            "yes" if c.robust_performance < 1.0 else "no",
+            f"|Wp E| + |Wu T| up to {robust}",
+        )
+    )
+    return Table("Is the loop safe?", ("condition", "holds", "by"), tuple(rows))
+
+
+def _proof(answer: ObserverAnswer) -> list[tuple[str, str, str]]:
+    j = answer.judgement
+    if j.slopes is None:
+        return []
+    low, high = j.slopes
+    what = f"proven with this inverse: slopes {low:.3g} to {high:.3g}, every plant within Wu"
+    if j.proof is None:
+        return [(what, "open", "the simulation diverges")]
+    said = f"circle criterion on differences, {number(j.proof)} must be below 1"
+    return [(what, "yes" if answer.proven_with_inverse else "open", said)]
+
+
+def _design(answer: ObserverAnswer) -> list[tuple[str, str, str]]:
+    """Tell the margin of the design in continuous time beside that of the block."""
+    margin = answer.margin_of_design
+    if margin is None:
+        return []
+    own = answer.design.certificate
+    said = (
+        f"norm of Wu T {number(own.uncertainty_norm)} at {hertz(own.uncertainty_frequency)}; that "
+        "of the block counts"
+    )
+    return [("the design in continuous time would be", "yes" if margin > 1.0 else "NO", said)]
+
+
+def _true_plant(answer: ObserverAnswer) -> list[tuple[str, str, str]]:
+    true = answer.true_plant
+    if true is None:
+        return []
+    said = f"|P / Pn - 1| up to {number(true.used)} |Wu|, at {hertz(true.frequency)}"
+    return [("true plant is within Wu", "yes" if true.within else "NO", said)]
+
+
+def _range(answer: ObserverAnswer) -> list[tuple[str, str, str]]:
+    if answer.identified is None:
+        return []
+    what = "drive stays where the model was identified, {} to {}".format(
+        *map(number, answer.identified)
+    )
+    holds = "yes" if answer.within_identified else "NO"
+    return [(what, holds, "{} to {}".format(*map(number, answer.drive_range)))]
+
+
+def tracking_table(answer: ObserverAnswer) -> Table:
+    """List tracking errors by inverse, without and with the observer, and if each loop is safe.
+
+    Parameters
+    ----------
+    answer
+        Of ``hyst observer``.
+
+    Returns
+    -------
+    Table
+    """
+    rows: list[tuple[str, ...]] = []
+    marked = 0
+    for name in answer.observed:
+        for observer, of in (("no", answer.without), ("yes", answer.observed)):
+            if name == answer.inverse_name and observer == "yes":
+                marked = len(rows)
+            rows.append(_tracked(name, observer, of[name]))
+    return Table(
+        f"What does the observer buy? The loop, {answer.sampled()}",
+        ("inverse", "observer", "rms error", "max error", "drive, jump a sample", "safe?"),
+        tuple(rows),
+        marked,
+    )
+
+
+def _tracked(name: str, observer: str, tried: TriedLoop) -> tuple[str, ...]:
+    loop = tried.loop
+    return (
+        name,
+        observer,
+        told(loop.rms_error),
+        told(loop.max_error),
+        told(loop.drive_jitter),
+        STANDINGS[tried.judgement.standing],
+    )
+
+
+def rivals_table(answer: ObserverAnswer) -> Table:
+    """Compare the block with simpler ones for the same plant and weights.
+
+    Parameters
+    ----------
+    answer
+        Of ``hyst observer``.
+
+    Returns
+    -------
+    Table
+    """
+    blocks = {**answer.rivals, THIS: answer.certificate}
+    rows = tuple((name, *_certified(each)) for name, each in blocks.items())
+    return Table(
+        "Is a simpler one as good?",
+        ("block", "stacked", "Wu T", "Wp E", "rejects up to", "noise to v", "jump of v a sample"),
+        rows,
+        len(rows) - 1,
+    )
+
+
+def _certified(c: SampledCertificate) -> tuple[str, ...]:
+    if not c.nominal_stable:
+        return ("unstable", "-", "-", "-", "-", "-")
+    return (
+        number(c.stacked_norm),
+        number(c.uncertainty_norm),
+        number(c.performance_norm),
+        bandwidth_told(c.rejection_bandwidth).split(",")[0],
+        number(c.noise_gain),
+        number(c.noise_jitter),
+    )
+
+
+def filter_table(answer: ObserverAnswer) -> Table:
+    """List what the observer is: its gain, Q(s) and its poles.
+
+    Parameters
+    ----------
+    answer
+        Of ``hyst observer``.
+
+    Returns
+    -------
+    Table
+    """
+    c, design = answer.certificate, answer.design
+    rows: list[tuple[str, str]] = []
+    if getattr(design, "gain", None) is not None:
+        rows.append(("gain L", ", ".join(number(each, 8) for each in design.gain)))
+    own = None if answer.margin_of_design is None else design.certificate
+    if own is not None:
+        rows += [
+            ("Q(s) numerator", ", ".join(number(each, 8) for each in own.Q_numerator)),
+            ("Q(s) denominator", ", ".join(number(each, 8) for each in own.Q_denominator)),
+        ]
+    fastest = c.fastest_pole if own is None else float(np.abs(own.observer_poles).max(initial=0.0))
+    # A design in discrete time is of this sample time.
+    beyond = "" if own is None or fastest < c.nyquist else ": too fast for this sample time"
+    rows += [
+        ("rejects disturbances up to", bandwidth_told(c.rejection_bandwidth)),
+        (
+            "fastest pole",
+            f"{hertz(fastest)}; half the sample rate is {hertz(c.nyquist)}{beyond}",
+        ),
+        (
+            "sensor noise of 1, white",
+            f"v: {number(c.noise_rms)}, its jump from sample to sample: {number(c.noise_jitter)}; "
+            f"at most {number(c.noise_gain)} at {hertz(c.noise_frequency)}",
+        ),
+    ]
+    if own is not None:
+        rows.append(("slowest pole of Q", f"{rightmost(own.observer_poles)} 1/s"))
+    if answer.noise:
+        tried = answer.observed[answer.inverse_name]
+        rows.append(
+            (
+                f"sensor noise of {number(answer.noise)}",
+                f"drive: {number(tried.noise_in_drive)}, its jump: {number(tried.noise_jitter)}",
+            )
+        )
+    if answer.bound is not None:
+        rows.append(
+            (
+                "error of the inverse",
+                f"command off by at most {number(answer.bound.bound)}, its output by at most "
+                f"{number(answer.bound.output_bound)}, for |v| up to {number(answer.bound.y_max)}",
+            )
+        )
+    return Table("What is it?", ("what", "value"), tuple(rows))
