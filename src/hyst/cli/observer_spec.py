@@ -14,6 +14,7 @@ import hyst
 from hyst._files import read_small
 from hyst.checks.numbers import as_not_negative, as_positive
 from hyst.cli.arguments import load_operator
+from hyst.cli.observer_design import HowToDesign, read_design
 from hyst.cli.observer_plant import (
     block_dt,
     load_hysteresis,
@@ -41,7 +42,8 @@ class ObserverSpec:
     ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
     ``inverse_name``), ``reference``, at the samples of the block, ``settle``, ``noise``,
     ``disturbance`` and ``seed`` what is simulated; ``filter_dt``, ``filter_method`` and ``delay``
-    say what is implemented. The plant is sampled where it was ``identified`` (else None),
+    say what is implemented; ``design`` how, ``limits`` and ``rate`` what its drive may do. The
+    plant is sampled where it was ``identified`` (else None),
     continuous where it was written; ``delay`` is its dead time and that of the block together.
     """
 
@@ -62,6 +64,9 @@ class ObserverSpec:
     filter_dt: float
     filter_method: Method
     delay: float
+    design: HowToDesign
+    limits: tuple[float, float] | None
+    rate: float | None
     identified: IdentifiedPlant | None
 
 
@@ -114,6 +119,7 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
             f"[filter] dt is {filter_dt:g} s, and {reference.size * dt - settle:g} s are measured; "
             "give a shorter one"
         )
+    limits, rate = _limits(spec)
     read = ObserverSpec(
         plant=plant.system,
         true_plant=spec.section("true_plant").system() if spec.has("true_plant") else None,
@@ -132,6 +138,9 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         filter_dt=filter_dt,
         filter_method="zoh" if method == "zoh" else "tustin",
         delay=plant.delay + _further_delay(implemented),
+        design=read_design(spec, plant.identified is not None and plant.system.dt > 0.0),
+        limits=limits,
+        rate=rate,
         identified=plant.identified,
     )
     for each in (spec, weights, simulation, implemented):
@@ -141,6 +150,24 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
 
 def _further_delay(implemented: Section) -> float:
     return as_not_negative(implemented.number("delay", 0.0), "[filter] delay", "a time in s")
+
+
+def _limits(spec: Section) -> tuple[tuple[float, float] | None, float | None]:
+    """Read ``[limits]``, which may be left out: ``drive = [low, high]`` and ``rate``, units a s."""
+    if not spec.has("limits"):
+        return None, None
+    given = spec.section("limits")
+    drive = None
+    if given.has("drive"):
+        values = given.numbers("drive")
+        if values.size != 2 or values[0] >= values[1]:
+            raise hyst.InputError(
+                f"[limits] drive is {values.tolist()}; give [low, high], the lower one first"
+            )
+        drive = (float(values[0]), float(values[1]))
+    rate = given.number("rate", positive=True) if given.has("rate") else None
+    given.done()
+    return drive, rate
 
 
 def _internal_model(given: Section) -> InternalModel:

@@ -60,14 +60,23 @@ def tried(spec: ObserverSpec, design: Any, stress: int | None) -> ObserverAnswer
 
 
 def _block(spec: ObserverSpec, design: Any, inverse: hyst.Operator | None) -> TrackingController:
+    # What the limited drive makes of v: by the model where the inverse is that of the model.
+    forward = spec.hysteresis if inverse == _exact(spec.hysteresis) else None
     return hyst.control.TrackingController.from_continuous(
         spec.controller,
         spec.filter_dt,
         observer=design,
         inverse=inverse,
         method=spec.filter_method,
+        limits=spec.limits,
+        rate=spec.rate,
+        hysteresis=None if spec.limits is None and spec.rate is None else forward,
         despite_verdict=True,  # who does not want that was refused at the beginning
     )
+
+
+def _exact(hysteresis: hyst.Operator) -> hyst.Operator | None:
+    return hysteresis.inverse() if hysteresis.is_invertible() else None
 
 
 def _run(spec: ObserverSpec, block: TrackingController) -> TriedLoop:

@@ -43,7 +43,7 @@ def check_assumptions(problem: ObserverProblem) -> None:
     ):
         _check_kind(name, system)
     _check_plant(problem.plant)
-    _check_internal_model(problem.internal_model)
+    check_internal_model(problem.internal_model)
     _check_zeros(problem.plant, problem.internal_model)
     _check_weight("Wu", problem.Wu)
     _check_weight("Wp", problem.Wp)
@@ -95,7 +95,7 @@ def _check_plant(plant: LinearSystem) -> None:
         raise InputError(
             "the plant's gain is zero: its input does not reach its output; check B and C"
         )
-    seen = _least_seen(plant.A, plant.C, plant.poles())
+    seen = least_seen(plant.A, plant.C, plant.poles())
     if seen is not None:
         raise InputError(
             f"assumption 3: the plant is not observable, its mode {_text(seen)} 1/s does not reach "
@@ -103,9 +103,10 @@ def _check_plant(plant: LinearSystem) -> None:
         )
 
 
-def _check_internal_model(model: InternalModel) -> None:
+def check_internal_model(model: InternalModel) -> None:
+    """Refuse an internal model that its output does not show, or without an eigenvalue at 0."""
     eigenvalues = np.linalg.eigvals(model.A_d).astype(complex)
-    hidden = _least_seen(model.A_d, model.C_d, eigenvalues)
+    hidden = least_seen(model.A_d, model.C_d, eigenvalues)
     if hidden is not None:
         number = "assumption 4: " if hidden.real >= 0.0 else ""
         raise InputError(
@@ -169,7 +170,7 @@ def _not_left(values: ComplexArray, scale: float | None = None) -> ComplexArray:
     return found[np.argsort(-found.real)]
 
 
-def _least_seen(A: Array, C: Array, eigenvalues: ComplexArray) -> complex | None:
+def least_seen(A: Array, C: Array, eigenvalues: ComplexArray) -> complex | None:
     """Find a mode that the output does not show, by the test of Popov, Belevitch and Hautus."""
     n = A.shape[0]
     size = float(np.abs(eigenvalues).max(initial=0.0)) or 1.0

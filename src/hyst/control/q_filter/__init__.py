@@ -9,6 +9,10 @@ from hyst.control.q_filter.family import QFilter, q_filter
 from hyst.control.q_filter.problem import QFilterProblem, q_filter_problem
 from hyst.control.q_filter.result import QFilterObserver
 from hyst.control.q_filter.robust_performance import RobustPerformance, robust_performance
+from hyst.control.q_filter.sampled_design import (
+    SampledQFilterObserver,
+    design_sampled_q_filter,
+)
 
 __all__ = [
     "DesignRow",
@@ -17,8 +21,10 @@ __all__ = [
     "QFilterObserver",
     "QFilterProblem",
     "RobustPerformance",
+    "SampledQFilterObserver",
     "compare_designs",
     "design_q_filter",
+    "design_sampled_q_filter",
     "q_filter",
     "q_filter_problem",
     "robust_performance",

@@ -13,7 +13,7 @@ from hyst.control.q_filter.family import LARGEST_ORDER, QFilter, q_filter
 from hyst.control.q_filter.free_search import FreeSearch
 from hyst.control.q_filter.problem import QFilterProblem, q_filter_problem
 from hyst.control.q_filter.result import QFilterObserver
-from hyst.control.q_filter.search import TimeConstantSearch
+from hyst.control.q_filter.textbook import time_constant_search
 from hyst.errors import InputError
 
 FAMILIES = ("textbook", "free")
@@ -145,16 +145,17 @@ def _one(
     def of_tau(tau: float) -> QFilter:
         return q_filter(m, tau=tau, relative_degree=rho, kept_zeros=kept)
 
-    search = TimeConstantSearch(problem, of_tau, most_noise)
-    found = search.run()
-    if most_noise is not None and found.noise > most_noise * (1.0 + 1e-6):
+    search = time_constant_search(problem, of_tau, most_noise)
+    tau, _ = search.run()
+    Q = of_tau(tau)
+    certificate = certify_filter(problem, Q)
+    if most_noise is not None and certificate.observer_noise_gain > most_noise * (1.0 + 1e-6):
         raise InputError(
             f"no filter of order {m} and relative degree {rho} keeps |Q/Pn| below "
-            f"{most_noise:.4g}: {found.noise:.4g} at best; allow more noise"
+            f"{most_noise:.4g}: {certificate.observer_noise_gain:.4g} at best; allow more noise"
         )
-    step = f"search         {search.evaluations} exact norms, tau = {found.tau:.6g} s"
-    Q = of_tau(found.tau)
-    return QFilterObserver(problem, Q, certify_filter(problem, Q), family, (step,))
+    step = f"search         {search.evaluations} exact norms, tau = {tau:.6g} s"
+    return QFilterObserver(problem, Q, certificate, family, (step,))
 
 
 def _free(

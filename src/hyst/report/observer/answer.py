@@ -21,7 +21,7 @@ from hyst.control import (
     TriedLoop,
 )
 from hyst.report.observer.words import finite, hertz, told
-from hyst.report.tables import number
+from hyst.report.table import number
 
 ComplexArray = NDArray[np.complex128]
 
@@ -216,9 +216,9 @@ class ObserverAnswer:
     @property
     def margin_of_design(self) -> float | None:
         """How often Wu may grow around the design in continuous time; None if there is none."""
-        own = getattr(self.design, "certificate", None)
-        if isinstance(own, SampledCertificate) or own is None:
+        if getattr(self.design, "dt", 0.0) > 0.0:
             return None
+        own = self.design.certificate
         return float(own.robust_stability_margin) if own.nominal_stable else 0.0
 
     def _but(self) -> str:
@@ -241,8 +241,7 @@ class ObserverAnswer:
         return (
             f" BUT sensor noise of {number(self.noise)} makes the drive jump by "
             f"{number(with_it.noise_jitter)} from sample to sample, "
-            f"{number(with_it.noise_jitter / max(alone.noise_jitter, 1e-300), 2)} times as much as "
-            "without the observer."
+            f"{_times(with_it.noise_jitter, alone.noise_jitter)}."
         )
 
     def gain_sentence(self) -> str:
@@ -349,6 +348,12 @@ class ObserverAnswer:
                 "radius": self.stress.radius,
             },
         }
+
+
+def _times(with_it: float, alone: float) -> str:
+    if alone == 0.0:
+        return "which it would not without the observer"
+    return f"{float(f'{with_it / alone:.2g}'):.6g} times as much as without the observer"
 
 
 def _row(tried: TriedLoop) -> dict[str, Any]:

@@ -7,7 +7,7 @@ import numpy as np
 from hyst.control import SampledCertificate, TriedLoop
 from hyst.report.observer.answer import ObserverAnswer
 from hyst.report.observer.words import STANDINGS, bandwidth_told, hertz, rightmost, told
-from hyst.report.tables import Table, number
+from hyst.report.table import Table, number
 
 THIS = "this block"
 
@@ -200,7 +200,8 @@ def filter_table(answer: ObserverAnswer) -> Table:
             ("Q(s) denominator", ", ".join(number(each, 8) for each in own.Q_denominator)),
         ]
     fastest = c.fastest_pole if own is None else float(np.abs(own.observer_poles).max(initial=0.0))
-    beyond = "" if fastest < 0.5 * c.nyquist else ": too fast for this sample time"
+    # A design in discrete time is of this sample time.
+    beyond = "" if own is None or fastest < c.nyquist else ": too fast for this sample time"
     rows += [
         ("rejects disturbances up to", bandwidth_told(c.rejection_bandwidth)),
         (
