@@ -138,7 +138,7 @@ class SampledStackedGain(StackedGain):
         return SampledStackedGain(self.problem, self.free + 1, self.freed, self.fastest_pole)
 
     def rates(self) -> tuple[float, float]:
-        """Ends of the band in which free eigenvalues may start, in the w-plane."""
+        """Give the ends of the band in which free eigenvalues may start, in the w-plane."""
         most = _FREE_SHARE * self.scale * float(np.exp(self.fastest))
         return min(self.scale / 3.0, 0.1 * most), most
 
