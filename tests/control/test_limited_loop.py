@@ -11,12 +11,10 @@ from closed_loop_cases import CONTROLLER, HYSTERESIS, INVERSE, OBSERVER, PLANT
 import hyst
 from hyst.control import (
     ClosedLoop,
-    LinearSystem,
     TrackingController,
-    discretize,
+    reference_feedforward,
     simulate_closed_loop,
 )
-from hyst.control.anti_windup import anti_windup
 
 DT = 1e-4
 LIMITS = (-35.0, 35.0)
@@ -90,25 +88,14 @@ def test_a_slow_loop_comes_back_as_if_it_had_never_been_limited() -> None:
         assert np.abs(limited.y - never.y)[later:].max() < 0.1
 
 
-def with_feedforward(limits: Any, inverse: Any) -> TrackingController:
-    """C = 4 + 8/s of the error and 1 of the reference, which the plant passes with a gain of 1."""
-    C, observer = discretize(CONTROLLER, DT), discretize(OBSERVER, DT)
-    plain = block(CONTROLLER, observer=OBSERVER, inverse=inverse, limits=None)
-    share = 1.0 + observer.D[0, 0]
-    B, D = plain.B.copy(), plain.D + np.array([1.0 / share, 0.0])
-    B[C.order :, 0] += observer.B[:, 0] / share
-    more: dict[str, Any] = {}
-    if limits is not None:
-        W, G = anti_windup(LinearSystem(C.A, C.B, C.C, C.D + 1.0, DT), observer)
-        more = {"limits": limits, "W": W, "G": G}
-    return TrackingController(plain.A, B, plain.C, D, DT, inverse, **more)
-
-
 @pytest.mark.parametrize("inverse", [INVERSE, SCALED])
-def test_the_same_slow_loop_with_feedforward_is_back_at_once(inverse: Any) -> None:
+@pytest.mark.parametrize("order", [0, 1, 2])
+def test_the_same_slow_loop_with_feedforward_is_back_at_once(order: int, inverse: Any) -> None:
     """What is conditioned is the whole way of the reference, or C would rest at what is left."""
-    limited = loop(with_feedforward(LIMITS, inverse))
-    never = loop(with_feedforward(None, inverse), NEAR)
+    F = reference_feedforward(PLANT, DT, order=order)
+    made: dict[str, Any] = {"observer": OBSERVER, "inverse": inverse, "feedforward": F}
+    limited = loop(block(CONTROLLER, **made))
+    never = loop(block(CONTROLLER, limits=None, **made), NEAR)
     assert np.abs(limited.u).max() == 35.0
     assert recovery(never) < 0.05
     assert recovery(limited) < 0.05
