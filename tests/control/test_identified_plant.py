@@ -187,3 +187,11 @@ def test_errors_of_dynamics_need_the_version_that_has_them(tmp_path: Path) -> No
     path.write_text(json.dumps(content | {"version": 3}), encoding="utf-8")
     with pytest.raises(hyst.InputError, match="unknown entry 'dynamics_errors'"):
         identified_plant(path)
+
+
+def test_errors_of_dynamics_are_not_those_of_an_inverse_or_of_other_constants() -> None:
+    about = found().model.description
+    assert about.dynamics_errors is not None
+    assert about.of_inverse().dynamics_errors is None
+    assert about.of_other_constants().dynamics_errors is None
+    assert about.of_estimate().dynamics_errors is None

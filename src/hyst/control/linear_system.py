@@ -137,9 +137,9 @@ def balanced_matrices(A: Array, B: Array, C: Array) -> tuple[Array, Array, Array
     return scales[:, None] * A / scales, scales[:, None] * B, C / scales
 
 
-def transfer_function_of(num: Array, den: Array) -> Any:
+def transfer_function_of(num: Array, den: Array, dt: float = 0.0) -> Any:
     """Give the ``control.TransferFunction`` of the polynomials num and den, highest power first."""
-    return _python_control().tf(num, den)
+    return _python_control().tf(num, den, dt)
 
 
 def as_linear_system(system: Any, name: str = "the system") -> LinearSystem:

@@ -35,7 +35,7 @@ def noise_without_observer(problem: ObserverProblem) -> LinearSystem:
     A[n:, :n] -= controller.B @ plant.C
     B = np.zeros((n + n_c, 1))
     B[:n], B[n:] = -plant.B @ controller.D, -controller.B
-    return LinearSystem(A, B, -v, controller.D)
+    return LinearSystem(A, B, -v, controller.D, plant.dt)
 
 
 def all_rows(problem: ObserverProblem, gain: Array) -> LinearSystem:

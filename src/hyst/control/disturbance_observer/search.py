@@ -24,8 +24,8 @@ Progress = Callable[[str, int, float], None]
 # Iterations of SLPMM: all of them, as many as the paper's, or a few where each takes long and the
 # descent that follows needs no more than a start.
 _FULL, _FEW, _LARGE = 14, 2, 5
-_PAYS = 0.95  # of the norm: an eigenvalue more has to bring it below
-_USUAL = 3  # starts for the quietest
+PAYS = 0.95  # of the norm: an eigenvalue more has to bring it below
+USUAL = 3  # starts for the quietest
 MOST_MORE = 6  # eigenvalues
 
 
@@ -103,7 +103,7 @@ def _linear(gain: StackedGain, how: Search, steps: list[str]) -> tuple[Array, fl
 
 
 def _quiet(gain: StackedGain, best: Descent, how: Search, steps: list[str]) -> Descent:
-    starts = usual_parameters(gain)[:_USUAL] if gain.free == 0 else []
+    starts = usual_parameters(gain)[:USUAL] if gain.free == 0 else []
     quiet = quietest(gain, best, starts, how.flat)
     if quiet is not best:
         steps.append(
@@ -129,7 +129,7 @@ def _more(
         eigenvalue = larger.eigenvalues(more.parameters)
         told = ", ".join(f"{each:.4g}" for each in np.sort(eigenvalue.real))
         line = f"order {larger.order:<8d} {more.norm:.4f}, noise gain {noise_of(larger, more):.3g}"
-        if auto and more.norm > _PAYS * best.norm:
+        if auto and more.norm > PAYS * best.norm:
             steps.append(f"{line}: does not pay, left at {gain.order}")
             break
         steps.append(f"{line}, eigenvalues {told} 1/s more in the internal model")

@@ -143,6 +143,15 @@ class StackedGain:
             np.concatenate([of_poles[1], of_model[1]]),
         )
 
+    def enlarged(self) -> StackedGain:
+        """Give the same with one free eigenvalue more."""
+        return StackedGain(self.problem, self.free + 1, self.fastest_pole)
+
+    def rates(self) -> tuple[float, float]:
+        """Give the ends of the band in which free eigenvalues may start, 1/s."""
+        size = np.abs(self.features)
+        return float(size.min()) / 3.0, 3.0 * float(size.max())
+
     def inside(self, parameters: Array) -> Array:
         """Take the parameters into their bounds, and poles to where none is too fast."""
         held = np.clip(parameters, self.lowest, self.highest)

@@ -255,8 +255,9 @@ def _program(
         by_t = np.concatenate([np.ones(len(stack)), np.zeros(len(noise))])
         return np.hstack([np.vstack([stack, noise]), by_t[:, None]])
 
-    t = float(_heights(free, start, at_stack, most_noise)[0].max())
     low, high = np.array(free.bounds()).T
+    start = np.clip(start, low, high)
+    t = float(_heights(free, start, at_stack, most_noise)[0].max())
     # Peaks not met yet rise where the program does not look: steps are kept short.
     near = [(max(a, x - 0.7), min(b, x + 0.7)) for a, b, x in zip(low, high, start, strict=True)]
     unit = np.zeros(free.size + 1)

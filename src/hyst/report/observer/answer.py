@@ -14,14 +14,17 @@ from hyst.compensation import ErrorBound
 from hyst.control import (
     EXACT,
     ClosedLoop,
+    ControllerDesign,
+    LoopComparison,
     LoopJudgement,
+    LoopMargins,
     SampledCertificate,
     StressTest,
     TrackingController,
     TriedLoop,
 )
 from hyst.report.observer.words import finite, hertz, told
-from hyst.report.tables import number
+from hyst.report.table import number
 
 ComplexArray = NDArray[np.complex128]
 
@@ -82,6 +85,12 @@ class ObserverAnswer:
         Least and largest drive the model was identified from; None if not known.
     stress
         A search for a plant that breaks the block; None if none was asked for.
+    margins
+        Of the loop with C alone and of that with the block; None where they are not told.
+    controller_design
+        What C was designed by; None if it was written.
+    parts
+        What inverse, feedback and observer are worth alone and together; None if not asked for.
     """
 
     design: Any
@@ -95,6 +104,9 @@ class ObserverAnswer:
     bound: ErrorBound | None = None
     identified: tuple[float, float] | None = None
     stress: StressTest | None = None
+    margins: tuple[LoopMargins, LoopMargins] | None = None
+    controller_design: ControllerDesign | None = None
+    parts: LoopComparison | None = None
 
     @property
     def block(self) -> TrackingController:
@@ -216,9 +228,9 @@ class ObserverAnswer:
     @property
     def margin_of_design(self) -> float | None:
         """How often Wu may grow around the design in continuous time; None if there is none."""
-        own = getattr(self.design, "certificate", None)
-        if isinstance(own, SampledCertificate) or own is None:
+        if getattr(self.design, "dt", 0.0) > 0.0:
             return None
+        own = self.design.certificate
         return float(own.robust_stability_margin) if own.nominal_stable else 0.0
 
     def _but(self) -> str:
@@ -241,8 +253,7 @@ class ObserverAnswer:
         return (
             f" BUT sensor noise of {number(self.noise)} makes the drive jump by "
             f"{number(with_it.noise_jitter)} from sample to sample, "
-            f"{number(with_it.noise_jitter / max(alone.noise_jitter, 1e-300), 2)} times as much as "
-            "without the observer."
+            f"{_times(with_it.noise_jitter, alone.noise_jitter)}."
         )
 
     def gain_sentence(self) -> str:
@@ -349,6 +360,12 @@ class ObserverAnswer:
                 "radius": self.stress.radius,
             },
         }
+
+
+def _times(with_it: float, alone: float) -> str:
+    if alone == 0.0:
+        return "which it would not without the observer"
+    return f"{float(f'{with_it / alone:.2g}'):.6g} times as much as without the observer"
 
 
 def _row(tried: TriedLoop) -> dict[str, Any]:

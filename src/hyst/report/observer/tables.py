@@ -6,8 +6,9 @@ import numpy as np
 
 from hyst.control import SampledCertificate, TriedLoop
 from hyst.report.observer.answer import ObserverAnswer
+from hyst.report.observer.feedback_tables import margins_table, parts_table
 from hyst.report.observer.words import STANDINGS, bandwidth_told, hertz, rightmost, told
-from hyst.report.tables import Table, number
+from hyst.report.table import Table, number
 
 THIS = "this block"
 
@@ -24,7 +25,26 @@ def answer_tables(answer: ObserverAnswer) -> tuple[Table, ...]:
     -------
     tuple of Table
     """
-    return checks_table(answer), tracking_table(answer), rivals_table(answer), filter_table(answer)
+    first = checks_table(answer), tracking_table(answer), *feedback_tables(answer)
+    return *first, rivals_table(answer), filter_table(answer)
+
+
+def feedback_tables(answer: ObserverAnswer) -> tuple[Table, ...]:
+    """Give what is known of C: its margins, and what each part of the loop is worth.
+
+    Parameters
+    ----------
+    answer
+        Of ``hyst observer``.
+
+    Returns
+    -------
+    tuple of Table
+    """
+    worth = () if answer.parts is None else (parts_table(answer.parts),)
+    if answer.margins is None:
+        return worth
+    return *worth, margins_table(*answer.margins, answer.controller_design)
 
 
 def checks_table(answer: ObserverAnswer) -> Table:
@@ -200,7 +220,8 @@ def filter_table(answer: ObserverAnswer) -> Table:
             ("Q(s) denominator", ", ".join(number(each, 8) for each in own.Q_denominator)),
         ]
     fastest = c.fastest_pole if own is None else float(np.abs(own.observer_poles).max(initial=0.0))
-    beyond = "" if fastest < 0.5 * c.nyquist else ": too fast for this sample time"
+    # A design in discrete time is of this sample time.
+    beyond = "" if own is None or fastest < c.nyquist else ": too fast for this sample time"
     rows += [
         ("rejects disturbances up to", bandwidth_told(c.rejection_bandwidth)),
         (

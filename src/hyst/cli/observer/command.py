@@ -12,14 +12,14 @@ import hyst
 from hyst._files import replacing_files, require_folder
 from hyst.cli.arguments import DespiteVerdict
 from hyst.cli.console import at_work, note, show_files, show_table
-from hyst.cli.observer_spec import read_spec
-from hyst.cli.observer_template import TEMPLATE
-from hyst.cli.observer_trial import tried
+from hyst.cli.observer.design import designed
+from hyst.cli.observer.spec import read_spec
+from hyst.cli.observer.template import TEMPLATE
+from hyst.cli.observer.trial import tried
 from hyst.operators.verdict import refuse_if_unfit
 
 if TYPE_CHECKING:
-    from hyst.cli.observer_spec import ObserverSpec
-    from hyst.control import DisturbanceObserver
+    from hyst.cli.observer.spec import ObserverSpec
     from hyst.report import ObserverAnswer
 
 SpecFile = Annotated[
@@ -67,7 +67,7 @@ def observer(
     for each in (spec.hysteresis, spec.inverse):
         judged = None if each is None else each.description.verdict
         refuse_if_unfit(judged, "no controller is designed", despite_verdict)
-    answer = tried(spec, _design(spec), stress)
+    answer = tried(spec, designed(spec), stress)
     with at_work("drawing"):
         bode, loops = _bode(spec, answer), _loops(answer)
         page = hyst.report.observer_page(answer, bode, loops)
@@ -87,28 +87,6 @@ def observer(
     if lag:
         note(f"the recorded output lagged the model by {lag}: put that lag into plant or Wu")
     show_files([folder / name for name in names])
-
-
-def _design(spec: ObserverSpec) -> DisturbanceObserver:
-    try:
-        return _designed(spec, "slpmm+descent")
-    except hyst.MissingExtraError as missing:
-        note(f"{missing}; the descent alone is used, which needs neither")
-        return _designed(spec, "descent")
-
-
-def _designed(spec: ObserverSpec, method: str) -> DisturbanceObserver:
-    with at_work("designing the observer") as say:
-        return hyst.control.design_disturbance_observer(
-            spec.plant,
-            spec.controller,
-            spec.Wu,
-            spec.Wp,
-            spec.internal_model,
-            perturbed_plant=spec.true_plant,
-            method=method,
-            progress=lambda stage, step, best: say(f"{stage} {step}, best norm {best:.4f}"),
-        )
 
 
 def _bode(spec: ObserverSpec, answer: ObserverAnswer) -> bytes:
