@@ -1,4 +1,4 @@
-"""How well the slope of a hysteresis is known: what an exact inverse of it leaves of a slope of 1."""
+"""How well the slope of a hysteresis is known, which an exact inverse then misses by as much."""
 
 from __future__ import annotations
 
