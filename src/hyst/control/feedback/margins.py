@@ -13,7 +13,14 @@ from numpy.typing import NDArray
 from hyst.control.controller_parts import feedback_controller
 from hyst.control.discretization import Method, discretize
 from hyst.control.feedback.frequencies import crossings, frequencies_around, highest
-from hyst.control.feedback.loop_plant import LoopPlant, as_rates, loop_plant, points, rates_of
+from hyst.control.feedback.loop_plant import (
+    LoopPlant,
+    as_rates,
+    loop_plant,
+    points,
+    rates_of,
+    static_gain,
+)
 from hyst.control.feedback.stability import is_stable, loop_poles
 from hyst.control.linear_system import LinearSystem
 from hyst.control.tracking_controller import TrackingController
@@ -197,7 +204,8 @@ def margins_of(plant: LoopPlant, controller: LinearSystem) -> LoopMargins:
         turned, factors = turned[counted], factors[counted]
     turned, factors = _with_ends(plant, controller, turned, factors)
     peak, place = highest(w, lambda at: 1.0 / np.maximum(np.abs(1.0 + loop(at)), 1e-300))
-    first = loop(w[:1])[0]
+    at_rest = static_gain(plant.system) * static_gain(controller)
+    whole = 1.0 if math.isinf(at_rest) or math.isnan(at_rest) else _closed(at_rest)
     return LoopMargins(
         stable=stable,
         gain_margin=float(factors[factors > 1.0].min(initial=math.inf)),
@@ -206,7 +214,7 @@ def margins_of(plant: LoopPlant, controller: LinearSystem) -> LoopMargins:
         delay_margin=float((np.radians(angles % 360.0) / over).min(initial=math.inf)),
         modulus_margin=1.0 / peak,
         modulus_frequency=place,
-        bandwidth=_first(w, lambda at: np.abs(_closed(loop(at)) / _closed(first)) - _LEFT),
+        bandwidth=_first(w, lambda at: np.abs(_closed(loop(at))) - _LEFT * abs(whole)),
         rejection=_first(w, lambda at: _LEFT - 1.0 / np.maximum(np.abs(1.0 + loop(at)), 1e-300)),
         crossovers=over,
         phase_margins=angles,
