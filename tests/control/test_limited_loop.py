@@ -9,14 +9,21 @@ import pytest
 from closed_loop_cases import CONTROLLER, HYSTERESIS, INVERSE, OBSERVER, PLANT
 
 import hyst
-from hyst.control import ClosedLoop, TrackingController, simulate_closed_loop
+from hyst.control import (
+    ClosedLoop,
+    LinearSystem,
+    TrackingController,
+    discretize,
+    simulate_closed_loop,
+)
+from hyst.control.anti_windup import anti_windup
 
 DT = 1e-4
 LIMITS = (-35.0, 35.0)
 CLIPPING = hyst.DeadZone([1.0, -1.0, -1.0], [0.0, 35.0, -35.0])  # an amplifier that saturates
 BACK = 2.5  # s, when the reference is within reach again
 T = np.arange(round(4.5 / DT)) * DT
-# A reference of 45 asks for a drive of 46; with 35 the stage makes 30.
+# A reference of 45 asks for a drive of 46; with 35 the stage makes 25.
 FAR = np.where(T < 0.5, 0.0, np.where(T < BACK, 45.0, 10.0))
 REACHED = float(HYSTERESIS([0.0, 35.0])[-1])
 NEAR = np.minimum(FAR, REACHED)
@@ -71,7 +78,7 @@ def test_windup_that_is_gone() -> None:
 
 
 def test_a_slow_loop_comes_back_as_if_it_had_never_been_limited() -> None:
-    """C = 4 + 8/s makes a pole near -8/5 1/s, which 0.5 of 20 takes a second to reach."""
+    """C = 4 + 8/s makes a pole near -8/5 1/s, which takes a second to bring 3 down to 0.5."""
     for inverse in (INVERSE, SCALED):
         limited = loop(block(CONTROLLER, observer=OBSERVER, inverse=inverse))
         never = loop(block(CONTROLLER, observer=OBSERVER, inverse=inverse, limits=None), NEAR)
@@ -81,6 +88,30 @@ def test_a_slow_loop_comes_back_as_if_it_had_never_been_limited() -> None:
         # of what it had left, over 1 + 4.
         later = round((BACK + 0.2) / DT)
         assert np.abs(limited.y - never.y)[later:].max() < 0.1
+
+
+def with_feedforward(limits: Any, inverse: Any) -> TrackingController:
+    """C = 4 + 8/s of the error and 1 of the reference, which the plant passes with a gain of 1."""
+    C, observer = discretize(CONTROLLER, DT), discretize(OBSERVER, DT)
+    plain = block(CONTROLLER, observer=OBSERVER, inverse=inverse, limits=None)
+    share = 1.0 + observer.D[0, 0]
+    B, D = plain.B.copy(), plain.D + np.array([1.0 / share, 0.0])
+    B[C.order :, 0] += observer.B[:, 0] / share
+    more: dict[str, Any] = {}
+    if limits is not None:
+        W, G = anti_windup(LinearSystem(C.A, C.B, C.C, C.D + 1.0, DT), observer)
+        more = {"limits": limits, "W": W, "G": G}
+    return TrackingController(plain.A, B, plain.C, D, DT, inverse, **more)
+
+
+@pytest.mark.parametrize("inverse", [INVERSE, SCALED])
+def test_the_same_slow_loop_with_feedforward_is_back_at_once(inverse: Any) -> None:
+    """What is conditioned is the whole way of the reference, or C would rest at what is left."""
+    limited = loop(with_feedforward(LIMITS, inverse))
+    never = loop(with_feedforward(None, inverse), NEAR)
+    assert np.abs(limited.u).max() == 35.0
+    assert recovery(never) < 0.05
+    assert recovery(limited) < 0.05
 
 
 @pytest.mark.parametrize("rate", [2e3, 2e4, 2e5])

@@ -406,6 +406,40 @@ def test_robust_performance_below_one_holds_for_random_plants() -> None:
     assert most > 0.5 * told.worst
 
 
+@pytest.mark.parametrize("options", [{"order": 3}, {"order": 3, "family": "free"}])
+def test_what_holds_for_every_plant_can_be_asked_for(options: dict[str, Any]) -> None:
+    """Least |Wp (1 - Q)| + |Wu T|: no filter near the one found has less."""
+    stacked = design_q_filter(PLANT, REPAIRED_C, WU, WP, **options)
+    robust = design_q_filter(PLANT, REPAIRED_C, WU, WP, **options, objective="robust")
+    told = robust.certificate
+    assert told.robust_performance < 0.99 * stacked.certificate.robust_performance
+    assert robust.gamma > stacked.gamma
+    assert told.observer_noise_gain <= 1.5 * (1.0 + 1e-4)
+    w = np.geomspace(1e-1, 1e5, 20_000)
+    s = 1j * w
+    S0 = 1.0 / (1.0 + np.polyval(PLANT[0], s) / np.polyval(PLANT[1], s) * (4.0 + 8.0 / s))
+    Wu, Wp = (np.abs(np.polyval(each[0], s) / np.polyval(each[1], s)) for each in (WU, WP))
+
+    def total(above: Array, below: Array) -> float:
+        E = 1.0 - np.polyval(above, s) / np.polyval(below, s)
+        return float((Wp * np.abs(E) + Wu * np.abs(1.0 - S0 * E)).max())
+
+    above, below = robust.filter.numerator, robust.filter.denominator
+    assert total(above, below) == pytest.approx(told.robust_performance, rel=1e-5)
+    rng = np.random.default_rng(5)
+    for _ in range(40):
+        stretch = np.exp(rng.normal(0.0, 0.02))
+        if options.get("family") == "free":
+            poles = np.roots(below) * stretch * (1.0 + rng.normal(0.0, 0.02))
+            other = np.real(np.poly(poles))
+            top = np.append(above[:-1] * (1.0 + rng.normal(0.0, 0.02)), other[-1])
+        else:
+            other = below * stretch ** np.arange(below.size)
+            top = above * stretch ** (below.size - 1)
+        # Within the tie of 2e-4 and the spacing of w.
+        assert total(top, other) >= told.robust_performance * (1.0 - 4e-4)
+
+
 def test_robust_performance_of_the_papers_observer() -> None:
     design = evaluate_gain(observer_problem(PLANT, REPAIRED_C, WU, WP), PRINTED_GAIN)
     told = robust_performance(design)
@@ -462,6 +496,7 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"order": "best"}, "order is 'best'"),
     ({"family": "elliptic"}, "family is 'elliptic'; give one of textbook, free"),
     ({"most_noise": 0.0}, "most_noise is 0"),
+    ({"objective": "best"}, "objective is 'best'; give one of stacked, robust"),
     ({"plant": ([1.0], [1.0, -1.0])}, r"the plant is not stable, pole at \(?1"),
     ({"plant": ([1.0], [1.0, 0.0])}, "the plant is not stable"),
     ({"plant": ([1.0, 0.0], [1.0, 20.0, 200.0])}, "the plant has a zero at 0"),

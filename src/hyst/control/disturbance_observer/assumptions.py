@@ -87,8 +87,13 @@ def _check_plant(plant: LinearSystem) -> None:
     unstable = _not_left(plant.poles())
     if unstable.size:
         raise InputError(
-            f"assumption 2: the plant is not stable, pole at {_text(unstable[0])} 1/s; "
-            "stabilize it first and give the stable loop as the plant"
+            f"assumption 2: the plant is not stable, pole at {_text(unstable[0])} 1/s"
+            + _way_out(
+                unstable[0],
+                float(np.abs(plant.poles()).max()),
+                "give the damping it has, or stabilize it first",
+                "stabilize it first and give the stable loop as the plant",
+            )
         )
     # First, for a realization of nothing has no modes to see.
     if zeros_and_poles(plant).gain == 0.0:
@@ -137,8 +142,13 @@ def _check_zeros(plant: LinearSystem, model: InternalModel) -> None:
     right = _not_left(zeros, scale)
     if right.size:
         raise InputError(
-            f"assumption 1: the plant is not minimum phase, zero at {_text(right[0])} 1/s; its "
-            "inverse in the observer would be unstable, so take the zero into Wu"
+            f"assumption 1: the plant is not minimum phase, zero at {_text(right[0])} 1/s"
+            + _way_out(
+                right[0],
+                scale,
+                "the inverse in the observer would ring there for ever, so give the damping it has",
+                "its inverse in the observer would be unstable, so take the zero into Wu",
+            )
         )
 
 
@@ -168,6 +178,12 @@ def _not_left(values: ComplexArray, scale: float | None = None) -> ComplexArray:
     size = float(np.abs(values).max(initial=0.0)) if scale is None else scale
     found = values[values.real >= -_AXIS * size] if size else values
     return found[np.argsort(-found.real)]
+
+
+def _way_out(value: complex, size: float, at_border: str, beyond: str) -> str:
+    if abs(value.real) <= _AXIS * size:
+        return f", on the border of stability; {at_border}"
+    return f"; {beyond}"
 
 
 def least_seen(A: Array, C: Array, eigenvalues: ComplexArray) -> complex | None:

@@ -176,7 +176,7 @@ def _check(problem: ObserverProblem, how: Search) -> None:
         as_positive(how.fastest_pole, "fastest_pole", "a limit of the poles in rad/s")
     if how.order not in (None, "auto"):
         least = problem.order
-        whole_number(how.order, "order", least, least + MOST_MORE, "'auto' or ")
+        whole_number(how.order, "order", least, least + MOST_MORE, ", or 'auto'")
     asked = {"noise": problem.Wn, "fastest_pole": how.fastest_pole, "order": how.order}
     named = [name for name, value in asked.items() if value is not None]
     if how.method == "slpmm" and named:

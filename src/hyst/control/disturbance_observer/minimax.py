@@ -121,7 +121,7 @@ def _quadratic_step(heights: Array, slopes: Array, curvature: Array) -> tuple[Ar
 
 
 def carried(peaks: Array, weights: Array, new_peaks: Array) -> Array:
-    """Weights of the peaks, given to the nearest of the new_peaks."""
+    """Give the weights of the peaks to the nearest of the new_peaks."""
     given = np.zeros(new_peaks.size)
     for w, share in zip(peaks, weights, strict=True):
         given[np.argmin(np.abs(np.log(new_peaks / w)))] += share

@@ -29,7 +29,7 @@ _TIMES = 24
 _WORTH = {"i": 1.0, "pi": 1.2, "pid": 1.5}  # by how much a richer kind has to be better
 _OF_NYQUIST = 0.8
 _OFF = (-1.0, -0.5, 0.5, 1.0)  # of the mismatch
-_SHRINK, _SHRINKS = 0.98, 60
+_SHRINK, _SHRINKS = 0.995, 60
 _BELOW = 0.999  # of Ms is searched, so that what lies between two frequencies of the grid is kept
 
 

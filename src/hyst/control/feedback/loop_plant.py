@@ -68,7 +68,15 @@ class LoopPlant:
 
 
 def points(w: Array, dt: float) -> ComplexArray:
-    """Give s = jw, or z = exp(jw dt)."""
+    """Give s = jw, or z = exp(jw dt).
+
+    Parameters
+    ----------
+    w
+        Frequencies, rad/s.
+    dt
+        Sample time, s; 0 in continuous time.
+    """
     return np.asarray(np.exp(1j * w * dt) if dt else 1j * w, dtype=np.complex128)
 
 
@@ -78,7 +86,15 @@ def as_rates(system: LinearSystem) -> ComplexArray:
 
 
 def rates_of(poles: ComplexArray, dt: float) -> ComplexArray:
-    """Give poles in 1/s; those of whole samples of dead time, at z = 0, are left out."""
+    """Give poles in 1/s; those of whole samples of dead time, at z = 0, are left out.
+
+    Parameters
+    ----------
+    poles
+        In s or z.
+    dt
+        Sample time, s; 0 in continuous time.
+    """
     if not dt:
         return poles
     # Rounding spreads m poles at 0 over a circle of radius eps^(1/m).

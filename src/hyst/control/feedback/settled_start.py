@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from hyst.control.closed_loop import ClosedLoop
 from hyst.control.feedback.loop_plant import static_gain
-from hyst.control.sampled.plant import SampledPlant
+from hyst.control.sampled.plant import SampledPlant, sampled_plant
 from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError, SolverError
 from hyst.operators import Affine, Operator
@@ -48,6 +49,50 @@ class SettledStart:
     def at_rest_again(self, loop: ClosedLoop) -> ClosedLoop:
         """Give a loop that was simulated in deviations of the plant its own values."""
         return replace(loop, y=loop.y + self.y, eta=loop.eta + self.w, noise=loop.noise - self.y)
+
+
+def simulate_settled(
+    simulate: Callable[..., ClosedLoop],
+    reference: Array,
+    dt: float,
+    controller: Any,
+    plant: Any,
+    hysteresis: Operator | None,
+    noise: Array,
+    delay: float,
+    **options: Any,
+) -> ClosedLoop:
+    """Simulate a loop that has come to rest at the first value of the reference.
+
+    The plant is simulated in deviations from its rest, all else as it is.
+
+    Parameters
+    ----------
+    simulate
+        ``simulate_closed_loop``, which starts at rest with the plant's states at 0.
+    reference, dt, controller, plant, hysteresis, noise, delay, options
+        Its arguments.
+
+    Returns
+    -------
+    ClosedLoop
+
+    Raises
+    ------
+    InputError
+        If the controller is no TrackingController, or as ``settled_start``.
+    """
+    if not isinstance(controller, TrackingController):
+        raise InputError(
+            "start='settled' is for blocks as they run; give a TrackingController as controller"
+        )
+    met = sampled_plant(plant, dt, delay)
+    begun = settled_start(controller, met, hysteresis, float(reference[0]))
+    loop = simulate(
+        reference, dt, plant=met, controller=begun.block, hysteresis=begun.hysteresis(hysteresis),
+        noise=noise + begun.y, delay=met.delay, **options,
+    )  # fmt: skip
+    return begun.at_rest_again(loop)
 
 
 def settled_start(
@@ -113,9 +158,10 @@ def _static_gains(block: TrackingController) -> tuple[float, float]:
 
 def _root(value: Any, guess: float, reference: float) -> float:
     """Bracket a root around the guess and find it."""
-    if value(guess) == 0.0:
+    missed = value(guess)
+    if missed == 0.0:
         return guess
-    reach = 0.1 * max(abs(guess), abs(reference), 1e-300)
+    reach = 0.1 * max(abs(guess), abs(reference), abs(missed))
     for _ in range(_WIDENINGS):
         low, high = guess - reach, guess + reach
         ends = value(low), value(high)

@@ -40,13 +40,15 @@ class FreeFilter:
 
     K is the polynomial of the zeros to keep, K(0) = 1. Parameters are the logarithms of 2 zeta and
     omega of each factor ``x^2 + 2 zeta omega x + omega^2`` of the denominator, and c of ``x + e^c``
-    if m is odd; then g_1 .. g_j: all 1 is S1 eq. 28, all 0 a numerator of 1.
+    if m is odd; then g_1 .. g_j: all 1 is S1 eq. 28, all 0 a numerator of 1. What is minimized is
+    the stacked norm, or the largest |Wp (1 - Q)| + |Wu T| if it is to be robust.
     """
 
     problem: QFilterProblem
     order: int
     degree: int
     scale: float
+    robust: bool = False
 
     @property
     def size(self) -> int:
@@ -150,7 +152,13 @@ def _heights(
     E = 1.0 - Q
     T = 1.0 - fixed.S0 * E
     Wu2, Wp2 = fixed.Wu**2, fixed.Wp**2
-    stack = Wu2 * np.abs(T) ** 2 + Wp2 * np.abs(E) ** 2
+    if free.robust:
+        # (a + b)^2 has the slopes of a^2 (1 + b/a) + b^2 (1 + a/b) with both quotients held.
+        a = np.maximum(fixed.Wu * np.abs(T), 1e-150)
+        b = np.maximum(fixed.Wp * np.abs(E), 1e-150)
+        stack, Wu2, Wp2 = (a + b) ** 2, Wu2 * (1.0 + b / a), Wp2 * (1.0 + a / b)
+    else:
+        stack = Wu2 * np.abs(T) ** 2 + Wp2 * np.abs(E) ** 2
     outer = Wu2 * np.conj(T) * fixed.S0 - Wp2 * np.conj(E)
     weight = 1.0 / np.maximum(np.abs(fixed.plant) * most_noise, 1e-150) ** 2
     noise = weight * np.abs(Q) ** 2
@@ -265,7 +273,9 @@ def _height_of(
     def height(w: Array) -> Array:
         fixed = fixed_responses(free.problem, w)
         seen = fixed.with_filter(free.values_and_slopes(x, fixed)[0])
-        return (seen.Q_over_plant / most_noise) ** 2 if of_noise else seen.stacked**2
+        if of_noise:
+            return (seen.Q_over_plant / most_noise) ** 2
+        return (seen.robust_performance if free.robust else seen.stacked) ** 2
 
     return height
 

@@ -14,7 +14,10 @@ from hyst.compensation import ErrorBound
 from hyst.control import (
     EXACT,
     ClosedLoop,
+    ControllerDesign,
+    LoopComparison,
     LoopJudgement,
+    LoopMargins,
     SampledCertificate,
     StressTest,
     TrackingController,
@@ -82,6 +85,12 @@ class ObserverAnswer:
         Least and largest drive the model was identified from; None if not known.
     stress
         A search for a plant that breaks the block; None if none was asked for.
+    margins
+        Of the loop with C alone and of that with the block; None where they are not told.
+    controller_design
+        What C was designed by; None if it was written.
+    parts
+        What inverse, feedback and observer are worth alone and together; None if not asked for.
     """
 
     design: Any
@@ -95,6 +104,9 @@ class ObserverAnswer:
     bound: ErrorBound | None = None
     identified: tuple[float, float] | None = None
     stress: StressTest | None = None
+    margins: tuple[LoopMargins, LoopMargins] | None = None
+    controller_design: ControllerDesign | None = None
+    parts: LoopComparison | None = None
 
     @property
     def block(self) -> TrackingController:

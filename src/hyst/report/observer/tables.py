@@ -6,6 +6,7 @@ import numpy as np
 
 from hyst.control import SampledCertificate, TriedLoop
 from hyst.report.observer.answer import ObserverAnswer
+from hyst.report.observer.feedback_tables import margins_table, parts_table
 from hyst.report.observer.words import STANDINGS, bandwidth_told, hertz, rightmost, told
 from hyst.report.table import Table, number
 
@@ -24,7 +25,26 @@ def answer_tables(answer: ObserverAnswer) -> tuple[Table, ...]:
     -------
     tuple of Table
     """
-    return checks_table(answer), tracking_table(answer), rivals_table(answer), filter_table(answer)
+    first = checks_table(answer), tracking_table(answer), *feedback_tables(answer)
+    return *first, rivals_table(answer), filter_table(answer)
+
+
+def feedback_tables(answer: ObserverAnswer) -> tuple[Table, ...]:
+    """Give what is known of C: its margins, and what each part of the loop is worth.
+
+    Parameters
+    ----------
+    answer
+        Of ``hyst observer``.
+
+    Returns
+    -------
+    tuple of Table
+    """
+    worth = () if answer.parts is None else (parts_table(answer.parts),)
+    if answer.margins is None:
+        return worth
+    return *worth, margins_table(*answer.margins, answer.controller_design)
 
 
 def checks_table(answer: ObserverAnswer) -> Table:

@@ -8,9 +8,15 @@ import hyst
 from hyst.cli.console import at_work, progress_bar
 
 if TYPE_CHECKING:
-    from hyst.cli.observer_spec import ObserverSpec
+    from hyst.cli.observer.spec import ObserverSpec
     from hyst.compensation import ErrorBound
-    from hyst.control import SampledCertificate, TrackingController, TriedLoop
+    from hyst.control import (
+        LoopComparison,
+        LoopMargins,
+        SampledCertificate,
+        TrackingController,
+        TriedLoop,
+    )
     from hyst.report import ObserverAnswer, TruePlant
 
 _NONE, _ALONE = "none", "controller alone"
@@ -56,6 +62,12 @@ def tried(spec: ObserverSpec, design: Any, stress: int | None) -> ObserverAnswer
             bound=_bound(spec, this),
             identified=_identified(spec),
             stress=None if stress is None else _stressed(spec, this.block, stress),
+            margins=(
+                _margins(spec, without[spec.inverse_name].block),
+                _margins(spec, this.block),
+            ),
+            controller_design=spec.controller_design,
+            parts=_parts(spec, design),
         )
 
 
@@ -71,6 +83,8 @@ def _block(spec: ObserverSpec, design: Any, inverse: hyst.Operator | None) -> Tr
         limits=spec.limits,
         rate=spec.rate,
         hysteresis=None if spec.limits is None and spec.rate is None else forward,
+        feedforward=spec.feedforward,
+        plant=spec.plant,
         despite_verdict=True,  # who does not want that was refused at the beginning
     )
 
@@ -92,6 +106,37 @@ def _run(spec: ObserverSpec, block: TrackingController) -> TriedLoop:
         disturbance=spec.disturbance,
         seed=spec.seed,
         settle=spec.settle,
+        start=spec.start,
+    )
+
+
+def _margins(spec: ObserverSpec, block: TrackingController) -> LoopMargins:
+    return hyst.control.loop_margins(spec.plant, block, delay=spec.delay)
+
+
+def _parts(spec: ObserverSpec, design: Any) -> LoopComparison | None:
+    """Compare inverse, feedback and observer where there is a feedforward to compare with."""
+    if spec.feedforward is None or spec.inverse is None:
+        return None
+    return hyst.control.compare_loops(
+        spec.reference,
+        spec.filter_dt,
+        plant=spec.plant,
+        controller=spec.controller,
+        hysteresis=spec.hysteresis,
+        inverse=spec.inverse,
+        feedforward=spec.feedforward,
+        observer=design,
+        Wu=spec.Wu,
+        noise=spec.noise,
+        method=spec.filter_method,
+        despite_verdict=True,
+        true_plant=spec.true_plant,
+        delay=spec.delay,
+        disturbance=spec.disturbance,
+        seed=spec.seed,
+        settle=spec.settle,
+        start=spec.start,
     )
 
 
