@@ -104,12 +104,19 @@ def forty_cells_a_side() -> Preisach:
     return Preisach(8.0 * weights / weights.sum(), edges, p0=0.1)
 
 
-def controller(inverse: Operator | None) -> TrackingController:
+def controller(
+    inverse: Operator | None, limits: tuple[float, float] | None = None, rate: float | None = None
+) -> TrackingController:
     """Give a proportional-integral controller with an observer of slow disturbances."""
     slow = 20.0  # rad/s
     observer = ([[-slow]], [[-slow, slow]], [[1.0]], [[0.0, 0.0]])
     return TrackingController.from_continuous(
-        ([4.0, 8.0], [1.0, 0.0]), dt=1e-3, observer=observer, inverse=inverse
+        ([4.0, 8.0], [1.0, 0.0]),
+        dt=1e-3,
+        observer=observer,
+        inverse=inverse,
+        limits=limits,
+        rate=rate,
     )
 
 
@@ -134,4 +141,6 @@ def cases() -> Iterator[Case]:
     both = np.column_stack([drive(), drive(1)[::-1]])
     yield Case("controller and observer", controller(None), both)
     yield Case("controller, observer and inverse mpi", controller(ten_plays()), both)
+    limited = controller(ten_plays(), (-20.0, 30.0), 2e4)
+    yield Case("controller, observer and inverse mpi, limited", limited, both)
     yield Case("joint estimator of 5 plays", *estimator())

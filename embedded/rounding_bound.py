@@ -93,6 +93,8 @@ def single_precision_bound(model: Operator, u: Array, error: float = 0.0) -> flo
 
 def controller_bound(controller: TrackingController, inputs: Array) -> float:
     """Bound the output error of a tracking controller for finite rows (y_ref, y) held exactly."""
+    if controller.is_limited:
+        raise NoBoundError("rounding decides on which samples the drive is limited")
     A, B, c, D = controller.A, controller.B, controller.C, controller.D
     x, most = controller.x0.copy(), np.abs(controller.x0)
     v = np.empty(inputs.shape[0])

@@ -59,8 +59,10 @@ public:
 
     // Index of the first sample that could not be answered, or -1.
     std::ptrdiff_t run(Vector state, Signal y_ref, Signal y, Vector u) const;
-    // The same, and v, the one that belongs to the drive, and that minus the v wanted.
-    std::ptrdiff_t tell(Vector state, Signal y_ref, Signal y, Vector v, Vector excess) const;
+    // The same for v, the one that belongs to the drive, and the estimate e x + f [y_ref; y] and g times
+    // v minus the v wanted.
+    std::ptrdiff_t tell(Vector state, Signal y_ref, Signal y, const std::vector<double> &e,
+                        double f_ref, double f, double g, Vector v, Vector d_hat) const;
 
 private:
     std::vector<double> a_, b_, c_, w_;
@@ -112,17 +114,22 @@ std::ptrdiff_t Controller::run(Vector state, Signal y_ref, Signal y, Vector u) c
     return -1;
 }
 
-std::ptrdiff_t Controller::tell(Vector state, Signal y_ref, Signal y, Vector v,
-                                Vector excess) const {
-    const std::size_t samples = v.shape(0);
-    require(is_limited_ && state.shape(0) == state_length(), "state has the wrong length");
-    require(y_ref.shape(0) == samples && y.shape(0) == samples && excess.shape(0) == samples,
+std::ptrdiff_t Controller::tell(Vector state, Signal y_ref, Signal y, const std::vector<double> &e,
+                                double f_ref, double f, double g, Vector v, Vector d_hat) const {
+    const std::size_t samples = v.shape(0), n = c_.size();
+    require(is_limited_ && state.shape(0) == state_length() && e.size() == n,
+            "state has the wrong length");
+    require(y_ref.shape(0) == samples && y.shape(0) == samples && d_hat.shape(0) == samples,
             "lengths differ");
     const nb::gil_scoped_release released;
     Steps steps(*this, state.data());
     for (std::size_t k = 0; k < samples; ++k) {
+        // In the order of the core's linear part, so that without limits the bits are its own.
+        double estimate = f_ref * y_ref(k) + f * y(k);
+        for (std::size_t j = 0; j < n; ++j) estimate += e[j] * state(j);
         steps.step(y_ref(k), y(k));
-        v(k) = steps.v(), excess(k) = steps.excess();
+        if (steps.excess() != 0.0) estimate += g * steps.excess();
+        v(k) = steps.v(), d_hat(k) = estimate;
         if (steps.fault()) return static_cast<std::ptrdiff_t>(k);
     }
     return -1;
@@ -220,7 +227,8 @@ void bind_closed_loop(nb::module_ &module) {
         .def("run", &Controller::run, nb::arg("state").noconvert(), nb::arg("y_ref").noconvert(),
              nb::arg("y").noconvert(), nb::arg("u").noconvert())
         .def("tell", &Controller::tell, nb::arg("state").noconvert(), nb::arg("y_ref").noconvert(),
-             nb::arg("y").noconvert(), nb::arg("v").noconvert(), nb::arg("excess").noconvert());
+             nb::arg("y").noconvert(), nb::arg("e"), nb::arg("f_ref"), nb::arg("f"), nb::arg("g"),
+             nb::arg("v").noconvert(), nb::arg("d_hat").noconvert());
     nb::class_<ControllerStepper>(module, "TrackingStepper")
         .def(nb::init<const Controller &, nb::object>(), nb::arg("controller"), nb::arg("state"),
              nb::keep_alive<1, 2>())

@@ -111,7 +111,18 @@ class TrackingController:
         self, w: Sequence[float], forward: Chain, low: float, high: float, change: float
     ) -> None: ...
     def run(self, state: Array, y_ref: Array, y: Array, u: Array) -> int: ...
-    def tell(self, state: Array, y_ref: Array, y: Array, v: Array, excess: Array) -> int: ...
+    def tell(
+        self,
+        state: Array,
+        y_ref: Array,
+        y: Array,
+        e: Sequence[float],
+        f_ref: float,
+        f: float,
+        g: float,
+        v: Array,
+        d_hat: Array,
+    ) -> int: ...
 
 class TrackingStepper:
     def __init__(self, controller: TrackingController, state: Array) -> None: ...

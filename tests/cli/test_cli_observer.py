@@ -13,7 +13,7 @@ from command_runs import Run
 
 import hyst
 from hyst.cli import main
-from hyst.cli.observer_template import TEMPLATE
+from hyst.cli.observer.template import TEMPLATE
 
 # As quick as it can be: one period after the start is left out.
 QUICK = TEMPLATE.replace("duration = 3.0", "duration = 1.5").replace("settle = 1.0", "settle = 0.5")

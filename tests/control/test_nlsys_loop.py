@@ -58,6 +58,16 @@ CASES: dict[str, dict[str, Any]] = {
     "with a plant that answers at once": {"plant": ([1.0, 2000.0], [1.0, 4000.0])},
     "with a delay of computation": {"delay": 1.6 * DT},
     "with a plant that is a gain": {"plant": 0.2},
+    "with a limited drive": {
+        "block": TrackingController.from_continuous(
+            s1.CONTROLLER,
+            DT,
+            observer=s1.printed_observer(),
+            inverse=INEXACT,
+            limits=(3.0, 20.0),
+            rate=1e5,
+        )
+    },
 }
 
 
@@ -104,6 +114,30 @@ def test_so_has_a_loop_at_random(seed: int) -> None:
     assert here.diverged_at is None
     assert (there["y"] + 0.0).tobytes() == (here.y + 0.0).tobytes()
     assert (there["u"] + 0.0).tobytes() == (here.u + 0.0).tobytes()
+
+
+@pytest.mark.parametrize("observer", [None, s1.printed_observer()], ids=["bare", "observer"])
+@pytest.mark.parametrize("limits", [(-20.0, 20.0), (2.0, 20.0)], ids=["about zero", "above zero"])
+def test_so_has_a_loop_with_a_limited_drive(observer: Any, limits: tuple[float, float]) -> None:
+    block = TrackingController.from_continuous(
+        s1.CONTROLLER, DT, observer=observer, inverse=s1.INVERSE, limits=limits, rate=3000.0
+    )
+    loop = closed_loop_system(block, plant=s1.PLANT, hysteresis=s1.HYSTERESIS)
+    there = outputs_of(loop, 2.0 * REFERENCE, NOISE, DISTURBANCE)
+    here = simulate_closed_loop(
+        2.0 * REFERENCE,
+        DT,
+        plant=s1.PLANT,
+        controller=block,
+        hysteresis=s1.HYSTERESIS,
+        noise=NOISE,
+        disturbance=DISTURBANCE,
+    )
+    assert here.u.max() == limits[1]
+    for name in ("y", "u", "v", "eta"):
+        assert (there[name] + 0.0).tobytes() == (getattr(here, name) + 0.0).tobytes(), name
+    # The estimate of a record is summed in another order than that of a sample.
+    assert np.abs(there["d_hat"] - here.d_hat).max() < 1e-9
 
 
 def test_a_loop_that_the_user_joins_by_names_is_the_same_to_rounding() -> None:

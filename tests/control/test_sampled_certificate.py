@@ -15,7 +15,6 @@ from hyst.control import (
     DisturbanceObserver,
     TrackingController,
     closed_loop_poles,
-    design_disturbance_observer,
     judge_loop,
     sampled_certificate,
     sampled_plant,
@@ -45,7 +44,9 @@ RINGING = [39999.06, 0.0060884558, 6973878.3]
 
 @functools.cache
 def _design() -> DisturbanceObserver:
-    return design_disturbance_observer(PLANT, REPAIRED_C, WU, WP)
+    # The best known gain of the paper's observer for its repaired example, held fixed here.
+    problem = hyst.control.observer_problem(PLANT, REPAIRED_C, WU, WP)
+    return hyst.control.evaluate_gain(problem, [2.0608904, -0.00074655914, 518.84119])
 
 
 def _block(dt: float = 1e-4, observed: bool = True) -> TrackingController:
@@ -197,6 +198,17 @@ def test_a_loop_is_judged_by_what_is_proven() -> None:
         assert tried.loop.diverged_at is None
     # Plays without an inverse are up to 3.4 times as steep; eq. 26 fails from 1.3 on.
     assert standing == {"exact": "proven", "0.7": "proven", "none": "not safe"}
+
+
+@pytest.mark.parametrize("limited", [{"limits": (-0.5, 0.9)}, {"rate": 2.0}])
+def test_nothing_is_proven_of_a_drive_at_its_limits(limited: dict[str, Any]) -> None:
+    block = TrackingController.from_continuous(REPAIRED_C, 1e-4, **limited)
+    judged = {}
+    for reach in (0.05, 2.0):
+        r = reach * np.sin(2.0 * np.pi * np.arange(20_000) * 1e-4)
+        tried = try_block(block, r, plant=PLANT, Wu=WU)
+        judged[reach] = tried.judgement.standing
+    assert judged == {0.05: "proven", 2.0: "simulated"}
 
 
 def test_an_unstable_loop_and_one_that_diverges() -> None:

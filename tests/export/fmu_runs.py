@@ -63,6 +63,12 @@ CONTROLLER = TrackingController(
 )  # fmt: skip
 
 
+LIMITED_CONTROLLER = TrackingController.from_continuous(
+    ([0.5, 40.0], [1.0, 0.0]), 1e-3, observer=([[-2.0]], [[0.5, -1.0]], [[1.0]], [[0.0, 0.25]]),
+    inverse=INVERSE_MPI, limits=(-1.5, 2.0), rate=900.0,
+)  # fmt: skip
+
+
 def estimation() -> tuple[JointEstimator, np.ndarray, np.ndarray, np.ndarray]:
     """A fresh estimator; input, measured output and reference, some samples of them missing."""
     truth = PrandtlIshlinskii(1.2 * PI.p, 0.9 * PI.r, p0=0.4)

@@ -24,6 +24,7 @@ from hypothesis import strategies as st
 from hyst import InputError, Operator, PrandtlIshlinskii
 from hyst.control.tracking_controller import TrackingController
 from hyst.export import c_project
+from hyst.export.c.block import block_of, stepper_of
 from hyst.models import LinearDynamics
 from hyst.models.stable_inverse import StableInverse
 from reference.examples import EXAMPLES
@@ -121,6 +122,28 @@ CONTROLLERS = {
         inverse=EXAMPLES["inverse ramberg-osgood"], x0=[0.5, -0.25],
     ),
 }  # fmt: skip
+LIMITED = {
+    "limited": TrackingController.from_continuous(
+        ([4.0, 8.0], [1.0, 0.0]),
+        dt=1e-3,
+        observer=([[-2.0]], [[0.5, -1.0]], [[1.0]], [[0.0, 0.25]]),
+        inverse=PrandtlIshlinskii([0.5, 0.2], [0.1, 0.3], 1.0).inverse(),
+        limits=(-1.7, 1.1),
+    ),
+    "limited, of several stages": TrackingController.from_continuous(
+        ([4.0, 8.0], [1.0, 0.0]), dt=1e-3, inverse=EXAMPLES["inverse of mpi"],
+        limits=(0.3, 2.3), rate=700.0,
+    ),
+    "limited, solved for": TrackingController(
+        [[0.5, 0.1], [0.0, 0.9]], [[1.0, 0.5], [0.0, -1.0]], [1.0, 2.0], [0.5, -0.25], 0.1,
+        inverse=EXAMPLES["inverse ramberg-osgood"], limits=(-0.1, 0.7), W=[0.25, -0.5],
+    ),
+    "limited gain": TrackingController([], [], [], [2.0, -1.0], dt=1e-3, limits=(-0.3, 0.7)),
+    "limited rate": TrackingController(
+        [[1.0]], [[1.0, -1.0]], [0.5], [2.0, -2.0], dt=1e-3, rate=30.0, W=[0.5]
+    ),
+}  # fmt: skip
+CONTROLLERS |= LIMITED
 
 
 @pytest.mark.parametrize("name", CONTROLLERS)
@@ -141,10 +164,54 @@ def test_controllers_give_the_bits_of_python(name: str, tmp_path: Path, objects:
         assert run_selftest(other.path, objects).stdout == "10000 samples, max difference 0\n"
 
 
+@pytest.mark.parametrize("name", LIMITED)
+def test_limits_hold_on_a_target(name: str, tmp_path: Path, objects: Objects) -> None:
+    """Before the first good sample, after bad ones, and in numbers of single precision."""
+    model = LIMITED[name]
+    low, high = model.limits or (-np.inf, np.inf)
+    project = c_project(model, tmp_path / "out")
+    code = Exported(
+        build_library(project.path, objects), project.state_length, project.saved_bytes, inputs=2
+    )
+    state = code.initial_state()
+    y_ref, y = 100.0 * wandering(2000), 100.0 * wandering(2000, seed=8)
+    y_ref[:3], y[1000:1010] = np.nan, np.inf
+    u = code.run(state, y_ref, y)
+    assert u.min() >= low
+    assert u.max() <= high
+    assert code.fault(state) == 1 | 16
+    single = stepper_of(block_of(model, "single"), "single")
+    v = stepped(single, y_ref, y)
+    assert v.min() >= low
+    assert v.max() <= high
+    assert (single.fault, single.limited) == (True, True)
+
+
+def test_a_drive_within_limits_raises_nothing(tmp_path: Path, objects: Objects) -> None:
+    project = c_project(LIMITED["limited gain"], tmp_path / "out")
+    code = Exported(
+        build_library(project.path, objects), project.state_length, project.saved_bytes, inputs=2
+    )
+    state = code.initial_state()
+    code.run(state, np.full(10, 0.1), np.zeros(10))
+    assert code.fault(state) == 0
+    code.run(state, np.full(1, 1.0), np.zeros(1))
+    assert code.fault(state) == 16
+
+
+def test_limits_between_which_single_precision_has_no_number(tmp_path: Path) -> None:
+    narrow = TrackingController([], [], [], [1.0, -1.0], 1.0, limits=(1.0 + 1e-9, 1.0 + 2e-9))
+    with pytest.raises(InputError, match="leave no number of single precision"):
+        c_project(narrow, tmp_path / "out", precision="single")
+
+
 def test_controllers_need_no_chain(tmp_path: Path) -> None:
     project = c_project(CONTROLLERS["observer"], tmp_path / "out")
     sources = {file for file in project.files if file.endswith(".c") and "/" in file}
     assert sources == {"core/src/prandtl_ishlinskii.c", "core/src/tracking_linear.c"}
+    project = c_project(CONTROLLERS["limited"], tmp_path / "limited")
+    limited = {file for file in project.files if file.endswith(".c") and "/" in file}
+    assert limited == sources | {"core/src/drive_limits.c"}
 
 
 def test_what_looks_ahead_is_refused_with_the_reason(tmp_path: Path) -> None:

@@ -12,9 +12,11 @@ from fmu_runs import (
     CONTROLLER,
     ERROR,
     INVERSE_MPI,
+    LIMITED_CONTROLLER,
     MPI,
     SHAPES,
     VERSIONS,
+    WARNING,
     FmuRun,
     estimated,
     estimation,
@@ -159,6 +161,38 @@ def test_a_controller_with_two_inputs(version: str, tmp_path: Path) -> None:
     assert u.tobytes() == CONTROLLER.run(y_ref, y)[0].tobytes()
     # The drive answers y_ref at once, but y only in the next sample: D is [0.7, 0].
     assert [each.name for each in run.description.outputs[0].dependencies] == ["y_ref"]
+    run.free()
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_controller_with_limits(version: str, tmp_path: Path) -> None:
+    written = hyst.export.fmu(
+        LIMITED_CONTROLLER, tmp_path / "model.fmu", version=version, compiler=STRICT
+    )
+    run = FmuRun(written, tmp_path).initialize()
+    y_ref, y = rough_signal(N, 1), rough_signal(N, 2)
+    y_ref[:9], y[:9] = 0.0, 0.0
+    u, faults = np.empty(N), np.empty(N, int)
+    for k in range(N):
+        run.set(y_ref=y_ref[k], y=y[k])
+        run.step(k * 1e-3, 1e-3)
+        u[k], faults[k] = run.get("u"), run.get("fault")
+    assert u.tobytes() == LIMITED_CONTROLLER.run(y_ref, y)[0].tobytes()
+    # To meet limits is no warning: the variable tells it, from the first such sample on.
+    assert run.log == []
+    step = LIMITED_CONTROLLER.stepper()
+    expected = []
+    for sample in zip(y_ref, y, strict=True):
+        step(*sample)
+        expected.append(16 * step.limited)
+    assert faults.tolist() == expected
+    assert 0 in expected
+    run.set(y_ref=np.nan)
+    run.step(N * 1e-3, 1e-3)
+    assert [status for status, _ in run.log] == [WARNING]
+    assert "not finite" in run.log[0][1]
+    assert run.get("fault") == 17
+    assert run.get("u") == u[-1]
     run.free()
 
 

@@ -9,7 +9,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fmu_runs import CONTROLLER, INVERSE_MPI, SHAPES, estimated, estimation, rough_signal
+from fmu_runs import (
+    CONTROLLER,
+    INVERSE_MPI,
+    LIMITED_CONTROLLER,
+    SHAPES,
+    estimated,
+    estimation,
+    rough_signal,
+)
 
 import hyst
 from hyst.operators import ModelDescription
@@ -148,6 +156,28 @@ def test_a_controller_with_two_inputs(tmp_path: Path) -> None:
     assert (folder / "u.bin").read_bytes() == CONTROLLER.run(y_ref, y)[0].tobytes()
     assert "a signal is missing" in said
     assert "the signals differ in length" in said
+
+
+@needs_octave
+def test_a_controller_with_limits(tmp_path: Path) -> None:
+    """To meet limits is no bad sample: a record is answered, and ``limited`` tells."""
+    folder = compiled(hyst.export.mex(LIMITED_CONTROLLER, tmp_path / "loop", name="loop"))
+    y_ref, y = rough_signal(N, 1), rough_signal(N, 2)
+    y_ref.tofile(folder / "y_ref.bin")
+    y.tofile(folder / "y.bin")
+    program = """
+    [u, state] = loop(y_ref, y); object = loop();
+    disp(object.limited());
+    object.step(y_ref, y); disp(object.limited()); disp(object.fault());
+    assert(object.state(13:end - 4), state(13:end - 4));
+    object.step(NaN, 0); disp(object.fault());
+    object.clear_fault(); disp(object.limited());
+    try, loop([0 NaN], [0 0]), catch e, disp(e.message), end
+    """
+    said = octave(folder, READ.format("y_ref") + READ.format("y") + program + WRITE.format("u"))
+    assert (folder / "u.bin").read_bytes() == LIMITED_CONTROLLER.run(y_ref, y)[0].tobytes()
+    assert said.splitlines()[:5] == ["0", "1", "0", "1", "0"]
+    assert "sample 2 is not finite" in said
 
 
 @needs_octave

@@ -8,7 +8,7 @@ import pytest
 from hyst.compensation import error_bound
 from hyst.control import closed_loop_poles, compare_inverses
 from hyst.operators import Affine
-from hyst.report.tables import Table
+from hyst.report.table import Table
 from hyst.studies import keys
 from hyst.studies import s1_robust_tracking as s1
 

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from hyst import InputError
 from hyst.cli import main
-from hyst.report.tables import Table
+from hyst.report.table import Table
 from hyst.studies import keys, s3_memory_elements, study
 from hyst.studies.simulated_piezo import DT, SimulatedPiezo
 

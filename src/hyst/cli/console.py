@@ -14,7 +14,7 @@ from rich.table import Table as RichTable
 from rich.text import Text
 
 if TYPE_CHECKING:
-    from hyst.report.tables import Table
+    from hyst.report.table import Table
 
 
 def show_table(table: Table) -> None:

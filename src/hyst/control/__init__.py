@@ -33,14 +33,16 @@ from hyst.control.plants import (
     plant_and_delay,
 )
 from hyst.control.python_control import closed_loop_system, to_nlsys
-from hyst.control.q_filter import (
+from hyst.control.q_filters import (
     DesignRow,
     QFilter,
     QFilterCertificate,
     QFilterObserver,
     RobustPerformance,
+    SampledQFilterObserver,
     compare_designs,
     design_q_filter,
+    design_sampled_q_filter,
     q_filter,
     robust_performance,
 )
@@ -83,6 +85,7 @@ __all__ = [
     "RobustPerformance",
     "SampledCertificate",
     "SampledPlant",
+    "SampledQFilterObserver",
     "StressTest",
     "TrackingController",
     "TriedLoop",
@@ -96,6 +99,7 @@ __all__ = [
     "design_controller",
     "design_disturbance_observer",
     "design_q_filter",
+    "design_sampled_q_filter",
     "discretize",
     "discretized_dynamics",
     "evaluate_gain",

@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.control.disturbance_observer import DisturbanceObserver
+from hyst.control.disturbance_observer.discrete.problem import SampledObserverProblem
 from hyst.control.linear_system import LinearSystem
+from hyst.control.sampled.plant import sampled_plant
 from hyst.errors import InputError
 
 Array = NDArray[np.float64]
@@ -60,7 +62,8 @@ def loop_responses(
     design
         Observer with its plant, controller and weights.
     plant
-        The plant P that S is of; the nominal one if left out.
+        The plant P that S is of; the nominal one if left out. For a sampled design a continuous
+        one is sampled with its delay, and Wu T is without aliases.
     w
         Frequencies, rad/s, above 0; a grid around all poles if left out.
 
@@ -70,11 +73,18 @@ def loop_responses(
     """
     problem = design.problem
     at = _grid(design) if w is None else np.asarray(w, dtype=np.float64)
-    s = np.asarray(1j * at, dtype=np.complex128)
-    Pn, C = problem.plant.response(s)[:, 0, 0], problem.controller.response(s)[:, 0, 0]
-    Q = problem.q_filter(design.gain).response(s)[:, 0, 0]
-    Wu, Wp = problem.Wu.response(s)[:, 0, 0], problem.Wp.response(s)[:, 0, 0]
-    P = Pn if plant is None else plant.response(s)[:, 0, 0]
+    true = problem.plant if plant is None else plant
+    if isinstance(problem, SampledObserverProblem):
+        true = sampled_plant(
+            true, problem.dt, problem.sampled.delay if true.dt == 0.0 else 0.0
+        ).system
+    Pn, C, Q, Wu, Wp, P = (
+        _values(each, at)
+        for each in (
+            *(problem.plant, problem.controller, problem.q_filter(design.gain)),
+            *(problem.Wu, problem.Wp, true),
+        )
+    )
     with np.errstate(divide="ignore"):
         return LoopResponses(
             w=at,
@@ -158,6 +168,8 @@ def _grid(design: DisturbanceObserver) -> Array:
     """From a decade below the slowest pole of interest to a decade above the fastest."""
     problem = design.problem
     systems = (problem.plant, problem.controller, problem.Wu, problem.Wp)
+    if problem.plant.dt > 0.0:
+        return _around(*systems)
     poles = np.abs(np.concatenate([each.poles() for each in systems]))
     poles = poles[poles > 1e-9 * poles.max(initial=1.0)]
     low, high = np.log10(poles.min() / 10.0), np.log10(poles.max() * 10.0)

@@ -57,7 +57,7 @@ def hinf_norm(system: Any, tolerance: float = 1e-8) -> tuple[float, float]:
     (5.025189, 0.9899)
     """
     given = as_linear_system(system)
-    continuous = given if given.dt == 0.0 else _bilinear(given)
+    continuous = given if given.dt == 0.0 else bilinear(given)
     if continuous is None:
         return np.inf, np.pi / given.dt
     poles = continuous.poles()
@@ -153,7 +153,7 @@ def _crossings(system: LinearSystem, level: float) -> Array:
     return np.unique(np.abs(values.imag[np.abs(values.imag) > 0.0]))
 
 
-def _bilinear(system: LinearSystem) -> LinearSystem | None:
+def bilinear(system: LinearSystem) -> LinearSystem | None:
     """Give the continuous system of the same gains; None if there is a pole at -1."""
     shifted = system.A + np.eye(system.order)
     if system.order and np.linalg.cond(shifted) > 1.0 / np.finfo(float).eps:

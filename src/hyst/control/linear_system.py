@@ -75,6 +75,8 @@ class LinearSystem:
 
     def poles(self) -> ComplexArray:
         """Eigenvalues of A."""
+        if self.order == 0:  # which scipy 1.11 has no eigenvalues for
+            return np.zeros(0, dtype=np.complex128)
         return np.asarray(scipy.linalg.eigvals(self.A), dtype=np.complex128).reshape(self.order)
 
     def response(self, s: Points) -> ComplexArray:
@@ -135,9 +137,9 @@ def balanced_matrices(A: Array, B: Array, C: Array) -> tuple[Array, Array, Array
     return scales[:, None] * A / scales, scales[:, None] * B, C / scales
 
 
-def transfer_function_of(num: Array, den: Array) -> Any:
+def transfer_function_of(num: Array, den: Array, dt: float = 0.0) -> Any:
     """Give the ``control.TransferFunction`` of the polynomials num and den, highest power first."""
-    return _python_control().tf(num, den)
+    return _python_control().tf(num, den, dt)
 
 
 def as_linear_system(system: Any, name: str = "the system") -> LinearSystem:

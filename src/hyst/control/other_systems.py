@@ -79,7 +79,7 @@ def with_delay_states(system: StateSpace) -> tuple[Array, Array, Array, Array]:
 def _of_scipy(system: Any, name: str) -> Given:
     if hasattr(system, "A"):
         return system.A, system.B, system.C, np.atleast_2d(system.D), system.dt
-    if hasattr(system, "zeros") and hasattr(system, "gain"):
+    if hasattr(system, "gain"):
         zeros, poles = np.atleast_1d(system.zeros), np.atleast_1d(system.poles)
         if zeros.ndim != 1:
             raise InputError(f"{name} has several outputs as zeros, poles and gain; give one")

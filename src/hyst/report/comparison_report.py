@@ -16,7 +16,7 @@ from hyst.report.comparison_figures import (
     draw_compared_loops,
 )
 from hyst.report.page import Page
-from hyst.report.tables import Table, number, with_unit
+from hyst.report.table import Table, number, with_unit
 
 NUMBERS, PAGE = "comparison.json", "comparison.html"
 LOOPS, ERRORS = "loops.png", "errors.png"

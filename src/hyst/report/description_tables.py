@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hyst.operators import ModelDescription
 from hyst.report.delay_words import lag_in_words
-from hyst.report.tables import Table, number, with_unit
+from hyst.report.table import Table, number, with_unit
 
 
 def description_table(about: ModelDescription) -> Table:

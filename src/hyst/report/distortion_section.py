@@ -16,7 +16,7 @@ from hyst.identification.families.hammerstein import (
 )
 from hyst.report.canvas import MEASURED, MODELLED, SECOND, blank, drawn, ratio_unit, with_unit
 from hyst.report.identification_report import Section
-from hyst.report.tables import Table, number
+from hyst.report.table import Table, number
 from hyst.signals import Record
 
 Array = NDArray[np.float64]

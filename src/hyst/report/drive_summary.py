@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hyst.report.tables import Table, number
+from hyst.report.table import Table, number
 from hyst.signals import Drive
 
 

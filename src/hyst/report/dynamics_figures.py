@@ -21,7 +21,7 @@ from hyst.identification.families.hammerstein.told.identified_hammerstein import
 from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn, with_unit
 from hyst.report.frequency_response_figure import draw_dynamics
 from hyst.report.identification_report import Section
-from hyst.report.tables import Table, number
+from hyst.report.table import Table, number
 
 Array = NDArray[np.float64]
 

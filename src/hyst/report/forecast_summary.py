@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hyst.identification.forecast import DriveForecast, ExpectedError
-from hyst.report.tables import Table, number
+from hyst.report.table import Table, number
 
 _OPEN = 10.0  # times the number
 

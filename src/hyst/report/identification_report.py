@@ -20,15 +20,13 @@ from hyst.report.history_figure import draw_history
 from hyst.report.loop_figure import draw_loop
 from hyst.report.model_figure import Labels, draw_model
 from hyst.report.page import Page
+from hyst.report.table import Table, number, with_unit
 from hyst.report.tables import (
-    Table,
     candidates_table,
     metrics_table,
     motion_table,
-    number,
     parameters_table,
     per_record_table,
-    with_unit,
 )
 from hyst.report.words import (
     command_method,

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from hyst.compensation import LoopsBehind
-from hyst.report.tables import Table, number, with_unit
+from hyst.report.table import Table, number, with_unit
 
 
 def loops_table(found: LoopsBehind) -> Table:

@@ -10,7 +10,7 @@ import html
 from collections.abc import Sequence
 
 from hyst.operators import Verdict
-from hyst.report.tables import Table
+from hyst.report.table import Table
 
 _STYLE = """
 :root { color-scheme: light; }

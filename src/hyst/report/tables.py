@@ -1,9 +1,8 @@
-"""Tables of text, the same for the terminal and for the page."""
+"""Tables of what was identified and compensated."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 from hyst.compensation import Compensation, error_parts
 from hyst.identification import Identified, RecordErrors
@@ -11,6 +10,7 @@ from hyst.identification.families.registry import families
 from hyst.identification.result.record_errors import run_at_several_rates
 from hyst.operators import Operator
 from hyst.operators.traits import Degree
+from hyst.report.table import Table, number, with_unit
 
 _TRAITS = {
     "memoryless": "output depends on the present input alone",
@@ -20,62 +20,6 @@ _TRAITS = {
     "monotone": "output never falls while the input rises",
     "invertible": "has an exact inverse",
 }
-
-
-@dataclass(frozen=True)
-class Table:
-    """Rows of text under headings.
-
-    Parameters
-    ----------
-    title
-        What the table shows.
-    header
-        One heading a column.
-    rows
-        One text a column.
-    marked
-        Index of the row to stand out, if any.
-    """
-
-    title: str
-    header: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    marked: int | None = None
-
-
-def number(value: float, digits: int = 4) -> str:
-    """Write a value for reading.
-
-    Parameters
-    ----------
-    value
-        To write; NaN stands for none.
-    digits
-        Significant digits, at least 1.
-
-    Returns
-    -------
-    str
-        A dash for NaN.
-
-    Examples
-    --------
-    >>> number(1234567.0), number(0.00012345), number(3.0), number(float("nan"))
-    ('1.235e+06', '0.0001234', '3', '-')
-    """
-    return "-" if math.isnan(value) else f"{value:.{digits}g}"
-
-
-def with_unit(text: str, unit: str) -> str:
-    """Put a unit behind a text, if there is one.
-
-    Examples
-    --------
-    >>> with_unit("3", "um"), with_unit("3", "")
-    ('3 um', '3')
-    """
-    return f"{text} {unit}" if unit else text
 
 
 def metrics_table(identified: Identified) -> Table:

@@ -16,7 +16,7 @@ from hyst.operators import Operator
 from hyst.operators.composition import leaves_of
 from hyst.operators.verdict import UNFIT, Verdict
 from hyst.report.delay_words import delay_sentence, lag_in_words
-from hyst.report.tables import number, with_unit
+from hyst.report.table import number, with_unit
 from hyst.signals import Record
 
 CREEP_EQUATION = (

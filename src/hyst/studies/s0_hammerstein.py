@@ -32,7 +32,7 @@ from hyst.report.hammerstein_study_figures import (
     draw_loops,
     draw_markov,
 )
-from hyst.report.tables import Table
+from hyst.report.table import Table
 from hyst.signals import Record, multisine, persistence
 
 Array = NDArray[np.float64]

@@ -29,7 +29,7 @@ from hyst.control.linear_system import as_linear_system
 from hyst.models import GeneralizedPrandtlIshlinskii, PrandtlIshlinskii
 from hyst.operators import Affine, DeadZone, Operator
 from hyst.report.robust_tracking_figures import draw_all
-from hyst.report.tables import Table
+from hyst.report.table import Table
 
 Array = NDArray[np.float64]
 TITLE = "El-Shaer, Al Janaideh, Krejčí and Tomizuka: disturbance observers for inexact inverses"

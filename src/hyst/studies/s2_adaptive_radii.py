@@ -21,7 +21,7 @@ from hyst.online import JointEstimator, RadiusEstimator, Trajectory
 from hyst.operators import Affine
 from hyst.report.bound_figure import draw_over_bound
 from hyst.report.estimation_figure import draw_estimates
-from hyst.report.tables import Table, number
+from hyst.report.table import Table, number
 from hyst.signals import Record
 
 Array = NDArray[np.float64]

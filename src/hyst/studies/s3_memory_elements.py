@@ -12,7 +12,7 @@ from hyst.identification.fit_model import fit
 from hyst.models import MasingOperator, PowerLaw, RambergOsgood
 from hyst.operators import Affine, Operator
 from hyst.report.reversal_figure import draw_collapse, draw_memories
-from hyst.report.tables import Table, number
+from hyst.report.table import Table, number
 from hyst.signals import Record
 from hyst.studies.simulated_piezo import DT, SimulatedPiezo
 

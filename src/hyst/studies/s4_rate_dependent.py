@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from hyst.compensation import Compensation, invert_trajectory
 from hyst.models import GivenThresholds, RateDependentPrandtlIshlinskii
 from hyst.report.rate_dependent_figures import draw_error_over_frequency, draw_tracking
-from hyst.report.tables import Table
+from hyst.report.table import Table
 
 Array = NDArray[np.float64]
 TITLE = "Al Janaideh and Krejčí: inverse rate-dependent Prandtl-Ishlinskii model"

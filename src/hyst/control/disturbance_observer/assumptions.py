@@ -43,7 +43,7 @@ def check_assumptions(problem: ObserverProblem) -> None:
     ):
         _check_kind(name, system)
     _check_plant(problem.plant)
-    _check_internal_model(problem.internal_model)
+    check_internal_model(problem.internal_model)
     _check_zeros(problem.plant, problem.internal_model)
     _check_weight("Wu", problem.Wu)
     _check_weight("Wp", problem.Wp)
@@ -87,15 +87,20 @@ def _check_plant(plant: LinearSystem) -> None:
     unstable = _not_left(plant.poles())
     if unstable.size:
         raise InputError(
-            f"assumption 2: the plant is not stable, pole at {_text(unstable[0])} 1/s; "
-            "stabilize it first and give the stable loop as the plant"
+            f"assumption 2: the plant is not stable, pole at {_text(unstable[0])} 1/s"
+            + _way_out(
+                unstable[0],
+                float(np.abs(plant.poles()).max()),
+                "give the damping it has, or stabilize it first",
+                "stabilize it first and give the stable loop as the plant",
+            )
         )
     # First, for a realization of nothing has no modes to see.
     if zeros_and_poles(plant).gain == 0.0:
         raise InputError(
             "the plant's gain is zero: its input does not reach its output; check B and C"
         )
-    seen = _least_seen(plant.A, plant.C, plant.poles())
+    seen = least_seen(plant.A, plant.C, plant.poles())
     if seen is not None:
         raise InputError(
             f"assumption 3: the plant is not observable, its mode {_text(seen)} 1/s does not reach "
@@ -103,9 +108,10 @@ def _check_plant(plant: LinearSystem) -> None:
         )
 
 
-def _check_internal_model(model: InternalModel) -> None:
+def check_internal_model(model: InternalModel) -> None:
+    """Refuse an internal model that its output does not show, or without an eigenvalue at 0."""
     eigenvalues = np.linalg.eigvals(model.A_d).astype(complex)
-    hidden = _least_seen(model.A_d, model.C_d, eigenvalues)
+    hidden = least_seen(model.A_d, model.C_d, eigenvalues)
     if hidden is not None:
         number = "assumption 4: " if hidden.real >= 0.0 else ""
         raise InputError(
@@ -136,8 +142,13 @@ def _check_zeros(plant: LinearSystem, model: InternalModel) -> None:
     right = _not_left(zeros, scale)
     if right.size:
         raise InputError(
-            f"assumption 1: the plant is not minimum phase, zero at {_text(right[0])} 1/s; its "
-            "inverse in the observer would be unstable, so take the zero into Wu"
+            f"assumption 1: the plant is not minimum phase, zero at {_text(right[0])} 1/s"
+            + _way_out(
+                right[0],
+                scale,
+                "the inverse in the observer would ring there for ever, so give the damping it has",
+                "its inverse in the observer would be unstable, so take the zero into Wu",
+            )
         )
 
 
@@ -169,7 +180,13 @@ def _not_left(values: ComplexArray, scale: float | None = None) -> ComplexArray:
     return found[np.argsort(-found.real)]
 
 
-def _least_seen(A: Array, C: Array, eigenvalues: ComplexArray) -> complex | None:
+def _way_out(value: complex, size: float, at_border: str, beyond: str) -> str:
+    if abs(value.real) <= _AXIS * size:
+        return f", on the border of stability; {at_border}"
+    return f"; {beyond}"
+
+
+def least_seen(A: Array, C: Array, eigenvalues: ComplexArray) -> complex | None:
     """Find a mode that the output does not show, by the test of Popov, Belevitch and Hautus."""
     n = A.shape[0]
     size = float(np.abs(eigenvalues).max(initial=0.0)) or 1.0

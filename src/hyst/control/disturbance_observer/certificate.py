@@ -132,7 +132,7 @@ class Certificate:
     def to_dict(self) -> dict[str, Any]:
         """Give plain numbers and lists; poles as pairs of real and imaginary part, inf as text."""
         given: dict[str, Any] = {
-            name: _plain(getattr(self, name)) for name in self.__dataclass_fields__
+            name: plain(getattr(self, name)) for name in self.__dataclass_fields__
         }
         for name in (
             "fastest_pole",
@@ -310,11 +310,12 @@ def _largest_part(closed: LinearSystem, frequency: float) -> str:
     return ("Wu T", "Wp (1 - Q)", "Wn K S")[int(np.argmax(np.abs(value[:, 0])))]
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """Give numbers and lists of them that JSON can hold."""
     if isinstance(value, np.ndarray) and np.iscomplexobj(value):
         return [[float(each.real), float(each.imag)] for each in value]
     if isinstance(value, np.ndarray):
-        return [_plain(float(each)) for each in value]
+        return [plain(float(each)) for each in value]
     if isinstance(value, float) and np.isinf(value):
         return "inf"
     return value

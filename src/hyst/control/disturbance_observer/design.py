@@ -11,8 +11,16 @@ from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
 from hyst.checks.numbers import as_not_negative, as_positive, whole_number
+from hyst.control.discretization import Method
 from hyst.control.disturbance_observer.assumptions import check_assumptions, check_noise_weight
 from hyst.control.disturbance_observer.certificate import certify
+from hyst.control.disturbance_observer.discrete.design import (
+    design_sampled_observer,
+    evaluate_sampled_gain,
+    is_discrete,
+    sampled_observer_problem,
+)
+from hyst.control.disturbance_observer.discrete.problem import SampledObserverProblem
 from hyst.control.disturbance_observer.internal_model import as_internal_model
 from hyst.control.disturbance_observer.lower_bound import lower_bound, lower_bound_at_noise
 from hyst.control.disturbance_observer.noise_weight import noise_weight
@@ -36,6 +44,9 @@ def design_disturbance_observer(
     Wp: Any,
     internal_model: Any = "integrator",
     *,
+    dt: float | None = None,
+    delay: float = 0.0,
+    discretization: Method = "tustin",
     noise: Any = None,
     jitter: float | None = None,
     order: int | Literal["auto"] | None = None,
@@ -54,18 +65,31 @@ def design_disturbance_observer(
     Systems are transfer functions or state spaces of python-control, pairs (num, den), matrices
     (A, B, C, D) or numbers, in continuous time, with one input and one output.
 
+    With a sample time the design is in discrete time: ``observer`` is then the sampled observer
+    that runs, its estimate already corrected by the y at hand; the norm is that of the sampled loop
+    with hold, delay and all aliases; no pole of Q is faster than half of Nyquist.
+
     Parameters
     ----------
     plant
-        Nominal plant Pn: strictly proper, stable, minimum phase, observable.
+        Nominal plant Pn: strictly proper, stable, minimum phase, observable. With a sample time any
+        stable one; also one that is sampled, or LinearDynamics, whose dt is then that of the
+        design.
     controller
-        C, in u = C (y_ref - y); stabilizes Pn.
+        C, in u = C (y_ref - y); stabilizes Pn. Sampled as it is, or continuous.
     Wu
         Weight of the multiplicative uncertainty, P = Pn (1 + Delta), |Delta| <= |Wu|; stable.
     Wp
         Weight of 1 - Q, what is left of the disturbance; stable.
     internal_model
         InternalModel, pair (A_d, C_d), ``"integrator"`` or ``"ramp"``; an eigenvalue at 0.
+    dt
+        Sample time of the observer, s; in continuous time if left out and the plant is continuous.
+    delay
+        From the sample of y to the drive that follows from it, s, at least 0: whole and fractional
+        samples; whole ones if the plant is sampled.
+    discretization
+        How a continuous controller is sampled: ``"tustin"`` or ``"zoh"``.
     noise
         Standard deviation of the sensor's noise, in the unit of y, or a system as the weight Wn of
         ``K S``, the gain from that noise to v. A standard deviation gives the constant weight
@@ -78,7 +102,8 @@ def design_disturbance_observer(
         the internal model, searched for the least norm at no more of ``sup |Q / Pn|``. ``"auto"``
         adds them while each lowers the norm by 5 %. Left out it is the paper's, none.
     fastest_pole
-        Limit of the poles of Q, rad/s; a block at sample time dt cannot hold any beyond pi/dt.
+        Limit of the poles of Q, rad/s; a block at sample time dt cannot hold any beyond pi/dt. With
+        a sample time half of that is the limit anyway.
     flat
         Share of the norm given up for the least ``sup |Q / Pn|``, where that at least halves it
         and the norm stays below 1; 1e-4 are always given. 0 is the least norm and nothing else.
@@ -104,7 +129,8 @@ def design_disturbance_observer(
     InputError
         If an assumption does not hold, method is unknown, or an option cannot be met.
     SolverError
-        If the semidefinite program of the method "slpmm" fails.
+        If the semidefinite program of the method "slpmm" fails, or a sampled observer of high order
+        has no digits left.
 
     Source
     ------
@@ -121,10 +147,17 @@ def design_disturbance_observer(
     (True, 0.92)
     """
     problem = observer_problem(
-        plant, controller, Wu, Wp, internal_model, noise=noise, jitter=jitter
+        *(plant, controller, Wu, Wp, internal_model),
+        dt=dt,
+        delay=delay,
+        discretization=discretization,
+        noise=noise,
+        jitter=jitter,
     )
     how = Search(method, starts, seed, order, fastest_pole, flat, progress)
     _check(problem, how)
+    if isinstance(problem, SampledObserverProblem):
+        return design_sampled_observer(problem, how, perturbed_plant, _deviation(noise))
     perturbed = _perturbed(perturbed_plant)
     # Matrices of ten rows: more threads would only wait for one another.
     with threadpool_limits(1, user_api="blas"):
@@ -143,7 +176,7 @@ def _check(problem: ObserverProblem, how: Search) -> None:
         as_positive(how.fastest_pole, "fastest_pole", "a limit of the poles in rad/s")
     if how.order not in (None, "auto"):
         least = problem.order
-        whole_number(how.order, "order", least, least + MOST_MORE, "'auto' or ")
+        whole_number(how.order, "order", least, least + MOST_MORE, ", or 'auto'")
     asked = {"noise": problem.Wn, "fastest_pole": how.fastest_pole, "order": how.order}
     named = [name for name, value in asked.items() if value is not None]
     if how.method == "slpmm" and named:
@@ -185,6 +218,9 @@ def observer_problem(
     Wp: Any,
     internal_model: Any = "integrator",
     *,
+    dt: float | None = None,
+    delay: float = 0.0,
+    discretization: Method = "tustin",
     noise: Any = None,
     jitter: float | None = None,
 ) -> ObserverProblem:
@@ -192,7 +228,7 @@ def observer_problem(
 
     Parameters
     ----------
-    plant, controller, Wu, Wp, internal_model, noise, jitter
+    plant, controller, Wu, Wp, internal_model, dt, delay, discretization, noise, jitter
         As for ``design_disturbance_observer``.
 
     Raises
@@ -200,6 +236,15 @@ def observer_problem(
     InputError
         If one cannot be read or an assumption does not hold.
     """
+    if is_discrete(plant, dt, delay):
+        return sampled_observer_problem(
+            *(plant, controller, Wu, Wp, internal_model),
+            dt=dt,
+            delay=delay,
+            discretization=discretization,
+            noise=noise,
+            jitter=jitter,
+        )
     problem = ObserverProblem(
         _nominal(plant),
         as_linear_system(controller, "the controller"),
@@ -246,6 +291,8 @@ def evaluate_gain(
     >>> round(evaluate_gain(problem, [-117.381, 0.197, 17113.1]).gamma, 3)
     2.234
     """
+    if isinstance(problem, SampledObserverProblem):
+        return evaluate_sampled_gain(problem, gain, perturbed_plant)
     L = np.array(gain, dtype=np.float64).ravel()
     if L.size != problem.order or not np.isfinite(L).all():
         raise InputError(

@@ -73,7 +73,10 @@ def finish(gain: Curve, found: Descent, steps: int = 40, tolerance: float = 1e-7
 
 
 def curvature_of(gain: Curve, x: Array, peaks: Array, weights: Array, unit: float) -> Array:
-    """Second derivatives of the weighted heights, each peak moving to stay a maximum."""
+    """Second derivatives of the weighted heights, each peak moving to stay a maximum.
+
+    Of the curve gain at the parameters x, peaks with their weights, heights over unit.
+    """
     held = weights > 1e-6
     w, share, n = peaks[held], weights[held], x.size
     at = gain.at(w)
@@ -118,7 +121,7 @@ def _quadratic_step(heights: Array, slopes: Array, curvature: Array) -> tuple[Ar
 
 
 def carried(peaks: Array, weights: Array, new_peaks: Array) -> Array:
-    """Weights of the old peaks, given to the nearest of the new."""
+    """Give the weights of the peaks to the nearest of the new_peaks."""
     given = np.zeros(new_peaks.size)
     for w, share in zip(peaks, weights, strict=True):
         given[np.argmin(np.abs(np.log(new_peaks / w)))] += share

@@ -32,11 +32,10 @@ def with_one_more(gain: StackedGain, found: Descent, noise: float) -> tuple[Stac
     noise
         Limit of sup |Q / Pn|, to 0.1 %.
     """
-    larger = StackedGain(gain.problem, gain.free + 1, gain.fastest_pole)
+    larger = gain.enlarged()
     poles, free = gain.poles(found.parameters), gain.eigenvalues(found.parameters)
-    size = np.abs(gain.features)
     ends: list[Descent] = []
-    for rate in np.geomspace(size.min() / 3.0, 3.0 * size.max(), _STARTS):
+    for rate in np.geomspace(*gain.rates(), _STARTS):
         start = larger.parameters_of(np.append(poles, -rate), np.append(free, -rate))
         # As it starts it is as good as it was.
         ends.append(Descent(start, found.norm, 0))

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 def noise_to_drive(problem: ObserverProblem, gain: Array) -> LinearSystem:
-    """K S, from noise on y to -v, in the loop of the nominal plant with this gain."""
+    """K S, from noise on y to -v, in the loop of the problem with this gain."""
     loop = _noise_loop(problem, gain)
     return LinearSystem(loop.A, loop.B, loop.C[3:], loop.D[3:])
 
@@ -35,11 +35,11 @@ def noise_without_observer(problem: ObserverProblem) -> LinearSystem:
     A[n:, :n] -= controller.B @ plant.C
     B = np.zeros((n + n_c, 1))
     B[:n], B[n:] = -plant.B @ controller.D, -controller.B
-    return LinearSystem(A, B, -v, controller.D)
+    return LinearSystem(A, B, -v, controller.D, plant.dt)
 
 
 def all_rows(problem: ObserverProblem, gain: Array) -> LinearSystem:
-    """Give [Wu T; Wp (1 - Q); Wn K S] of a problem with a weight of noise, with input n."""
+    """Give [Wu T; Wp (1 - Q); Wn K S] of a problem with a weight of noise and a gain, input n."""
     assert problem.Wn is not None
     plant, Wp = problem.plant, problem.Wp
     # 1 - Q = S (1 + Pn C), from y + n = S n and u = -C S n.

@@ -61,4 +61,5 @@ def noise_weight(problem: ObserverProblem, noise: Any, jitter: float | None) -> 
 
 
 def _gain_at_zero(problem: ObserverProblem) -> float:
-    return float(abs(problem.plant.response(np.zeros(1, complex))[0, 0, 0]))
+    still = np.full(1, 1.0 if problem.plant.dt > 0.0 else 0.0, complex)
+    return float(abs(problem.plant.response(still)[0, 0, 0]))

@@ -36,13 +36,13 @@ class Curve(Protocol):
         """Give the nearest parameters that are allowed; the same if they are."""
 
     def values(self, parameters: Array, at: Any) -> Array:
-        """Square of the gain at each frequency."""
+        """Square of the gain for the parameters, at each frequency of at."""
 
     def values_and_slopes(self, parameters: Array, at: Any) -> tuple[Array, Array]:
-        """Square of the gain at each frequency, and its derivatives by the parameters."""
+        """Square of the gain at each frequency of at, and its derivatives by the parameters."""
 
     def peaks(self, parameters: Array, share: float = 0.9, rounds: int = 4) -> Array:
-        """Frequencies of the local maxima that reach a share of the largest, highest first."""
+        """Frequencies of maxima for the parameters, as ``find_peaks`` gives them: share, rounds."""
 
 
 def find_peaks(

@@ -60,7 +60,7 @@ def bounds(n: int, slow: float, fast: float) -> tuple[Array, Array]:
 
 
 def slowed(parameters: Array, fast: float) -> Array:
-    """Take pairs of roots with one faster than e^fast to where none is.
+    """Take parameters of roots of which some are faster than e^fast to where none is.
 
     Both roots of ``s^2 + A s + B`` lie within f if ``B <= f^2`` and ``A <= f + B / f``.
     """

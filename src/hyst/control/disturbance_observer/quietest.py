@@ -84,7 +84,7 @@ def quietest(
 
 
 def noise_of(gain: NoisyCurve, found: Descent) -> float:
-    """Noise gain sup |Q / Pn| of a descent's end."""
+    """Noise gain sup |Q / Pn| of what a descent on gain found."""
     x, noise = found.parameters, gain.noise
     return float(np.sqrt(noise.values(x, noise.at(noise.peaks(x))).max()))
 

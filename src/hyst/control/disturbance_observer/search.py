@@ -24,14 +24,17 @@ Progress = Callable[[str, int, float], None]
 # Iterations of SLPMM: all of them, as many as the paper's, or a few where each takes long and the
 # descent that follows needs no more than a start.
 _FULL, _FEW, _LARGE = 14, 2, 5
-_PAYS = 0.95  # of the norm: an eigenvalue more has to bring it below
-_USUAL = 3  # starts for the quietest
+PAYS = 0.95  # of the norm: an eigenvalue more has to bring it below
+USUAL = 3  # starts for the quietest
 MOST_MORE = 6  # eigenvalues
 
 
 @dataclass(frozen=True)
 class Search:
-    """How to search: the arguments of ``design_disturbance_observer``."""
+    """How to search: the arguments of ``design_disturbance_observer``.
+
+    These are ``method``, ``starts``, ``seed``, ``order``, ``fastest_pole``, ``flat``, ``progress``.
+    """
 
     method: str
     starts: int | None
@@ -44,7 +47,7 @@ class Search:
 
 @dataclass(frozen=True)
 class Found:
-    """A gain, the problem whose internal model it is for, and a line for each stage."""
+    """A ``gain``, the ``problem`` whose internal model it is for, and ``steps``, a line a stage."""
 
     problem: ObserverProblem
     gain: Array
@@ -100,7 +103,7 @@ def _linear(gain: StackedGain, how: Search, steps: list[str]) -> tuple[Array, fl
 
 
 def _quiet(gain: StackedGain, best: Descent, how: Search, steps: list[str]) -> Descent:
-    starts = usual_parameters(gain)[:_USUAL] if gain.free == 0 else []
+    starts = usual_parameters(gain)[:USUAL] if gain.free == 0 else []
     quiet = quietest(gain, best, starts, how.flat)
     if quiet is not best:
         steps.append(
@@ -126,7 +129,7 @@ def _more(
         eigenvalue = larger.eigenvalues(more.parameters)
         told = ", ".join(f"{each:.4g}" for each in np.sort(eigenvalue.real))
         line = f"order {larger.order:<8d} {more.norm:.4f}, noise gain {noise_of(larger, more):.3g}"
-        if auto and more.norm > _PAYS * best.norm:
+        if auto and more.norm > PAYS * best.norm:
             steps.append(f"{line}: does not pay, left at {gain.order}")
             break
         steps.append(f"{line}, eigenvalues {told} 1/s more in the internal model")

@@ -35,7 +35,10 @@ _SLOWER, _FASTER = 100.0, 10.0  # than all poles and zeros of the problem
 
 @dataclass(frozen=True)
 class NoiseRow:
-    """What the row of noise needs at each frequency: |Wn S0|^2, C, and the plant's denominator."""
+    """What the row of noise needs at each frequency.
+
+    ``weight`` is |Wn S0|^2, ``controller`` C, ``denominator`` that of the plant over its gain.
+    """
 
     weight: Array
     controller: ComplexArray
@@ -63,7 +66,7 @@ class Frequencies:
 
 @dataclass(frozen=True)
 class Solved:
-    """Coefficients of x, r, k and l, and the derivatives of x and l by the parameters."""
+    """Coefficients of x, r, k and l, with x_slopes and l_slopes, derivatives by the parameters."""
 
     x: Array
     r: Array
@@ -139,6 +142,15 @@ class StackedGain:
             np.concatenate([of_poles[0], of_model[0]]),
             np.concatenate([of_poles[1], of_model[1]]),
         )
+
+    def enlarged(self) -> StackedGain:
+        """Give the same with one free eigenvalue more."""
+        return StackedGain(self.problem, self.free + 1, self.fastest_pole)
+
+    def rates(self) -> tuple[float, float]:
+        """Give the ends of the band in which free eigenvalues may start, 1/s."""
+        size = np.abs(self.features)
+        return float(size.min()) / 3.0, 3.0 * float(size.max())
 
     def inside(self, parameters: Array) -> Array:
         """Take the parameters into their bounds, and poles to where none is too fast."""
@@ -254,7 +266,7 @@ class StackedGain:
         return model * (at.powers[:, -solved.k.size :] @ solved.k) / below, below
 
     def below(self, solved: Solved, powers: ComplexArray) -> ComplexArray:
-        """Values of x; a pole of Q all but on the axis may meet a frequency of the grid."""
+        """Values of the solved x by powers of s, kept from 0 next to a pole on the axis."""
         x = powers @ solved.x
         return np.where(np.abs(x) > 1e-60, x, 1e-60)
 

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-from hyst.control.plants.identified_plant import IdentifiedPlant, identified_plant
+from hyst.control.plants.dead_time import plant_and_delay
+from hyst.control.plants.identified import IdentifiedPlant, identified_plant
 from hyst.control.plants.parts import has_dynamics_behind
-from hyst.control.plants.plant_and_delay import plant_and_delay
 
 __all__ = ["IdentifiedPlant", "has_dynamics_behind", "identified_plant", "plant_and_delay"]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -57,7 +57,13 @@ def front_and_dynamics(model: Operator, name: str) -> tuple[Operator, LinearDyna
 
 
 def has_dynamics_behind(model: Operator) -> bool:
-    """Tell whether a model ends in linear dynamics, as one of hysteresis with dynamics does."""
+    """Tell whether a model ends in linear dynamics, as one of hysteresis with dynamics does.
+
+    Parameters
+    ----------
+    model
+        Any operator.
+    """
     return isinstance(_parts(model)[-1], StateSpace)
 
 

@@ -52,8 +52,8 @@ def to_nlsys(
     inputs, outputs
         Other names of the signals.
     watch
-        Have more outputs: of a TrackingController v, what its linear part asks for, and d_hat,
-        where it is known; of a Scheduled model ``outside``, 1 where s is outside the schedule.
+        Have more outputs: of a TrackingController v, which belongs to the drive, and d_hat, where
+        it is known; of a Scheduled model ``outside``, 1 where s is outside the schedule.
 
     Returns
     -------

@@ -95,29 +95,19 @@ def _of_scheduled(model: Scheduled | ScheduledInverse, watch: bool) -> SampledBl
 
 
 def _of_controller(block: TrackingController, watch: bool) -> SampledBlock:
-    """Tell beside u what the linear part asks for, and the estimate where it is known."""
-    linear = TrackingController(block.A, block.B, block.C, block.D, block.dt)
-    estimates = block.E is not None
+    """Beside u, tell the v that belongs to it, and the estimate where it is known."""
+    watched = {"v": block.applied} if watch else {}
+    if watch and block.E is not None and block.F is not None:
+        watched["d_hat"] = block.estimate
 
     def sample(state: Array, given: Array) -> tuple[Array, Array]:
         reference, output = given[:1], given[1:]
         u, following = block.run(reference, output, state)
-        if not watch:
-            return u, following
-        told = [u, linear.run(reference, output, state[: block.order])[0]]
-        if estimates:
-            told.append(block.estimate(reference, output, state))
-        return np.concatenate(told), following
+        told = [each(reference, output, state) for each in watched.values()]
+        return np.concatenate([u, *told]), following
 
-    outputs = ("u", "v", "d_hat") if estimates else ("u", "v")
-    return SampledBlock(
-        "controller",
-        block.dt,
-        ("y_ref", "y"),
-        outputs if watch else ("u",),
-        block.initial_state(),
-        sample,
-    )
+    names, outputs = ("y_ref", "y"), ("u", *watched)
+    return SampledBlock("controller", block.dt, names, outputs, block.initial_state(), sample)
 
 
 def _word(kind: str) -> str:

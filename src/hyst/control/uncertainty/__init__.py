@@ -14,3 +14,7 @@ __all__ = [
     "require_no_less_than_known",
     "uncertainty_weight",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from hyst.control.linear_system import as_linear_system
-from hyst.control.plants.identified_plant import IdentifiedPlant
+from hyst.control.plants.identified import IdentifiedPlant
 from hyst.control.uncertainty.left_unknown import (
     SLOW,
     STANDARD_ERRORS,

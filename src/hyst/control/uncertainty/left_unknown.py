@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_not_negative
-from hyst.control.plants.identified_plant import IdentifiedPlant
+from hyst.control.plants.identified import IdentifiedPlant
 from hyst.control.uncertainty.responses import Deviations
 from hyst.errors import InputError
 from hyst.operators.dynamics_errors import DynamicsErrors

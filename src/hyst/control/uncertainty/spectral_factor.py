@@ -58,6 +58,10 @@ def _stable(roots: Complex) -> Complex:
 
 
 def _realized(zeros: Complex, poles: Complex, gain: float, scale: float, dt: float) -> LinearSystem:
+    if not poles.size:
+        return LinearSystem(
+            np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((1, 0)), np.array([[gain]]), dt
+        )
     A, B, C, D = cascade(sections_of(zeros, poles, gain))
     B, C = B.reshape(-1, 1) * scale, C.reshape(1, -1)
     return balanced(LinearSystem(A * scale, B, C, np.array([[D]]), dt))

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.numbers import as_positive, whole_number
 from hyst.control.linear_system import LinearSystem
-from hyst.control.plants.identified_plant import IdentifiedPlant
+from hyst.control.plants.identified import IdentifiedPlant
 from hyst.control.uncertainty.cover import Cover, Target, tightest
 from hyst.control.uncertainty.left_unknown import shown_deviations
 from hyst.control.uncertainty.responses import (
@@ -32,8 +32,8 @@ MOST = 8
 TIGHT = 1.5
 """Excess with which no higher order is tried."""
 
-_ALIKE = 1.1  # times the least excess of any order: as good
-_NO_GAIN = 0.95  # of the excess before: two orders that gain less are the last
+_WORTH_AN_ORDER = 0.85  # of the excess before, for one order more
+_MORE_ORDERS = 2  # that are tried beyond the last that was worth it: a resonance takes two
 _POINTS = 300  # that a linear program takes; of more, the largest of each of so many bins
 _DIP = 2.0**0.25  # on either side of what is narrow
 _WIDE = 1.1  # ratio of neighbouring frequencies from which there are points between
@@ -97,8 +97,8 @@ def uncertainty_weight(
         responses, ``frd`` of python-control, pairs (w, G) with w in rad/s and complex G, or
         systems. Samples above half the sample rate of a sampled nominal plant are left out.
     order
-        Of W, 0 to 8; None: the least that exceeds the samples by no more than half, or else as
-        little as higher orders do.
+        Of W at most, 0 to 8; None: the least that exceeds the samples by no more than half, or else
+        that beyond which an order takes less than a seventh off the excess.
     least
         Least deviation that is asked of W, > 0: no plant is known better.
     w
@@ -244,27 +244,34 @@ def without_dips(w: Array, radius: Array) -> Array:
 
 
 def _of_least_order(target: Target, enough: float) -> Cover:
-    found: list[Cover] = []
+    """Give the first cover that is tight enough, or else the last whose order was worth it."""
+    best: Cover | None = None
     for order in range(MOST + 1):
         tight = tightest(target, order, enough)
         if tight is not None:
             return tight
-        each = tightest(target, order)
-        if each is not None:
-            found.append(each)
-        if len(found) > 2 and found[-1].excess > _NO_GAIN * found[-3].excess:
+        found = tightest(target, order)
+        if best is None or (found is not None and _is_worth(found, best)):
+            best = found
+        if best is not None and order >= best.order + _MORE_ORDERS:
             break
-    if not found:
+    if best is None:
         raise SolverError("no cover was found; give fewer samples, or an order")
-    best = min(each.excess for each in found)
-    return next(each for each in found if each.excess <= _ALIKE * best)
+    return best
+
+
+def _is_worth(found: Cover, best: Cover) -> bool:
+    """Tell whether every further order pays: noise is covered a little better by each."""
+    return found.excess < best.excess * _WORTH_AN_ORDER ** (found.order - best.order)
 
 
 def _of_order(target: Target, order: int) -> Cover:
-    found = tightest(target, order)
-    if found is None:
-        raise SolverError(f"no cover of order {order} was found; give another order")
-    return found
+    """Give the tightest cover of an order, or of the next below where rounding leaves none."""
+    for each in range(order, -1, -1):
+        found = tightest(target, each)
+        if found is not None:
+            return found
+    raise SolverError(f"no cover of order {order} was found; give another order")
 
 
 def _thinned(target: Target) -> Target:

@@ -235,7 +235,10 @@ def _variables_2(about: FmuDescription) -> Sequence[Element]:
     return found
 
 
-_FAULT = "1 since an input, or a value on its way through the model, was not finite; else 0"
+_FAULT = (
+    "1 since an input, or a value on its way through the model, was not finite, 16 since a limited "
+    "drive was held at its limits, 17 since both; else 0"
+)
 
 
 def _scalar(

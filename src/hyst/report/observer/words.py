@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.report.tables import number
+from hyst.report.table import number
 
 ComplexArray = NDArray[np.complex128]
 

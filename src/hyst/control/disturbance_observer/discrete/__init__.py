@@ -1,0 +1,1 @@
+"""Disturbance observers in discrete time, straight from a sampled plant."""
