@@ -110,6 +110,18 @@ class LoopMargins:
             ("disturbances are reduced below", _hertz(self.rejection)),
         )
 
+    def to_dict(self) -> dict[str, Any]:
+        """Give plain numbers, lists and truth; frequencies in rad/s, infinity as text."""
+        given: dict[str, Any] = {"peak_sensitivity": self.peak_sensitivity, **vars(self)}
+        plain = {
+            name: value.tolist() if isinstance(value, np.ndarray) else value
+            for name, value in given.items()
+        }
+        return {
+            name: "inf" if isinstance(value, float) and math.isinf(value) else value
+            for name, value in plain.items()
+        }
+
     def summary(self) -> str:
         """Give the margins as lines of text."""
         return "\n".join(f"{what}: {value}" for what, value in self.rows())

@@ -344,6 +344,9 @@ class ObserverAnswer:
             "drive_range": list(self.drive_range),
             "identified": None if self.identified is None else list(self.identified),
             "noise": self.noise,
+            "margins": None
+            if self.margins is None
+            else {"controller": self.margins[0].to_dict(), "block": self.margins[1].to_dict()},
             "tracking": {
                 name: {
                     "without": _row(self.without[name]),
