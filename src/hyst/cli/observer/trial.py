@@ -82,7 +82,7 @@ def _block(spec: ObserverSpec, design: Any, inverse: hyst.Operator | None) -> Tr
         method=spec.filter_method,
         limits=spec.limits,
         rate=spec.rate,
-        hysteresis=None if spec.limits is None and spec.rate is None else forward,
+        hysteresis=None if spec.limits is None else forward,
         feedforward=spec.feedforward,
         plant=spec.plant,
         despite_verdict=True,  # who does not want that was refused at the beginning
