@@ -138,7 +138,13 @@ def balanced_matrices(A: Array, B: Array, C: Array) -> tuple[Array, Array, Array
 
 
 def transfer_function_of(num: Array, den: Array, dt: float = 0.0) -> Any:
-    """Give the ``control.TransferFunction`` of the polynomials num and den, highest power first."""
+    """Give the ``control.TransferFunction`` of two polynomials.
+
+    Parameters
+    ----------
+    num, den
+        Coefficients, highest power first.
+    """
     return _python_control().tf(num, den, dt)
 
 
