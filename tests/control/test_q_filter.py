@@ -82,6 +82,17 @@ def test_one_more_order_is_better_than_the_best_of_the_papers_observer() -> None
     assert free.certificate.observer_noise_gain <= 1.38 * (1.0 + 1e-4)
 
 
+@pytest.mark.parametrize("seed", [1, 5])
+def test_free_filters_are_no_worse_than_the_textbook(seed: int) -> None:
+    p = random_problem(seed)
+    systems = (p.plant, p.controller, p.Wu, p.Wp)
+    textbook = design_q_filter(*systems)
+    most = textbook.certificate.observer_noise_gain * (1.0 + 1e-6)
+    free = design_q_filter(*systems, textbook.filter.order, family="free", most_noise=most)
+    assert free.gamma <= textbook.gamma * (1.0 + 1e-6)
+    assert free.certificate.observer_noise_gain <= most * (1.0 + 1e-4)
+
+
 def designs_of_many() -> list[QFilterObserver]:
     found = []
     for seed in (1, 2, 3, 5):

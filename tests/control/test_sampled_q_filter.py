@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from observer_cases import OMEGA, PLANT, REPAIRED_C, WP, WU
+from observer_cases import OMEGA, PLANT, REPAIRED_C, WP, WU, random_problem
 
 from hyst.control import (
     LinearSystem,
@@ -72,6 +72,22 @@ def test_the_observer_is_the_filter_and_the_inverse(
     assert np.abs(design.observer.poles()).max() < 1.0
     assert design.filter.relative_degree == design.problem.relative_degree
     assert np.abs(closed_loop_poles(design.problem.plant.system, design.block)).max() < 1.0
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3, 4, 5, 6])
+def test_slow_poles_keep_their_digits_where_sampling_is_fast(seed: int) -> None:
+    """At 20 samples for the fastest pole, slow ones crowd at z = 1, up to seven of them."""
+    p = random_problem(seed)
+    dt = 0.05 / float(np.abs(p.plant.poles()).max())
+    design = design_sampled_q_filter(p.plant, p.controller, p.Wu, p.Wp, dt)
+    z = np.exp(1j * np.geomspace(1e-5, np.pi, 300))
+    Pd = design.problem.plant.system.response(z)[:, 0, 0]
+    observer = design.observer.response(z)[:, 0]
+    # Coefficients in powers of z instead of z - 1 leave 1e-4 to 1e-1 here, and unstable loops.
+    np.testing.assert_allclose(observer[:, 1] * Pd, -observer[:, 0], atol=1e-8)
+    assert np.abs(design.observer.poles()).max() < 1.0
+    assert np.abs(closed_loop_poles(p.plant, design.block)).max() < 1.0
+    assert np.isfinite(design.gamma)
 
 
 def test_zeros_outside_the_circle_are_kept(third: SampledQFilterObserver) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from hyst.checks.arrays import finite_array
 from hyst.checks.numbers import as_positive, whole_number
 from hyst.control.linear_system import LinearSystem, transfer_function_of
-from hyst.control.q_filters.realization import shared_realization
+from hyst.control.q_filters.realization import Channel, shared_realization
 from hyst.control.zeros_and_poles import Points, ZerosAndPoles
 from hyst.errors import InputError
 
@@ -68,10 +68,8 @@ class QFilter:
     @property
     def system(self) -> LinearSystem:
         """The same in state space."""
-        scale = unit_of(self.factors.poles, self.dt)
-        above = scaled_polynomial(self.factors.zeros, scale)
-        gain = self.factors.gain * scale ** (-self.relative_degree)
-        return shared_realization(self.factors.poles, [gain * above], scale, self.dt)
+        channel = Channel(self.factors.gain, self.factors.zeros)
+        return shared_realization(self.factors.poles, [channel], self.dt)
 
     def response(self, s: Points) -> ComplexArray:
         """Values of the filter, (K,).
@@ -250,25 +248,3 @@ def _checked_zeros(kept_zeros: Sequence[complex] | ComplexArray) -> ComplexArray
         if not np.isclose(kept, np.conj(value), rtol=1e-9).any():
             raise InputError(f"the kept zero {value:.6g} has no conjugate; give both")
     return kept
-
-
-def unit_of(roots: ComplexArray, dt: float = 0.0) -> float:
-    """Give a power of two in the middle of the roots of continuous polynomials; 1 if sampled.
-
-    Parameters
-    ----------
-    roots
-        1/s.
-    dt
-        Sample time, s; 0 means continuous time.
-    """
-    size = np.abs(roots)
-    size = size[size > 0.0]
-    if dt or not size.size:
-        return 1.0
-    return float(2.0 ** round(float(np.mean(np.log2(size)))))
-
-
-def scaled_polynomial(roots: ComplexArray, scale: float) -> Array:
-    """Give prod(s - roots) in powers of s/scale, monic in it, highest first."""
-    return np.real(np.atleast_1d(np.poly(roots / scale)))

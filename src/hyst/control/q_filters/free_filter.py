@@ -148,7 +148,8 @@ def descend_free(
     w = grid_of(free.problem)
     coarse = fixed_responses(free.problem, w[::2])
     smooth = [_descend_smoothed(free, each, coarse, most_noise) for each in starts]
-    smooth.append(starts[0])
+    # The first ones are good already, and may be better than where they lead.
+    smooth += starts[:2]
     smooth.sort(key=lambda x: _judged(free, x, w, most_noise))
     ends = [_finished(free, x, w, most_noise) for x in smooth[:_FINISHED]]
     judged = [(_judged(free, x, w, most_noise), x) for x in ends]

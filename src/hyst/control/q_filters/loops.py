@@ -7,9 +7,9 @@ import scipy.linalg
 
 from hyst.control.disturbance_observer.stacked_gain import feedback_matrix
 from hyst.control.linear_system import LinearSystem
-from hyst.control.q_filters.family import QFilter, scaled_polynomial, unit_of
+from hyst.control.q_filters.family import QFilter
 from hyst.control.q_filters.problem import QFilterProblem
-from hyst.control.q_filters.realization import shared_realization
+from hyst.control.q_filters.realization import Channel, shared_realization
 
 
 def weighted_stack(problem: QFilterProblem, Q: LinearSystem) -> LinearSystem:
@@ -96,14 +96,11 @@ def q_observer(problem: QFilterProblem, Q: QFilter) -> LinearSystem:
     """
     plant, factors = problem.plant_factors, Q.factors
     poles = np.concatenate([factors.poles, problem.inverted_zeros])
-    scale = unit_of(np.concatenate([poles, plant.poles]), Q.dt)
     own = _without(factors.zeros, problem.kept_zeros)
-    from_v = scaled_polynomial(np.concatenate([factors.zeros, problem.inverted_zeros]), scale)
-    from_y = scaled_polynomial(np.concatenate([own, plant.poles]), scale)
-    into = factors.gain * scale ** (-Q.relative_degree)
-    excess = own.size + plant.poles.size - poles.size
-    out = factors.gain / plant.gain * scale**excess
-    return shared_realization(poles, [-into * from_v, out * from_y], scale, Q.dt)
+    from_v = np.concatenate([factors.zeros, problem.inverted_zeros])
+    from_y = np.concatenate([own, plant.poles])
+    channels = [Channel(-factors.gain, from_v), Channel(factors.gain / plant.gain, from_y)]
+    return shared_realization(poles, channels, Q.dt)
 
 
 def _without(values: np.ndarray, taken: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ keeps every pole as it is given, and a Q-filter has all its poles in one place.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,29 +18,50 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 
+@dataclass(frozen=True)
+class Channel:
+    """The numerator of one transfer function, ``gain prod(s - zeros)``.
+
+    Parameters
+    ----------
+    gain
+        Of any sign.
+    zeros
+        In conjugate pairs, at most as many as there are poles; in the z plane if sampled.
+    """
+
+    gain: float
+    zeros: ComplexArray
+
+
 def shared_realization(
-    poles: ComplexArray, numerators: Sequence[Array], scale: float = 1.0, dt: float = 0.0
+    poles: ComplexArray, channels: Sequence[Channel], dt: float = 0.0
 ) -> LinearSystem:
-    """Realize ``sum_i numerator_i(s) / prod(s - poles) u_i`` with one state for each pole.
+    """Realize ``sum_i gain_i prod(s - zeros_i) / prod(s - poles) u_i``, one state for each pole.
 
     Parameters
     ----------
     poles
-        In conjugate pairs.
-    numerators
-        One for each input, polynomials in s/scale, highest power first, of degree at most that of
-        the denominator, which is monic in s/scale, too.
-    scale
-        Unit of s, so that coefficients are near 1; a power of two keeps all digits; 1 if sampled.
+        In conjugate pairs; in the z plane if sampled.
+    channels
+        One for each input.
     dt
         Sample time, s; 0 means continuous time.
     """
-    sections = _sections(poles / scale)
-    n, inputs = poles.size, len(numerators)
+    # In z the slow roots of fast sampling crowd at 1, and coefficients of their polynomials lose
+    # what tells them apart; z - 1 keeps it.
+    shift = 1.0 if dt else 0.0
+    roots = np.concatenate([poles, *(each.zeros for each in channels)]).astype(np.complex128)
+    scale = _unit_of(roots - shift)
+    unit = (poles - shift) / scale
+    sections = _sections(unit)
+    n, inputs = poles.size, len(channels)
     B, D = np.zeros((n, inputs)), np.zeros((1, inputs))
-    whole = np.real(np.atleast_1d(np.poly(poles / scale)))
-    for i, numerator in enumerate(numerators):
-        share, rest = _divided(numerator, whole)
+    whole = _polynomial(unit)
+    for i, each in enumerate(channels):
+        above = _polynomial((each.zeros - shift) / scale)
+        above = each.gain * scale ** (each.zeros.size - n) * above
+        share, rest = _divided(above, whole)
         D[0, i] = share[-1]
         at = 0
         for section in sections:
@@ -52,7 +74,18 @@ def shared_realization(
     if n:
         C[0, n - sections[-1].size + 1] = 1.0
     # A and B have the unit of s.
-    return LinearSystem(A * scale, B * scale, C, D, dt)
+    return LinearSystem(shift * np.eye(n) + scale * A, scale * B, C, D, dt)
+
+
+def _polynomial(roots: ComplexArray) -> Array:
+    return np.real(np.atleast_1d(np.poly(roots)))
+
+
+def _unit_of(roots: ComplexArray) -> float:
+    """Give a power of two in the middle of the roots, which changes no digit."""
+    size = np.abs(roots)
+    size = size[size > 0.0]
+    return float(2.0 ** round(float(np.mean(np.log2(size))))) if size.size else 1.0
 
 
 def _divided(above: Array, below: Array) -> tuple[Array, Array]:

@@ -13,7 +13,7 @@ from hyst.control.controller_parts import feedback_controller
 from hyst.control.discretization import Method
 from hyst.control.linear_system import LinearSystem
 from hyst.control.q_filters.family import QFilter
-from hyst.control.q_filters.realization import shared_realization
+from hyst.control.q_filters.realization import Channel, shared_realization
 from hyst.control.sampled.block_loop import BlockLoop
 from hyst.control.sampled.certificate import stable_weight
 from hyst.control.sampled.plant import SampledPlant, sampled_plant
@@ -102,11 +102,10 @@ class SampledQFilterProblem:
         plant = self.factors
         poles = np.concatenate([Q.factors.poles, self.inverted_zeros])
         own = Q.factors.zeros[self.kept_zeros.size :]
-        from_v = -Q.factors.gain * _polynomial(
-            np.concatenate([Q.factors.zeros, self.inverted_zeros])
-        )
-        from_y = Q.factors.gain / plant.gain * _polynomial(np.concatenate([own, plant.poles]))
-        return shared_realization(poles, [from_v, from_y], dt=self.plant.dt)
+        from_v = np.concatenate([Q.factors.zeros, self.inverted_zeros])
+        from_y = np.concatenate([own, plant.poles])
+        channels = [Channel(-Q.factors.gain, from_v), Channel(Q.factors.gain / plant.gain, from_y)]
+        return shared_realization(poles, channels, self.plant.dt)
 
 
 def sampled_q_filter_problem(
@@ -164,7 +163,3 @@ def sampled_q_filter_problem(
             "sample faster"
         )
     return problem
-
-
-def _polynomial(roots: ComplexArray) -> Array:
-    return np.real(np.atleast_1d(np.poly(roots)))

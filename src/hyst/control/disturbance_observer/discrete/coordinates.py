@@ -69,7 +69,7 @@ def _error(
     """Compare the stacked gain of the observer's matrices with that of the polynomials."""
     if not np.isfinite(L).all():
         return np.inf
-    at, observer = gain.grid, problem.observer(L)
+    at, observer = gain.at(gain.grid.w), problem.observer(L)
     if np.abs(observer.poles()).max() >= 1.0:
         return np.inf
     z = (1.0 + 1j * at.w) / (1.0 - 1j * at.w)
