@@ -104,7 +104,24 @@ def rates_of(poles: ComplexArray, dt: float) -> ComplexArray:
 
 
 def static_gain(system: LinearSystem) -> float:
-    """Give the output per constant input; infinite with an integrator."""
+    """Give the output per constant input of a system with one input and one output.
+
+    Parameters
+    ----------
+    system
+        Continuous or sampled.
+
+    Returns
+    -------
+    float
+        Infinite with an integrator; 0 with a zero at the origin.
+
+    Examples
+    --------
+    >>> from hyst.control import as_linear_system
+    >>> static_gain(as_linear_system(([6.0], [1.0, 2.0])))
+    3.0
+    """
     if system.order == 0:
         return float(system.D[0, 0])
     origin = 1.0 if system.dt else 0.0
