@@ -152,6 +152,32 @@ def test_references_far_beyond_the_limits(controller: Any, seed: int) -> None:
             assert smooth[-1] < 0.5
 
 
+@pytest.mark.parametrize("seed", range(16))
+def test_loops_at_random_come_back_as_if_they_had_never_been_limited(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    omega, zeta = 2.0 * np.pi * 10.0 ** rng.uniform(1.5, 2.8), 10.0 ** rng.uniform(-1.5, 0.0)
+    plant = ([omega**2], [1.0, 2.0 * zeta * omega, omega**2])
+    # An integrator alone is stable below 2 zeta omega, and so it is with a notch at the resonance.
+    gain = rng.uniform(0.1, 0.4) * 2.0 * zeta * omega
+    well = [1.0, 2.0 * omega, omega**2]
+    notch = ([gain * each for each in plant[1]], [*well, 0.0])
+    controller = ([gain], [1.0, 0.0]) if seed % 2 else notch
+    high = float(rng.uniform(15.0, 30.0))
+    limits = (-float(rng.uniform(0.5, 1.0)) * high, high)
+    top = float(HYSTERESIS([0.0, high])[-1])
+    assert float(HYSTERESIS([0.0, high, limits[0]])[-1]) < 0.4 * top
+    r = np.where(T < BACK, top * rng.uniform(1.2, 10.0), 0.5 * top)
+    factor = 1.0 if seed % 3 else float(rng.uniform(0.8, 1.1))
+    kind: dict[str, Any] = {"inverse": hyst.Affine(factor) @ INVERSE}
+    limited = loop(block(controller, limits=limits, **kind), r, plant=plant)
+    never = loop(block(controller, limits=None, **kind), np.minimum(r, top), plant=plant)
+    assert limited.u.max() == high
+    error = 0.03 * top
+    # 10 ms for what inexact inverses leave of the way there.
+    assert recovery(limited, error) < 1.2 * recovery(never, error) + 0.01
+    assert recovery(never, error) < 1.5
+
+
 def test_a_drive_that_may_not_be_negative() -> None:
     """As of an amplifier from 0 to 35: what the plays hold at a drive of 0 is as far as it goes."""
     remanent = float(HYSTERESIS([0.0, 35.0, 0.0])[-1])

@@ -29,7 +29,7 @@ _TIMES = 24
 _WORTH = {"i": 1.0, "pi": 1.2, "pid": 1.5}  # by how much a richer kind has to be better
 _OF_NYQUIST = 0.8
 _OFF = (-1.0, 1.0, -0.5, 0.5)  # of the mismatch; its ends come first
-_SHRINK, _SHRINKS = 0.995, 60
+_SHRINK, _SHRINKS = 0.995, 20  # steps that grow
 _BELOW = 0.999  # of Ms is searched, so that what lies between two frequencies of the grid is kept
 
 
@@ -258,13 +258,13 @@ def _tried(
     demands: Demands,
 ) -> Tried | None:
     """Hold a candidate to its demands between the points of the grid, and lower its gain if not."""
-    for _ in range(_SHRINKS):
+    for k in range(_SHRINKS):
         continuous = shape.system(ki, demands.dt)
         system = discretize(continuous, demands.dt) if demands.dt else continuous
         found = [margins_of(each, system) for each in plants]
         if all(_kept(each, peak, demands) for each in found):
             return Tried(kind, shape, ki, continuous, system, found[0], _worst(found))
-        ki *= _SHRINK
+        ki *= _SHRINK ** (1 + k // 2)
     return None
 
 
