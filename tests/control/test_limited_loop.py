@@ -188,3 +188,22 @@ def test_a_drive_that_may_not_be_negative() -> None:
     assert limited.y[-1] == pytest.approx(remanent, abs=1e-9)
     within_reach = np.where(FAR == 10.0, remanent + 1.0, FAR)
     assert recovery(loop(block(FAST_PI, observer=OBSERVER, limits=(0.0, 35.0)), within_reach)) < 0.2
+
+
+def test_a_loop_that_has_settled_starts_from_the_drive_it_rests_with() -> None:
+    """A rate counts from that drive: nothing moves while the reference rests."""
+    stage = hyst.PrandtlIshlinskii([0.5], [1.0], 1.0)
+    block = TrackingController.from_continuous(
+        ([0.2, 60.0], [1.0, 0.0]), 1e-3, inverse=stage.inverse(), limits=(-1.0, 20.0), rate=50.0
+    )
+    plant = ([400.0], [1.0, 30.0, 400.0])
+    loop = simulate_closed_loop(
+        np.full(200, 12.0), 1e-3, plant=plant, controller=block, hysteresis=stage, start="settled"
+    )
+    # By hand: 12 = u + 0.5 (u - 1), so u = 25 / 3.
+    np.testing.assert_allclose(loop.u, 25.0 / 3.0, rtol=1e-9)
+    np.testing.assert_allclose(loop.y, 12.0, rtol=1e-9)
+    with pytest.raises(hyst.InputError, match="beyond the limits of the drive"):
+        simulate_closed_loop(
+            np.full(9, 40.0), 1e-3, plant=plant, controller=block, hysteresis=stage, start="settled"
+        )

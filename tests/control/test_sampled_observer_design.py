@@ -23,10 +23,11 @@ from hyst.control import (
     evaluate_gain,
     observer_problem,
 )
+from hyst.control.disturbance_observer.discrete.coordinates import held_gain
 from hyst.control.disturbance_observer.discrete.problem import SampledObserverProblem
 from hyst.control.disturbance_observer.discrete.stacked_gain import SampledStackedGain
 from hyst.control.sampled.folding import folded_uncertainty
-from hyst.errors import InputError
+from hyst.errors import InputError, SolverError
 
 Array = np.ndarray
 
@@ -133,6 +134,35 @@ def test_poles_and_stack_are_those_of_the_whole_loop(seed: int) -> None:
     # The weights are interpolated in the search, not in the certificate.
     np.testing.assert_allclose(values, expected, rtol=1e-3)
     assert np.median(np.abs(values / expected - 1.0)) < 1e-5
+
+
+def test_a_gain_gets_the_states_that_hold_its_digits() -> None:
+    # Six poles, two zeros and 2.6 samples of delay at a fast rate: in the states of the transfer
+    # function L leaves E four digits.
+    p = sampled_random_problem(7)
+    stack = SampledStackedGain(p, freed=2)
+    x = some_parameters(stack, 1)
+    w = np.geomspace(1e-3, 0.99, 40) * math.pi / p.dt
+    solved, at = stack.solved(x), stack.at(np.tan(0.5 * w * p.dt))
+    E = at.model * (at.powers[:, -solved.k.size :] @ solved.k) / (at.powers @ solved.x)
+    other, gain = held_gain(stack, x, p)
+    z = np.exp(1j * w * p.dt)
+    plain = 1.0 - p.q_filter(stack.gain_of(x)).response(z)[:, 0, 0]
+    held = 1.0 - other.q_filter(gain).response(z)[:, 0, 0]
+    assert np.abs(held - E).max() < 1e-5  # ten poles within a few percent of z = 1
+    assert np.abs(plain - E).max() > np.abs(held - E).max()
+    np.testing.assert_allclose(
+        other.plant.response(z)[:, 0, 0], p.plant.response(z)[:, 0, 0], rtol=1e-6, atol=1e-9
+    )
+
+
+def test_a_gain_that_doubles_cannot_hold_is_refused() -> None:
+    p = sampled_random_problem(7)
+    stack = SampledStackedGain(p, freed=2)
+    # All ten poles within 0.4 % of z = 1, and the plant's up to z = -1 in effect.
+    x = stack.inside(stack.parameters_of(-np.geomspace(1e-3, 2e-3, stack.order).astype(complex)))
+    with pytest.raises(SolverError, match="order 11 with poles so near z = 1 cannot be held"):
+        held_gain(stack, x, p)
 
 
 @pytest.mark.parametrize("free", [0, 1, 2])

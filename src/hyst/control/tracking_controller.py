@@ -61,6 +61,8 @@ class TrackingController(WatchedBlock):
         Shapes (n,) and (2,), or neither.
     x0
         Shape (n,), state before the first sample; zeros if left out.
+    u0
+        Drive before the first sample, from which a rate counts; 0 if left out.
     limits
         Lowest and highest drive; none if left out.
     rate
@@ -100,6 +102,7 @@ class TrackingController(WatchedBlock):
     E: Array | None
     F: Array | None
     x0: Array
+    u0: float
     limits: Limits | None
     rate: float | None
     hysteresis: Operator | None
@@ -119,6 +122,7 @@ class TrackingController(WatchedBlock):
         E: ArrayLike | None = None,
         F: ArrayLike | None = None,
         x0: ArrayLike | None = None,
+        u0: float = 0.0,
         limits: Limits | None = None,
         rate: float | None = None,
         hysteresis: Operator | None = None,
@@ -147,6 +151,7 @@ class TrackingController(WatchedBlock):
             "E": None if E is None else as_entries(E, n, "E"),
             "F": None if F is None else as_entries(F, 2, "F"),
             "x0": as_entries(np.zeros(n) if x0 is None else x0, n, "x0"),
+            "u0": as_number(u0, "u0"),
             **limited_drive(inverse, limits, rate, hysteresis, W, n, time),
             "G": as_number(G, "G"),
         }
@@ -255,11 +260,11 @@ class TrackingController(WatchedBlock):
         """Give the state before the first sample, a fresh array.
 
         x0, then that of the inverse; with limits also that of its inverse, and the last drive,
-        which is the allowed one nearest to 0.
+        which is the allowed one nearest to u0.
         """
         operators = (self.inverse, self.forward)
         memory = [each.initial_state() for each in operators if each is not None]
-        last = [np.array([within(self.limits, 0.0)])] if self.is_limited else []
+        last = [np.array([within(self.limits, self.u0)])] if self.is_limited else []
         return np.concatenate([self.x0, *memory, *last])
 
     def run(

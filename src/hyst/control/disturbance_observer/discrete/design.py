@@ -125,6 +125,8 @@ def design_sampled_observer(
     ------
     InputError
         If SLPMM alone is asked for, or the perturbed plant cannot be read.
+    SolverError
+        If the gain that was found cannot be held in doubles.
     """
     if how.method == "slpmm":
         raise InputError(
