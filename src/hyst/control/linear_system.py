@@ -138,7 +138,7 @@ def balanced_matrices(A: Array, B: Array, C: Array) -> tuple[Array, Array, Array
 
 
 def transfer_function_of(num: Array, den: Array, dt: float = 0.0) -> Any:
-    """Give the ``control.TransferFunction`` of the polynomials num and den, highest power first."""
+    """Give the ``control.TransferFunction`` of num and den, highest power first; dt in s or 0."""
     return _python_control().tf(num, den, dt)
 
 
