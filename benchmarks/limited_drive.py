@@ -22,14 +22,7 @@ from numpy.typing import NDArray
 import hyst
 from benchmarks.closed_loop import CONTROLLER, EXACT, HYSTERESIS, OBSERVER, PLANT
 from benchmarks.timing import interleaved, ratio
-from hyst.control import (
-    ClosedLoop,
-    LinearSystem,
-    TrackingController,
-    discretize,
-    simulate_closed_loop,
-)
-from hyst.control.anti_windup import anti_windup
+from hyst.control import ClosedLoop, TrackingController, simulate_closed_loop
 
 Array = NDArray[np.float64]
 
@@ -71,25 +64,10 @@ def _row(make: Callable[..., TrackingController]) -> list[float]:
 
 def _block(controller: Any, inverse: hyst.Operator, **limits: Any) -> TrackingController:
     if controller is FED_FORWARD:
-        return _with_feedforward(_block(CONTROLLER, inverse), limits)
+        controller, limits = CONTROLLER, limits | {"feedforward": True}
     return TrackingController.from_continuous(
         controller, DT, observer=OBSERVER, inverse=inverse, **limits
     )
-
-
-def _with_feedforward(block: TrackingController, limits: dict[str, Any]) -> TrackingController:
-    """Add y_ref, which the plant passes with a gain of 1, to the output of C."""
-    C, observer = discretize(CONTROLLER, DT), discretize(OBSERVER, DT)
-    assert block.E is not None
-    assert block.F is not None
-    share = 1.0 + observer.D[0, 0]
-    B, D = block.B.copy(), block.D + np.array([1.0 / share, 0.0])
-    B[C.order :, 0] += observer.B[:, 0] / share
-    F = block.F + np.array([observer.D[0, 0] / share, 0.0])
-    if limits:
-        W, G = anti_windup(LinearSystem(C.A, C.B, C.C, C.D + 1.0, DT), observer)
-        limits = limits | {"W": W, "G": G}
-    return TrackingController(block.A, B, block.C, D, DT, block.inverse, E=block.E, F=F, **limits)
 
 
 def _loop(

@@ -31,9 +31,9 @@ from hyst.control import (
     design_sampled_q_filter,
     sampled_certificate,
 )
-from hyst.control.q_filter import DesignRow, row_of, table_of
-from hyst.control.q_filter.comparison import without_observer
-from hyst.control.q_filter.problem import q_filter_problem
+from hyst.control.q_filters import DesignRow, row_of, table_of
+from hyst.control.q_filters.comparison import without_observer
+from hyst.control.q_filters.problem import q_filter_problem
 
 OMEGA = 2.0 * np.pi * 90.0
 PLANT = ([OMEGA**2], [1.0, 1.6 * OMEGA, OMEGA**2])

@@ -11,12 +11,10 @@ from closed_loop_cases import CONTROLLER, HYSTERESIS, INVERSE, OBSERVER, PLANT
 import hyst
 from hyst.control import (
     ClosedLoop,
-    LinearSystem,
     TrackingController,
-    discretize,
+    reference_feedforward,
     simulate_closed_loop,
 )
-from hyst.control.anti_windup import anti_windup
 
 DT = 1e-4
 LIMITS = (-35.0, 35.0)
@@ -90,25 +88,14 @@ def test_a_slow_loop_comes_back_as_if_it_had_never_been_limited() -> None:
         assert np.abs(limited.y - never.y)[later:].max() < 0.1
 
 
-def with_feedforward(limits: Any, inverse: Any) -> TrackingController:
-    """C = 4 + 8/s of the error and 1 of the reference, which the plant passes with a gain of 1."""
-    C, observer = discretize(CONTROLLER, DT), discretize(OBSERVER, DT)
-    plain = block(CONTROLLER, observer=OBSERVER, inverse=inverse, limits=None)
-    share = 1.0 + observer.D[0, 0]
-    B, D = plain.B.copy(), plain.D + np.array([1.0 / share, 0.0])
-    B[C.order :, 0] += observer.B[:, 0] / share
-    more: dict[str, Any] = {}
-    if limits is not None:
-        W, G = anti_windup(LinearSystem(C.A, C.B, C.C, C.D + 1.0, DT), observer)
-        more = {"limits": limits, "W": W, "G": G}
-    return TrackingController(plain.A, B, plain.C, D, DT, inverse, **more)
-
-
 @pytest.mark.parametrize("inverse", [INVERSE, SCALED])
-def test_the_same_slow_loop_with_feedforward_is_back_at_once(inverse: Any) -> None:
+@pytest.mark.parametrize("order", [0, 1, 2])
+def test_the_same_slow_loop_with_feedforward_is_back_at_once(order: int, inverse: Any) -> None:
     """What is conditioned is the whole way of the reference, or C would rest at what is left."""
-    limited = loop(with_feedforward(LIMITS, inverse))
-    never = loop(with_feedforward(None, inverse), NEAR)
+    F = reference_feedforward(PLANT, DT, order=order)
+    made: dict[str, Any] = {"observer": OBSERVER, "inverse": inverse, "feedforward": F}
+    limited = loop(block(CONTROLLER, **made))
+    never = loop(block(CONTROLLER, limits=None, **made), NEAR)
     assert np.abs(limited.u).max() == 35.0
     assert recovery(never) < 0.05
     assert recovery(limited) < 0.05
@@ -165,6 +152,32 @@ def test_references_far_beyond_the_limits(controller: Any, seed: int) -> None:
             assert smooth[-1] < 0.5
 
 
+@pytest.mark.parametrize("seed", range(16))
+def test_loops_at_random_come_back_as_if_they_had_never_been_limited(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    omega, zeta = 2.0 * np.pi * 10.0 ** rng.uniform(1.5, 2.8), 10.0 ** rng.uniform(-1.5, 0.0)
+    plant = ([omega**2], [1.0, 2.0 * zeta * omega, omega**2])
+    # An integrator alone is stable below 2 zeta omega, and so it is with a notch at the resonance.
+    gain = rng.uniform(0.1, 0.4) * 2.0 * zeta * omega
+    well = [1.0, 2.0 * omega, omega**2]
+    notch = ([gain * each for each in plant[1]], [*well, 0.0])
+    controller = ([gain], [1.0, 0.0]) if seed % 2 else notch
+    high = float(rng.uniform(15.0, 30.0))
+    limits = (-float(rng.uniform(0.5, 1.0)) * high, high)
+    top = float(HYSTERESIS([0.0, high])[-1])
+    assert float(HYSTERESIS([0.0, high, limits[0]])[-1]) < 0.4 * top
+    r = np.where(T < BACK, top * rng.uniform(1.2, 10.0), 0.5 * top)
+    factor = 1.0 if seed % 3 else float(rng.uniform(0.8, 1.1))
+    kind: dict[str, Any] = {"inverse": hyst.Affine(factor) @ INVERSE}
+    limited = loop(block(controller, limits=limits, **kind), r, plant=plant)
+    never = loop(block(controller, limits=None, **kind), np.minimum(r, top), plant=plant)
+    assert limited.u.max() == high
+    error = 0.03 * top
+    # 10 ms for what inexact inverses leave of the way there.
+    assert recovery(limited, error) < 1.2 * recovery(never, error) + 0.01
+    assert recovery(never, error) < 1.5
+
+
 def test_a_drive_that_may_not_be_negative() -> None:
     """As of an amplifier from 0 to 35: what the plays hold at a drive of 0 is as far as it goes."""
     remanent = float(HYSTERESIS([0.0, 35.0, 0.0])[-1])
@@ -175,3 +188,22 @@ def test_a_drive_that_may_not_be_negative() -> None:
     assert limited.y[-1] == pytest.approx(remanent, abs=1e-9)
     within_reach = np.where(FAR == 10.0, remanent + 1.0, FAR)
     assert recovery(loop(block(FAST_PI, observer=OBSERVER, limits=(0.0, 35.0)), within_reach)) < 0.2
+
+
+def test_a_loop_that_has_settled_starts_from_the_drive_it_rests_with() -> None:
+    """A rate counts from that drive: nothing moves while the reference rests."""
+    stage = hyst.PrandtlIshlinskii([0.5], [1.0], 1.0)
+    block = TrackingController.from_continuous(
+        ([0.2, 60.0], [1.0, 0.0]), 1e-3, inverse=stage.inverse(), limits=(-1.0, 20.0), rate=50.0
+    )
+    plant = ([400.0], [1.0, 30.0, 400.0])
+    loop = simulate_closed_loop(
+        np.full(200, 12.0), 1e-3, plant=plant, controller=block, hysteresis=stage, start="settled"
+    )
+    # By hand: 12 = u + 0.5 (u - 1), so u = 25 / 3.
+    np.testing.assert_allclose(loop.u, 25.0 / 3.0, rtol=1e-9)
+    np.testing.assert_allclose(loop.y, 12.0, rtol=1e-9)
+    with pytest.raises(hyst.InputError, match="beyond the limits of the drive"):
+        simulate_closed_loop(
+            np.full(9, 40.0), 1e-3, plant=plant, controller=block, hysteresis=stage, start="settled"
+        )

@@ -61,23 +61,23 @@ def test_agree_with_python_control(case: str, dt: float | None) -> None:
         )
         top = math.pi / dt
     # Its method of roots is inaccurate for sampled loops, as it warns; it interpolates responses.
-    w = np.geomspace(1e-7 * top, 0.9999 * top, 50_000)
+    w = np.geomspace(1e-7 * top, 0.9999 * top, 4_000)
     gains, phases, distances, _, crossed, closest = control.stability_margins(
         control.frequency_response(loop, w), returnall=True
     )
     found = loop_margins(plant, controller, dt)
     within = found.crossovers[(found.crossovers > w[0]) & (found.crossovers < w[-1])]
-    # Between points that are 3e-4 apart it fits splines.
-    assert within == pytest.approx(np.sort(crossed), rel=1e-5)
-    assert found.phase_margin == pytest.approx(np.abs(phases).min(initial=math.inf), rel=1e-4)
+    # Between points that are 0.4 % apart it fits splines.
+    assert within == pytest.approx(np.sort(crossed), rel=1e-3)
+    assert found.phase_margin == pytest.approx(np.abs(phases).min(initial=math.inf), rel=1e-3)
     above = gains[gains > 1.0].min(initial=math.inf)
     if above < 1e4:  # beyond it is at z = -1, where python-control does not look
-        assert found.gain_margin == pytest.approx(above, rel=1e-4)
+        assert found.gain_margin == pytest.approx(above, rel=1e-3)
     if dt is not None and found.modulus_frequency > 0.99 * top:
         # At z = -1, which python-control takes for no minimum.
         assert found.modulus_margin < distances.min(initial=1.0)
     else:
-        assert found.modulus_margin == pytest.approx(distances.min(initial=1.0), rel=1e-4)
+        assert found.modulus_margin == pytest.approx(distances.min(initial=1.0), rel=1e-3)
     if distances.size and found.modulus_frequency < 0.99 * top:
         near = closest[int(np.argmin(distances))]
         assert found.modulus_frequency == pytest.approx(near, rel=2e-2)  # flat there

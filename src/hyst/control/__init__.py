@@ -33,7 +33,7 @@ from hyst.control.plants import (
     plant_and_delay,
 )
 from hyst.control.python_control import closed_loop_system, to_nlsys
-from hyst.control.q_filter import (
+from hyst.control.q_filters import (
     DesignRow,
     QFilter,
     QFilterCertificate,

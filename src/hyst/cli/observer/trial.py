@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import hyst
-from hyst.cli.console import at_work, progress_bar
+from hyst.cli.console import at_work, note, progress_bar
 
 if TYPE_CHECKING:
     from hyst.cli.observer.spec import ObserverSpec
@@ -57,7 +57,7 @@ def tried(spec: ObserverSpec, design: Any, stress: int | None) -> ObserverAnswer
             without=without,
             observed=observed,
             noise=spec.noise,
-            rivals={_ALONE: _certified(spec, without[spec.inverse_name].block)},
+            rivals=_rivals(spec, without[spec.inverse_name].block),
             true_plant=_of_true_plant(spec, this),
             bound=_bound(spec, this),
             identified=_identified(spec),
@@ -82,7 +82,7 @@ def _block(spec: ObserverSpec, design: Any, inverse: hyst.Operator | None) -> Tr
         method=spec.filter_method,
         limits=spec.limits,
         rate=spec.rate,
-        hysteresis=None if spec.limits is None and spec.rate is None else forward,
+        hysteresis=None if spec.limits is None else forward,
         feedforward=spec.feedforward,
         plant=spec.plant,
         despite_verdict=True,  # who does not want that was refused at the beginning
@@ -142,6 +142,20 @@ def _parts(spec: ObserverSpec, design: Any) -> LoopComparison | None:
 
 def _certified(spec: ObserverSpec, block: TrackingController) -> SampledCertificate:
     return hyst.control.sampled_certificate(block, spec.plant, spec.Wu, spec.Wp, delay=spec.delay)
+
+
+def _rivals(spec: ObserverSpec, alone: TrackingController) -> dict[str, SampledCertificate]:
+    """Certify the controller alone, and the block with the classical observer of this rate."""
+    found = {_ALONE: _certified(spec, alone)}
+    try:
+        classical = hyst.control.design_sampled_q_filter(
+            spec.plant, spec.controller, spec.Wu, spec.Wp, dt=spec.filter_dt, delay=spec.delay
+        )
+    except hyst.HystError as refused:
+        note(f"no classical observer to compare with: {refused}")
+        return found
+    block = _block(spec, classical, spec.inverse)
+    return found | {f"classical, {classical.name}": _certified(spec, block)}
 
 
 def _stressed(spec: ObserverSpec, block: TrackingController, tries: int) -> hyst.control.StressTest:

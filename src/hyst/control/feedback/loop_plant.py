@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_not_negative
-from hyst.control.linear_system import LinearSystem
+from hyst.control.linear_system import LinearSystem, balanced_matrices
 from hyst.control.loop_system import plant_of
 from hyst.control.sampled.plant import SampledPlant, sampled_plant
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +111,12 @@ def static_gain(system: LinearSystem) -> float:
     poles = system.poles()
     if np.abs(poles - origin).min() <= 1e-9 * max(1.0, float(np.abs(poles).max())):
         return math.inf
-    return float(system.response(np.array([origin + 0j]))[0, 0, 0].real)
+    A, B, C = balanced_matrices(system.A, system.B, system.C)
+    x = np.linalg.solve(origin * np.eye(system.order) - A, B)
+    gain = float((C @ x + system.D)[0, 0])
+    # With a zero at the origin, what is left of its parts is rounding.
+    size = float((np.abs(C) @ np.abs(x) + np.abs(system.D))[0, 0])
+    return gain if abs(gain) > _ROUNDING * size else 0.0
 
 
 def loop_plant(plant: Any, dt: float | None = None, delay: float = 0.0) -> LoopPlant:

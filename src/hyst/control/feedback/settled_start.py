@@ -130,9 +130,12 @@ def settled_start(
             f"the plant's static gain is {gain:g}, so it does not rest; give start='rest'"
         )
 
+    def drive(v: float) -> float:
+        return v if block.inverse is None else float(block.inverse(np.array([v]))[0])
+
     def given(v: float) -> float:
         """Give w for v."""
-        u = v if block.inverse is None else float(block.inverse(np.array([v]))[0])
+        u = drive(v)
         return u if hysteresis is None else float(hysteresis(np.array([u]))[0])
 
     poles = np.linalg.eigvals(block.A) if block.order else np.zeros(0)
@@ -143,9 +146,14 @@ def settled_start(
         of_r, of_y = _static_gains(block)
         wanted = of_r * reference
         v = _root(lambda v: v - wanted - of_y * gain * given(v), wanted, reference)
-    w = given(v)
+    w, u = given(v), drive(v)
+    if block.limits is not None and not block.limits[0] <= u <= block.limits[1]:
+        raise InputError(
+            f"the loop rests at a reference of {reference:.6g} with a drive of {u:.6g}, beyond the "
+            "limits of the drive; begin within its range, or give start='rest'"
+        )
     x0 = _resting_state(block, np.array([reference, gain * w]), v)
-    return SettledStart(_with_start(block, x0), v, w, gain * w)
+    return SettledStart(_with_start(block, x0, u), v, w, gain * w)
 
 
 def _static_gains(block: TrackingController) -> tuple[float, float]:
@@ -195,5 +203,5 @@ def _resting_state(block: TrackingController, given: Array, v: float) -> Array:
     return np.asarray(x0)
 
 
-def _with_start(block: TrackingController, x0: Array) -> TrackingController:
-    return TrackingController.from_dict({**block.to_dict(), "x0": x0.tolist()})
+def _with_start(block: TrackingController, x0: Array, u0: float) -> TrackingController:
+    return TrackingController.from_dict({**block.to_dict(), "x0": x0.tolist(), "u0": u0})

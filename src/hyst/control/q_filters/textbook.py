@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.control.infinity_norm import hinf_norm
-from hyst.control.q_filter.family import QFilter
-from hyst.control.q_filter.loops import filtered_inverse, weighted_stack
-from hyst.control.q_filter.problem import QFilterProblem
-from hyst.control.q_filter.responses import fixed_responses, grid_of
-from hyst.control.q_filter.robust_performance import robust_performance_of
-from hyst.control.q_filter.search import TimeConstantSearch, cost_with_noise
+from hyst.control.q_filters.family import QFilter
+from hyst.control.q_filters.loops import filtered_inverse, weighted_stack
+from hyst.control.q_filters.problem import QFilterProblem
+from hyst.control.q_filters.rejection import robust_performance_of
+from hyst.control.q_filters.responses import fixed_responses, grid_of
+from hyst.control.q_filters.search import TimeConstantSearch, cost_with_noise
 
 Array = NDArray[np.float64]
 

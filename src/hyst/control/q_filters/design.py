@@ -9,12 +9,12 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from hyst.checks.numbers import as_positive, whole_number
-from hyst.control.q_filter.certificate import certify_filter
-from hyst.control.q_filter.family import LARGEST_ORDER, QFilter, q_filter
-from hyst.control.q_filter.free_search import FreeSearch
-from hyst.control.q_filter.problem import QFilterProblem, q_filter_problem
-from hyst.control.q_filter.result import QFilterObserver
-from hyst.control.q_filter.textbook import time_constant_search
+from hyst.control.q_filters.certificate import certify_filter
+from hyst.control.q_filters.family import LARGEST_ORDER, QFilter, q_filter
+from hyst.control.q_filters.free_search import FreeSearch
+from hyst.control.q_filters.problem import QFilterProblem, q_filter_problem
+from hyst.control.q_filters.result import QFilterObserver
+from hyst.control.q_filters.textbook import time_constant_search
 from hyst.errors import InputError
 
 FAMILIES = ("textbook", "free")
@@ -126,7 +126,20 @@ class _Wanted:
 def degrees(
     problem: QFilterProblem, order: int | str | None, relative_degree: int | None, family: str
 ) -> tuple[int, int]:
-    """Give order and relative degree of the filter, or refuse what the plant does not allow."""
+    """Give order and relative degree of the filter, or refuse what the plant does not allow.
+
+    Parameters
+    ----------
+    problem
+        Plant, controller and weights.
+    order, relative_degree, family
+        As for ``design_q_filter``.
+
+    Raises
+    ------
+    InputError
+        If the order leaves no room for the relative degree of the plant and the zeros Q must keep.
+    """
     least, kept = max(problem.plant_relative_degree, 1), int(problem.kept_zeros.size)
     if order is None:
         m = least + kept + 1

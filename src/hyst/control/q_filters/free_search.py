@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.control.q_filter.certificate import certify_filter
-from hyst.control.q_filter.family import QFilter
-from hyst.control.q_filter.free_filter import FreeFilter, descend_free
-from hyst.control.q_filter.problem import QFilterProblem
+from hyst.control.q_filters.certificate import certify_filter
+from hyst.control.q_filters.family import QFilter
+from hyst.control.q_filters.free_filter import FreeFilter, descend_free
+from hyst.control.q_filters.problem import QFilterProblem
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

@@ -14,9 +14,9 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
 
-from hyst.control.q_filter.family import QFilter
-from hyst.control.q_filter.problem import QFilterProblem
-from hyst.control.q_filter.responses import FixedResponses, fixed_responses, grid_of, refined_tops
+from hyst.control.q_filters.family import QFilter
+from hyst.control.q_filters.problem import QFilterProblem
+from hyst.control.q_filters.responses import FixedResponses, fixed_responses, grid_of, refined_tops
 from hyst.control.zeros_and_poles import ZerosAndPoles
 
 Array = NDArray[np.float64]
@@ -42,6 +42,19 @@ class FreeFilter:
     omega of each factor ``x^2 + 2 zeta omega x + omega^2`` of the denominator, and c of ``x + e^c``
     if m is odd; then g_1 .. g_j: all 1 is S1 eq. 28, all 0 a numerator of 1. What is minimized is
     the stacked norm, or the largest |Wp (1 - Q)| + |Wu T| if it is to be robust.
+
+    Parameters
+    ----------
+    problem
+        Plant, controller and weights.
+    order
+        m.
+    degree
+        j, number of zeros besides those to keep.
+    scale
+        Unit of s, rad/s.
+    robust
+        What is minimized.
     """
 
     problem: QFilterProblem
@@ -71,7 +84,15 @@ class FreeFilter:
     def values_and_slopes(
         self, x: Array, fixed: FixedResponses
     ) -> tuple[ComplexArray, ComplexArray]:
-        """Give Q at the frequencies, (K,), and its derivatives by the parameters, (K, size)."""
+        """Give Q at the frequencies, (K,), and its derivatives by the parameters, (K, size).
+
+        Parameters
+        ----------
+        x
+            Parameters, (size,).
+        fixed
+            Frequencies with what does not depend on Q.
+        """
         below, slopes = _expanded(x[: self.order])
         powers = (fixed.s / self.scale)[:, None] ** np.arange(self.order + 1)
         shares = np.zeros(self.order + 1)
@@ -234,8 +255,9 @@ def _program(
         by_t = np.concatenate([np.ones(len(stack)), np.zeros(len(noise))])
         return np.hstack([np.vstack([stack, noise]), by_t[:, None]])
 
-    t = float(_heights(free, start, at_stack, most_noise)[0].max())
     low, high = np.array(free.bounds()).T
+    start = np.clip(start, low, high)
+    t = float(_heights(free, start, at_stack, most_noise)[0].max())
     # Peaks not met yet rise where the program does not look: steps are kept short.
     near = [(max(a, x - 0.7), min(b, x + 0.7)) for a, b, x in zip(low, high, start, strict=True)]
     unit = np.zeros(free.size + 1)
