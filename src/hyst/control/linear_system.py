@@ -144,6 +144,8 @@ def transfer_function_of(num: Array, den: Array, dt: float = 0.0) -> Any:
     ----------
     num, den
         Coefficients, highest power first.
+    dt
+        Sample time, s; 0 in continuous time.
     """
     return _python_control().tf(num, den, dt)
 
