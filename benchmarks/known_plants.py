@@ -82,7 +82,7 @@ def _shown(plant: IdentifiedPlant) -> tuple[Array, Array, Array]:
 def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--records", type=int, default=30)
-    count = parser.parse_args().records
+    count = parser.parse_known_args()[0].records
     print("drive [Hz]  noise   off/error  within 1, 2, 3 errors  within Wu  order  excess  seconds")
     for band, noise in CASES:
         rows = [held(band, noise, seed) for seed in range(count)]

@@ -5,23 +5,35 @@
 Prints, for one machine and one run,
 - the rows of "no observer", textbook filters 1/(tau s + 1)^n, the paper's observer with its best
   gain, and free filters of given order and relative degree with a bounded noise gain,
-- the processor time of each, and of the rows that a report takes.
+- the processor time of each, and of the rows that a report takes,
+- the sampled block: the continuous design sampled, against a design for the sampled plant,
+- on random stable plants, with weights and controllers at random: the norm of the textbook filter
+  over that of the paper's observer with its best gain.
 
-Every norm is computed from Q alone, the same way for all rows.
+HYST_Q_FILTER_CASES shortens the last. Norms are computed from Q alone, the same way for all rows.
 """
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from hyst.control import compare_designs, design_disturbance_observer, design_q_filter
-from hyst.control.q_filter import DesignRow, row_of, table_of
-from hyst.control.q_filter.comparison import without_observer
-from hyst.control.q_filter.problem import q_filter_problem
+from benchmarks.observer import random_problem
+from hyst.control import (
+    TrackingController,
+    compare_designs,
+    design_disturbance_observer,
+    design_q_filter,
+    design_sampled_q_filter,
+    sampled_certificate,
+)
+from hyst.control.q_filters import DesignRow, row_of, table_of
+from hyst.control.q_filters.comparison import without_observer
+from hyst.control.q_filters.problem import q_filter_problem
 
 OMEGA = 2.0 * np.pi * 90.0
 PLANT = ([OMEGA**2], [1.0, 1.6 * OMEGA, OMEGA**2])
@@ -43,23 +55,61 @@ def rows_of_the_example() -> list[tuple[DesignRow, float]]:
         found.append((row_of(design.name, design), seconds))
     paper, seconds = timed(lambda: design_disturbance_observer(*PROBLEM))
     found.append((row_of("paper's observer", paper), seconds))
-    for order, degree, noise in (
-        (3, 3, 1.5),
-        (3, 2, 1.0),
-        (3, 2, 1.38),
-        (4, 3, 1.38),
-        (4, 2, 1.05),
-        (4, 2, 1.38),
-        (4, 2, 1.478),
-        (5, 2, 29.0),
+    for order, degree, noise, objective in (
+        (3, 3, 1.5, "stacked"),
+        (3, 2, 1.0, "stacked"),
+        (3, 2, 1.38, "stacked"),
+        (4, 3, 1.38, "stacked"),
+        (4, 2, 1.05, "stacked"),
+        (4, 2, 1.38, "stacked"),
+        (4, 2, 1.478, "stacked"),
+        (5, 2, 29.0, "stacked"),
+        (3, 2, 1.5, "robust"),
+        (4, 2, 1.5, "robust"),
+        (4, 2, 3.0, "robust"),
+        (4, 2, 5.0, "robust"),
+        (5, 2, 1.5, "robust"),
     ):
+        options = {"family": "free", "most_noise": noise, "objective": objective}
         design, seconds = timed(
-            lambda order=order, degree=degree, noise=noise: design_q_filter(
-                *PROBLEM, order, degree, family="free", most_noise=noise
+            lambda order=order, degree=degree, options=options: design_q_filter(
+                *PROBLEM, order, degree, **options
             )
         )
-        found.append((row_of(f"free, order {order} - {degree}, noise {noise}", design), seconds))
+        name = f"{objective}, free {order} - {degree}, noise {noise}"
+        found.append((row_of(name, design), seconds))
     return found
+
+
+def sampled() -> None:
+    print("\nsampled:  dt, delay         continuous design    design of the sampled plant")
+    continuous = design_q_filter(*PROBLEM)
+    for dt, delay in ((2e-5, 0.0), (1e-4, 0.0), (1e-4, 1e-4), (1e-4, 1.5e-4), (8e-4, 0.0)):
+        block = TrackingController.from_continuous(PROBLEM[1], dt, observer=continuous)
+        as_it_is = sampled_certificate(block, PLANT, WU, WP, delay=delay)
+        design = design_sampled_q_filter(*PROBLEM, dt, delay=delay)
+        print(
+            f"{dt:>10g} {delay:>10g} {as_it_is.stacked_norm:>20.4f} {design.gamma:>20.4f}, "
+            f"noise to v {as_it_is.noise_gain:.3g} and {design.certificate.noise_gain:.3g}"
+        )
+
+
+def random_plants(cases: int) -> None:
+    rng = np.random.default_rng(7)
+    ratios, noise = [], []
+    for _ in range(cases):
+        p = random_problem(rng)
+        systems = (p.plant, p.controller, p.Wu, p.Wp)
+        paper = row_of("", design_disturbance_observer(*systems))
+        tried = [row_of("", design_q_filter(*systems, order)) for order in (None, "auto")]
+        ratios.append([each.stacked_norm / paper.stacked_norm for each in tried])
+        noise.append([each.noise_gain / paper.noise_gain for each in tried])
+    print(f"\n{cases} random plants, over the paper's observer (least, median, 9 in 10, most):")
+    for i, name in enumerate(("one above the least order", "order at best, to three more")):
+        told = np.quantile(np.array(ratios)[:, i], [0.0, 0.5, 0.9, 1.0])
+        loud = np.quantile(np.array(noise)[:, i], [0.0, 0.5, 0.9, 1.0])
+        print(f"{name:<30} norm " + " ".join(f"{each:.3f}" for each in told), end="")
+        print("   noise to v " + " ".join(f"{each:.3g}" for each in loud) + "")
 
 
 def main() -> None:
@@ -70,3 +120,5 @@ def main() -> None:
         print(line + f"{seconds:>11.2f}")
     _, seconds = timed(lambda: compare_designs(*PROBLEM))
     print(f"\nrows of a report (no observer, classical, one more order): {seconds:.2f} s")
+    sampled()
+    random_plants(int(os.environ.get("HYST_Q_FILTER_CASES", "20")))

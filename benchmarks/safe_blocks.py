@@ -96,9 +96,7 @@ def judged(spec: Spec, plants: int, discrete: bool, seed: int) -> tuple[bool, bo
     safe = certificate.robustly_stable and tried.judgement.standing != "not safe"
     broken = False
     for slope in {1.0, *tried.judgement.met}:
-        found = stress(
-            block, spec.plant, spec.Wu, plants, delay=spec.delay, slope=slope, seed=seed
-        )
+        found = stress(block, spec.plant, spec.Wu, plants, delay=spec.delay, slope=slope, seed=seed)
         broken |= not found.holds
         if safe:
             loop = simulate_closed_loop(

@@ -12,13 +12,13 @@ hyst_real hyst_limited_tracking_step(const hyst_limited_tracking *controller, hy
 {
     const size_t n = controller->linear.order;
     hyst_real wanted = (y_ref - y_ref) + (y - y); /* 0, or NaN which the limited inverse refuses */
-    if (hyst_is_finite(wanted)) {
+    if (hyst_is_finite(wanted) != 0) {
         wanted = hyst_tracking_controller_linear(&controller->linear, state, y_ref, y);
     }
     hyst_real applied = wanted;
     const hyst_real drive =
         hyst_limited_inverse_step(&controller->inverse, state + n, before, guard, &applied);
-    if (hyst_is_finite(wanted)) {
+    if (hyst_is_finite(wanted) != 0) {
         *v = applied;
         *excess = applied - wanted;
         hyst_tracking_take_back(n, controller->w, state, *excess);

@@ -16,6 +16,7 @@
 #include "../records/evaluation.hpp"
 #include "../records/gradient.hpp"
 #include "../simd/kernels.hpp"
+#include "hyst/limited_tracking.h"
 
 namespace {
 
@@ -81,6 +82,33 @@ void check_loss(const hyst::Chain &chain, const std::vector<double> &z, const st
     if (!refused) demand(!std::isnan(loss), "what the loss takes");
 }
 
+// A limited drive stays within its limits and all memory finite, whatever comes in and even where the
+// bank that stands for the inverse of the inverse is none. The first numbers make limits and gains.
+void check_limits(const hyst::Chain &bank, const std::vector<double> &z,
+                  const std::vector<double> &u) {
+    if (u.size() < 6) return;
+    const auto bounded = [&](std::size_t i) { return std::isfinite(u[i]) ? u[i] : 2.0; };
+    const double low = std::min(bounded(0), bounded(1)), high = std::max(bounded(0), bounded(1));
+    const double a = 0.875, b[] = {1.0, -0.5}, c = 0.25, w = bounded(2);
+    const hyst_limited_tracking block = {
+        {1, &a, b, &c, {bounded(3), -1.0}, {0, nullptr}},
+        &w,
+        {bank.view(), bank.view(), {low, high, std::fabs(bounded(4))}}};
+    std::vector<double> state = {0.0}, before(z.size());
+    state.insert(state.end(), z.begin(), z.end());
+    state.insert(state.end(), z.begin(), z.end());
+    state.push_back(low);
+    hyst_limited_guard guard = {{low, 0}, 0};
+    double v = 0.0, excess = 0.0;
+    for (std::size_t k = 5; k < u.size(); ++k) {
+        const double drive = hyst_limited_tracking_step(&block, state.data(), before.data(), &guard,
+                                                        u[k], u[k - 1], &v, &excess);
+        demand(drive >= low && drive <= high, "a limited drive");
+        demand(state.back() >= low && state.back() <= high, "the last drive");
+    }
+    demand(all_finite(state), "the memory of a limited drive");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
@@ -106,6 +134,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     const std::unique_ptr<hyst::Chain> bank = chain_of(rate_dependent, p, r);
     const hyst::Chain &chain = *bank;
     if (rate_dependent) z.insert(z.end(), {0.5, kind & 128 ? 1.0 : 0.0});
+    check_limits(chain, z, u);
     for (auto each = hyst::available_kernels(); *each != nullptr; ++each) {
         hyst::use_kernels((*each)->name);
         std::vector<double> state = z, y(u.size());

@@ -13,7 +13,7 @@ from command_runs import Run
 
 import hyst
 from hyst.cli import main
-from hyst.cli.observer_template import TEMPLATE
+from hyst.cli.observer.template import TEMPLATE
 
 # As quick as it can be: one period after the start is left out.
 QUICK = TEMPLATE.replace("duration = 3.0", "duration = 1.5").replace("settle = 1.0", "settle = 0.5")
@@ -192,8 +192,8 @@ MISTAKES = {
         "Wu = { num = [-1.0, -960.0, 0.0], den", "Wu = { num = [1.0], d"
     ),
     "[weights] Wp num is": change("Wp = { num = [0.5", 'Wp = { num = ["a"'),
-    "[reference] sines has shape (1, 3)": change(
-        "[[18.0, 1.0], [28.0, 3.0]]", "[[18.0, 1.0, 2.0]]"
+    "[reference] sines has [18.0, 1.0, 2.0, 3.0]": change(
+        "[[18.0, 1.0], [28.0, 3.0]]", "[[18.0, 1.0, 2.0, 3.0]]"
     ),
     "[reference] duration is 1e+07 s": change("duration = 3.0", "duration = 1e7"),
     "[internal_model] kind is 'sine'": change('"integrator"\n', '"sine"\n'),

@@ -77,6 +77,12 @@ def test_info_of_a_controller_and_of_a_model_nobody_identified(run: Run, folder:
     shown = run("info", "controller.json").out
     assert "tracking controller: 0 states, dt 0.01 s, an inverse, as follows" in shown
     assert "drive, 0 to 4 V" in shown
+    limited = hyst.control.TrackingController(
+        [], [], [], [1.0, -1.0], 0.01, inverse, limits=(-1.5, 2.0), rate=30.0
+    )
+    limited.save(folder / "limited.json")
+    shown = run("info", folder / "limited.json").out
+    assert "0 states, dt 0.01 s, drive from -1.5 to 2, at most 30 per second, an inverse" in shown
     hyst.control.TrackingController([], [], [], [1.0, -1.0], 0.01).save(folder / "alone.json")
     assert "no inverse" in run("info", "alone.json").out
     STAGE.save(folder / "model.json")

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import hyst
-from hyst.cli.observer_spec import ObserverSpec, read_spec
-from hyst.cli.observer_template import TEMPLATE
+from hyst.cli.observer.spec import ObserverSpec, read_spec
+from hyst.cli.observer.template import TEMPLATE
 from hyst.control import identification_weight, identified_plant
 
 DT = 5e-4

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 import hyst
 from hyst.control import IdentifiedPlant, identified_plant
 from hyst.identification.families.family import Fit
-from hyst.identification.families.hammerstein.joint import dynamics_of, joint
+from hyst.identification.families.hammerstein.joint import joint
 from hyst.identification.families.hammerstein.told.kept_errors import kept_errors
 from hyst.identification.families.hammerstein.told.known_dynamics import known_dynamics
+from hyst.identification.families.hammerstein.told.slope_error import slope_error_of
 from hyst.identification.families.hammerstein.yardstick.yardstick import stretches_of
 from hyst.identification.fit.bounded_least_squares import Solution
 from hyst.identification.fit.parametrization import Parametrization
@@ -57,8 +58,9 @@ def fitted_from_truth(measured: hyst.Record, start: LinearDynamics = G) -> Ident
     family = hyst.families.Hammerstein(hysteresis=hyst.families.PrandtlIshlinskii())
     fit = Fit(family, 1, parametrization, Solution(theta, np.inf, 0, ""))
     fit = replace(fit, solution=family.solve(fit.problem(data), theta, 60))
-    known = known_dynamics(fit, data, spread_of_fit(data, fit))
-    about = hyst.ModelDescription(
-        dt=DT, dynamics_errors=kept_errors(known, stretches_of(fit, data))
-    )
-    return identified_plant((dynamics_of(fit) @ PI).with_description(about))
+    spread = spread_of_fit(data, fit)
+    known = known_dynamics(fit, data, spread)
+    slope_error = slope_error_of(fit, data, spread)
+    errors = kept_errors(known, stretches_of(fit, data), slope_error)
+    about = hyst.ModelDescription(dt=DT, dynamics_errors=errors)
+    return identified_plant(fit.operator.with_description(about))

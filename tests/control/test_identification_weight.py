@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from identified_cases import DT, G, W, drive, fitted_from_truth, found, record
+from identified_cases import DT, PI, G, W, drive, fitted_from_truth, found, record
 
 import hyst
 from hyst.control import (
@@ -55,6 +55,24 @@ def test_true_plants_lie_within_three_standard_errors(band: tuple[float, float] 
     # Less than 3 % outside, which three normal numbers would have: two of 12 once in twenty runs.
     assert sum(within) >= 11
     assert all(covered)
+
+
+def test_slopes_of_the_true_hysteresis_lie_within_three_standard_errors() -> None:
+    u = drive(2000)
+    moving = np.abs(np.diff(u)) > 0.3 * np.abs(np.diff(u)).max()
+    within, ratios = [], []
+    for seed in range(12):
+        plant = fitted_from_truth(record(seed, u, 0.02))
+        low, high = plant.slopes()
+        slope = (np.diff(PI(u)) / np.diff(plant.hysteresis(u)))[moving]
+        # Where a play begins to move between two samples, the two radii tell, not a slope.
+        middle = np.quantile(slope, [0.02, 0.98])
+        within.append(low <= middle[0] and middle[1] <= high)
+        ratios.append(np.abs(middle - 1.0).max() / (high - 1.0))
+    assert sum(within) >= 11
+    assert np.median(ratios) > 0.1  # three errors beside about one: no bound out of the air
+    twice = plant.slopes(0.5, 2.0, 1.0)
+    assert twice == pytest.approx((0.5 * (2.0 + low) / 3.0, 2.0 * (2.0 + high) / 3.0), rel=1e-9)
 
 
 def test_what_the_drive_does_not_show_is_not_known() -> None:
@@ -186,6 +204,7 @@ def test_units_of_the_record_do_not_matter(unit: float) -> None:
     assert (first.frequency, first.bands) == (second.frequency, second.bands)
     np.testing.assert_array_equal(first.standard_error, second.standard_error)
     np.testing.assert_array_equal(first.missing, second.missing)
+    assert first.slope_error == second.slope_error is not None
 
 
 @pytest.mark.parametrize(
@@ -200,6 +219,8 @@ def test_units_of_the_record_do_not_matter(unit: float) -> None:
         ({"bands": ((2.0, 1.0),)}, "lower one first"),
         ({"bands": ((1.0,),)}, "no pair"),
         ({"bands": 3}, "bands is 3"),
+        ({"slope_error": -0.1}, "an error is below 0"),
+        ({"slope_error": "a"}, "slope_error is 'a'"),
         ({"more": 1}, "have the entries frequency"),
     ],
 )
@@ -207,5 +228,7 @@ def test_damaged_errors_are_refused(change: dict[str, object], told: str) -> Non
     good = {"frequency": [1.0, 2.0], "standard_error": [0.1, 0.1], "missing": [0.0, 0.0]}
     whole = good | {"bands": [[1.0, 2.0]]}
     assert DynamicsErrors.from_dict(whole).to_dict() == whole
+    told_slope = whole | {"slope_error": 0.01}
+    assert DynamicsErrors.from_dict(told_slope).to_dict() == told_slope
     with pytest.raises(hyst.InputError, match=told):
         DynamicsErrors.from_dict(whole | change)

@@ -167,6 +167,18 @@ def test_units_of_the_drive_change_no_digit(power: int, seed: int) -> None:
     assert np.array_equal(scaled.estimate(y_ref, y), plain.estimate(y_ref, y))
 
 
+@settings(max_examples=25, deadline=None)
+@given(st.integers(-30, 30), st.integers(0, 2**31))
+def test_units_of_the_output_change_no_digit(power: int, seed: int) -> None:
+    factor = 2.0**power
+    rng = np.random.default_rng(seed)
+    y_ref, y = rng.normal(0.0, 60.0, 80), rng.normal(0.0, 30.0, 80)
+    plain, scaled = limited(), limited(inverse=INVERSE @ hyst.Affine(1.0 / factor))
+    assert np.array_equal(scaled.run(factor * y_ref, factor * y)[0], plain.run(y_ref, y)[0])
+    v = scaled.applied(factor * y_ref, factor * y)
+    assert np.array_equal(v, factor * plain.applied(y_ref, y))
+
+
 def test_a_drive_with_a_rate_alone() -> None:
     block = limited(None, 1e3)
     u = block.run(Y_REF, Y)[0]

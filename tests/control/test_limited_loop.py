@@ -9,14 +9,19 @@ import pytest
 from closed_loop_cases import CONTROLLER, HYSTERESIS, INVERSE, OBSERVER, PLANT
 
 import hyst
-from hyst.control import ClosedLoop, TrackingController, simulate_closed_loop
+from hyst.control import (
+    ClosedLoop,
+    TrackingController,
+    reference_feedforward,
+    simulate_closed_loop,
+)
 
 DT = 1e-4
 LIMITS = (-35.0, 35.0)
 CLIPPING = hyst.DeadZone([1.0, -1.0, -1.0], [0.0, 35.0, -35.0])  # an amplifier that saturates
 BACK = 2.5  # s, when the reference is within reach again
 T = np.arange(round(4.5 / DT)) * DT
-# A reference of 45 asks for a drive of 46; with 35 the stage makes 30.
+# A reference of 45 asks for a drive of 46; with 35 the stage makes 25.
 FAR = np.where(T < 0.5, 0.0, np.where(T < BACK, 45.0, 10.0))
 REACHED = float(HYSTERESIS([0.0, 35.0])[-1])
 NEAR = np.minimum(FAR, REACHED)
@@ -71,7 +76,7 @@ def test_windup_that_is_gone() -> None:
 
 
 def test_a_slow_loop_comes_back_as_if_it_had_never_been_limited() -> None:
-    """C = 4 + 8/s makes a pole near -8/5 1/s, which 0.5 of 20 takes a second to reach."""
+    """C = 4 + 8/s makes a pole near -8/5 1/s, which takes a second to bring 3 down to 0.5."""
     for inverse in (INVERSE, SCALED):
         limited = loop(block(CONTROLLER, observer=OBSERVER, inverse=inverse))
         never = loop(block(CONTROLLER, observer=OBSERVER, inverse=inverse, limits=None), NEAR)
@@ -81,6 +86,19 @@ def test_a_slow_loop_comes_back_as_if_it_had_never_been_limited() -> None:
         # of what it had left, over 1 + 4.
         later = round((BACK + 0.2) / DT)
         assert np.abs(limited.y - never.y)[later:].max() < 0.1
+
+
+@pytest.mark.parametrize("inverse", [INVERSE, SCALED])
+@pytest.mark.parametrize("order", [0, 1, 2])
+def test_the_same_slow_loop_with_feedforward_is_back_at_once(order: int, inverse: Any) -> None:
+    """What is conditioned is the whole way of the reference, or C would rest at what is left."""
+    F = reference_feedforward(PLANT, DT, order=order)
+    made: dict[str, Any] = {"observer": OBSERVER, "inverse": inverse, "feedforward": F}
+    limited = loop(block(CONTROLLER, **made))
+    never = loop(block(CONTROLLER, limits=None, **made), NEAR)
+    assert np.abs(limited.u).max() == 35.0
+    assert recovery(never) < 0.05
+    assert recovery(limited) < 0.05
 
 
 @pytest.mark.parametrize("rate", [2e3, 2e4, 2e5])
@@ -134,6 +152,32 @@ def test_references_far_beyond_the_limits(controller: Any, seed: int) -> None:
             assert smooth[-1] < 0.5
 
 
+@pytest.mark.parametrize("seed", range(16))
+def test_loops_at_random_come_back_as_if_they_had_never_been_limited(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    omega, zeta = 2.0 * np.pi * 10.0 ** rng.uniform(1.5, 2.8), 10.0 ** rng.uniform(-1.5, 0.0)
+    plant = ([omega**2], [1.0, 2.0 * zeta * omega, omega**2])
+    # An integrator alone is stable below 2 zeta omega, and so it is with a notch at the resonance.
+    gain = rng.uniform(0.1, 0.4) * 2.0 * zeta * omega
+    well = [1.0, 2.0 * omega, omega**2]
+    notch = ([gain * each for each in plant[1]], [*well, 0.0])
+    controller = ([gain], [1.0, 0.0]) if seed % 2 else notch
+    high = float(rng.uniform(15.0, 30.0))
+    limits = (-float(rng.uniform(0.5, 1.0)) * high, high)
+    top = float(HYSTERESIS([0.0, high])[-1])
+    assert float(HYSTERESIS([0.0, high, limits[0]])[-1]) < 0.4 * top
+    r = np.where(T < BACK, top * rng.uniform(1.2, 10.0), 0.5 * top)
+    factor = 1.0 if seed % 3 else float(rng.uniform(0.8, 1.1))
+    kind: dict[str, Any] = {"inverse": hyst.Affine(factor) @ INVERSE}
+    limited = loop(block(controller, limits=limits, **kind), r, plant=plant)
+    never = loop(block(controller, limits=None, **kind), np.minimum(r, top), plant=plant)
+    assert limited.u.max() == high
+    error = 0.03 * top
+    # 10 ms for what inexact inverses leave of the way there.
+    assert recovery(limited, error) < 1.2 * recovery(never, error) + 0.01
+    assert recovery(never, error) < 1.5
+
+
 def test_a_drive_that_may_not_be_negative() -> None:
     """As of an amplifier from 0 to 35: what the plays hold at a drive of 0 is as far as it goes."""
     remanent = float(HYSTERESIS([0.0, 35.0, 0.0])[-1])
@@ -144,3 +188,22 @@ def test_a_drive_that_may_not_be_negative() -> None:
     assert limited.y[-1] == pytest.approx(remanent, abs=1e-9)
     within_reach = np.where(FAR == 10.0, remanent + 1.0, FAR)
     assert recovery(loop(block(FAST_PI, observer=OBSERVER, limits=(0.0, 35.0)), within_reach)) < 0.2
+
+
+def test_a_loop_that_has_settled_starts_from_the_drive_it_rests_with() -> None:
+    """A rate counts from that drive: nothing moves while the reference rests."""
+    stage = hyst.PrandtlIshlinskii([0.5], [1.0], 1.0)
+    block = TrackingController.from_continuous(
+        ([0.2, 60.0], [1.0, 0.0]), 1e-3, inverse=stage.inverse(), limits=(-1.0, 20.0), rate=50.0
+    )
+    plant = ([400.0], [1.0, 30.0, 400.0])
+    loop = simulate_closed_loop(
+        np.full(200, 12.0), 1e-3, plant=plant, controller=block, hysteresis=stage, start="settled"
+    )
+    # By hand: 12 = u + 0.5 (u - 1), so u = 25 / 3.
+    np.testing.assert_allclose(loop.u, 25.0 / 3.0, rtol=1e-9)
+    np.testing.assert_allclose(loop.y, 12.0, rtol=1e-9)
+    with pytest.raises(hyst.InputError, match="beyond the limits of the drive"):
+        simulate_closed_loop(
+            np.full(9, 40.0), 1e-3, plant=plant, controller=block, hysteresis=stage, start="settled"
+        )

@@ -1,4 +1,4 @@
-"""The classical Q-filter: the formula, the design, and every norm by an independent computation."""
+"""The design of a Q-filter: every norm by an independent computation."""
 
 from __future__ import annotations
 
@@ -7,22 +7,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from observer_cases import OMEGA, PLANT, PRINTED_GAIN, REPAIRED_C, TWO_MODES, WP, WU, random_problem
+from observer_cases import OMEGA, PLANT, REPAIRED_C, TWO_MODES, WP, WU, random_problem
+from q_filter_cases import as_control, loop_by_control
 
 import control
 from hyst.control import (
     QFilterObserver,
     TrackingController,
     closed_loop_poles,
-    compare_designs,
     design_q_filter,
-    evaluate_gain,
-    observer_problem,
     q_filter,
-    robust_performance,
     simulate_closed_loop,
 )
-from hyst.control.q_filter import table_of
 from hyst.errors import InputError
 
 Array = np.ndarray[Any, np.dtype[Any]]
@@ -33,98 +29,11 @@ def repaired() -> QFilterObserver:
     return design_q_filter(PLANT, REPAIRED_C, WU, WP)
 
 
-def as_control(system: Any) -> Any:
-    return control.ss(system.A, system.B, system.C, system.D)
-
-
-def loop_by_control(design: QFilterObserver, plant: Any) -> Any:
-    """Observer, controller and a plant wired by python-control: from d and n to v and d_hat."""
-    observer, C = as_control(design.observer), as_control(design.controller)
-    blocks = [
-        control.ss(observer, inputs=["v", "ym"], outputs=["dhat"], name="observer"),
-        control.ss(C, inputs=["e"], outputs=["u"], name="C"),
-        control.ss(plant, inputs=["w"], outputs=["y"], name="plant"),
-        control.summing_junction(["u", "-dhat"], "v", name="sum_v"),
-        control.summing_junction(["v", "d"], "w", name="sum_w"),
-        control.summing_junction(["y", "n"], "ym", name="sum_y"),
-        control.summing_junction(["-ym"], "e", name="sum_e"),
-    ]
-    return control.interconnect(blocks, inputs=["d", "n"], outputs=["v", "dhat", "w"])
-
-
 def dense(design: QFilterObserver) -> Array:
     """Frequencies around all poles, for a norm by brute force."""
     poles = np.abs(np.concatenate([design.certificate.nominal_poles, design.problem.features]))
     poles = poles[poles > 0.0]
     return np.geomspace(1e-2 * poles.min(), 1e3 * poles.max(), 40_000)
-
-
-@pytest.mark.parametrize("order", [1, 2, 3, 5])
-@pytest.mark.parametrize("kind", ["binomial", "butterworth", "own"])
-def test_formula_of_the_paper(order: int, kind: str) -> None:
-    own = {1: [2.0], 2: [1.5, 2.0], 3: [2.0, 2.5, 1.0], 5: [5.0, 11.0, 13.0, 8.0, 2.0]}[order]
-    a = {
-        "binomial": [float(math.comb(order, k)) for k in range(1, order + 1)],
-        # Published: Butterworth polynomials.
-        "butterworth": {
-            1: [1.0],
-            2: [math.sqrt(2.0), 1.0],
-            3: [2.0, 2.0, 1.0],
-            5: [3.2360680, 5.2360680, 5.2360680, 3.2360680, 1.0],
-        }[order],
-        "own": own,
-    }[kind]
-    tau, s = 3e-3, np.array([5j, 300j, 2e3j, 40.0 + 900.0j])
-    for rho in range(1, order + 1):
-        given: Any = own if kind == "own" else kind
-        Q = q_filter(order, tau=tau, relative_degree=rho, coefficients=given)
-        x = tau * s
-        above = 1.0 + sum(a[k - 1] * x**k for k in range(1, order - rho + 1))
-        below = 1.0 + sum(a[k - 1] * x**k for k in range(1, order + 1))
-        # Published Butterworth coefficients have 8 digits.
-        np.testing.assert_allclose(Q.response(s), above / below, rtol=1e-7)
-        np.testing.assert_allclose(Q.system.response(s)[:, 0, 0], Q.response(s), rtol=1e-10)
-        np.testing.assert_allclose(Q.as_control()(s), Q.response(s), rtol=1e-9)
-        assert (Q.order, Q.relative_degree) == (order, rho)
-        # 1 - Q starts with s^(m - rho + 1): a tenth of the frequency is that many decades less.
-        w = np.array([1e-2, 1e-1]) / tau
-        left = np.abs(1.0 - Q.response(1j * w))
-        assert np.log10(left[1] / left[0]) == pytest.approx(order - rho + 1, abs=0.1)
-
-
-def test_kept_zeros_are_zeros_of_the_filter() -> None:
-    kept = [50.0, 20.0 + 80.0j, 20.0 - 80.0j]
-    Q = q_filter(6, tau=0.01, relative_degree=2, kept_zeros=kept)
-    np.testing.assert_allclose(np.abs(Q.response(np.array(kept))), 0.0, atol=1e-9)
-    assert Q.response(np.zeros(1))[0] == pytest.approx(1.0, abs=1e-12)
-    # One free coefficient is left, which takes the first power of s out of 1 - Q.
-    left = np.abs(1.0 - Q.response(1j * np.array([1e-2, 1e-1])))
-    assert left[1] / left[0] == pytest.approx(100.0, rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("order", "options", "message"),
-    [
-        (0, {"tau": 1.0}, "order is 0"),
-        (13, {"tau": 1.0}, "order is 13"),
-        (2.5, {"tau": 1.0}, "order is 2.5"),
-        (2, {"tau": 0.0}, "tau is 0"),
-        (2, {"tau": -1.0}, "tau is -1"),
-        (2, {"tau": math.nan}, "tau is nan"),
-        (2, {"tau": 1.0, "relative_degree": 3}, "relative_degree is 3, above the order 2"),
-        (2, {"tau": 1.0, "relative_degree": 0}, "relative_degree is 0"),
-        (2, {"tau": 1.0, "coefficients": "bessel"}, "coefficients is 'bessel'; give one of"),
-        (2, {"tau": 1.0, "coefficients": [1.0]}, "coefficients has 1 numbers; give 2"),
-        (2, {"tau": 1.0, "coefficients": [1.0, -1.0]}, r"coefficients\[1\] is -1"),
-        (3, {"tau": 1.0, "coefficients": [0.5, 0.5, 1.0]}, "make an unstable filter, pole at"),
-        (2, {"tau": 1.0, "kept_zeros": [0.0]}, "a kept zero is 0, where Q must be 1"),
-        (3, {"tau": 1.0, "relative_degree": 1, "kept_zeros": [1j]}, "has no conjugate"),
-        (2, {"tau": 1.0, "kept_zeros": [5.0]}, "1 kept zeros and relative degree 2 need order 3"),
-    ],
-)
-def test_filters_that_are_none(order: Any, options: dict[str, Any], message: str) -> None:
-    with pytest.raises(InputError, match=message):
-        q_filter(order, **options)
 
 
 def test_repaired_example(repaired: QFilterObserver) -> None:
@@ -360,100 +269,6 @@ def test_the_block_of_the_target_takes_the_design(repaired: QFilterObserver) -> 
         assert loop.d_hat[-1] == pytest.approx(3.0, abs=1e-3)
 
 
-def test_robust_performance_is_what_the_worst_plant_does(repaired: QFilterObserver) -> None:
-    """Build the worst plant within Wu, wire its loop, and see what it leaves of a disturbance."""
-    told = robust_performance(repaired)
-    p = repaired.problem
-    w = told.worst_frequency
-    loop = loop_by_control(repaired, as_control(p.plant))
-    T = -loop(1j * w)[0, 0]
-    # Delta = -+ Wu (s - a)/(s + a), turned so that T Delta = -|T Wu| at w.
-    wanted = -np.conj(T) / abs(T) * abs(as_control(p.Wu)(1j * w))
-    turn = np.angle(wanted / as_control(p.Wu)(1j * w))
-    sign = 1.0 if turn > 0.0 else -1.0
-    # The phase of (s - a)/(s + a) at jw is pi - 2 atan(w/a), between 0 and pi.
-    a = w / np.tan(0.5 * (np.pi - (turn if turn > 0.0 else turn + np.pi)))
-    Delta = sign * control.tf([1.0, -a], [1.0, a]) * control.tf(*WU)
-    P = control.tf(*PLANT) * (1 + Delta)
-    assert Delta(1j * w) == pytest.approx(wanted, rel=1e-6)
-    perturbed = loop_by_control(repaired, control.ss(P))
-    S0 = 1.0 / (1.0 + control.tf(*PLANT)(1j * w) * control.tf(*REPAIRED_C)(1j * w))
-    left = abs(perturbed(1j * w)[2, 0] / S0) * abs(control.tf(*WP)(1j * w))
-    assert perturbed.poles().real.max() < 0.0
-    assert left == pytest.approx(told.worst, rel=1e-5)
-    assert told.worst > 1.0
-    assert not told.holds
-
-
-def test_robust_performance_below_one_holds_for_random_plants() -> None:
-    Wu, Wp = ([1.0, 1.0], [1.0, 60.0]), ([0.3, 3.0], [1.0, 0.01])
-    plant, C = ([10.0], [1.0, 10.0]), ([1.0], [1.0, 0.0])
-    design = design_q_filter(plant, C, Wu, Wp)
-    told = robust_performance(design)
-    assert told.value < 1.0
-    rng = np.random.default_rng(3)
-    w = np.geomspace(1e-3, 1e4, 2000)
-    S0 = 1.0 / (1.0 + control.tf(*plant)(1j * w) * control.tf(*C)(1j * w))
-    allowed = np.abs(S0 / control.tf(*Wp)(1j * w))
-    most = 0.0
-    for _ in range(30):
-        a, sign = 10.0 ** rng.uniform(-1, 3), rng.choice([-1.0, 1.0])
-        Delta = sign * control.tf([1.0, -a], [1.0, a]) * control.tf(*Wu)
-        loop = loop_by_control(design, control.ss(control.tf(*plant) * (1 + Delta)))
-        most = max(most, float((np.abs(loop(1j * w)[2, 0]) / allowed).max()))
-    assert most <= told.worst * (1.0 + 1e-6) < 1.0
-    # At least half of what is possible is met, so that the bound is not empty.
-    assert most > 0.5 * told.worst
-
-
-def test_robust_performance_of_the_papers_observer() -> None:
-    design = evaluate_gain(observer_problem(PLANT, REPAIRED_C, WU, WP), PRINTED_GAIN)
-    told = robust_performance(design)
-    w = np.geomspace(1e-1, 1e6, 200_000)
-    s = 1j * w
-    A, B, C, out = design.problem.augmented()
-    Q = control.ss(A - design.gain[:, None] @ C, -B, out, 0.0)(s)
-    S0 = 1.0 / (1.0 + control.tf(*PLANT)(s) * control.tf(*REPAIRED_C)(s))
-    E = 1.0 - Q
-    Wp_E = np.abs(control.tf(*WP)(s) * E)
-    Wu_T = np.abs(control.tf(*WU)(s) * (1.0 - S0 * E))
-    # Spacing 8e-5, smooth peaks.
-    assert told.value == pytest.approx((Wp_E + Wu_T).max(), rel=1e-6)
-    assert told.worst == pytest.approx((Wp_E / (1.0 - Wu_T)).max(), rel=1e-6)
-    assert design.gamma <= told.value <= math.sqrt(2.0) * design.gamma
-
-
-def test_rows_beside_one_another(repaired: QFilterObserver) -> None:
-    given = evaluate_gain(observer_problem(PLANT, REPAIRED_C, WU, WP), PRINTED_GAIN)
-    rows = compare_designs(PLANT, REPAIRED_C, WU, WP, {"printed gain": given})
-    assert [row.name for row in rows] == [
-        "no observer",
-        "1/(tau s + 1)^3",
-        "1/(tau s + 1)^4",
-        "printed gain",
-    ]
-    w = np.geomspace(1e-3, 1e6, 100_000)
-    s = 1j * w
-    Pn, C = control.tf(*PLANT)(s), control.tf(*REPAIRED_C)(s)
-    T = Pn * C / (1.0 + Pn * C)
-    alone = rows[0]
-    # Wp = (0.5 s + 64 pi)/(s + 0.2) is largest at 0.
-    assert alone.performance_norm == pytest.approx(64.0 * np.pi / 0.2, rel=1e-9)
-    assert alone.uncertainty_norm == pytest.approx(np.abs(control.tf(*WU)(s) * T).max(), rel=1e-6)
-    assert alone.noise_gain == pytest.approx(np.abs(T / Pn).max(), rel=1e-6)
-    assert (alone.observer_noise_gain, alone.bandwidth, alone.order) == (0.0, 0.0, 0)
-    assert rows[1].stacked_norm == repaired.gamma
-    # The same norms from the loop with the observer's states.
-    c = given.certificate
-    assert rows[3].stacked_norm == pytest.approx(c.stacked_norm, rel=1e-6)
-    assert rows[3].uncertainty_norm == pytest.approx(c.uncertainty_norm, rel=1e-6)
-    assert rows[3].performance_norm == pytest.approx(c.performance_norm, rel=1e-6)
-    told = table_of(rows)
-    assert len(told.splitlines()) == 5
-    assert "0.952" in told.splitlines()[2]
-    assert rows[0].to_dict()["name"] == "no observer"
-
-
 BAD: list[tuple[dict[str, Any], str]] = [
     ({"order": 1}, "relative degree 1, below 2 of the plant"),
     ({"order": 3, "relative_degree": 1}, "relative degree 1, below 2 of the plant"),
@@ -462,6 +277,7 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"order": "best"}, "order is 'best'"),
     ({"family": "elliptic"}, "family is 'elliptic'; give one of textbook, free"),
     ({"most_noise": 0.0}, "most_noise is 0"),
+    ({"objective": "best"}, "objective is 'best'; give one of stacked, robust"),
     ({"plant": ([1.0], [1.0, -1.0])}, r"the plant is not stable, pole at \(?1"),
     ({"plant": ([1.0], [1.0, 0.0])}, "the plant is not stable"),
     ({"plant": ([1.0, 0.0], [1.0, 20.0, 200.0])}, "the plant has a zero at 0"),
@@ -487,11 +303,6 @@ def test_order_counts_what_must_be_kept() -> None:
     plant = ([-1.0, 50.0], [1.0, 20.0, 200.0])
     with pytest.raises(InputError, match="order 2 and relative degree 1 at least"):
         design_q_filter(plant, ([1.0, 2.0], [1.0, 0.0]), WU, WP, 1)
-
-
-def test_only_designs_can_be_judged() -> None:
-    with pytest.raises(InputError, match="the design is str; give what"):
-        robust_performance("a filter")
 
 
 def test_a_resonant_plant_of_higher_order_and_a_gain() -> None:

@@ -200,6 +200,17 @@ def test_a_loop_is_judged_by_what_is_proven() -> None:
     assert standing == {"exact": "proven", "0.7": "proven", "none": "not safe"}
 
 
+@pytest.mark.parametrize("limited", [{"limits": (-0.5, 0.9)}, {"rate": 2.0}])
+def test_nothing_is_proven_of_a_drive_at_its_limits(limited: dict[str, Any]) -> None:
+    block = TrackingController.from_continuous(REPAIRED_C, 1e-4, **limited)
+    judged = {}
+    for reach in (0.05, 2.0):
+        r = reach * np.sin(2.0 * np.pi * np.arange(20_000) * 1e-4)
+        tried = try_block(block, r, plant=PLANT, Wu=WU)
+        judged[reach] = tried.judgement.standing
+    assert judged == {0.05: "proven", 2.0: "simulated"}
+
+
 def test_an_unstable_loop_and_one_that_diverges() -> None:
     fast = TrackingController.from_continuous(([4e4], [1.0, 0.0]), 1e-4)
     found = sampled_certificate(fast, PLANT, WU, WP)

@@ -23,10 +23,11 @@ from hyst.control import (
     evaluate_gain,
     observer_problem,
 )
+from hyst.control.disturbance_observer.discrete.coordinates import held_gain
 from hyst.control.disturbance_observer.discrete.problem import SampledObserverProblem
 from hyst.control.disturbance_observer.discrete.stacked_gain import SampledStackedGain
 from hyst.control.sampled.folding import folded_uncertainty
-from hyst.errors import InputError
+from hyst.errors import InputError, SolverError
 
 Array = np.ndarray
 
@@ -50,13 +51,24 @@ def sampled_random_problem(seed: int) -> SampledObserverProblem:
     for _ in range(8):
         try:
             found = observer_problem(p.plant, C, p.Wu, p.Wp, p.internal_model, dt=dt, delay=delay)
-        except InputError as refused:
-            assert "does not stabilize" in str(refused)
+        except InputError:
             C = replace(C, B=0.5 * C.B, D=0.5 * C.D)
         else:
             assert isinstance(found, SampledObserverProblem)
             return found
     raise AssertionError(f"no controller stabilizes the plant of seed {seed}")
+
+
+def some_parameters(stack: SampledStackedGain, seed: int) -> Array:
+    """Poles of Q, and free eigenvalues, that are about as fast as those of the plant."""
+    rng = np.random.default_rng(seed)
+    size = float(np.median(np.abs(stack.plant.poles)))
+    rates = np.minimum(size * 10.0 ** rng.uniform(-0.3, 0.7, stack.order), 0.9)
+    pairs = stack.order // 2
+    turned = rates[:pairs] * np.exp(1j * rng.uniform(0.0, 1.2, pairs))
+    poles = -np.concatenate([turned, np.conj(turned), rates[2 * pairs :]])
+    free = -np.minimum(size * 10.0 ** rng.uniform(-0.3, 0.7, stack.free), 0.4)
+    return stack.inside(stack.parameters_of(poles, free.astype(complex) if stack.free else None))
 
 
 def whole_loop(p: SampledObserverProblem, gain: Array) -> tuple[Array, Array, Array]:
@@ -87,6 +99,9 @@ def whole_loop(p: SampledObserverProblem, gain: Array) -> tuple[Array, Array, Ar
 def left_of_disturbance(p: SampledObserverProblem, gain: Array, w: Array) -> tuple[Array, Array]:
     """E and K S from the whole loop: y with the observer over y without, and v per noise."""
     A, B, rows = whole_loop(p, gain)
+    # Canonical forms have states of very different size, which would cost this check its digits.
+    A, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
+    B, rows = B / scale[:, None], rows * scale
     z = np.exp(1j * w * p.dt)
     eye = np.eye(len(A))
     y = np.array([(rows[:1] @ np.linalg.solve(each * eye - A, B))[0, 0] for each in z])
@@ -100,18 +115,16 @@ def left_of_disturbance(p: SampledObserverProblem, gain: Array, w: Array) -> tup
 def test_poles_and_stack_are_those_of_the_whole_loop(seed: int) -> None:
     p = sampled_random_problem(seed)
     stack = SampledStackedGain(p, freed=seed % 3)
-    rng = np.random.default_rng(seed)
-    middle = 0.5 * (stack.lowest + stack.highest)
-    parameters = stack.inside(middle + rng.uniform(-1.0, 1.0, middle.size))
+    parameters = some_parameters(stack, seed)
     gain = stack.gain_of(parameters)
     A, _, _ = whole_loop(p, gain)
-    s = stack.poles(parameters)
+    s = np.concatenate([stack.poles(parameters), np.full(stack.at_zero, -1.0)])
     alone = whole_loop(p, np.zeros(p.order))[0][: p.plant.order + p.controller.order]
     alone = alone[:, : len(alone)]
     poles = np.concatenate([(1.0 + s) / (1.0 - s), np.linalg.eigvals(alone)])
     # Poles of a delay are multiple, so polynomials are compared, away from all poles.
     for z in 1.5 * np.exp(1j * np.linspace(0.1, 3.0, 5)):
-        theirs = np.prod(np.linalg.eigvals(z * np.eye(len(A)) - A))
+        theirs = np.prod(np.linalg.eigvals(z * np.eye(len(A)) - scipy.linalg.matrix_balance(A)[0]))
         assert abs(np.prod(z - poles) / theirs - 1.0) < 1e-6  # of rounding in L
     w = np.geomspace(1e-3, 0.99, 60) * math.pi / p.dt
     E, N = left_of_disturbance(p, gain, w)
@@ -123,12 +136,40 @@ def test_poles_and_stack_are_those_of_the_whole_loop(seed: int) -> None:
     assert np.median(np.abs(values / expected - 1.0)) < 1e-5
 
 
+def test_a_gain_gets_the_states_that_hold_its_digits() -> None:
+    # Six poles, two zeros and 2.6 samples of delay at a fast rate: in the states of the transfer
+    # function L leaves E four digits.
+    p = sampled_random_problem(7)
+    stack = SampledStackedGain(p, freed=2)
+    x = some_parameters(stack, 1)
+    w = np.geomspace(1e-3, 0.99, 40) * math.pi / p.dt
+    solved, at = stack.solved(x), stack.at(np.tan(0.5 * w * p.dt))
+    E = at.model * (at.powers[:, -solved.k.size :] @ solved.k) / (at.powers @ solved.x)
+    other, gain = held_gain(stack, x, p)
+    z = np.exp(1j * w * p.dt)
+    plain = 1.0 - p.q_filter(stack.gain_of(x)).response(z)[:, 0, 0]
+    held = 1.0 - other.q_filter(gain).response(z)[:, 0, 0]
+    assert np.abs(held - E).max() < 1e-5  # ten poles within a few percent of z = 1
+    assert np.abs(plain - E).max() > np.abs(held - E).max()
+    np.testing.assert_allclose(
+        other.plant.response(z)[:, 0, 0], p.plant.response(z)[:, 0, 0], rtol=1e-6, atol=1e-9
+    )
+
+
+def test_a_gain_that_doubles_cannot_hold_is_refused() -> None:
+    p = sampled_random_problem(7)
+    stack = SampledStackedGain(p, freed=2)
+    # All ten poles within 0.4 % of z = 1, and the plant's up to z = -1 in effect.
+    x = stack.inside(stack.parameters_of(-np.geomspace(1e-3, 2e-3, stack.order).astype(complex)))
+    with pytest.raises(SolverError, match="order 11 with poles so near z = 1 cannot be held"):
+        held_gain(stack, x, p)
+
+
 @pytest.mark.parametrize("free", [0, 1, 2])
 def test_slopes_are_those_of_the_values(free: int) -> None:
     p = sampled_random_problem(2)
     stack = SampledStackedGain(p, free, freed=1)
-    middle = 0.5 * (stack.lowest + stack.highest)
-    x = stack.inside(middle + np.random.default_rng(free).uniform(-0.5, 0.5, middle.size))
+    x = some_parameters(stack, free)
     for curve in (stack, stack.noise):
         value, slopes = curve.values_and_slopes(x, stack.grid)
         np.testing.assert_allclose(value, curve.values(x, stack.grid), rtol=1e-12)
@@ -143,8 +184,7 @@ def test_slopes_are_those_of_the_values(free: int) -> None:
 def test_free_eigenvalues_belong_to_the_internal_model() -> None:
     p = sampled_random_problem(4)
     stack = SampledStackedGain(p, free=3)
-    middle = 0.5 * (stack.lowest + stack.highest)
-    x = stack.inside(middle + np.random.default_rng(1).uniform(-0.5, 0.5, middle.size))
+    x = some_parameters(stack, 1)
     extended = replace(p, internal_model=stack.internal_model(x))
     w = np.geomspace(1e-2, 0.9, 40) * math.pi / p.dt
     E, N = left_of_disturbance(extended, stack.gain_of(x), w)
@@ -210,7 +250,8 @@ def test_q_is_what_the_block_estimates_of_a_step(late: DisturbanceObserver) -> N
     num = np.concatenate([np.zeros(c.Q_relative_degree), c.Q_numerator])
     expected = scipy.signal.lfilter(num, c.Q_denominator, np.ones(4000))
     np.testing.assert_allclose(d_hat, expected, atol=1e-6)  # poles near 1 cost digits of Q
-    assert abs(y_all[-1]) < 1e-3 * np.abs(y_all).max()  # a constant is rejected
+    # A constant is rejected: what is left is the slow pole of C, 2/s, after 0.4 s.
+    assert abs(y_all[-1]) < 5e-3 * np.abs(y_all).max()
 
 
 def test_q_as_a_transfer_function_is_sampled(late: DisturbanceObserver) -> None:
@@ -234,13 +275,15 @@ def test_fractional_delay_is_that_of_a_finer_simulation(delay: float) -> None:
     dt, parts = 1e-4, 5
     p = observer_problem(PLANT, REPAIRED_C, WU, WP, dt=dt, delay=delay)
     gain = SampledStackedGain(p)  # type: ignore[arg-type]
-    L = gain.gain_of(0.5 * (gain.lowest + gain.highest))
+    L = gain.gain_of(some_parameters(gain, 3))
     found = evaluate_gain(p, L)
     block = TrackingController.from_continuous(REPAIRED_C, dt, observer=found)
     # The plant in steps of a fifth of dt, on which both delays fall; v acts so much later.
     w = OMEGA
     A = np.array([[0.0, 1.0], [-(w**2), -1.6 * w]])
-    both = scipy.linalg.expm(np.block([[A, [[0.0], [w**2]]], [np.zeros((1, 3))]]) * dt / parts)
+    both = scipy.linalg.expm(
+        np.block([[A, np.array([[0.0], [w**2]])], [np.zeros((1, 3))]]) * dt / parts
+    )
     step, x, y_fine, v_late = block.stepper(), np.zeros(2), [], []
     late = round(delay / dt * parts)
     held = np.zeros(parts * 300 + 2 * parts)
@@ -263,7 +306,9 @@ def test_fractional_delay_is_that_of_a_finer_simulation(delay: float) -> None:
 def _with_disturbance(p: Any, block: Any, A: Array, w: float, samples: int) -> list[float]:
     """The loop on the design's plant, with what a disturbance of 1 since t = 0 adds to y."""
     n, dt = len(A), p.dt
-    both = scipy.linalg.expm(np.block([[A, [[0.0], [w**2]]], [np.zeros((1, n + 1))]]) * dt)
+    both = scipy.linalg.expm(
+        np.block([[A, np.array([[0.0], [w**2]])], [np.zeros((1, n + 1))]]) * dt
+    )
     step, x, extra, outputs = block.stepper(), np.zeros(p.plant.order), np.zeros(n), []
     for _ in range(samples):
         y = float(p.plant.C[0] @ x + extra[0])
@@ -296,18 +341,19 @@ def test_fast_sampling_approaches_the_continuous_design() -> None:
 
 def test_stage_that_broke_the_sampled_continuous_design() -> None:
     arguments = STAGE, STAGE_C, STAGE_WU, STAGE_WP
-    found = design_disturbance_observer(*arguments, dt=1e-4, perturbed_plant=BREAKER)
+    found = design_disturbance_observer(*arguments, dt=1e-4, perturbed_plant=BREAKER, starts=1)
     c = found.certificate
     assert c.robustly_stable
     assert c.uncertainty_norm < 0.25
     assert c.perturbed_stable
-    continuous = design_disturbance_observer(*arguments)
+    # Without a price on noise, as the paper has it, its poles lie far above half the rate.
+    continuous = design_disturbance_observer(*arguments, flat=0.0, starts=2)
     block = TrackingController.from_continuous(STAGE_C, 1e-4, observer=continuous)
     assert np.abs(hyst.control.closed_loop_poles(BREAKER, block)).max() > 1.0
 
 
 def test_plants_within_the_folded_bound_stay_stable() -> None:
-    found = design_disturbance_observer(STAGE, STAGE_C, STAGE_WU, STAGE_WP, dt=1e-4)
+    found = design_disturbance_observer(STAGE, STAGE_C, STAGE_WU, STAGE_WP, dt=1e-4, starts=1)
     block = TrackingController.from_continuous(STAGE_C, 1e-4, observer=found)
     rng = np.random.default_rng(3)
     for _ in range(40):
@@ -375,7 +421,7 @@ def test_design_survives_json_and_says_what_it_is(late: DisturbanceObserver) -> 
 def test_given_gain_is_certified() -> None:
     p = observer_problem(PLANT, REPAIRED_C, WU, WP, dt=1e-4)
     stack = SampledStackedGain(p)  # type: ignore[arg-type]
-    L = stack.gain_of(0.5 * (stack.lowest + stack.highest))
+    L = stack.gain_of(some_parameters(stack, 3))
     found = evaluate_gain(p, L)
     E, _ = left_of_disturbance(p, L, np.array([found.certificate.performance_frequency]))  # type: ignore[arg-type]
     Wp = np.polyval(WP[0], 1j * found.certificate.performance_frequency) / np.polyval(

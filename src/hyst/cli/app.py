@@ -25,7 +25,7 @@ from hyst.cli.fit import fit
 from hyst.cli.identify import identify
 from hyst.cli.info import info
 from hyst.cli.loop import loop
-from hyst.cli.observer import observer
+from hyst.cli.observer.command import observer
 from hyst.cli.reproduce import reproduce
 from hyst.cli.simulate import simulate
 

@@ -30,13 +30,25 @@ def info(model_file: ModelFile) -> None:
         print(f"\n{hyst.report.invertible_sentence(operator)}")
 
 
+def _drive(found: hyst.control.TrackingController) -> str:
+    """Say what the drive of a controller may be."""
+    said = ""
+    if found.limits is not None:
+        said = f"drive from {found.limits[0]:.6g} to {found.limits[1]:.6g}, "
+    if found.rate is not None:
+        said += f"at most {found.rate:.6g} per second, "
+    return said
+
+
 def _operator(found: Any) -> hyst.operators.Operator | None:
     """Give the operator to tell of, and say whose it is if the file holds something else."""
     if isinstance(found, hyst.operators.Operator):
         return found
     if isinstance(found, hyst.control.TrackingController):
         what = "no inverse" if found.inverse is None else "an inverse, as follows"
-        print(f"tracking controller: {found.order} states, dt {found.dt:.6g} s, {what}")
+        print(
+            f"tracking controller: {found.order} states, dt {found.dt:.6g} s, {_drive(found)}{what}"
+        )
         return found.inverse
     print(f"{type(found).__name__}: the model it has found so far is")
     model: hyst.operators.Operator = found.model

@@ -18,6 +18,7 @@ from hyst.control.feedback.comparison import ComparedLoop, LoopComparison, compa
 from hyst.control.feedback.controller_design import design_controller
 from hyst.control.feedback.designed_controller import ControllerDesign
 from hyst.control.feedback.feedforward import reference_feedforward
+from hyst.control.feedback.loop_plant import static_gain
 from hyst.control.feedback.margins import LoopMargins, loop_margins
 from hyst.control.frequency_responses import LoopResponses, loop_responses, uncertainty_used
 from hyst.control.inexact_inverse import first_unstable_slope, slope_margin
@@ -32,7 +33,7 @@ from hyst.control.plants import (
     plant_and_delay,
 )
 from hyst.control.python_control import closed_loop_system, to_nlsys
-from hyst.control.q_filter import (
+from hyst.control.q_filters import (
     DesignRow,
     QFilter,
     QFilterCertificate,
@@ -124,6 +125,7 @@ __all__ = [
     "sampled_slope_proof",
     "simulate_closed_loop",
     "slope_margin",
+    "static_gain",
     "stress",
     "to_nlsys",
     "try_block",

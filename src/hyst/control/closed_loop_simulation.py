@@ -18,7 +18,7 @@ from hyst.checks.numbers import (
 )
 from hyst.control.closed_loop import ClosedLoop
 from hyst.control.controller_parts import disturbance_observer_of, feedback_controller, joined
-from hyst.control.feedback.settled_start import settled_start
+from hyst.control.feedback.settled_start import simulate_settled
 from hyst.control.loop_system import continuous_loop, held_step, plant_of
 from hyst.control.sampled.plant import SampledPlant, sampled_plant
 from hyst.control.tracking_controller import TrackingController
@@ -144,18 +144,11 @@ def simulate_closed_loop(
     _refuse_other(algebraic_loop, get_args(AlgebraicLoop), "algebraic_loop")
     spread, d = _noise(noise, r.size, seed), _signal(disturbance, r.size, "disturbance")
     if start == "settled":
-        if not isinstance(controller, TrackingController):
-            raise InputError(
-                "start='settled' is for blocks as they run; give a TrackingController as controller"
-            )
-        met = sampled_plant(plant, time, delay)
-        begun = settled_start(controller, met, hysteresis, float(r[0]))
-        loop = simulate_closed_loop(
-            r, time, plant=met, controller=begun.block, hysteresis=begun.hysteresis(hysteresis),
-            inverse=inverse, observer=observer, noise=spread + begun.y, disturbance=d,
-            disturbance_at=disturbance_at, settle=settle, limit=limit, delay=met.delay,
+        return simulate_settled(
+            simulate_closed_loop, r, time, controller, plant, hysteresis, spread, delay,
+            inverse=inverse, observer=observer, disturbance=d, disturbance_at=disturbance_at,
+            settle=settled, limit=limit,
         )  # fmt: skip
-        return begun.at_rest_again(loop)
     # Rows: r, noise, disturbance before and behind the hysteresis.
     inputs, outputs = np.zeros((4, r.size)), np.zeros((5, r.size))
     inputs[0], inputs[1] = r, spread
@@ -169,28 +162,36 @@ def simulate_closed_loop(
             )
         end, good = _sampled(controller, sampled_plant(plant, time, delay), actuator, signals)
     else:
-        if delay != 0.0:
-            raise InputError(
-                f"delay is {delay:.6g} s of a controller in continuous time, which takes none to "
-                "compute; give a TrackingController"
-            )
+        _refuse_late(delay)
         part = joined(feedback_controller(controller), disturbance_observer_of(observer))
         step = held_step(continuous_loop(plant_of(plant), part), time)
         first, late = _chain(inverse, "inverse", time), algebraic_loop == "delay"
         end, good = _engine.run_continuous_loop(
             step, late, first, actuator[0], _start(inverse), actuator[1], *signals
         )
-    if end == "no-solution":
-        raise SolverError(
-            f"the algebraic loop through plant and controller has no solution at {good * time:.6g} "
-            "s; give algebraic_loop='delay', or add a pole to the plant"
-        )
+    _refuse_unsolved(end, good * time)
     r, spread, d = r[:good], spread[:good], d[:good]
     v, u, eta, y, d_hat = outputs[:, :good]
     if isinstance(controller, TrackingController) and controller.E is not None and good:
         d_hat = controller.estimate(r, y + spread)
     diverged_at = good * time if end == "diverged" else None
     return ClosedLoop(time, r, y, spread, v, u, eta, d_hat, d, settled, diverged_at)
+
+
+def _refuse_late(delay: float) -> None:
+    if delay != 0.0:
+        raise InputError(
+            f"delay is {delay:.6g} s of a controller in continuous time, which takes none to "
+            "compute; give a TrackingController"
+        )
+
+
+def _refuse_unsolved(end: str, at: float) -> None:
+    if end == "no-solution":
+        raise SolverError(
+            f"the algebraic loop through plant and controller has no solution at {at:.6g} "
+            "s; give algebraic_loop='delay', or add a pole to the plant"
+        )
 
 
 def _sampled(

@@ -54,7 +54,15 @@ def as_rate(rate: Any) -> float | None:
 
 
 def within(limits: Limits | None, drive: float) -> float:
-    """Give the nearest drive that is allowed."""
+    """Give the nearest drive that is allowed.
+
+    Parameters
+    ----------
+    limits
+        As checked.
+    drive
+        Any.
+    """
     return drive if limits is None else min(max(drive, limits[0]), limits[1])
 
 

@@ -32,6 +32,7 @@ class SavedBlock(Described, ABC):
     E: Array | None
     F: Array | None
     x0: Array
+    u0: float
     limits: tuple[float, float] | None
     rate: float | None
     hysteresis: Operator | None
@@ -46,6 +47,8 @@ class SavedBlock(Described, ABC):
             data |= {"E": self.E.tolist(), "F": self.F.tolist()}
         if self.x0.any():
             data["x0"] = self.x0.tolist()
+        if self.u0:
+            data["u0"] = self.u0
         if self.inverse is not None:
             data["inverse"] = self.inverse.to_dict()
         if self.limits is not None:
@@ -75,7 +78,7 @@ class SavedBlock(Described, ABC):
         if not isinstance(data, dict) or data.get("kind") != KIND:
             kind = data.get("kind") if isinstance(data, dict) else data
             raise InputError(f"the kind is {kind!r}; give the dictionary of a {KIND}")
-        optional = ("E", "F", "x0", "inverse", "limits", "rate", "hysteresis", "W", "G")
+        optional = ("E", "F", "x0", "u0", "inverse", "limits", "rate", "hysteresis", "W", "G")
         given = entries(data, ("dt", "A", "B", "C", "D"), optional)
         for name in ("inverse", "hysteresis"):
             if name in given:

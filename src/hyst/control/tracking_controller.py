@@ -10,16 +10,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst import _engine
-from hyst.checks.arrays import as_constants, as_signal, as_state
+from hyst.checks.arrays import as_constants, as_state
 from hyst.checks.numbers import as_number, as_sample_time
 from hyst.control.anti_windup import anti_windup
-from hyst.control.block_constants import as_entries, as_matrix
+from hyst.control.block_constants import as_entries, as_matrix, refuse_overflow_at, two_records
 from hyst.control.controller_parts import disturbance_observer_of, feedback_controller, joined
 from hyst.control.discretization import Method, discretize
 from hyst.control.drive_limits import Limits, limited_drive, stated, within
 from hyst.control.feedback.feedforward import with_feedforward
 from hyst.control.linear_system import LinearSystem
-from hyst.control.saved_block import SavedBlock
+from hyst.control.watched_block import WatchedBlock, in_engine
 from hyst.errors import InputError
 from hyst.operators import Operator
 from hyst.operators.verdict import refuse_if_unfit
@@ -31,7 +31,7 @@ _LARGEST_ORDER = 64  # HYST_LARGEST_ORDER of the core
 
 @final
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class TrackingController(SavedBlock):
+class TrackingController(WatchedBlock):
     """Drive from reference and measured output, sample by sample.
 
     ``v_k = C x_k + D [y_ref_k, y_k]``, ``x_{k+1} = A x_k + B [y_ref_k, y_k]``,
@@ -61,6 +61,8 @@ class TrackingController(SavedBlock):
         Shapes (n,) and (2,), or neither.
     x0
         Shape (n,), state before the first sample; zeros if left out.
+    u0
+        Drive before the first sample, from which a rate counts; 0 if left out.
     limits
         Lowest and highest drive; none if left out.
     rate
@@ -100,6 +102,7 @@ class TrackingController(SavedBlock):
     E: Array | None
     F: Array | None
     x0: Array
+    u0: float
     limits: Limits | None
     rate: float | None
     hysteresis: Operator | None
@@ -119,6 +122,7 @@ class TrackingController(SavedBlock):
         E: ArrayLike | None = None,
         F: ArrayLike | None = None,
         x0: ArrayLike | None = None,
+        u0: float = 0.0,
         limits: Limits | None = None,
         rate: float | None = None,
         hysteresis: Operator | None = None,
@@ -147,6 +151,7 @@ class TrackingController(SavedBlock):
             "E": None if E is None else as_entries(E, n, "E"),
             "F": None if F is None else as_entries(F, 2, "F"),
             "x0": as_entries(np.zeros(n) if x0 is None else x0, n, "x0"),
+            "u0": as_number(u0, "u0"),
             **limited_drive(inverse, limits, rate, hysteresis, W, n, time),
             "G": as_number(G, "G"),
         }
@@ -255,11 +260,11 @@ class TrackingController(SavedBlock):
         """Give the state before the first sample, a fresh array.
 
         x0, then that of the inverse; with limits also that of its inverse, and the last drive,
-        which is the allowed one nearest to 0.
+        which is the allowed one nearest to u0.
         """
         operators = (self.inverse, self.forward)
         memory = [each.initial_state() for each in operators if each is not None]
-        last = [np.array([within(self.limits, 0.0)])] if self.is_limited else []
+        last = [np.array([within(self.limits, self.u0)])] if self.is_limited else []
         return np.concatenate([self.x0, *memory, *last])
 
     def run(
@@ -286,80 +291,10 @@ class TrackingController(SavedBlock):
         InputError
             If the records or the state cannot be used, or the drive overflows.
         """
-        reference, output = as_signal(y_ref, "y_ref"), as_signal(y, "y")
-        if reference.ndim != 1 or output.shape != reference.shape:
-            raise InputError(
-                f"y_ref has shape {reference.shape} and y {output.shape}; give one record of each, "
-                "(N,)"
-            )
-        memory = self._checked_state(state)
-        u = np.empty_like(reference)
-        bad = self.compiled.run(memory, reference, output, u)
-        if bad >= 0:
-            raise InputError(
-                f"the drive overflows at sample {bad}; the controller by itself is unstable, or "
-                "its inputs are too large"
-            )
+        signals, memory = two_records(y_ref, y), self._checked_state(state)
+        u = np.empty_like(signals[0])
+        refuse_overflow_at(self.compiled.run(memory, *signals, u))
         return u, memory
-
-    def estimate(self, y_ref: ArrayLike, y: ArrayLike, state: ArrayLike | None = None) -> Array:
-        """Give what the observer estimates, d_hat, for the records and the state of ``run``.
-
-        Parameters
-        ----------
-        y_ref, y, state
-            As in ``run``.
-
-        Returns
-        -------
-        numpy.ndarray
-            Shape (N,), in units of v; zeros without an observer.
-
-        Raises
-        ------
-        InputError
-            As ``run``, or if E and F are not known.
-        """
-        if self.E is None or self.F is None:
-            raise InputError("E and F were not given, so the estimate is not known; give both")
-        memory = self._checked_state(state)
-        if self.W is not None:
-            return self._told(y_ref, y, memory)[1]
-        watching = TrackingController(self.A, self.B, self.E, self.F, self.dt)
-        return watching.run(y_ref, y, memory[: self.order])[0]
-
-    def applied(self, y_ref: ArrayLike, y: ArrayLike, state: ArrayLike | None = None) -> Array:
-        """Give the v that belongs to the drive applied, for the records and the state of ``run``.
-
-        Parameters
-        ----------
-        y_ref, y, state
-            As in ``run``.
-
-        Returns
-        -------
-        numpy.ndarray
-            Shape (N,); without limits, or within them, the v that is wanted.
-
-        Raises
-        ------
-        InputError
-            As ``run``.
-        """
-        memory = self._checked_state(state)
-        if self.W is not None:
-            return self._told(y_ref, y, memory)[0]
-        linear = TrackingController(self.A, self.B, self.C, self.D, self.dt)
-        return linear.run(y_ref, y, memory[: self.order])[0]
-
-    def _told(self, y_ref: ArrayLike, y: ArrayLike, state: Array) -> tuple[Array, Array]:
-        self.run(y_ref, y, state)  # which refuses what cannot be used
-        reference, output = as_signal(y_ref, "y_ref"), as_signal(y, "y")
-        E, F = (self.C, self.D) if self.E is None or self.F is None else (self.E, self.F)
-        v, d_hat = np.empty_like(output), np.empty_like(output)
-        into = float(F[0]), float(F[1]), self.G
-        self.compiled.tell(state, reference, output, E.tolist(), *into, v, d_hat)
-        return v, d_hat
 
     def stepper(self, state: ArrayLike | None = None) -> _engine.TrackingStepper:
         """Give a callable that takes one sample at a time, with the same numbers as ``run``.
@@ -392,10 +327,7 @@ class TrackingController(SavedBlock):
     def compiled(self) -> _engine.TrackingController:
         """The block in the engine."""
         chain = _engine.Chain(() if self.inverse is None else self.inverse.stages())
-        columns, b = self.A.T.ravel().tolist(), self.B.T.ravel().tolist()
-        block = _engine.TrackingController(
-            columns, b, self.C.tolist(), float(self.D[0]), float(self.D[1]), chain
-        )
+        block = in_engine(self.A, self.B, self.C, self.D, chain)
         if self.W is not None:
             forward = _engine.Chain(() if self.forward is None else self.forward.stages())
             block.limit(self.W.tolist(), forward, *stated(self.limits, self.rate, self.dt))

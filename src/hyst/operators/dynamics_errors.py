@@ -1,4 +1,4 @@
-"""How well the linear dynamics of a model are known, over frequency."""
+"""How well the linear dynamics of a model are known, over frequency, and its hysteresis' slope."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from typing import Any, final
 
 from hyst.errors import InputError
-from hyst.operators.plain_data import as_finite
+from hyst.operators.plain_data import as_finite, as_finite_or_none
 
 _ENTRIES = ("frequency", "standard_error", "missing", "bands")
+_SLOPE = "slope_error"
 
 
 @final
@@ -30,6 +31,9 @@ class DynamicsErrors:
     bands
         Lowest and highest frequency of each band that the drive shows, Hz; elsewhere G is an
         extrapolation, whatever its errors.
+    slope_error
+        Largest relative standard error of the slope of the hysteresis over its drive, which is what
+        an exact inverse leaves of a slope of 1; None where it is not known.
 
     Raises
     ------
@@ -42,6 +46,7 @@ class DynamicsErrors:
     standard_error: tuple[float, ...]
     missing: tuple[float, ...]
     bands: tuple[tuple[float, float], ...]
+    slope_error: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("frequency", "standard_error", "missing"):
@@ -59,15 +64,17 @@ class DynamicsErrors:
         steps = zip((0.0, *self.frequency), self.frequency, strict=False)
         if any(after <= before for before, after in steps):
             raise InputError("the frequencies do not ascend from above 0; put them in order")
-        if min((*self.standard_error, *self.missing), default=0.0) < 0.0:
+        slope = as_finite_or_none("slope_error", self.slope_error)
+        if min((*self.standard_error, *self.missing, slope or 0.0)) < 0.0:
             raise InputError("an error is below 0; give 0 or more")
         if any(len(each) != 2 or each[0] > each[1] for each in bands):
             raise InputError("a band is no pair of frequencies, the lower one first")
 
     def to_dict(self) -> dict[str, Any]:
         """Give all entries as values of JSON."""
-        plain = {name: list(getattr(self, name)) for name in _ENTRIES[:3]}
-        return {**plain, "bands": [list(each) for each in self.bands]}
+        plain: dict[str, Any] = {name: list(getattr(self, name)) for name in _ENTRIES[:3]}
+        plain["bands"] = [list(each) for each in self.bands]
+        return plain if self.slope_error is None else {**plain, _SLOPE: self.slope_error}
 
     @classmethod
     def from_dict(cls, data: Any) -> DynamicsErrors:
@@ -83,9 +90,10 @@ class DynamicsErrors:
         InputError
             If an entry is missing, unknown or not allowed.
         """
-        if not isinstance(data, Mapping) or set(data) != set(_ENTRIES):
+        if not isinstance(data, Mapping) or set(data) - {_SLOPE} != set(_ENTRIES):
             raise InputError(
-                f"errors of dynamics have the entries {', '.join(_ENTRIES)} and no others"
+                f"errors of dynamics have the entries {', '.join(_ENTRIES)}, perhaps {_SLOPE}, and "
+                "no others"
             )
         return cls(**data)
 

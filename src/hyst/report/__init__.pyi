@@ -28,6 +28,8 @@ from hyst.report.loops_tables import loops_table as loops_table
 from hyst.report.loops_tables import repeated_loops_table as repeated_loops_table
 from hyst.report.observer.answer import ObserverAnswer as ObserverAnswer
 from hyst.report.observer.answer import TruePlant as TruePlant
+from hyst.report.observer.feedback_tables import margins_table as margins_table
+from hyst.report.observer.feedback_tables import parts_table as parts_table
 from hyst.report.observer.figures import draw_observer_bode as draw_observer_bode
 from hyst.report.observer.page import observer_page as observer_page
 from hyst.report.observer.tables import answer_tables as answer_tables

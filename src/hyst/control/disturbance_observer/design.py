@@ -129,7 +129,8 @@ def design_disturbance_observer(
     InputError
         If an assumption does not hold, method is unknown, or an option cannot be met.
     SolverError
-        If the semidefinite program of the method "slpmm" fails.
+        If the semidefinite program of the method "slpmm" fails, or a sampled observer of high order
+        has no digits left.
 
     Source
     ------

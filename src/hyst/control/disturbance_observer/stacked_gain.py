@@ -148,7 +148,7 @@ class StackedGain:
         return StackedGain(self.problem, self.free + 1, self.fastest_pole)
 
     def rates(self) -> tuple[float, float]:
-        """Ends of the band in which free eigenvalues may start, 1/s."""
+        """Give the ends of the band in which free eigenvalues may start, 1/s."""
         size = np.abs(self.features)
         return float(size.min()) / 3.0, 3.0 * float(size.max())
 

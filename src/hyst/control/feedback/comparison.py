@@ -98,7 +98,18 @@ class LoopComparison:
     noise: float
 
     def __getitem__(self, name: str) -> ComparedLoop:
-        """Give the row of a name."""
+        """Give the row of a name.
+
+        Parameters
+        ----------
+        name
+            Of a loop.
+
+        Raises
+        ------
+        InputError
+            If there is none of this name.
+        """
         for row in self.rows:
             if row.name == name:
                 return row
@@ -106,27 +117,36 @@ class LoopComparison:
             f"there is no loop {name!r}; give one of {', '.join(each.name for each in self.rows)}"
         )
 
+    @property
+    def header(self) -> tuple[str, ...]:
+        """Headings of the table."""
+        return ("loop", "rms", "max", "drive jitter", "of noise", "safe?")
+
+    def row_of(self, row: ComparedLoop) -> tuple[str, ...]:
+        """Give a row in words, under these headings.
+
+        Parameters
+        ----------
+        row
+            One of the rows.
+        """
+        return (
+            row.name,
+            _told(row.rms),
+            _told(row.largest),
+            _told(row.jitter),
+            _told(row.noise_jitter),
+            row.mark if row.mark == "proven" else f"{row.mark}: {row.reason}",
+        )
+
     def summary(self) -> str:
         """Give the table as text; what is not proven safe is marked in it."""
-        head = ("loop", "rms", "max", "drive jitter", "of noise", "safe?")
-        lines = [head, *(table_row(row) for row in self.rows)]
-        widths = [max(len(line[k]) for line in lines) for k in range(len(head))]
+        lines = [self.header, *(self.row_of(row) for row in self.rows)]
+        widths = [max(len(line[k]) for line in lines) for k in range(len(self.header))]
         return "\n".join(
             "  ".join(text.ljust(width) for text, width in zip(line, widths, strict=True)).rstrip()
             for line in lines
         )
-
-
-def table_row(row: ComparedLoop) -> tuple[str, ...]:
-    """Give a row in words."""
-    return (
-        row.name,
-        _told(row.rms),
-        _told(row.largest),
-        _told(row.jitter),
-        _told(row.noise_jitter),
-        row.mark if row.mark == "proven" else f"{row.mark}: {row.reason}",
-    )
 
 
 def compare_loops(

@@ -28,8 +28,8 @@ Kind: TypeAlias = Literal["auto", "i", "pi", "pid"]
 _TIMES = 24
 _WORTH = {"i": 1.0, "pi": 1.2, "pid": 1.5}  # by how much a richer kind has to be better
 _OF_NYQUIST = 0.8
-_OFF = (-1.0, -0.5, 0.5, 1.0)  # of the mismatch
-_SHRINK, _SHRINKS = 0.98, 60
+_OFF = (-1.0, 1.0, -0.5, 0.5)  # of the mismatch; its ends come first
+_SHRINK, _SHRINKS = 0.995, 20  # steps that grow
 _BELOW = 0.999  # of Ms is searched, so that what lies between two frequencies of the grid is kept
 
 
@@ -123,7 +123,7 @@ def design_controller(
         noise_gain=float(noise_gain) / abs(gain),
         gain_margin=gain_margin,
         phase_margin=phase_margin,
-        deviation=None if Wu is None else _deviation(met, Wu, w),
+        deviation=None if Wu is None else _deviation(met, Wu, w, abs(gain)),
     )
     times = _candidate_times(met)
     notched = () if notch is False else found
@@ -138,7 +138,8 @@ def design_controller(
             tried += [held] if held is not None else []
     if not tried:
         raise SolverError(
-            "no integral gain keeps the demands; allow a larger peak_sensitivity, or a smaller Wu"
+            "the loop bears any gain, or none: a plant without lag or dead time bears any gain; "
+            "give dt and delay of the block, or allow a larger peak_sensitivity"
         )
     best = tried[0]
     for other in tried[1:]:
@@ -219,14 +220,22 @@ def _grid(plants: list[LoopPlant]) -> Array:
     late = plants[0].dead_time
     if late:
         features = np.append(features, 1.0 / late)
-    w = frequencies_around(features, plants[0].nyquist, 80, 100.0)
+    w = frequencies_around(features, plants[0].nyquist, 50, 100.0)
     return w[w < plants[0].nyquist * (1.0 - 1e-9)] if plants[0].dt else w
 
 
-def _deviation(plant: LoopPlant, Wu: Any, w: Array) -> Array:
+def _deviation(plant: LoopPlant, Wu: Any, w: Array, gain: float) -> Array:
     if plant.sampled is not None:
-        return folded_uncertainty(plant.sampled, Wu, w)
-    return np.asarray(np.abs(weight_response(as_linear_system(Wu, "Wu"), w) * plant.response(w)))
+        found = folded_uncertainty(plant.sampled, Wu, w)
+    else:
+        weight = weight_response(as_linear_system(Wu, "Wu"), w)
+        found = np.asarray(np.abs(weight * plant.response(w)))
+    if found[0] >= gain:
+        raise InputError(
+            f"Wu is {found[0] / gain:.4g} at low frequencies, so the static gain may have either "
+            "sign and no integral controller is safe; give a Wu below 1 there"
+        )
+    return found
 
 
 def _candidate_times(plant: LoopPlant) -> Array:
@@ -249,13 +258,13 @@ def _tried(
     demands: Demands,
 ) -> Tried | None:
     """Hold a candidate to its demands between the points of the grid, and lower its gain if not."""
-    for _ in range(_SHRINKS):
+    for k in range(_SHRINKS):
         continuous = shape.system(ki, demands.dt)
         system = discretize(continuous, demands.dt) if demands.dt else continuous
         found = [margins_of(each, system) for each in plants]
         if all(_kept(each, peak, demands) for each in found):
             return Tried(kind, shape, ki, continuous, system, found[0], _worst(found))
-        ki *= _SHRINK
+        ki *= _SHRINK ** (1 + k // 2)
     return None
 
 

@@ -14,7 +14,17 @@ from hyst.control.linear_system import LinearSystem
 
 @dataclass(frozen=True, eq=False)
 class Tried:
-    """The best controller of one kind, with its margins and its worst ones."""
+    """The best controller of one kind.
+
+    Parameters
+    ----------
+    kind, shape, ki
+        As in ``ControllerDesign``.
+    continuous, system
+        C(s), and C as the loop has it.
+    margins, worst
+        Of the loop it was designed for, and of the worst of those with resonances elsewhere.
+    """
 
     kind: str
     shape: Shape
@@ -100,15 +110,18 @@ class ControllerDesign:
         """
         return self.controller.as_control()
 
-    def rows(self) -> tuple[tuple[str, str], ...]:
-        """Give what it is and what it keeps, in words."""
+    def told(self) -> tuple[tuple[str, str], ...]:
+        """Give what it is and what it keeps where resonances are elsewhere, in words."""
         off = f", resonances off by {100.0 * self.mismatch:.3g} %" if self.mismatch else ""
         return (
             ("controller", self._told()),
             *((f"notch {k + 1}", _notch(each)) for k, each in enumerate(self.notches)),
-            *self.margins.rows(),
             (f"worst modulus margin{off}", self._worst()),
         )
+
+    def rows(self) -> tuple[tuple[str, str], ...]:
+        """Give that, and the margins of its loop."""
+        return (*self.told(), *self.margins.rows())
 
     def _told(self) -> str:
         parts = {"ki": self.ki, "kp": self.kp, "kd": self.kd, "Tf": self.shape.Tf}

@@ -15,7 +15,7 @@ from hyst.control.discretization import Method, discretize
 from hyst.control.feedback.loop_plant import static_gain
 from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.loop_system import plant_of
-from hyst.control.sampled.plant import sampled_plant
+from hyst.control.sampled.plant import SampledPlant, sampled_plant
 from hyst.errors import InputError
 
 Array = NDArray[np.float64]
@@ -148,7 +148,10 @@ def _gain_of(plant: Any, designs: tuple[Any, ...]) -> float:
     """Give the static gain of the plant, or of the first design that knows it, or else 1."""
     gains = [] if plant is None else [static_gain(plant_of(plant))]
     gains += [float(each.static_gain) for each in designs if hasattr(each, "static_gain")]
-    gains += [static_gain(each.problem.plant) for each in designs if hasattr(each, "problem")]
+    plants = [each.problem.plant for each in designs if hasattr(each, "problem")]
+    gains += [
+        static_gain(each.system if isinstance(each, SampledPlant) else each) for each in plants
+    ]
     gain = gains[0] if gains else 1.0
     if gain == 0.0 or math.isinf(gain):
         raise InputError(

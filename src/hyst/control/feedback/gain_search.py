@@ -25,6 +25,8 @@ _WORTH = 1.15  # a further notch has to allow this much more gain
 _MOST_NOTCHES = 4
 _POLE_DAMPINGS = (0.3, 0.6, 1.0)
 _SHIFTS = (1.0, 0.95, 1.05)
+_MORE, _DEGREES = 1.003, 0.5  # asked for on the grid, so that what lies between is kept too
+_EXTREMES = 3  # plants: the nominal one and those at the ends of the mismatch
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,18 +60,26 @@ class Demands:
     noise_gain: float
     deviation: Array | None
 
-    def largest_gain(self, shapes: ComplexArray) -> Array:
-        """Give the largest ki for responses of C / ki, shape (shapes, K)."""
+    def largest_gain(self, shapes: ComplexArray, most: int | None = None) -> Array:
+        """Give the largest ki for responses of C / ki, shape (shapes, K).
+
+        Parameters
+        ----------
+        shapes
+            The responses.
+        most
+            How many of the plants count, the first ones; all if left out.
+        """
         best = np.full(len(shapes), np.inf)
-        for plant in self.plants:
+        for plant in self.plants[:most]:
             loop = shapes * plant
             best = np.minimum(best, gain_for_sensitivity(loop, self.peak))
             noise = gain_for_uncertainty(loop, shapes / self.noise_gain)
             best = np.minimum(best, noise)
             if self.gain_margin is not None:
-                best = np.minimum(best, gain_for_gain_margin(loop, self.gain_margin))
+                best = np.minimum(best, gain_for_gain_margin(loop, _MORE * self.gain_margin))
             if self.phase_margin is not None:
-                best = np.minimum(best, gain_for_phase(loop, self.phase_margin))
+                best = np.minimum(best, gain_for_phase(loop, self.phase_margin + _DEGREES))
         if self.deviation is not None:
             loop = shapes * self.plants[0]
             best = np.minimum(best, gain_for_uncertainty(loop, shapes * self.deviation))
@@ -120,11 +130,13 @@ def _rows(kind: str, times: Array) -> Array:
     return np.array([(Ti, Td, Td / _DERIVATIVE_FILTER) for Ti, Td in pairs])
 
 
-def _best_times(demands: Demands, shape: Shape, rows: Array) -> tuple[Shape, float]:
+def _best_times(
+    demands: Demands, shape: Shape, rows: Array, most: int | None = _EXTREMES
+) -> tuple[Shape, float]:
     responses = times_response(demands.s, rows)
     for notch in shape.notches:
         responses = responses * notch.response(demands.s, demands.dt)
-    gains = demands.largest_gain(responses)
+    gains = demands.largest_gain(responses, most)
     k = int(np.argmax(gains))
     Ti, Td, Tf = rows[k].tolist()
     return replace(shape, Ti=Ti, Td=Td, Tf=Tf), float(gains[k])
@@ -146,7 +158,7 @@ def _best_notch(
 def _refined(demands: Demands, shape: Shape, kind: str, times: Array) -> tuple[Shape, float]:
     """Look between the candidates of the times, ever closer."""
     ratio = float(times[1] / times[0]) if times.size > 1 else 1.0
-    best, gain = _best_times(demands, shape, np.array([[shape.Ti, shape.Td, shape.Tf]]))
+    best, gain = _best_times(demands, shape, np.array([[shape.Ti, shape.Td, shape.Tf]]), None)
     if kind == "i":
         return best, gain
     for step in (ratio**0.5, ratio**0.25, ratio**0.12, ratio**0.06):
@@ -155,7 +167,7 @@ def _refined(demands: Demands, shape: Shape, kind: str, times: Array) -> tuple[S
             (best.Ti * a, best.Td * b, best.Td * b / _DERIVATIVE_FILTER)
             for a, b in itertools.product(moves, moves if kind == "pid" else [1.0])
         ]
-        tried = _best_times(demands, best, np.array(rows))
+        tried = _best_times(demands, best, np.array(rows), None)
         if tried[1] > gain:
             best, gain = tried
     return best, gain

@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_not_negative
-from hyst.control.linear_system import LinearSystem
+from hyst.control.linear_system import LinearSystem, balanced_matrices
 from hyst.control.loop_system import plant_of
 from hyst.control.sampled.plant import SampledPlant, sampled_plant
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +70,15 @@ class LoopPlant:
 
 
 def points(w: Array, dt: float) -> ComplexArray:
-    """Give s = jw, or z = exp(jw dt)."""
+    """Give s = jw, or z = exp(jw dt).
+
+    Parameters
+    ----------
+    w
+        Frequencies, rad/s.
+    dt
+        Sample time, s; 0 in continuous time.
+    """
     return np.asarray(np.exp(1j * w * dt) if dt else 1j * w, dtype=np.complex128)
 
 
@@ -78,7 +88,15 @@ def as_rates(system: LinearSystem) -> ComplexArray:
 
 
 def rates_of(poles: ComplexArray, dt: float) -> ComplexArray:
-    """Give poles in 1/s; those of whole samples of dead time, at z = 0, are left out."""
+    """Give poles in 1/s; those of whole samples of dead time, at z = 0, are left out.
+
+    Parameters
+    ----------
+    poles
+        In s or z.
+    dt
+        Sample time, s; 0 in continuous time.
+    """
     if not dt:
         return poles
     # Rounding spreads m poles at 0 over a circle of radius eps^(1/m).
@@ -93,7 +111,12 @@ def static_gain(system: LinearSystem) -> float:
     poles = system.poles()
     if np.abs(poles - origin).min() <= 1e-9 * max(1.0, float(np.abs(poles).max())):
         return math.inf
-    return float(system.response(np.array([origin + 0j]))[0, 0, 0].real)
+    A, B, C = balanced_matrices(system.A, system.B, system.C)
+    x = np.linalg.solve(origin * np.eye(system.order) - A, B)
+    gain = float((C @ x + system.D)[0, 0])
+    # With a zero at the origin, what is left of its parts is rounding.
+    size = float((np.abs(C) @ np.abs(x) + np.abs(system.D))[0, 0])
+    return gain if abs(gain) > _ROUNDING * size else 0.0
 
 
 def loop_plant(plant: Any, dt: float | None = None, delay: float = 0.0) -> LoopPlant:

@@ -13,9 +13,17 @@ from numpy.typing import NDArray
 from hyst.control.controller_parts import feedback_controller
 from hyst.control.discretization import Method, discretize
 from hyst.control.feedback.frequencies import crossings, frequencies_around, highest
-from hyst.control.feedback.loop_plant import LoopPlant, as_rates, loop_plant, points, rates_of
+from hyst.control.feedback.loop_plant import (
+    LoopPlant,
+    as_rates,
+    loop_plant,
+    points,
+    rates_of,
+    static_gain,
+)
 from hyst.control.feedback.stability import is_stable, loop_poles
 from hyst.control.linear_system import LinearSystem
+from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError
 
 Array = NDArray[np.float64]
@@ -124,7 +132,8 @@ def loop_margins(
     plant
         As ``simulate_closed_loop`` takes it: continuous, sampled, LinearDynamics with its delay.
     controller
-        C, from the tracking error to the plant's input; continuous or sampled.
+        C, from the tracking error to the plant's input, continuous or sampled; or a
+        TrackingController, of which all that y goes through counts, the observer too.
     dt
         Sample time of the block that runs, s; left out: of the plant, or continuous time.
     delay
@@ -154,9 +163,11 @@ def loop_margins(
     >>> round(found.gain_margin, 9), found.stable
     (2.0, True)
     >>> round(loop_margins(([1.0], [1.0, 2.0, 1.0]), ([1.0], [1.0, 0.0]), 0.5).gain_margin, 3)
-    1.514
+    1.384
     """
     met = loop_plant(plant, dt, delay)
+    if isinstance(controller, TrackingController):
+        return margins_of(loop_plant(plant, controller.dt, delay), _from_output(controller))
     read = feedback_controller(controller)
     if met.dt:
         read = discretize(read, met.dt, method)
@@ -165,6 +176,12 @@ def loop_margins(
             f"the controller is sampled at {read.dt:g} s; give dt, or a continuous one"
         )
     return margins_of(met, read)
+
+
+def _from_output(block: TrackingController) -> LinearSystem:
+    """Give K of ``v = -K y``."""
+    y = block.B[:, 1:], block.D[1:].reshape(1, 1)
+    return LinearSystem(block.A, -y[0], block.C.reshape(1, -1), -y[1], block.dt)
 
 
 def margins_of(plant: LoopPlant, controller: LinearSystem) -> LoopMargins:
@@ -187,7 +204,8 @@ def margins_of(plant: LoopPlant, controller: LinearSystem) -> LoopMargins:
         turned, factors = turned[counted], factors[counted]
     turned, factors = _with_ends(plant, controller, turned, factors)
     peak, place = highest(w, lambda at: 1.0 / np.maximum(np.abs(1.0 + loop(at)), 1e-300))
-    first = loop(w[:1])[0]
+    at_rest = static_gain(plant.system) * static_gain(controller)
+    whole = 1.0 if math.isinf(at_rest) or math.isnan(at_rest) else _closed(at_rest)
     return LoopMargins(
         stable=stable,
         gain_margin=float(factors[factors > 1.0].min(initial=math.inf)),
@@ -196,7 +214,7 @@ def margins_of(plant: LoopPlant, controller: LinearSystem) -> LoopMargins:
         delay_margin=float((np.radians(angles % 360.0) / over).min(initial=math.inf)),
         modulus_margin=1.0 / peak,
         modulus_frequency=place,
-        bandwidth=_first(w, lambda at: np.abs(_closed(loop(at)) / _closed(first)) - _LEFT),
+        bandwidth=_first(w, lambda at: np.abs(_closed(loop(at))) - _LEFT * abs(whole)),
         rejection=_first(w, lambda at: _LEFT - 1.0 / np.maximum(np.abs(1.0 + loop(at)), 1e-300)),
         crossovers=over,
         phase_margins=angles,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from hyst.control.closed_loop import ClosedLoop
 from hyst.control.feedback.loop_plant import static_gain
-from hyst.control.sampled.plant import SampledPlant
+from hyst.control.sampled.plant import SampledPlant, sampled_plant
 from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError, SolverError
 from hyst.operators import Affine, Operator
@@ -50,6 +51,50 @@ class SettledStart:
         return replace(loop, y=loop.y + self.y, eta=loop.eta + self.w, noise=loop.noise - self.y)
 
 
+def simulate_settled(
+    simulate: Callable[..., ClosedLoop],
+    reference: Array,
+    dt: float,
+    controller: Any,
+    plant: Any,
+    hysteresis: Operator | None,
+    noise: Array,
+    delay: float,
+    **options: Any,
+) -> ClosedLoop:
+    """Simulate a loop that has come to rest at the first value of the reference.
+
+    The plant is simulated in deviations from its rest, all else as it is.
+
+    Parameters
+    ----------
+    simulate
+        ``simulate_closed_loop``, which starts at rest with the plant's states at 0.
+    reference, dt, controller, plant, hysteresis, noise, delay, options
+        Its arguments.
+
+    Returns
+    -------
+    ClosedLoop
+
+    Raises
+    ------
+    InputError
+        If the controller is no TrackingController, or as ``settled_start``.
+    """
+    if not isinstance(controller, TrackingController):
+        raise InputError(
+            "start='settled' is for blocks as they run; give a TrackingController as controller"
+        )
+    met = sampled_plant(plant, dt, delay)
+    begun = settled_start(controller, met, hysteresis, float(reference[0]))
+    loop = simulate(
+        reference, dt, plant=met, controller=begun.block, hysteresis=begun.hysteresis(hysteresis),
+        noise=noise + begun.y, delay=met.delay, **options,
+    )  # fmt: skip
+    return begun.at_rest_again(loop)
+
+
 def settled_start(
     block: TrackingController, plant: SampledPlant, hysteresis: Operator | None, reference: float
 ) -> SettledStart:
@@ -85,9 +130,12 @@ def settled_start(
             f"the plant's static gain is {gain:g}, so it does not rest; give start='rest'"
         )
 
+    def drive(v: float) -> float:
+        return v if block.inverse is None else float(block.inverse(np.array([v]))[0])
+
     def given(v: float) -> float:
         """Give w for v."""
-        u = v if block.inverse is None else float(block.inverse(np.array([v]))[0])
+        u = drive(v)
         return u if hysteresis is None else float(hysteresis(np.array([u]))[0])
 
     poles = np.linalg.eigvals(block.A) if block.order else np.zeros(0)
@@ -98,9 +146,14 @@ def settled_start(
         of_r, of_y = _static_gains(block)
         wanted = of_r * reference
         v = _root(lambda v: v - wanted - of_y * gain * given(v), wanted, reference)
-    w = given(v)
+    w, u = given(v), drive(v)
+    if block.limits is not None and not block.limits[0] <= u <= block.limits[1]:
+        raise InputError(
+            f"the loop rests at a reference of {reference:.6g} with a drive of {u:.6g}, beyond the "
+            "limits of the drive; begin within its range, or give start='rest'"
+        )
     x0 = _resting_state(block, np.array([reference, gain * w]), v)
-    return SettledStart(_with_start(block, x0), v, w, gain * w)
+    return SettledStart(_with_start(block, x0, u), v, w, gain * w)
 
 
 def _static_gains(block: TrackingController) -> tuple[float, float]:
@@ -113,9 +166,10 @@ def _static_gains(block: TrackingController) -> tuple[float, float]:
 
 def _root(value: Any, guess: float, reference: float) -> float:
     """Bracket a root around the guess and find it."""
-    if value(guess) == 0.0:
+    missed = value(guess)
+    if missed == 0.0:
         return guess
-    reach = 0.1 * max(abs(guess), abs(reference), 1e-300)
+    reach = 0.1 * max(abs(guess), abs(reference), abs(missed))
     for _ in range(_WIDENINGS):
         low, high = guess - reach, guess + reach
         ends = value(low), value(high)
@@ -149,5 +203,5 @@ def _resting_state(block: TrackingController, given: Array, v: float) -> Array:
     return np.asarray(x0)
 
 
-def _with_start(block: TrackingController, x0: Array) -> TrackingController:
-    return TrackingController.from_dict({**block.to_dict(), "x0": x0.tolist()})
+def _with_start(block: TrackingController, x0: Array, u0: float) -> TrackingController:
+    return TrackingController.from_dict({**block.to_dict(), "x0": x0.tolist(), "u0": u0})

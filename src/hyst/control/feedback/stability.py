@@ -21,7 +21,12 @@ _ROUNDS = 40
 
 
 def loop_poles(plant: LinearSystem, controller: LinearSystem) -> ComplexArray:
-    """Give the poles of the loop ``v = -C y, y = P v``, both continuous or both sampled.
+    """Give the poles of the loop ``v = -C y, y = P v``.
+
+    Parameters
+    ----------
+    plant, controller
+        Both continuous or both sampled.
 
     Raises
     ------
@@ -41,7 +46,15 @@ def loop_poles(plant: LinearSystem, controller: LinearSystem) -> ComplexArray:
 
 
 def pole_margin(poles: ComplexArray, dt: float) -> float:
-    """Give how far the least stable pole is from unstable: 1 - |z|, or -Re s; below 0 it is."""
+    """Give how far the least stable pole is from unstable: 1 - |z|, or -Re s; below 0 it is.
+
+    Parameters
+    ----------
+    poles
+        In s or z.
+    dt
+        Sample time, s; 0 in continuous time.
+    """
     if poles.size == 0:
         return math.inf
     return float((1.0 - np.abs(poles)).min() if dt else -poles.real.max())

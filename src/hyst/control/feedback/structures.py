@@ -37,7 +37,15 @@ class Notch:
     pole_damping: float
 
     def response(self, s: ComplexArray, dt: float) -> ComplexArray:
-        """Values at points of the continuous controller, which sampling at dt warps."""
+        """Values at points of the continuous controller, which sampling at dt warps.
+
+        Parameters
+        ----------
+        s
+            Points, as ``controller_points`` gives them.
+        dt
+            Sample time, s, or 0.
+        """
         w = warped(self.frequency, dt)
         square = s * s + w * w
         return np.asarray(
@@ -63,14 +71,30 @@ class Shape:
     notches: tuple[Notch, ...] = ()
 
     def response(self, s: ComplexArray, dt: float) -> ComplexArray:
-        """Values of ``C / ki`` at points of the continuous controller, 0 left out."""
+        """Values of ``C / ki`` at points of the continuous controller, 0 left out.
+
+        Parameters
+        ----------
+        s
+            Points, as ``controller_points`` gives them.
+        dt
+            Sample time, s, or 0.
+        """
         found = times_response(s, np.array([[self.Ti, self.Td, self.Tf]]))[0]
         for notch in self.notches:
             found = found * notch.response(s, dt)
         return np.asarray(found)
 
     def system(self, ki: float, dt: float) -> LinearSystem:
-        """Give the continuous controller whose trapezoidal sampling at dt is meant."""
+        """Give the continuous controller whose trapezoidal sampling at dt is meant.
+
+        Parameters
+        ----------
+        ki
+            Integral gain.
+        dt
+            Sample time, s, or 0.
+        """
         above = np.array([self.Ti, 1.0]) if self.Ti else np.array([1.0])
         below = np.array([1.0, 0.0])
         if self.Td:
@@ -89,13 +113,29 @@ class Shape:
 
 
 def times_response(s: ComplexArray, times: Array) -> ComplexArray:
-    """Give ``C / ki`` without notches for rows of Ti, Td, Tf: shape (rows, points)."""
+    """Give ``C / ki`` without notches for rows of Ti, Td, Tf: shape (rows, points).
+
+    Parameters
+    ----------
+    s
+        Points, as ``controller_points`` gives them.
+    times
+        Shape (rows, 3), s.
+    """
     Ti, Td, Tf = times[:, :1], times[:, 1:2], times[:, 2:]
     return np.asarray((1.0 + Ti * s + Ti * Td * s * s / (Tf * s + 1.0)) / s)
 
 
 def controller_points(w: Array, dt: float) -> ComplexArray:
-    """Give where the continuous controller is met at frequencies, rad/s, below Nyquist."""
+    """Give where the continuous controller is met at frequencies, rad/s, below Nyquist.
+
+    Parameters
+    ----------
+    w
+        Frequencies, rad/s.
+    dt
+        Sample time, s, or 0.
+    """
     if not dt:
         return np.asarray(1j * w)
     # At Nyquist itself the tangent is infinite; a millionth below it nothing has changed yet.
@@ -104,12 +144,26 @@ def controller_points(w: Array, dt: float) -> ComplexArray:
 
 
 def warped(w: float, dt: float) -> float:
-    """Give the frequency of a continuous system which the trapezoidal rule moves to w."""
+    """Give the frequency of a continuous system which the trapezoidal rule moves to w.
+
+    Parameters
+    ----------
+    w
+        Frequency, rad/s, below pi/dt.
+    dt
+        Sample time, s, or 0.
+    """
     return 2.0 / dt * math.tan(0.5 * w * dt) if dt else w
 
 
 def in_series(parts: list[LinearSystem]) -> LinearSystem:
-    """Put systems one behind the other, each with its own states: no polynomial of high order."""
+    """Put systems one behind the other, each with its own states: no polynomial of high order.
+
+    Parameters
+    ----------
+    parts
+        In the order of the signal; one input and output each.
+    """
     whole = parts[0]
     for each in parts[1:]:
         n, m = whole.order, each.order

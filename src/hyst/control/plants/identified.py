@@ -8,6 +8,7 @@ from typing import Any, final
 
 import numpy as np
 
+from hyst.checks.numbers import as_not_negative
 from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.plants.far_zeros import without_far_zeros
 from hyst.control.plants.parts import delayed_by, front_and_dynamics
@@ -70,6 +71,38 @@ class IdentifiedPlant:
     def gain(self) -> float:
         """Gain at rest."""
         return self.dynamics.dc_gain()
+
+    def slopes(
+        self, low: float = 1.0, high: float = 1.0, standard_errors: float = 3.0
+    ) -> tuple[float, float]:
+        """Give the slopes of the true hysteresis after an inverse, which are not those identified.
+
+        Parameters
+        ----------
+        low, high
+            Least and largest slope of the identified hysteresis after the inverse; 1 and 1 of the
+            exact one.
+        standard_errors
+            How many of the slope of the hysteresis count, >= 0.
+
+        Returns
+        -------
+        low, high : float
+            For noise of the records alone: a hysteresis of another shape is not in it.
+
+        Raises
+        ------
+        InputError
+            If the identification does not tell how well the slope is known.
+        """
+        count = as_not_negative(standard_errors, "standard_errors")
+        error = None if self.errors is None else self.errors.slope_error
+        if error is None:
+            raise InputError(
+                f"{self.name} does not tell how well the slope of its hysteresis is known; "
+                "identify again, or give slopes that hold"
+            )
+        return low * max(1.0 - count * error, 0.0), high * (1.0 + count * error)
 
     def continuous_plant(self) -> ContinuousDynamics:
         """Give the continuous plant, for a design in continuous time.

@@ -95,6 +95,9 @@ def judge_loop(
         return LoopJudgement("not safe", said, slopes, met, None, None)
     proof = None if slopes is None else sampled_slope_proof(block, late, slopes, Wu)[0]
     if proof is not None and proof < 1.0:
+        if limits_met(block, loop):
+            said = "not proven while the drive meets its limits, as it did"
+            return LoopJudgement("simulated", said, slopes, met, proof, None)
         return LoopJudgement("proven", f"{proof:.3g} < 1", slopes, met, proof, None)
     failing = sampled_slope_failing(block, late, met, Wu)
     if failing is not None:
@@ -102,6 +105,26 @@ def judge_loop(
         return LoopJudgement("not safe", said, slopes, met, proof, failing)
     why = "slopes are not known" if proof is None else f"{proof:.3g} is not below 1"
     return LoopJudgement("simulated", f"not proven: {why}", slopes, met, proof, None)
+
+
+def limits_met(block: TrackingController, loop: ClosedLoop) -> bool:
+    """Tell whether the drive met the block's own limits.
+
+    Parameters
+    ----------
+    block
+        What ran.
+    loop
+        What came of it.
+    """
+    low, high = (-np.inf, np.inf) if block.limits is None else block.limits
+    if loop.u.size and (loop.u.min() <= low or loop.u.max() >= high):
+        return True
+    if block.rate is None:
+        return False
+    # A difference of two drives is known to the rounding of both.
+    most = block.rate * block.dt - 1e-12 * float(np.abs(loop.u).max(initial=0.0))
+    return bool((np.abs(np.diff(loop.u)) >= most).any())
 
 
 def slopes_met(loop: ClosedLoop) -> tuple[float, float]:

@@ -97,7 +97,7 @@ def uncertainty_weight(
         responses, ``frd`` of python-control, pairs (w, G) with w in rad/s and complex G, or
         systems. Samples above half the sample rate of a sampled nominal plant are left out.
     order
-        Of W, 0 to 8; None: the least that exceeds the samples by no more than half, or else
+        Of W at most, 0 to 8; None: the least that exceeds the samples by no more than half, or else
         that beyond which an order takes less than a seventh off the excess.
     least
         Least deviation that is asked of W, > 0: no plant is known better.
@@ -266,10 +266,12 @@ def _is_worth(found: Cover, best: Cover) -> bool:
 
 
 def _of_order(target: Target, order: int) -> Cover:
-    found = tightest(target, order)
-    if found is None:
-        raise SolverError(f"no cover of order {order} was found; give another order")
-    return found
+    """Give the tightest cover of an order, or of the next below where rounding leaves none."""
+    for each in range(order, -1, -1):
+        found = tightest(target, each)
+        if found is not None:
+            return found
+    raise SolverError(f"no cover of order {order} was found; give another order")
 
 
 def _thinned(target: Target) -> Target:

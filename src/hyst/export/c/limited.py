@@ -136,7 +136,7 @@ class LimitedStages:
             "    state->fault |= @{NAME}_NOT_FINITE;",
             "    applied = wanted;",
             "}",
-            "if ((held != 0) || (v < u) || (v > u)) { /* on with the v of the drive */",
+            "if ((held != 0) || (v < u) || (v > u)) { /* on with what belongs to it */",
             *(["    hyst_real again = applied;"] if self.inverse else []),
             "    const hyst_real excess = applied - wanted;",
             *(f"    {line}" for line in self._copied("memory", "before", memory)),

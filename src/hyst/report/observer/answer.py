@@ -14,7 +14,10 @@ from hyst.compensation import ErrorBound
 from hyst.control import (
     EXACT,
     ClosedLoop,
+    ControllerDesign,
+    LoopComparison,
     LoopJudgement,
+    LoopMargins,
     SampledCertificate,
     StressTest,
     TrackingController,
@@ -82,6 +85,12 @@ class ObserverAnswer:
         Least and largest drive the model was identified from; None if not known.
     stress
         A search for a plant that breaks the block; None if none was asked for.
+    margins
+        Of the loop with C alone and of that with the block; None where they are not told.
+    controller_design
+        What C was designed by; None if it was written.
+    parts
+        What inverse, feedback and observer are worth alone and together; None if not asked for.
     """
 
     design: Any
@@ -95,6 +104,9 @@ class ObserverAnswer:
     bound: ErrorBound | None = None
     identified: tuple[float, float] | None = None
     stress: StressTest | None = None
+    margins: tuple[LoopMargins, LoopMargins] | None = None
+    controller_design: ControllerDesign | None = None
+    parts: LoopComparison | None = None
 
     @property
     def block(self) -> TrackingController:
@@ -116,29 +128,28 @@ class ObserverAnswer:
         c, j = self.certificate, self.judgement
         radius = float(np.abs(c.poles).max(initial=0.0))
         rows = [
-            (f"loop around the nominal plant is stable, {self.sampled()}", c.nominal_stable,
+            ("stable around the nominal plant", c.nominal_stable,
              f"largest |z| {radius:.6f}"),
-            ("stable for every plant within Wu, with all that folds down", c.robustly_stable,
-             f"norm of Wu T {number(c.uncertainty_norm)} at {hertz(c.uncertainty_frequency)}"),
+            ("stable for every plant within Wu, aliases too", c.robustly_stable,
+             f"Wu T {number(c.uncertainty_norm)} at {hertz(c.uncertainty_frequency)}"),
         ]  # fmt: skip
         if self.true_plant is not None:
             of_true = float(np.abs(self.true_plant.poles).max(initial=0.0))
             said = f"largest |z| {of_true:.6f}"
-            rows.append(("loop around the true plant is stable", of_true < 1.0, said))
+            rows.append(("stable around the true plant", of_true < 1.0, said))
         failing = self._failing_slope()
-        met = f"stable at each slope of hysteresis after inverse, {j.met[0]:.3g} to {j.met[1]:.3g}"
-        by = "each for every plant within Wu" if failing is None else f"unstable at {failing:.3g}"
+        met = f"stable at each slope that was met, {j.met[0]:.3g} to {j.met[1]:.3g}"
+        by = "for every plant within Wu" if failing is None else f"unstable at {failing:.3g}"
         rows.append((met, failing is None, by))
         finite_loop = self.loop.diverged_at is None
         ran = "drive {} to {}".format(*map(number, self.drive_range))
         by = ran if finite_loop else f"diverges at {self.loop.diverged_at:.4g} s"
-        rows.append((f"simulation with the inverse ({self.inverse_name}) stays finite",
-                     finite_loop, by))  # fmt: skip
+        rows.append(("simulation stays finite", finite_loop, by))
         if self.stress is not None:
             said = (
                 f"{self.stress.broken} of {self.stress.tried}, largest |z| {self.stress.radius:.6f}"
             )
-            rows.append(("no plant within Wu was found that breaks it", self.stress.holds, said))
+            rows.append(("no plant within Wu found that breaks it", self.stress.holds, said))
         return tuple(rows)
 
     def _failing_slope(self) -> float | None:

@@ -3,7 +3,13 @@
 from __future__ import annotations
 
 from hyst.report.observer.answer import ObserverAnswer
-from hyst.report.observer.tables import checks_table, filter_table, rivals_table, tracking_table
+from hyst.report.observer.tables import (
+    checks_table,
+    feedback_tables,
+    filter_table,
+    rivals_table,
+    tracking_table,
+)
 from hyst.report.observer.words import SIGNS
 from hyst.report.page import Page
 
@@ -37,6 +43,8 @@ def observer_page(answer: ObserverAnswer, bode: bytes, loops: bytes) -> str:
         "disturbance with and without it, and the condition of robust stability, up to half the "
         "sample rate.",
     )
+    for table in feedback_tables(answer):
+        page.table(table)
     page.table(rivals_table(answer))
     page.table(filter_table(answer))
     if answer.safe:

@@ -6,6 +6,7 @@ import numpy as np
 
 from hyst.control import SampledCertificate, TriedLoop
 from hyst.report.observer.answer import ObserverAnswer
+from hyst.report.observer.feedback_tables import margins_table, parts_table
 from hyst.report.observer.words import STANDINGS, bandwidth_told, hertz, rightmost, told
 from hyst.report.table import Table, number
 
@@ -24,7 +25,26 @@ def answer_tables(answer: ObserverAnswer) -> tuple[Table, ...]:
     -------
     tuple of Table
     """
-    return checks_table(answer), tracking_table(answer), rivals_table(answer), filter_table(answer)
+    first = checks_table(answer), tracking_table(answer), *feedback_tables(answer)
+    return *first, rivals_table(answer), filter_table(answer)
+
+
+def feedback_tables(answer: ObserverAnswer) -> tuple[Table, ...]:
+    """Give what is known of C: its margins, and what each part of the loop is worth.
+
+    Parameters
+    ----------
+    answer
+        Of ``hyst observer``.
+
+    Returns
+    -------
+    tuple of Table
+    """
+    worth = () if answer.parts is None else (parts_table(answer.parts),)
+    if answer.margins is None:
+        return worth
+    return *worth, margins_table(*answer.margins, answer.controller_design)
 
 
 def checks_table(answer: ObserverAnswer) -> Table:
@@ -44,20 +64,21 @@ def checks_table(answer: ObserverAnswer) -> Table:
     c = answer.certificate
     rows.append(
         (
-            "observer rejects what Wp asks for",
+            "rejects what Wp asks for",
             "yes" if answer.meets_demand else "NO",
-            f"norm of Wp E {number(c.performance_norm)} at {hertz(c.performance_frequency)}",
+            f"Wp E {number(c.performance_norm)} at {hertz(c.performance_frequency)}",
         )
     )
     robust = f"{number(c.robust_performance)} at {hertz(c.robust_performance_frequency)}"
     rows.append(
         (
-            "it does so for every plant within Wu",
+            "rejects it for every plant within Wu",
             "yes" if c.robust_performance < 1.0 else "no",
-            f"|Wp E| + |Wu T| up to {robust}",
+            f"|Wp E| + |Wu T| {robust}",
         )
     )
-    return Table("Is the loop safe?", ("condition", "holds", "by"), tuple(rows))
+    title = f"Is the loop safe? Of the block, {answer.sampled()}"
+    return Table(title, ("condition", "holds", "by"), tuple(rows))
 
 
 def _proof(answer: ObserverAnswer) -> list[tuple[str, str, str]]:
@@ -65,10 +86,10 @@ def _proof(answer: ObserverAnswer) -> list[tuple[str, str, str]]:
     if j.slopes is None:
         return []
     low, high = j.slopes
-    what = f"proven with this inverse: slopes {low:.3g} to {high:.3g}, every plant within Wu"
+    what = f"proven for slopes {low:.3g} to {high:.3g} of this inverse"
     if j.proof is None:
         return [(what, "open", "the simulation diverges")]
-    said = f"circle criterion on differences, {number(j.proof)} must be below 1"
+    said = f"circle criterion {number(j.proof)}, below 1 for a proof"
     return [(what, "yes" if answer.proven_with_inverse else "open", said)]
 
 
@@ -78,11 +99,9 @@ def _design(answer: ObserverAnswer) -> list[tuple[str, str, str]]:
     if margin is None:
         return []
     own = answer.design.certificate
-    said = (
-        f"norm of Wu T {number(own.uncertainty_norm)} at {hertz(own.uncertainty_frequency)}; that "
-        "of the block counts"
-    )
-    return [("the design in continuous time would be", "yes" if margin > 1.0 else "NO", said)]
+    said = f"Wu T {number(own.uncertainty_norm)} at {hertz(own.uncertainty_frequency)}"
+    what = "(the design, in continuous time, would be)"
+    return [(what, "yes" if margin > 1.0 else "no", said)]
 
 
 def _true_plant(answer: ObserverAnswer) -> list[tuple[str, str, str]]:

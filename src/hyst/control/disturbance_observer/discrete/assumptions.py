@@ -144,7 +144,7 @@ def check_controller(
         If a pole of their loop is on or outside the circle.
     """
     worst = _worst(plant.system, controller)
-    if abs(worst) < 1.0:
+    if abs(worst) < 1.0 - _BORDER:
         return
     start = (
         "the sampled controller does not stabilize the sampled plant: their loop has a pole at "
@@ -158,7 +158,7 @@ def check_controller(
         faster = sampled_plant(continuous, dt, plant.delay)
         if faster.system.order > _TRIED:
             break
-        if abs(_worst(faster.system, discretize(given, dt, method))) < 1.0:
+        if abs(_worst(faster.system, discretize(given, dt, method))) < 1.0 - 1e-9:
             raise InputError(
                 f"{start}; dt = {plant.dt:.4g} s is too slow for this controller, {dt:.3g} s "
                 "would do, or lower its gain"

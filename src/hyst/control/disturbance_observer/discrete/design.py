@@ -85,7 +85,6 @@ def sampled_observer_problem(
     weights = {name: stable_weight(each, name) for name, each in (("Wu", Wu), ("Wp", Wp))}
     for name, weight in weights.items():
         check_weight(name, weight, sampled.dt)
-    check_controller(sampled, runs, given, discretization)
     problem = SampledObserverProblem(
         sampled.system,
         runs,
@@ -95,6 +94,7 @@ def sampled_observer_problem(
         sampled=sampled,
     )
     check_problem(problem)
+    check_controller(sampled, runs, given, discretization)
     if noise is None and jitter is None:
         return problem
     Wn = stable_weight(noise_weight(problem, noise, jitter), "the noise weight")
@@ -125,6 +125,8 @@ def design_sampled_observer(
     ------
     InputError
         If SLPMM alone is asked for, or the perturbed plant cannot be read.
+    SolverError
+        If the gain that was found cannot be held in doubles.
     """
     if how.method == "slpmm":
         raise InputError(

@@ -42,17 +42,17 @@ def sampled_lower_bound(gain: SampledStackedGain, reached: float) -> LowerBound:
     reached
         A norm that some gain reaches.
     """
-    best = max(_held(gain), _at_one_frequency(gain), key=lambda bound: bound.value)
-    low, high = best.value, reached
+    held, free = _held(gain), _at_one_frequency(gain)
+    low, high = max(held.value, free.value), reached
+    reason = free.reason if free.value > held.value else held.reason
     if not _payable(gain, low):
+        # The plainest reason is told that is enough to refuse.
+        if low < 1.0:
+            reason = "what Wp rejects is paid for below half the sample rate, which Wu forbids"
         while high - low > _ACCURACY * high:
             middle = 0.5 * (low + high)
             low, high = (low, middle) if _payable(gain, middle) else (middle, high)
-        best = LowerBound(
-            low,
-            "what Wp rejects has to be paid below half the sample rate, and Wu forbids it there",
-        )
-    return LowerBound(min(best.value, reached), best.reason)
+    return LowerBound(min(low, reached), held.reason if held.value >= 1.0 else reason)
 
 
 def _held(gain: SampledStackedGain) -> LowerBound:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from hyst.control.disturbance_observer.descent import descend_from_many, usual_parameters
+from hyst.control.disturbance_observer.discrete.coordinates import held_gain
 from hyst.control.disturbance_observer.discrete.problem import SampledObserverProblem
 from hyst.control.disturbance_observer.discrete.stacked_gain import SampledStackedGain
 from hyst.control.disturbance_observer.discrete.w_plane import from_w_plane
@@ -21,7 +22,13 @@ _UNMET = 3.0  # times the noise gain, where the norm is above 1
 
 
 def search_sampled(problem: SampledObserverProblem, how: Search) -> Found:
-    """Look for the gain of least norm of the sampled loop."""
+    """Look for the gain of least norm of the sampled loop.
+
+    Raises
+    ------
+    SolverError
+        If no coordinates hold it.
+    """
     gain = SampledStackedGain(problem, 0, _FREED, how.fastest_pole)
     progress = how.progress
     told = None
@@ -37,7 +44,8 @@ def search_sampled(problem: SampledObserverProblem, how: Search) -> Found:
         )
     gain, best = _more(gain, quiet, how, steps)
     whole = replace(problem, internal_model=gain.internal_model(best.parameters))
-    return Found(whole, gain.gain_of(best.parameters), tuple(steps))
+    whole, L = held_gain(gain, best.parameters, whole)
+    return Found(whole, L, tuple(steps))
 
 
 def _more(

@@ -138,7 +138,7 @@ class SampledStackedGain(StackedGain):
         return SampledStackedGain(self.problem, self.free + 1, self.freed, self.fastest_pole)
 
     def rates(self) -> tuple[float, float]:
-        """Ends of the band in which free eigenvalues may start, in the w-plane."""
+        """Give the ends of the band in which free eigenvalues may start, in the w-plane."""
         most = _FREE_SHARE * self.scale * float(np.exp(self.fastest))
         return min(self.scale / 3.0, 0.1 * most), most
 
@@ -327,6 +327,10 @@ class SampledStackedGain(StackedGain):
 
         It is for the problem with the internal model of the same parameters.
         """
+        return self.gain_in(self.problem.plant, parameters)
+
+    def gain_in(self, system: LinearSystem, parameters: Array) -> Array:
+        """Give this gain for the plant in other coordinates, those of the system."""
         n_p, plant, solved = self.problem.plant.order, self.sampled, self.solved(parameters)
         model = sampled_model(self.internal_model(parameters), self.problem.dt)
         # z = 1 + sigma t.
@@ -338,10 +342,10 @@ class SampledStackedGain(StackedGain):
         A_d = (model.A_d - np.eye(n_d)) / sigma
         M_d = injection(A_d, model.C_d, np.concatenate([[0.0], low]))
         now = float((model.C_d @ M_d)[0])
-        A = (self.problem.plant.A - np.eye(n_p)) / sigma
+        A = (system.A - np.eye(n_p)) / sigma
         k = mapped_polynomial(solved.k, self.scale)
         k = k / k[0] + now * self._numerator_in_t(sigma)
-        L_p = sigma * injection(A, self.problem.plant.C, k - np.real(np.poly(A)))
+        L_p = sigma * injection(A, system.C, k - np.real(np.poly(A)))
         return np.concatenate([L_p, model.A_d @ M_d])
 
     def _numerator_in_t(self, sigma: float) -> Array:

@@ -24,7 +24,9 @@ _NARROW_GAP = 2.0  # a mode in a gap of an octave is within an octave of what is
 _LEAST_TOLD = 1e-9  # what rounding leaves
 
 
-def kept_errors(known: KnownDynamics, stretches: Sequence[Stretch]) -> DynamicsErrors | None:
+def kept_errors(
+    known: KnownDynamics, stretches: Sequence[Stretch], slope_error: float | None
+) -> DynamicsErrors | None:
     """Give what a model file keeps of how well dynamics are known.
 
     Parameters
@@ -33,6 +35,8 @@ def kept_errors(known: KnownDynamics, stretches: Sequence[Stretch]) -> DynamicsE
         What the fit tells of G.
     stretches
         Of its records, with the output of the model.
+    slope_error
+        Of the hysteresis.
 
     Returns
     -------
@@ -50,6 +54,7 @@ def kept_errors(known: KnownDynamics, stretches: Sequence[Stretch]) -> DynamicsE
         tuple(error.tolist()),
         tuple(missing_over_frequency(stretches, known.dynamics.dt, frequency).tolist()),
         _bands(known),
+        slope_error,
     )
 
 

@@ -30,6 +30,7 @@ from hyst.identification.families.hammerstein.told.known_dynamics import (
     known_dynamics,
 )
 from hyst.identification.families.hammerstein.told.marginal import without_marginal
+from hyst.identification.families.hammerstein.told.slope_error import slope_error_of
 from hyst.identification.families.hammerstein.yardstick.yardstick import (
     stretches_of,
     yardstick,
@@ -76,7 +77,8 @@ def identified_with_dynamics(
     stretches = stretches_of(fit, overview.data)
     left = yardstick(stretches, dynamics)
     verdict = lowered(identified.verdict, left, records[0].output_unit)
-    about = replace(identified.description, dynamics_errors=kept_errors(known, stretches))
+    errors = kept_errors(known, stretches, slope_error_of(fit, overview.data, spread))
+    about = replace(identified.description, dynamics_errors=errors)
     taken = vars(identified) | {
         "description": about,
         "undetermined": identified.undetermined + reason + not_determined(known),

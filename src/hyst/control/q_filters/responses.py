@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.control.q_filter.family import QFilter
-from hyst.control.q_filter.problem import QFilterProblem
+from hyst.control.q_filters.family import QFilter
+from hyst.control.q_filters.problem import QFilterProblem
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -22,7 +22,17 @@ _TOPS = 8
 
 @dataclass(frozen=True)
 class QResponses:
-    """Absolute values over frequency: each (K,)."""
+    """Absolute values over frequency, each (K,).
+
+    Parameters
+    ----------
+    Wu_T, Wp_E
+        |Wu T| and |Wp (1 - Q)|.
+    Q_over_plant
+        |Q/Pn|, from sensor noise to the estimate.
+    T_over_plant
+        |T/Pn|, from sensor noise to v.
+    """
 
     Wu_T: Array
     Wp_E: Array
@@ -42,7 +52,17 @@ class QResponses:
 
 @dataclass(frozen=True)
 class FixedResponses:
-    """At frequencies s, what does not depend on Q: 1 by 1 transfer functions, complex."""
+    """What does not depend on Q, each (K,).
+
+    Parameters
+    ----------
+    s
+        Frequencies, 1j w.
+    S0, plant
+        Values of the sensitivity of the controller alone and of the plant.
+    Wu, Wp
+        Absolute values of the weights.
+    """
 
     s: ComplexArray
     S0: ComplexArray
@@ -51,7 +71,13 @@ class FixedResponses:
     Wp: Array
 
     def with_filter(self, Q: ComplexArray) -> QResponses:
-        """Give what the values of Q make of it; Q may have more axes before the frequencies."""
+        """Give what a filter makes of it.
+
+        Parameters
+        ----------
+        Q
+            Its values, (..., K).
+        """
         E = 1.0 - Q
         T = 1.0 - self.S0 * E
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -66,7 +92,15 @@ class FixedResponses:
 
 
 def fixed_responses(problem: QFilterProblem, w: Array) -> FixedResponses:
-    """Collect what does not depend on the filter at the frequencies w, rad/s."""
+    """Collect what does not depend on the filter.
+
+    Parameters
+    ----------
+    problem
+        Plant, controller and weights.
+    w
+        Frequencies, rad/s.
+    """
     s = np.asarray(1j * w, dtype=np.complex128)
     return FixedResponses(
         s,
@@ -78,13 +112,31 @@ def fixed_responses(problem: QFilterProblem, w: Array) -> FixedResponses:
 
 
 def responses_of(problem: QFilterProblem, Q: QFilter | None, w: Array) -> QResponses:
-    """Give the absolute values of the loop at the frequencies w, rad/s; Q = 0 if it is None."""
+    """Give the absolute values of the loop.
+
+    Parameters
+    ----------
+    problem
+        Plant, controller and weights.
+    Q
+        The filter; None for no observer.
+    w
+        Frequencies, rad/s.
+    """
     fixed = fixed_responses(problem, w)
     return fixed.with_filter(np.zeros(w.size, complex) if Q is None else Q.response(fixed.s))
 
 
 def grid_of(problem: QFilterProblem, Q: QFilter | None = None) -> Array:
-    """Give frequencies, rad/s: over all decades of interest, dense around each pole and zero."""
+    """Give frequencies, rad/s: over all decades of interest, dense around each pole and zero.
+
+    Parameters
+    ----------
+    problem
+        Plant, controller and weights.
+    Q
+        A filter whose poles and zeros are of interest as well.
+    """
     roots = problem.features
     if Q is not None:
         own = np.concatenate([Q.factors.poles, Q.factors.zeros])

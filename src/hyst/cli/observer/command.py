@@ -12,14 +12,14 @@ import hyst
 from hyst._files import replacing_files, require_folder
 from hyst.cli.arguments import DespiteVerdict
 from hyst.cli.console import at_work, note, show_files, show_table
-from hyst.cli.observer_design import designed
-from hyst.cli.observer_spec import read_spec
-from hyst.cli.observer_template import TEMPLATE
-from hyst.cli.observer_trial import tried
+from hyst.cli.observer.design import designed
+from hyst.cli.observer.spec import read_spec
+from hyst.cli.observer.template import TEMPLATE
+from hyst.cli.observer.trial import tried
 from hyst.operators.verdict import refuse_if_unfit
 
 if TYPE_CHECKING:
-    from hyst.cli.observer_spec import ObserverSpec
+    from hyst.cli.observer.spec import ObserverSpec
     from hyst.report import ObserverAnswer
 
 SpecFile = Annotated[

@@ -9,10 +9,10 @@ from typing import Any, final
 import numpy as np
 
 from hyst.control.linear_system import LinearSystem
-from hyst.control.q_filter.certificate import QFilterCertificate
-from hyst.control.q_filter.family import QFilter
-from hyst.control.q_filter.loops import q_observer
-from hyst.control.q_filter.problem import QFilterProblem
+from hyst.control.q_filters.certificate import QFilterCertificate
+from hyst.control.q_filters.family import QFilter
+from hyst.control.q_filters.loops import q_observer
+from hyst.control.q_filters.problem import QFilterProblem
 
 
 @final

@@ -96,7 +96,15 @@ class TimeConstantSearch:
 
 
 def cost_with_noise(norm: float, noise: float, most_noise: float | None) -> float:
-    """Give the norm; a filter beyond the bound is worse than any within it, and the more so."""
+    """Give the norm; a filter beyond the bound is worse than any within it, and the more so.
+
+    Parameters
+    ----------
+    norm
+        What is to be small.
+    noise, most_noise
+        Gain of the noise and its bound; None if it may be any.
+    """
     if most_noise is None or noise <= most_noise * (1.0 + 1e-9):
         return norm
     return 1e6 * noise / most_noise + norm

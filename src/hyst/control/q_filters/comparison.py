@@ -10,12 +10,12 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from hyst.control.linear_system import LinearSystem
-from hyst.control.q_filter.certificate import certify_filter, exact_norm
-from hyst.control.q_filter.design import design_q_filter
-from hyst.control.q_filter.loops import disturbed_loop, weighted_stack
-from hyst.control.q_filter.problem import QFilterProblem, q_filter_problem
-from hyst.control.q_filter.responses import grid_of, responses_of
-from hyst.control.q_filter.robust_performance import parts_of, robust_performance_of
+from hyst.control.q_filters.certificate import certify_filter, exact_norm
+from hyst.control.q_filters.design import design_q_filter
+from hyst.control.q_filters.loops import disturbed_loop, weighted_stack
+from hyst.control.q_filters.problem import QFilterProblem, q_filter_problem
+from hyst.control.q_filters.rejection import parts_of, robust_performance_of
+from hyst.control.q_filters.responses import grid_of, responses_of
 from hyst.errors import InputError
 
 NO_OBSERVER = "no observer"

@@ -8,9 +8,9 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.control.q_filter.family import QFilter
-from hyst.control.q_filter.problem import QFilterProblem
-from hyst.control.q_filter.responses import grid_of, largest_refined, responses_of
+from hyst.control.q_filters.family import QFilter
+from hyst.control.q_filters.problem import QFilterProblem
+from hyst.control.q_filters.responses import grid_of, largest_refined, responses_of
 from hyst.control.zeros_and_poles import ZerosAndPoles
 from hyst.errors import InputError
 
@@ -88,7 +88,17 @@ def robust_performance(design: Any) -> RobustPerformance:
 def robust_performance_of(
     problem: QFilterProblem, Q: QFilter | None, w: Array
 ) -> RobustPerformance:
-    """Compute it from the grid w, rad/s; without a filter for the controller alone."""
+    """Compute it from a grid of frequencies.
+
+    Parameters
+    ----------
+    problem
+        Plant, controller and weights.
+    Q
+        The filter; None for no observer.
+    w
+        Grid, rad/s, ascending.
+    """
 
     def total(at: Array) -> Array:
         return responses_of(problem, Q, at).robust_performance

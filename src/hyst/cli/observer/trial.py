@@ -5,12 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import hyst
-from hyst.cli.console import at_work, progress_bar
+from hyst.cli.console import at_work, note, progress_bar
 
 if TYPE_CHECKING:
-    from hyst.cli.observer_spec import ObserverSpec
+    from hyst.cli.observer.spec import ObserverSpec
     from hyst.compensation import ErrorBound
-    from hyst.control import SampledCertificate, TrackingController, TriedLoop
+    from hyst.control import (
+        LoopComparison,
+        LoopMargins,
+        SampledCertificate,
+        TrackingController,
+        TriedLoop,
+    )
     from hyst.report import ObserverAnswer, TruePlant
 
 _NONE, _ALONE = "none", "controller alone"
@@ -51,11 +57,17 @@ def tried(spec: ObserverSpec, design: Any, stress: int | None) -> ObserverAnswer
             without=without,
             observed=observed,
             noise=spec.noise,
-            rivals={_ALONE: _certified(spec, without[spec.inverse_name].block)},
+            rivals=_rivals(spec, without[spec.inverse_name].block),
             true_plant=_of_true_plant(spec, this),
             bound=_bound(spec, this),
             identified=_identified(spec),
             stress=None if stress is None else _stressed(spec, this.block, stress),
+            margins=(
+                _margins(spec, without[spec.inverse_name].block),
+                _margins(spec, this.block),
+            ),
+            controller_design=spec.controller_design,
+            parts=_parts(spec, design),
         )
 
 
@@ -70,7 +82,9 @@ def _block(spec: ObserverSpec, design: Any, inverse: hyst.Operator | None) -> Tr
         method=spec.filter_method,
         limits=spec.limits,
         rate=spec.rate,
-        hysteresis=None if spec.limits is None and spec.rate is None else forward,
+        hysteresis=None if spec.limits is None else forward,
+        feedforward=spec.feedforward,
+        plant=spec.plant,
         despite_verdict=True,  # who does not want that was refused at the beginning
     )
 
@@ -92,11 +106,56 @@ def _run(spec: ObserverSpec, block: TrackingController) -> TriedLoop:
         disturbance=spec.disturbance,
         seed=spec.seed,
         settle=spec.settle,
+        start=spec.start,
+    )
+
+
+def _margins(spec: ObserverSpec, block: TrackingController) -> LoopMargins:
+    return hyst.control.loop_margins(spec.plant, block, delay=spec.delay)
+
+
+def _parts(spec: ObserverSpec, design: Any) -> LoopComparison | None:
+    """Compare inverse, feedback and observer where there is a feedforward to compare with."""
+    if spec.feedforward is None or spec.inverse is None:
+        return None
+    return hyst.control.compare_loops(
+        spec.reference,
+        spec.filter_dt,
+        plant=spec.plant,
+        controller=spec.controller,
+        hysteresis=spec.hysteresis,
+        inverse=spec.inverse,
+        feedforward=spec.feedforward,
+        observer=design,
+        Wu=spec.Wu,
+        noise=spec.noise,
+        method=spec.filter_method,
+        despite_verdict=True,
+        true_plant=spec.true_plant,
+        delay=spec.delay,
+        disturbance=spec.disturbance,
+        seed=spec.seed,
+        settle=spec.settle,
+        start=spec.start,
     )
 
 
 def _certified(spec: ObserverSpec, block: TrackingController) -> SampledCertificate:
     return hyst.control.sampled_certificate(block, spec.plant, spec.Wu, spec.Wp, delay=spec.delay)
+
+
+def _rivals(spec: ObserverSpec, alone: TrackingController) -> dict[str, SampledCertificate]:
+    """Certify the controller alone, and the block with the classical observer of this rate."""
+    found = {_ALONE: _certified(spec, alone)}
+    try:
+        classical = hyst.control.design_sampled_q_filter(
+            spec.plant, spec.controller, spec.Wu, spec.Wp, dt=spec.filter_dt, delay=spec.delay
+        )
+    except hyst.HystError as refused:
+        note(f"no classical observer to compare with: {refused}")
+        return found
+    block = _block(spec, classical, spec.inverse)
+    return found | {f"classical, {classical.name}": _certified(spec, block)}
 
 
 def _stressed(spec: ObserverSpec, block: TrackingController, tries: int) -> hyst.control.StressTest:

@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from hyst.control.infinity_norm import hinf_norm
 from hyst.control.linear_system import LinearSystem
-from hyst.control.q_filter.family import QFilter
-from hyst.control.q_filter.loops import filtered_inverse, noise_loop, weighted_stack
-from hyst.control.q_filter.problem import QFilterProblem
-from hyst.control.q_filter.responses import (
+from hyst.control.q_filters.family import QFilter
+from hyst.control.q_filters.loops import filtered_inverse, noise_loop, weighted_stack
+from hyst.control.q_filters.problem import QFilterProblem
+from hyst.control.q_filters.rejection import robust_performance_of
+from hyst.control.q_filters.responses import (
     grid_of,
     rejection_bandwidth,
     responses_of,
 )
-from hyst.control.q_filter.robust_performance import robust_performance_of
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

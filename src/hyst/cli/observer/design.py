@@ -11,7 +11,7 @@ from hyst.cli.console import at_work, note
 from hyst.cli.spec_section import Section
 
 if TYPE_CHECKING:
-    from hyst.cli.observer_spec import ObserverSpec
+    from hyst.cli.observer.spec import ObserverSpec
 
 Time = Literal["continuous", "discrete"]
 

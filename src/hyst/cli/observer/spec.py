@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,18 +14,20 @@ import hyst
 from hyst._files import read_small
 from hyst.checks.numbers import as_not_negative, as_positive
 from hyst.cli.arguments import load_operator
-from hyst.cli.observer_design import HowToDesign, read_design
-from hyst.cli.observer_plant import (
+from hyst.cli.observer.controller import read_controller
+from hyst.cli.observer.design import HowToDesign, read_design
+from hyst.cli.observer.plant import (
     block_dt,
     load_hysteresis,
     read_hysteresis,
     read_plant,
     read_uncertainty,
 )
+from hyst.cli.observer.reference import read_reference, resting_output
 from hyst.cli.spec_section import Section
 
 if TYPE_CHECKING:
-    from hyst.control import IdentifiedPlant, InternalModel, LinearSystem
+    from hyst.control import ControllerDesign, IdentifiedPlant, InternalModel, LinearSystem
     from hyst.control.discretization import Method
     from hyst.operators import Operator
 
@@ -42,14 +44,18 @@ class ObserverSpec:
     ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
     ``inverse_name``), ``reference``, at the samples of the block, ``settle``, ``noise``,
     ``disturbance`` and ``seed`` what is simulated; ``filter_dt``, ``filter_method`` and ``delay``
-    say what is implemented; ``design`` how, ``limits`` and ``rate`` what its drive may do. The
-    plant is sampled where it was ``identified`` (else None),
-    continuous where it was written; ``delay`` is its dead time and that of the block together.
+    say what is implemented; ``design`` how, ``limits`` and ``rate`` what its drive may do.
+    ``controller_design`` is what C was designed by, or None, ``feedforward`` stands beside it, or
+    is None, and ``start`` says how a loop starts. The plant is sampled where it was ``identified``
+    (else None), continuous where it was written; ``delay`` is its dead time and that of the block
+    together.
     """
 
     plant: LinearSystem
     true_plant: LinearSystem | None
     controller: LinearSystem
+    controller_design: ControllerDesign | None
+    feedforward: Any
     Wu: LinearSystem
     Wp: LinearSystem
     internal_model: InternalModel
@@ -57,6 +63,7 @@ class ObserverSpec:
     inverse: Operator | None
     inverse_name: str
     reference: Array
+    start: str
     settle: float
     noise: float
     disturbance: float
@@ -102,7 +109,10 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     filter_dt = block_dt(implemented, plant)
     # The sample time of a reference from a file; sines are taken at the block's samples.
     dt = simulation.number("dt", filter_dt, positive=True)
-    reference = _reference(spec.section("reference"), dt, folder)
+    begun = read_reference(
+        spec.section("reference"), dt, folder, lambda: resting_output(hysteresis, plant.system)
+    )
+    reference = begun.samples
     inverse, name = _inverse(spec.section("inverse"), hysteresis, folder)
     settle = simulation.number("settle", 0.0)
     if not 0.0 <= settle < reference.size * dt:
@@ -120,24 +130,32 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
             "give a shorter one"
         )
     limits, rate = _limits(spec)
+    Wu = read_uncertainty(weights, plant, folder)
+    delay = plant.delay + _further_delay(implemented)
+    controller = read_controller(
+        spec.section("controller"), plant.system, Wu, filter_dt, delay, method
+    )
     read = ObserverSpec(
         plant=plant.system,
         true_plant=spec.section("true_plant").system() if spec.has("true_plant") else None,
-        controller=spec.section("controller").system(),
-        Wu=read_uncertainty(weights, plant, folder),
+        controller=controller.system,
+        controller_design=controller.design,
+        feedforward=controller.feedforward,
+        Wu=Wu,
         Wp=weights.section("Wp").system(),
         internal_model=_internal_model(spec.section("internal_model")),
         hysteresis=hysteresis,
         inverse=inverse,
         inverse_name=name,
         reference=_at_samples(reference, dt, filter_dt),
+        start=begun.start,
         settle=settle,
         noise=noise,
         disturbance=simulation.number("disturbance", 0.0),
         seed=simulation.count("seed", 0),
         filter_dt=filter_dt,
         filter_method="zoh" if method == "zoh" else "tustin",
-        delay=plant.delay + _further_delay(implemented),
+        delay=delay,
         design=read_design(spec, plant.identified is not None and plant.system.dt > 0.0),
         limits=limits,
         rate=rate,
@@ -233,22 +251,3 @@ def _at_samples(reference: Array, dt: float, filter_dt: float) -> Array:
     end = (reference.size - 1) * dt
     at = np.arange(0.0, end + 0.5 * filter_dt, filter_dt)
     return np.asarray(np.interp(at, np.arange(reference.size) * dt, reference))
-
-
-def _reference(given: Section, dt: float, folder: Path) -> Array:
-    if given.has("file"):
-        path, column = given.text("file"), given.whole("column")
-        given.done()
-        if isinstance(column, bool) or not isinstance(column, int | str):
-            raise hyst.InputError(f"[reference] column is {column!r}; give a name or an index")
-        return hyst.io.read_column(folder / path, column)[0]
-    sines, duration = given.pairs("sines"), given.number("duration", positive=True)
-    given.done()
-    samples = round(duration / dt)
-    if not 2 <= samples <= 10_000_000:
-        raise hyst.InputError(
-            f"[reference] duration is {duration:g} s, {samples} samples of {dt:g} s; give 2 to 10 "
-            "million"
-        )
-    t = np.arange(samples) * dt
-    return np.asarray(sum(a * np.sin(2.0 * np.pi * f * t) for a, f in sines))

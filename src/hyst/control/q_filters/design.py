@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from hyst.checks.numbers import as_positive, whole_number
-from hyst.control.q_filter.certificate import certify_filter
-from hyst.control.q_filter.family import LARGEST_ORDER, QFilter, q_filter
-from hyst.control.q_filter.free_search import FreeSearch
-from hyst.control.q_filter.problem import QFilterProblem, q_filter_problem
-from hyst.control.q_filter.result import QFilterObserver
-from hyst.control.q_filter.textbook import time_constant_search
+from hyst.control.q_filters.certificate import certify_filter
+from hyst.control.q_filters.family import LARGEST_ORDER, QFilter, q_filter
+from hyst.control.q_filters.free_search import FreeSearch
+from hyst.control.q_filters.problem import QFilterProblem, q_filter_problem
+from hyst.control.q_filters.result import QFilterObserver
+from hyst.control.q_filters.textbook import time_constant_search
 from hyst.errors import InputError
 
 FAMILIES = ("textbook", "free")
+OBJECTIVES = ("stacked", "robust")
 _MORE_NOISE = 1.5  # than at frequency 0: what a free filter may amplify
 _AUTO_MORE = 3  # orders tried above the least
 _WORTH = 0.02  # an order more is taken for that much less of the norm
@@ -32,6 +34,7 @@ def design_q_filter(
     *,
     family: str = "textbook",
     most_noise: float | None = None,
+    objective: str = "stacked",
 ) -> QFilterObserver:
     r"""Find the Q-filter that rejects most within a given uncertainty.
 
@@ -64,6 +67,9 @@ def design_q_filter(
     most_noise
         Bound on the largest |Q/Pn|. If left out there is none for the textbook filter, and for the
         free one 1.5/|Pn(0)|, or what the textbook filter of that order has if that is more.
+    objective
+        ``"stacked"``, the norm above, or ``"robust"``, the largest |Wp (1 - Q)| + |Wu T|, which
+        below 1 rejects for every plant within Wu; ``robust_performance`` says what that means.
 
     Returns
     -------
@@ -92,19 +98,48 @@ def design_q_filter(
     """
     if family not in FAMILIES:
         raise InputError(f"family is {family!r}; give one of {', '.join(FAMILIES)}")
+    if objective not in OBJECTIVES:
+        raise InputError(f"objective is {objective!r}; give one of {', '.join(OBJECTIVES)}")
     problem = q_filter_problem(plant, controller, Wu, Wp)
     bound = None if most_noise is None else as_positive(most_noise, "most_noise", "a gain of Q/Pn")
+    wanted = _Wanted(problem, bound, objective == "robust")
     with threadpool_limits(1, user_api="blas"):
         if order == "auto":
-            return _best_order(problem, relative_degree, family, bound)
+            return _best_order(wanted, relative_degree, family)
         m, rho = degrees(problem, order, relative_degree, family)
-        return _one(problem, m, rho, family, bound)
+        return _one(wanted, m, rho, family)
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """What does not depend on the order: the problem, a bound on noise, what is minimized."""
+
+    problem: QFilterProblem
+    most_noise: float | None
+    robust: bool
+
+    def value(self, design: QFilterObserver) -> float:
+        c = design.certificate
+        return c.robust_performance if self.robust else c.stacked_norm
 
 
 def degrees(
     problem: QFilterProblem, order: int | str | None, relative_degree: int | None, family: str
 ) -> tuple[int, int]:
-    """Give order and relative degree of the filter, or refuse what the plant does not allow."""
+    """Give order and relative degree of the filter, or refuse what the plant does not allow.
+
+    Parameters
+    ----------
+    problem
+        Plant, controller and weights.
+    order, relative_degree, family
+        As for ``design_q_filter``.
+
+    Raises
+    ------
+    InputError
+        If the order leaves no room for the relative degree of the plant and the zeros Q must keep.
+    """
     least, kept = max(problem.plant_relative_degree, 1), int(problem.kept_zeros.size)
     if order is None:
         m = least + kept + 1
@@ -129,69 +164,58 @@ def degrees(
     return m, rho
 
 
-def _one(
-    problem: QFilterProblem, m: int, rho: int, family: str, most_noise: float | None
-) -> QFilterObserver:
+def _one(wanted: _Wanted, m: int, rho: int, family: str) -> QFilterObserver:
+    problem, bound = wanted.problem, wanted.most_noise
     least = 1.0 / float(abs(problem.plant_factors.response(np.zeros(1, complex))[0]))
-    if most_noise is not None and most_noise < least * (1.0 - 1e-9):
+    if bound is not None and bound < least * (1.0 - 1e-9):
         raise InputError(
-            f"no filter keeps |Q/Pn| below {most_noise:.4g}: at 0 it is 1/|Pn(0)| = {least:.4g}, "
-            "for Q(0) = 1; allow more noise"
+            f"no filter keeps |Q/Pn| below {bound:.4g}: at 0 it is 1/|Pn(0)| = {least:.4g}, for "
+            "Q(0) = 1; allow more noise"
         )
-    if family == "free":
-        return _free(problem, m, rho, most_noise, least)
     kept = problem.kept_zeros
+    if family == "free":
+        textbook = _textbook(replace(wanted, most_noise=None), m, m - kept.size)
+        most = max(_MORE_NOISE * least, textbook.certificate.observer_noise_gain)
+        most = most if bound is None else bound
+        search = FreeSearch(problem, rho, textbook.tau or 1.0, most, wanted.robust)
+        Q = search.run(m)
+        step = f"search         {search.descents} descents, |Q/Pn| bounded by {most:.4g}"
+        found = QFilterObserver(problem, Q, certify_filter(problem, Q), family, (step,))
+    else:
+        found = _textbook(wanted, m, rho)
+        most = np.inf if bound is None else bound
+    noise = found.certificate.observer_noise_gain
+    if noise > most * (1.0 + 1e-4):
+        raise InputError(
+            f"no filter of order {m} and relative degree {rho} was found that keeps |Q/Pn| below "
+            f"{most:.4g}; {noise:.4g} at best, so allow more noise"
+        )
+    return found
+
+
+def _textbook(wanted: _Wanted, m: int, rho: int) -> QFilterObserver:
+    problem, kept = wanted.problem, wanted.problem.kept_zeros
 
     def of_tau(tau: float) -> QFilter:
         return q_filter(m, tau=tau, relative_degree=rho, kept_zeros=kept)
 
-    search = time_constant_search(problem, of_tau, most_noise)
-    tau, _ = search.run()
-    Q = of_tau(tau)
-    certificate = certify_filter(problem, Q)
-    if most_noise is not None and certificate.observer_noise_gain > most_noise * (1.0 + 1e-6):
-        raise InputError(
-            f"no filter of order {m} and relative degree {rho} keeps |Q/Pn| below "
-            f"{most_noise:.4g}: {certificate.observer_noise_gain:.4g} at best; allow more noise"
-        )
-    step = f"search         {search.evaluations} exact norms, tau = {tau:.6g} s"
-    return QFilterObserver(problem, Q, certificate, family, (step,))
+    search = time_constant_search(problem, of_tau, wanted.most_noise, wanted.robust)
+    Q = of_tau(search.run()[0])
+    step = f"search         {search.evaluations} exact norms, tau = {Q.tau:.6g} s"
+    return QFilterObserver(problem, Q, certify_filter(problem, Q), "textbook", (step,))
 
 
-def _free(
-    problem: QFilterProblem, m: int, rho: int, most_noise: float | None, least: float
-) -> QFilterObserver:
-    kept = int(problem.kept_zeros.size)
-    textbook = _one(problem, m, m - kept, "textbook", None)
-    bound = most_noise
-    if bound is None:
-        bound = max(_MORE_NOISE * least, textbook.certificate.observer_noise_gain)
-    search = FreeSearch(problem, rho, textbook.tau or 1.0, bound)
-    Q = search.run(m)
-    certificate = certify_filter(problem, Q)
-    if certificate.observer_noise_gain > bound * (1.0 + 1e-4):
-        raise InputError(
-            f"no filter of order {m} and relative degree {rho} was found that keeps |Q/Pn| below "
-            f"{bound:.4g}; {certificate.observer_noise_gain:.4g} at best, so allow more noise"
-        )
-    step = f"search         {search.descents} descents, |Q/Pn| bounded by {bound:.4g}"
-    return QFilterObserver(problem, Q, certificate, "free", (step,))
-
-
-def _best_order(
-    problem: QFilterProblem, relative_degree: int | None, family: str, most_noise: float | None
-) -> QFilterObserver:
-    m, _ = degrees(problem, None, relative_degree, family)
-    best: QFilterObserver | None = None
-    for order in range(m - 1, m + _AUTO_MORE):
+def _best_order(wanted: _Wanted, relative_degree: int | None, family: str) -> QFilterObserver:
+    m, _ = degrees(wanted.problem, None, relative_degree, family)
+    found = []
+    for order in range(max(m - 1, 1), min(m + _AUTO_MORE, LARGEST_ORDER + 1)):
         try:
-            m_rho = degrees(problem, order, relative_degree, family)
-            found = _one(problem, *m_rho, family, most_noise)
-        except InputError:
-            if order == m + _AUTO_MORE - 1 and best is None:
-                raise
+            m_rho = degrees(wanted.problem, order, relative_degree, family)
+        except InputError:  # too low for a relative degree that was asked
             continue
-        if best is None or found.gamma < (1.0 - _WORTH) * best.gamma:
-            best = found
-    assert best is not None
+        found.append(_one(wanted, *m_rho, family))
+    best = found[0]
+    for each in found[1:]:
+        if wanted.value(each) < (1.0 - _WORTH) * wanted.value(best):
+            best = each
     return best

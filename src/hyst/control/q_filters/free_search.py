@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.control.q_filter.certificate import certify_filter
-from hyst.control.q_filter.family import QFilter
-from hyst.control.q_filter.free_filter import FreeFilter, descend_free
-from hyst.control.q_filter.problem import QFilterProblem
+from hyst.control.q_filters.certificate import certify_filter
+from hyst.control.q_filters.family import QFilter
+from hyst.control.q_filters.free_filter import FreeFilter, descend_free
+from hyst.control.q_filters.problem import QFilterProblem
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -34,12 +34,15 @@ class FreeSearch:
         Time constant of a textbook filter that is worth starting from, s.
     most_noise
         Bound on |Q/Pn|.
+    robust
+        Minimize |Wp (1 - Q)| + |Wu T| instead of the stacked norm.
     """
 
     problem: QFilterProblem
     relative_degree: int
     tau: float
     most_noise: float
+    robust: bool = False
     descents: int = 0
 
     def run(self, m: int) -> QFilter:
@@ -54,7 +57,8 @@ class FreeSearch:
         size = np.abs(self.problem.features)
         scale = float(2.0 ** round(float(np.mean(np.log2(size)))))
         kept = self.problem.kept_zeros
-        free = FreeFilter(self.problem, m, m - self.relative_degree - kept.size, scale)
+        degree = m - self.relative_degree - kept.size
+        free = FreeFilter(self.problem, m, degree, scale, self.robust)
         starts = self._starts(free)
         if smaller is not None:
             starts.insert(0, _extended(free, smaller))

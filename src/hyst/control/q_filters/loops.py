@@ -7,9 +7,9 @@ import scipy.linalg
 
 from hyst.control.disturbance_observer.stacked_gain import feedback_matrix
 from hyst.control.linear_system import LinearSystem
-from hyst.control.q_filter.family import QFilter, scaled_polynomial, unit_of
-from hyst.control.q_filter.problem import QFilterProblem
-from hyst.control.q_filter.realization import shared_realization
+from hyst.control.q_filters.family import QFilter, scaled_polynomial, unit_of
+from hyst.control.q_filters.problem import QFilterProblem
+from hyst.control.q_filters.realization import shared_realization
 
 
 def weighted_stack(problem: QFilterProblem, Q: LinearSystem) -> LinearSystem:
@@ -52,13 +52,25 @@ def disturbed_loop(problem: QFilterProblem) -> LinearSystem:
 
 
 def filtered_inverse(problem: QFilterProblem, Q: QFilter) -> LinearSystem:
-    """Give Q/Pn, from y to what the observer takes the plant's input for."""
+    """Give Q/Pn, from y to what the observer takes the plant's input for.
+
+    Parameters
+    ----------
+    problem, Q
+        As for ``q_observer``.
+    """
     observer = q_observer(problem, Q)
     return LinearSystem(observer.A, observer.B[:, 1:], observer.C, observer.D[:, 1:])
 
 
 def noise_loop(problem: QFilterProblem, Q: QFilter) -> LinearSystem:
-    """Give the loop from sensor noise to v, -T/Pn: noise times -(C + Q/Pn) S0."""
+    """Give the loop from sensor noise to v, -T/Pn: noise times -(C + Q/Pn) S0.
+
+    Parameters
+    ----------
+    problem, Q
+        As for ``q_observer``.
+    """
     inverse = filtered_inverse(problem, Q)
     both = LinearSystem(
         inverse.A,

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from hyst.control.q_filter.certificate import QFilterCertificate
-from hyst.control.q_filter.comparison import DesignRow, compare_designs, row_of, table_of
-from hyst.control.q_filter.design import design_q_filter
-from hyst.control.q_filter.family import QFilter, q_filter
-from hyst.control.q_filter.problem import QFilterProblem, q_filter_problem
-from hyst.control.q_filter.result import QFilterObserver
-from hyst.control.q_filter.robust_performance import RobustPerformance, robust_performance
-from hyst.control.q_filter.sampled_design import (
+from hyst.control.q_filters.certificate import QFilterCertificate
+from hyst.control.q_filters.comparison import DesignRow, compare_designs, row_of, table_of
+from hyst.control.q_filters.design import design_q_filter
+from hyst.control.q_filters.family import QFilter, q_filter
+from hyst.control.q_filters.problem import QFilterProblem, q_filter_problem
+from hyst.control.q_filters.rejection import RobustPerformance, robust_performance
+from hyst.control.q_filters.result import QFilterObserver
+from hyst.control.q_filters.sampled_design import (
     SampledQFilterObserver,
     design_sampled_q_filter,
 )

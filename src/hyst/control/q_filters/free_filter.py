@@ -14,9 +14,9 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
 
-from hyst.control.q_filter.family import QFilter
-from hyst.control.q_filter.problem import QFilterProblem
-from hyst.control.q_filter.responses import FixedResponses, fixed_responses, grid_of, refined_tops
+from hyst.control.q_filters.family import QFilter
+from hyst.control.q_filters.problem import QFilterProblem
+from hyst.control.q_filters.responses import FixedResponses, fixed_responses, grid_of, refined_tops
 from hyst.control.zeros_and_poles import ZerosAndPoles
 
 Array = NDArray[np.float64]
@@ -40,13 +40,28 @@ class FreeFilter:
 
     K is the polynomial of the zeros to keep, K(0) = 1. Parameters are the logarithms of 2 zeta and
     omega of each factor ``x^2 + 2 zeta omega x + omega^2`` of the denominator, and c of ``x + e^c``
-    if m is odd; then g_1 .. g_j: all 1 is S1 eq. 28, all 0 a numerator of 1.
+    if m is odd; then g_1 .. g_j: all 1 is S1 eq. 28, all 0 a numerator of 1. What is minimized is
+    the stacked norm, or the largest |Wp (1 - Q)| + |Wu T| if it is to be robust.
+
+    Parameters
+    ----------
+    problem
+        Plant, controller and weights.
+    order
+        m.
+    degree
+        j, number of zeros besides those to keep.
+    scale
+        Unit of s, rad/s.
+    robust
+        What is minimized.
     """
 
     problem: QFilterProblem
     order: int
     degree: int
     scale: float
+    robust: bool = False
 
     @property
     def size(self) -> int:
@@ -69,7 +84,15 @@ class FreeFilter:
     def values_and_slopes(
         self, x: Array, fixed: FixedResponses
     ) -> tuple[ComplexArray, ComplexArray]:
-        """Give Q at the frequencies, (K,), and its derivatives by the parameters, (K, size)."""
+        """Give Q at the frequencies, (K,), and its derivatives by the parameters, (K, size).
+
+        Parameters
+        ----------
+        x
+            Parameters, (size,).
+        fixed
+            Frequencies with what does not depend on Q.
+        """
         below, slopes = _expanded(x[: self.order])
         powers = (fixed.s / self.scale)[:, None] ** np.arange(self.order + 1)
         shares = np.zeros(self.order + 1)
@@ -150,7 +173,13 @@ def _heights(
     E = 1.0 - Q
     T = 1.0 - fixed.S0 * E
     Wu2, Wp2 = fixed.Wu**2, fixed.Wp**2
-    stack = Wu2 * np.abs(T) ** 2 + Wp2 * np.abs(E) ** 2
+    if free.robust:
+        # (a + b)^2 has the slopes of a^2 (1 + b/a) + b^2 (1 + a/b) with both quotients held.
+        a = np.maximum(fixed.Wu * np.abs(T), 1e-150)
+        b = np.maximum(fixed.Wp * np.abs(E), 1e-150)
+        stack, Wu2, Wp2 = (a + b) ** 2, Wu2 * (1.0 + b / a), Wp2 * (1.0 + a / b)
+    else:
+        stack = Wu2 * np.abs(T) ** 2 + Wp2 * np.abs(E) ** 2
     outer = Wu2 * np.conj(T) * fixed.S0 - Wp2 * np.conj(E)
     weight = 1.0 / np.maximum(np.abs(fixed.plant) * most_noise, 1e-150) ** 2
     noise = weight * np.abs(Q) ** 2
@@ -226,8 +255,9 @@ def _program(
         by_t = np.concatenate([np.ones(len(stack)), np.zeros(len(noise))])
         return np.hstack([np.vstack([stack, noise]), by_t[:, None]])
 
-    t = float(_heights(free, start, at_stack, most_noise)[0].max())
     low, high = np.array(free.bounds()).T
+    start = np.clip(start, low, high)
+    t = float(_heights(free, start, at_stack, most_noise)[0].max())
     # Peaks not met yet rise where the program does not look: steps are kept short.
     near = [(max(a, x - 0.7), min(b, x + 0.7)) for a, b, x in zip(low, high, start, strict=True)]
     unit = np.zeros(free.size + 1)
@@ -265,7 +295,9 @@ def _height_of(
     def height(w: Array) -> Array:
         fixed = fixed_responses(free.problem, w)
         seen = fixed.with_filter(free.values_and_slopes(x, fixed)[0])
-        return (seen.Q_over_plant / most_noise) ** 2 if of_noise else seen.stacked**2
+        if of_noise:
+            return (seen.Q_over_plant / most_noise) ** 2
+        return (seen.robust_performance if free.robust else seen.stacked) ** 2
 
     return height
 

@@ -13,12 +13,12 @@ from threadpoolctl import threadpool_limits
 from hyst.checks.numbers import as_positive, whole_number
 from hyst.control.discretization import Method
 from hyst.control.linear_system import LinearSystem
-from hyst.control.q_filter.family import LARGEST_ORDER, QFilter
-from hyst.control.q_filter.sampled_problem import (
+from hyst.control.q_filters.family import LARGEST_ORDER, QFilter
+from hyst.control.q_filters.sampled_problem import (
     SampledQFilterProblem,
     sampled_q_filter_problem,
 )
-from hyst.control.q_filter.search import TimeConstantSearch, cost_with_noise
+from hyst.control.q_filters.search import TimeConstantSearch, cost_with_noise
 from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
 from hyst.control.sampled.folding import folded_uncertainty, weight_response
 from hyst.control.tracking_controller import TrackingController

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from hyst.checks.arrays import finite_array
 from hyst.checks.numbers import as_positive, whole_number
 from hyst.control.linear_system import LinearSystem, transfer_function_of
-from hyst.control.q_filter.realization import shared_realization
+from hyst.control.q_filters.realization import shared_realization
 from hyst.control.zeros_and_poles import Points, ZerosAndPoles
 from hyst.errors import InputError
 
@@ -74,7 +74,13 @@ class QFilter:
         return shared_realization(self.factors.poles, [gain * above], scale, self.dt)
 
     def response(self, s: Points) -> ComplexArray:
-        """Values at the complex numbers s, or z if it is sampled."""
+        """Values of the filter, (K,).
+
+        Parameters
+        ----------
+        s
+            Complex numbers, 1/s; z if it is sampled.
+        """
         return self.factors.response(np.asarray(s, dtype=np.complex128))
 
     def as_control(self) -> Any:
@@ -164,9 +170,20 @@ def q_filter(
 def with_numerator(
     a: Array, poles: ComplexArray, degree: int, kept: ComplexArray, tau: float
 ) -> QFilter:
-    """Give the filter of these poles, in units of 1/tau, whose numerator has this degree.
+    """Give the filter whose numerator matches as many powers of the denominator as it can.
 
-    The denominator is 1 + a_1 x + .., lowest power first, x = tau s.
+    Parameters
+    ----------
+    a
+        Denominator in x = tau s, lowest power first: 1, a_1, ..
+    poles
+        Its roots, in x.
+    degree
+        Of the numerator, the kept zeros among it.
+    kept
+        Zeros it must have, 1/s.
+    tau
+        Time constant, s.
     """
     # kept(s)/kept(0) as a polynomial in x = tau s, lowest power first.
     fixed = np.array([1.0])
@@ -236,7 +253,15 @@ def _checked_zeros(kept_zeros: Sequence[complex] | ComplexArray) -> ComplexArray
 
 
 def unit_of(roots: ComplexArray, dt: float = 0.0) -> float:
-    """Give a power of two in the middle of the roots of continuous polynomials; 1 if sampled."""
+    """Give a power of two in the middle of the roots of continuous polynomials; 1 if sampled.
+
+    Parameters
+    ----------
+    roots
+        1/s.
+    dt
+        Sample time, s; 0 means continuous time.
+    """
     size = np.abs(roots)
     size = size[size > 0.0]
     if dt or not size.size:

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from hyst.control.controller_parts import feedback_controller
 from hyst.control.discretization import Method
 from hyst.control.linear_system import LinearSystem
-from hyst.control.q_filter.family import QFilter
-from hyst.control.q_filter.realization import shared_realization
+from hyst.control.q_filters.family import QFilter
+from hyst.control.q_filters.realization import shared_realization
 from hyst.control.sampled.block_loop import BlockLoop
 from hyst.control.sampled.certificate import stable_weight
 from hyst.control.sampled.plant import SampledPlant, sampled_plant

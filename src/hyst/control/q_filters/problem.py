@@ -134,7 +134,20 @@ def q_filter_problem(plant: Any, controller: Any, Wu: Any, Wp: Any) -> QFilterPr
 
 
 def check_kind(name: str, system: LinearSystem) -> None:
-    """Refuse a system that is not from one input to one output in continuous time."""
+    """Refuse a system that is not from one input to one output in continuous time.
+
+    Parameters
+    ----------
+    name
+        What messages call it.
+    system
+        As it was read.
+
+    Raises
+    ------
+    InputError
+        If it has several inputs or outputs, or is sampled.
+    """
     if (system.inputs, system.outputs) != (1, 1):
         raise InputError(
             f"{name} has {system.inputs} inputs and {system.outputs} outputs; the Q-filter is for "

@@ -1,0 +1,1 @@
+"""hyst observer: a spec read, an observer designed, tried, judged and written."""
