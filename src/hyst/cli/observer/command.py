@@ -83,6 +83,8 @@ def observer(
             names.append("controller.json")
             answer.block.save(temporary / names[5])
     _tell(answer)
+    for said in () if spec.identified is None else spec.identified.notes:
+        note(said)
     lag = hyst.report.delay_to_act_on(spec.hysteresis.description)
     if lag:
         note(f"the recorded output lagged the model by {lag}: put that lag into plant or Wu")

@@ -114,21 +114,8 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     )
     reference = begun.samples
     inverse, name = _inverse(spec.section("inverse"), hysteresis, folder)
-    settle = simulation.number("settle", 0.0)
-    if not 0.0 <= settle < reference.size * dt:
-        raise hyst.InputError(
-            f"[simulation] settle is {settle:g} s of {reference.size * dt:g} s; leave some to "
-            "measure"
-        )
-    noise = as_not_negative(
-        simulation.number("noise", 0.0), "[simulation] noise", "a standard deviation"
-    )
+    settle = _settle(simulation, reference.size * dt, filter_dt)
     method = implemented.text("method", "tustin", get_args(hyst.control.discretization.Method))
-    if filter_dt >= reference.size * dt - settle:
-        raise hyst.InputError(
-            f"[filter] dt is {filter_dt:g} s, and {reference.size * dt - settle:g} s are measured; "
-            "give a shorter one"
-        )
     limits, rate = _limits(spec)
     Wu = read_uncertainty(weights, plant, folder)
     delay = plant.delay + _further_delay(implemented)
@@ -150,7 +137,9 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         reference=_at_samples(reference, dt, filter_dt),
         start=begun.start,
         settle=settle,
-        noise=noise,
+        noise=as_not_negative(
+            simulation.number("noise", 0.0), "[simulation] noise", "a standard deviation"
+        ),
         disturbance=simulation.number("disturbance", 0.0),
         seed=simulation.count("seed", 0),
         filter_dt=filter_dt,
@@ -164,6 +153,21 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     for each in (spec, weights, simulation, implemented):
         each.done()
     return read
+
+
+def _settle(simulation: Section, duration: float, filter_dt: float) -> float:
+    """Read the seconds that errors leave out: some must be left to measure."""
+    settle = simulation.number("settle", 0.0)
+    if not 0.0 <= settle < duration:
+        raise hyst.InputError(
+            f"[simulation] settle is {settle:g} s of {duration:g} s; leave some to measure"
+        )
+    if filter_dt >= duration - settle:
+        raise hyst.InputError(
+            f"[filter] dt is {filter_dt:g} s, and {duration - settle:g} s are measured; "
+            "give a shorter one"
+        )
+    return settle
 
 
 def _further_delay(implemented: Section) -> float:

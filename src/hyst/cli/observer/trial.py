@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     )
     from hyst.report import ObserverAnswer, TruePlant
 
+_STANDARD_ERRORS = 3.0
 _NONE, _ALONE = "none", "controller alone"
 
 
@@ -111,7 +112,15 @@ def _run(spec: ObserverSpec, block: TrackingController) -> TriedLoop:
         seed=spec.seed,
         settle=spec.settle,
         start=spec.start,
+        slope_error=_slope_error(spec),
     )
+
+
+def _slope_error(spec: ObserverSpec) -> float:
+    """Three standard errors of the slope of an identified hysteresis, of itself; 0 if not told."""
+    if spec.identified is None or spec.identified.errors is None:
+        return 0.0
+    return _STANDARD_ERRORS * (spec.identified.errors.slope_error or 0.0)
 
 
 def _margins(spec: ObserverSpec, block: TrackingController) -> LoopMargins:
@@ -141,6 +150,9 @@ def _parts(spec: ObserverSpec, design: Any) -> LoopComparison | None:
         seed=spec.seed,
         settle=spec.settle,
         start=spec.start,
+        slope_error=_slope_error(spec),
+        limits=spec.limits,
+        rate=spec.rate,
     )
 
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from hyst.checks.arrays import one_record
 from hyst.control.closed_loop import ClosedLoop
 from hyst.control.discretization import Method
+from hyst.control.drive_limits import Limits
 from hyst.control.feedback.loop_plant import static_gain
 from hyst.control.loop_system import plant_of
 from hyst.control.sampled.tried import TriedLoop, try_block
@@ -162,6 +163,8 @@ def compare_loops(
     Wu: Any = 0.0,
     noise: float = 0.0,
     method: Method = "tustin",
+    limits: Limits | None = None,
+    rate: float | None = None,
     despite_verdict: bool = False,
     **options: Any,
 ) -> LoopComparison:
@@ -194,10 +197,13 @@ def compare_loops(
         Standard deviation of the sensor's noise.
     method
         How continuous blocks are sampled.
+    limits, rate
+        Of the drive, in all of them.
     despite_verdict
         Take also an inverse of a model whose verdict is ``unfit``.
     options
-        What else ``try_block`` takes: true_plant, delay, disturbance, seed, settle, start.
+        What else ``try_block`` takes: true_plant, delay, slope_error, disturbance, seed,
+        settle, start.
 
     Returns
     -------
@@ -241,7 +247,7 @@ def compare_loops(
     for name, (C, F, operator, watching) in asked.items():
         block = TrackingController.from_continuous(
             C, dt, observer=watching, inverse=operator, method=method, feedforward=F, plant=plant,
-            despite_verdict=despite_verdict,
+            limits=limits, rate=rate, despite_verdict=despite_verdict,
         )  # fmt: skip
         tried = try_block(
             block, r, plant=plant, Wu=Wu, hysteresis=hysteresis, noise=noise, **options

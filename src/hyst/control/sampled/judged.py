@@ -56,6 +56,7 @@ def judge_loop(
     loop: ClosedLoop,
     *,
     delay: float = 0.0,
+    slope_error: float = 0.0,
 ) -> LoopJudgement:
     """Judge a sampled loop: by proof where there is one, by what it met where not.
 
@@ -69,6 +70,9 @@ def judge_loop(
         The true one; None if there is none.
     loop
         What came of the simulation. What is proven holds for |v| up to the largest in it.
+    slope_error
+        By how much, of itself, the slope of the true hysteresis may be off that of the model: then
+        no inverse of the model is exact.
 
     Returns
     -------
@@ -89,7 +93,8 @@ def judge_loop(
     'proven'
     """
     late = plant_of_block(plant, block, delay)
-    slopes, met = _slopes(block, hysteresis, loop), slopes_met(loop)
+    slopes, met = _slopes(block, hysteresis, loop), _off(slopes_met(loop), slope_error)
+    slopes = None if slopes is None else _off(slopes, slope_error)
     if loop.diverged_at is not None:
         said = f"diverges at {loop.diverged_at:.4g} s"
         return LoopJudgement("not safe", said, slopes, met, None, None)
@@ -146,6 +151,11 @@ def slopes_met(loop: ClosedLoop) -> tuple[float, float]:
         return 1.0, 1.0
     slopes = np.diff(loop.eta)[moving] / step[moving]
     return float(slopes.min()), float(slopes.max())
+
+
+def _off(slopes: tuple[float, float], error: float) -> tuple[float, float]:
+    """Widen slopes by a relative error."""
+    return slopes[0] * max(1.0 - error, 0.0), slopes[1] * (1.0 + error)
 
 
 def _slopes(

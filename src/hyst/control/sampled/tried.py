@@ -52,6 +52,7 @@ def try_block(
     true_plant: Any = None,
     noise: float = 0.0,
     delay: float = 0.0,
+    slope_error: float = 0.0,
     **options: Any,
 ) -> TriedLoop:
     """Simulate a block as it runs, and judge it.
@@ -70,6 +71,8 @@ def try_block(
         What is simulated; the nominal one if left out.
     noise
         Standard deviation of the sensor's noise at a sample.
+    slope_error
+        As in ``judge_loop``.
     delay, options
         As in ``simulate_closed_loop``: disturbance, seed, settle and so on.
 
@@ -98,7 +101,7 @@ def try_block(
         )  # fmt: skip
 
     loop = run(noise)
-    judgement = judge_loop(block, plant, Wu, hysteresis, loop, delay=delay)
+    judgement = judge_loop(block, plant, Wu, hysteresis, loop, delay=delay, slope_error=slope_error)
     in_drive, jitter = (0.0, 0.0) if noise == 0.0 else _of_noise(loop, run(0.0))
     return TriedLoop(block, loop, judgement, in_drive, jitter)
 
