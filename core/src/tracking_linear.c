@@ -40,8 +40,9 @@ void hyst_tracking_take_back(size_t order, const hyst_real *w, hyst_real *x, hys
         zero += next - next;
     }
     /* Nothing is added where there is nothing: -0 stays -0. */
-    const int is_nothing = (excess >= HYST_REAL(0.0) && excess <= HYST_REAL(0.0)) ? 1 : 0;
-    for (size_t i = 0; (i < order) && (is_nothing == 0) && (hyst_is_finite(zero) != 0); ++i) {
-        x[i] += w[i] * excess;
+    if (((excess < HYST_REAL(0.0)) || (excess > HYST_REAL(0.0))) && (hyst_is_finite(zero) != 0)) {
+        for (size_t i = 0; i < order; ++i) {
+            x[i] += w[i] * excess;
+        }
     }
 }

@@ -304,3 +304,58 @@ def test_without_the_solvers_the_descent_alone_designs(
     assert ended.code == 0
     assert asked == ["slpmm+descent", "descent"]
     assert "note: cvxpy is not installed" in ended.err
+
+
+def test_other_observers_of_the_spec(run: Run, folder: Path) -> None:
+    """The classical filter, no observer, and a design in discrete time: each block is safe here."""
+    quick = FAST.replace("duration = 1.0", "duration = 0.6").replace("settle = 0.5", "settle = 0.3")
+    told = {}
+    for name, asked in {
+        "q-filter": 'observer = "q-filter"\norder = 3',
+        "none": 'observer = "none"',
+        "discrete": 'time = "discrete"\norder = "auto"',
+    }.items():
+        (folder / "spec.toml").write_text(f"{quick}[design]\n{asked}\n", encoding="utf-8")
+        ended = run("observer", "spec.toml", "-o", name, "--stress", "30")
+        assert ended.code == 0, ended
+        told[name] = json.loads((folder / name / "certificate.json").read_text(encoding="utf-8"))
+        assert told[name]["safe"] is True
+        assert told[name]["stress"]["broken"] == 0
+        assert hyst.load(folder / name / "controller.json").dt == 1e-4
+    # Integral control alone has one state; the classical filter three lags and the plant's two.
+    assert hyst.load(folder / "none" / "controller.json").order == 1
+    tracked = {name: each["tracking"]["2 plays"] for name, each in told.items()}
+    assert tracked["none"]["without"] == tracked["none"]["with_observer"]
+    assert told["none"]["sampled"]["rejection_bandwidth"] == 0.0
+    for name in ("q-filter", "discrete"):
+        assert told[name]["sampled"]["performance_norm"] < 1.0
+        assert tracked[name]["with_observer"]["rms"] < tracked["none"]["without"]["rms"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "says"),
+    [
+        ('[design]\nobserver = "kalman"', "[design] observer is 'kalman'"),
+        ('[design]\ntime = "soon"', "[design] time is 'soon'"),
+        ("[design]\norder = -1", "[design] order is -1"),
+        ('[design]\nobserver = "none"\norder = 4', "[design] has an unknown entry 'order'"),
+        ("[limits]\ndrive = [3.0, -3.0]", "[limits] drive is [3.0, -3.0]"),
+        ("[limits]\nrate = 0.0", "[limits] rate is 0"),
+    ],
+)
+def test_mistakes_in_what_is_optional(
+    asked: str, says: str, folder: Path, refused: Callable[..., str]
+) -> None:
+    (folder / "spec.toml").write_text(f"{FAST}{asked}\n", encoding="utf-8")
+    assert says in refused("observer", "spec.toml", "-o", "out")
+
+
+def test_limits_of_the_spec_are_kept_and_nothing_is_proven_at_them(run: Run, folder: Path) -> None:
+    (folder / "spec.toml").write_text(f"{FAST}[limits]\ndrive = [-4.0, 4.0]\n", encoding="utf-8")
+    assert run("observer", "spec.toml", "-o", "out").code == 0
+    told = json.loads((folder / "out" / "certificate.json").read_text(encoding="utf-8"))
+    assert told["drive_range"][0] == -4.0
+    assert told["drive_range"][1] == 4.0
+    row = told["tracking"]["2 plays"]["with_observer"]
+    assert row["standing"] == "simulated"
+    assert "limits" in row["reason"]

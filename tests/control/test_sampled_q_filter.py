@@ -13,9 +13,11 @@ from hyst.control import (
     SampledQFilterObserver,
     TrackingController,
     closed_loop_poles,
+    compare_blocks,
     design_sampled_q_filter,
     simulate_closed_loop,
 )
+from hyst.control.q_filters import table_of_blocks
 from hyst.errors import InputError
 
 Array = np.ndarray[Any, np.dtype[Any]]
@@ -174,6 +176,25 @@ def test_noise_is_bounded_where_it_is_asked() -> None:
     bounded = design_sampled_q_filter(PLANT, REPAIRED_C, WU, WP, 1e-4, order=5, most_noise=1.02)
     assert most(bounded) <= 1.02 * (1.0 + 1e-3)  # other grids of frequencies
     assert bounded.gamma >= free.gamma * (1.0 - 1e-4)
+
+
+def test_blocks_beside_one_another(late: SampledQFilterObserver) -> None:
+    rows = compare_blocks(PLANT, REPAIRED_C, WU, WP, 1e-4, {"mine": late}, delay=1.5e-4)
+    assert [name for name, _ in rows] == ["no observer", "1/(tau s + 1)^3", "mine"]
+    certificates = dict(rows)
+    assert certificates["mine"].stacked_norm == pytest.approx(late.gamma, rel=1e-12)
+    assert certificates["1/(tau s + 1)^3"].stacked_norm <= late.gamma * (1.0 + 1e-12)
+    # Without observer nothing of a disturbance is taken off: E = 1, Wp largest at 0.
+    assert certificates["no observer"].performance_norm == pytest.approx(
+        64.0 * np.pi / 0.2, rel=1e-3
+    )
+    assert len(table_of_blocks(rows).splitlines()) == 4
+    # At whole delays and fast sampling the continuous design is the better one.
+    fast = compare_blocks(PLANT, REPAIRED_C, WU, WP, 1e-4)
+    again = design_sampled_q_filter(PLANT, REPAIRED_C, WU, WP, 1e-4)
+    assert fast[1][1].stacked_norm < again.gamma
+    with pytest.raises(InputError, match="there are no rows"):
+        table_of_blocks(())
 
 
 UNIT = ([100.0], [1.0, 100.0])

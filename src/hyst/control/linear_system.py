@@ -138,7 +138,15 @@ def balanced_matrices(A: Array, B: Array, C: Array) -> tuple[Array, Array, Array
 
 
 def transfer_function_of(num: Array, den: Array, dt: float = 0.0) -> Any:
-    """Give the ``control.TransferFunction`` of the polynomials num and den, highest power first."""
+    """Give the ``control.TransferFunction`` of two polynomials.
+
+    Parameters
+    ----------
+    num, den
+        Coefficients, highest power first.
+    dt
+        Sample time, s; 0 in continuous time.
+    """
     return _python_control().tf(num, den, dt)
 
 

@@ -15,17 +15,48 @@ if TYPE_CHECKING:
 
 Time = Literal["continuous", "discrete"]
 
+_TIMES = ("continuous", "discrete")
+_GAIN, _Q_FILTER, _NONE = "gain", "q-filter", "none"
+_OBSERVERS = (_GAIN, _Q_FILTER, _NONE)
+
 # Poles faster than this share of half the sample rate are not what the block does any more.
 _HELD = 0.5
 
 
 @dataclass(frozen=True)
 class HowToDesign:
-    """What ``[design]`` says: ``time``; ``order``, None is the paper's; ``jitter`` of v or None."""
+    """What ``[design]`` says.
 
+    Parameters
+    ----------
+    observer
+        ``"gain"``, the observer of the paper; ``"q-filter"``, the classical one; or ``"none"``.
+    time
+        Of the design by a gain.
+    order
+        Of the observer or filter; None is the usual one.
+    jitter
+        What the sensor's noise may make of v; None leaves that to the design.
+    """
+
+    observer: str
     time: Time
     order: int | Literal["auto"] | None
     jitter: float | None
+
+
+@dataclass(frozen=True)
+class NoObserver:
+    """The design of a block that has none."""
+
+    dt: float
+    observer: None = None
+    gain: None = None
+    message: str = "there is no observer"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give nothing but the message."""
+        return {"message": self.message}
 
 
 def read_design(spec: Section, sampled: bool) -> HowToDesign:
@@ -40,28 +71,31 @@ def read_design(spec: Section, sampled: bool) -> HowToDesign:
     """
     usual: Time = "discrete" if sampled else "continuous"
     if not spec.has("design"):
-        return HowToDesign(usual, None, None)
+        return HowToDesign(_GAIN, usual, None, None)
     given = spec.section("design")
-    time: Time = (
-        "discrete"
-        if given.text("time", usual, ("continuous", "discrete")) == ("discrete")
-        else "continuous"
-    )
+    observer = given.text("observer", _GAIN, _OBSERVERS)
+    if observer == _NONE:
+        given.done()
+        return HowToDesign(observer, usual, None, None)
+    order = _order(given, observer)
+    if observer == _Q_FILTER:
+        given.done()
+        return HowToDesign(observer, "discrete", order, None)
+    time: Time = "discrete" if given.text("time", usual, _TIMES) == "discrete" else "continuous"
     if sampled and time == "continuous":
         raise hyst.InputError(
             '[design] time is "continuous", and the plant is known at its samples; leave it out, '
             'or give [plant] form = "continuous"'
         )
     jitter = given.number("jitter", positive=True) if given.has("jitter") else None
-    order = _order(given)
     given.done()
-    return HowToDesign(time, order, jitter)
+    return HowToDesign(observer, time, order, jitter)
 
 
-def _order(given: Section) -> int | Literal["auto"] | None:
+def _order(given: Section, observer: str) -> int | Literal["auto"] | None:
     if not given.has("order"):
         return None
-    if given.whole("order") == "auto":
+    if given.whole("order") == "auto" and observer == _GAIN:
         return "auto"
     return given.count("order")
 
@@ -76,8 +110,12 @@ def designed(spec: ObserverSpec) -> Any:
 
     Returns
     -------
-    DisturbanceObserver or SampledDisturbanceObserver
+    DisturbanceObserver, SampledDisturbanceObserver, SampledQFilterObserver or NoObserver
     """
+    if spec.design.observer == _NONE:
+        return NoObserver(spec.filter_dt)
+    if spec.design.observer == _Q_FILTER:
+        return _classical(spec)
     if spec.design.time == "discrete":
         return _designed(spec, dt=spec.filter_dt, delay=spec.delay,
                          discretization=spec.filter_method)  # fmt: skip
@@ -87,6 +125,20 @@ def designed(spec: ObserverSpec) -> Any:
     except hyst.MissingExtraError as missing:
         note(f"{missing}; the descent alone is used, which needs neither")
         return _designed(spec, method="descent", **held)
+
+
+def _classical(spec: ObserverSpec) -> Any:
+    order = spec.design.order
+    return hyst.control.design_sampled_q_filter(
+        spec.plant,
+        spec.controller,
+        spec.Wu,
+        spec.Wp,
+        dt=spec.filter_dt,
+        delay=spec.delay,
+        order=order if isinstance(order, int) else None,
+        method=spec.filter_method,
+    )
 
 
 def _designed(spec: ObserverSpec, **how: Any) -> Any:

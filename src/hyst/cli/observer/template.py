@@ -35,6 +35,15 @@ Wp = { num = [0.5, 201.06192982974676], den = [1.0, 0.2] }
 kind = "integrator"
 # sinusoids = [50.0]  # Hz, added to it: rejected without error
 
+# [design]  # optional
+# observer = "gain"      # the paper's; "q-filter", the classical one; or "none"
+# time = "continuous"    # or "discrete": straight from the plant as the block samples it
+# order = "auto"         # more than the paper's where it pays
+
+# [limits]  # optional: the block keeps them, and nothing winds up
+# drive = [-50.0, 50.0]
+# rate = 5e4             # units a second
+
 [hysteresis]  # a model file as hyst identify writes it, file = "model.json", or
 p0 = 0.1
 p = [0.0462, 0.069, 0.1029, 0.1535, 0.2291, 0.3417, 0.51, 0.761, 1.1, 1.7]

@@ -46,7 +46,11 @@ def tried(spec: ObserverSpec, design: Any, stress: int | None) -> ObserverAnswer
     with progress_bar("simulating the loop") as progress:
         for k, (name, inverse) in enumerate(inverses.items()):
             without[name] = _run(spec, _block(spec, None, inverse))
-            observed[name] = _run(spec, _block(spec, design, inverse))
+            observed[name] = (
+                without[name]
+                if design.observer is None
+                else _run(spec, _block(spec, design, inverse))
+            )
             progress((k + 1) / len(inverses))
     with at_work("certifying the block"):
         this = observed[spec.inverse_name]
@@ -57,7 +61,7 @@ def tried(spec: ObserverSpec, design: Any, stress: int | None) -> ObserverAnswer
             without=without,
             observed=observed,
             noise=spec.noise,
-            rivals=_rivals(spec, without[spec.inverse_name].block),
+            rivals=_rivals(spec, design, without[spec.inverse_name].block),
             true_plant=_of_true_plant(spec, this),
             bound=_bound(spec, this),
             identified=_identified(spec),
@@ -77,7 +81,7 @@ def _block(spec: ObserverSpec, design: Any, inverse: hyst.Operator | None) -> Tr
     return hyst.control.TrackingController.from_continuous(
         spec.controller,
         spec.filter_dt,
-        observer=design,
+        observer=None if design is None else design.observer,
         inverse=inverse,
         method=spec.filter_method,
         limits=spec.limits,
@@ -126,7 +130,7 @@ def _parts(spec: ObserverSpec, design: Any) -> LoopComparison | None:
         hysteresis=spec.hysteresis,
         inverse=spec.inverse,
         feedforward=spec.feedforward,
-        observer=design,
+        observer=design.observer,
         Wu=spec.Wu,
         noise=spec.noise,
         method=spec.filter_method,
@@ -144,9 +148,11 @@ def _certified(spec: ObserverSpec, block: TrackingController) -> SampledCertific
     return hyst.control.sampled_certificate(block, spec.plant, spec.Wu, spec.Wp, delay=spec.delay)
 
 
-def _rivals(spec: ObserverSpec, alone: TrackingController) -> dict[str, SampledCertificate]:
+def _rivals(
+    spec: ObserverSpec, design: Any, alone: TrackingController
+) -> dict[str, SampledCertificate]:
     """Certify the controller alone, and the block with the classical observer of this rate."""
-    found = {_ALONE: _certified(spec, alone)}
+    found = {} if design.observer is None else {_ALONE: _certified(spec, alone)}
     try:
         classical = hyst.control.design_sampled_q_filter(
             spec.plant, spec.controller, spec.Wu, spec.Wp, dt=spec.filter_dt, delay=spec.delay

@@ -109,7 +109,13 @@ def _check_plant(plant: LinearSystem) -> None:
 
 
 def check_internal_model(model: InternalModel) -> None:
-    """Refuse an internal model that its output does not show, or without an eigenvalue at 0."""
+    """Refuse an internal model that its output does not show, or without an eigenvalue at 0.
+
+    Raises
+    ------
+    InputError
+        If the model is one of these.
+    """
     eigenvalues = np.linalg.eigvals(model.A_d).astype(complex)
     hidden = least_seen(model.A_d, model.C_d, eigenvalues)
     if hidden is not None:
@@ -187,7 +193,10 @@ def _way_out(value: complex, size: float, at_border: str, beyond: str) -> str:
 
 
 def least_seen(A: Array, C: Array, eigenvalues: ComplexArray) -> complex | None:
-    """Find a mode that the output does not show, by the test of Popov, Belevitch and Hautus."""
+    """Find a mode that the output does not show, by the test of Popov, Belevitch and Hautus.
+
+    Of the matrices A and C, with the eigenvalues of A.
+    """
     n = A.shape[0]
     size = float(np.abs(eigenvalues).max(initial=0.0)) or 1.0
     scaled = balanced(LinearSystem(A / size, np.ones((n, 1)), C, np.zeros((1, 1))))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hyst.control.q_filters.blocks import compare_blocks, table_of_blocks
 from hyst.control.q_filters.certificate import QFilterCertificate
 from hyst.control.q_filters.comparison import DesignRow, compare_designs, row_of, table_of
 from hyst.control.q_filters.design import design_q_filter
@@ -22,6 +23,7 @@ __all__ = [
     "QFilterProblem",
     "RobustPerformance",
     "SampledQFilterObserver",
+    "compare_blocks",
     "compare_designs",
     "design_q_filter",
     "design_sampled_q_filter",
@@ -30,6 +32,7 @@ __all__ = [
     "robust_performance",
     "row_of",
     "table_of",
+    "table_of_blocks",
 ]
 
 

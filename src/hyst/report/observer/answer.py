@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from hyst.compensation import ErrorBound
 from hyst.control import (
     EXACT,
+    Certificate,
     ClosedLoop,
     ControllerDesign,
     LoopComparison,
@@ -123,6 +124,11 @@ class ObserverAnswer:
         """What is known of that loop."""
         return self.observed[self.inverse_name].judgement
 
+    @property
+    def has_observer(self) -> bool:
+        """Whether the block has an observer."""
+        return self.design.observer is not None
+
     def checks(self) -> tuple[tuple[str, bool, str], ...]:
         """Give each condition of safety: what, whether it holds, and the number behind it."""
         c, j = self.certificate, self.judgement
@@ -207,10 +213,11 @@ class ObserverAnswer:
             f"left at {hertz(c.performance_frequency)})"
         )
         inverse = "is proven" if self.proven_with_inverse else "is simulated, not proven"
+        rejects = f"the observer {demand}" if self.has_observer else "it has no observer"
         return (
             f"SAFE: the block, {self.sampled()}, is stable for every plant within Wu, which may "
             f"grow {c.robust_stability_margin:.3g} times; with the inverse ({self.inverse_name}) "
-            f"it {inverse}; the observer {demand}.{self._but()}"
+            f"it {inverse}; {rejects}.{self._but()}"
         )
 
     def _cure(self) -> str:
@@ -227,9 +234,9 @@ class ObserverAnswer:
     @property
     def margin_of_design(self) -> float | None:
         """How often Wu may grow around the design in continuous time; None if there is none."""
-        if getattr(self.design, "dt", 0.0) > 0.0:
+        own = getattr(self.design, "certificate", None)
+        if not isinstance(own, Certificate):
             return None
-        own = self.design.certificate
         return float(own.robust_stability_margin) if own.nominal_stable else 0.0
 
     def _but(self) -> str:
@@ -258,6 +265,11 @@ class ObserverAnswer:
     def gain_sentence(self) -> str:
         """Say what the observer buys, in one sentence."""
         name = self.inverse_name
+        if not self.has_observer:
+            return (
+                f"With the inverse ({name}) and no observer the rms tracking error is "
+                f"{told(self.without[name].loop.rms_error)}."
+            )
         without, observed = (each[name].loop.rms_error for each in (self.without, self.observed))
         if not math.isfinite(observed):
             return "With the observer the simulated loop diverges."

@@ -137,12 +137,16 @@ def tracking_table(answer: ObserverAnswer) -> Table:
     rows: list[tuple[str, ...]] = []
     marked = 0
     for name in answer.observed:
-        for observer, of in (("no", answer.without), ("yes", answer.observed)):
-            if name == answer.inverse_name and observer == "yes":
+        kinds = [("no", answer.without)]
+        if answer.has_observer:
+            kinds.append(("yes", answer.observed))
+        for observer, of in kinds:
+            if name == answer.inverse_name:
                 marked = len(rows)
             rows.append(_tracked(name, observer, of[name]))
     return Table(
-        f"What does the observer buy? The loop, {answer.sampled()}",
+        f"{'What does the observer buy?' if answer.has_observer else 'How does it track?'} "
+        f"The loop, {answer.sampled()}",
         ("inverse", "observer", "rms error", "max error", "drive, jump a sample", "safe?"),
         tuple(rows),
         marked,

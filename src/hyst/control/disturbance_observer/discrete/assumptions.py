@@ -168,7 +168,7 @@ def check_controller(
 
 
 def read_controller(system: object, dt: float) -> LinearSystem:
-    """Read the controller; one sampled at another rate is refused.
+    """Read the controller, a system; one with another sample time than dt is refused.
 
     Raises
     ------
@@ -190,7 +190,7 @@ def read_controller(system: object, dt: float) -> LinearSystem:
 
 
 def check_weight(name: str, weight: LinearSystem, dt: float) -> None:
-    """Refuse a weight that is zero, or sampled at another rate.
+    """Refuse a weight of this name that is zero, or sampled with another sample time than dt.
 
     Raises
     ------

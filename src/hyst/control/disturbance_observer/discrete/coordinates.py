@@ -14,7 +14,10 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from hyst.control.disturbance_observer.discrete.problem import SampledObserverProblem
-from hyst.control.disturbance_observer.discrete.stacked_gain import SampledStackedGain
+from hyst.control.disturbance_observer.discrete.stacked_gain import (
+    SampledFrequencies,
+    SampledStackedGain,
+)
 from hyst.control.linear_system import LinearSystem, balanced
 from hyst.errors import SolverError
 
@@ -69,7 +72,8 @@ def _error(
     """Compare the stacked gain of the observer's matrices with that of the polynomials."""
     if not np.isfinite(L).all():
         return np.inf
-    at, observer = gain.at(gain.grid.w), problem.observer(L)
+    at, observer = gain.grid, problem.observer(L)
+    assert isinstance(at, SampledFrequencies)
     if np.abs(observer.poles()).max() >= 1.0:
         return np.inf
     z = (1.0 + 1j * at.w) / (1.0 - 1j * at.w)

@@ -35,7 +35,9 @@ Array = NDArray[np.float64]
 
 
 def is_discrete(plant: Any, dt: float | None, delay: float) -> bool:
-    """Whether a design is in discrete time: a sample time is given, or the plant has one.
+    """Whether a design is in discrete time: dt is given, or the plant has a sample time.
+
+    A delay is taken into such a design only.
 
     Raises
     ------

@@ -26,7 +26,7 @@ _ACCURACY = 1e-4
 
 @dataclass(frozen=True)
 class LowerBound:
-    """The bound's ``value``, and in words what makes it, with the frequency."""
+    """The bound's ``value``, and in words its ``reason``, with the frequency."""
 
     value: float
     reason: str

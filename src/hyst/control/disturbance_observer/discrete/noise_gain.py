@@ -34,13 +34,13 @@ class SampledNoiseGain:
         return self._gain.inside(parameters)
 
     def values(self, parameters: Array, at: SampledFrequencies) -> Array:
-        """Square of |Q / Pd| at each frequency."""
+        """Square of |Q / Pd| for the parameters, at each frequency of at."""
         solved = self._gain.solved(parameters)
         above = at.powers[:, -solved.l.size :] @ solved.l * at.over
         return np.asarray(np.abs(above / self._gain.below(solved, at.powers)) ** 2)
 
     def values_and_slopes(self, parameters: Array, at: SampledFrequencies) -> tuple[Array, Array]:
-        """Square of |Q / Pd| at each frequency, and its derivatives by the parameters."""
+        """Square of |Q / Pd| at each frequency of at, and its derivatives by the parameters."""
         solved = self._gain.solved(parameters)
         below = self._gain.below(solved, at.powers)
         V = at.powers[:, -solved.l.size :] @ solved.l * at.over / below
@@ -48,5 +48,5 @@ class SampledNoiseGain:
         return np.asarray(np.abs(V) ** 2), self._gain.derivatives(solved, at, of_l, of_x)
 
     def peaks(self, parameters: Array, share: float = 0.9, rounds: int = 4) -> Array:
-        """Frequencies of the local maxima that reach a share of the largest, highest first."""
+        """Frequencies of maxima for the parameters, as ``find_peaks`` gives them: share, rounds."""
         return find_peaks(self, parameters, self._gain.poles(parameters), share, rounds)

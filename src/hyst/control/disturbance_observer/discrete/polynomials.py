@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 
 def mapped_polynomial(coefficients: Array, scale: float) -> Array:
-    """Give ``(1 + scale t)^n p(t / (1 + scale t))``, n the degree p is written with."""
+    """Give ``(1 + scale t)^n p(t / (1 + scale t))``, p of degree n with these coefficients."""
     n = coefficients.size - 1
     result = np.zeros(n + 1)
     rest = np.ones(1)

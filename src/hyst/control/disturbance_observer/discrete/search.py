@@ -22,7 +22,7 @@ _UNMET = 3.0  # times the noise gain, where the norm is above 1
 
 
 def search_sampled(problem: SampledObserverProblem, how: Search) -> Found:
-    """Look for the gain of least norm of the sampled loop.
+    """Look for the gain of least norm of the problem's sampled loop, how is asked.
 
     Raises
     ------

@@ -59,7 +59,8 @@ _DENSE, _CLOSE = 100, np.linspace(-4.0, 4.0, 33)  # of what is interpolated
 class SampledFrequencies(Frequencies):
     """Frequencies ``w``, here W of the w-plane; ``Wu2`` is ``a^2 + Wn^2``, of K S.
 
-    ``plain`` is K S of the controller alone, ``over`` the ``numerator`` over Pd.
+    ``plain`` is K S of the controller alone, ``over`` the ``numerator`` over Pd. ``S0``, ``Wp2``,
+    ``powers``, ``model`` and ``numerator`` are as there, and no ``noise`` stands apart.
     """
 
     plain: ComplexArray = field(kw_only=True)
@@ -273,14 +274,14 @@ class SampledStackedGain(StackedGain):
         return np.asarray(value), self.derivatives(solved, at, outer_l / below, outer_x / below)
 
     def drive(self, solved: Solved, at: SampledFrequencies, below: ComplexArray) -> ComplexArray:
-        """Give K S, from noise of y to v, where x is below."""
+        """Give K S, from noise of y to v, of what is solved, at frequencies where x is below."""
         above = at.powers[:, -solved.l.size :] @ solved.l
         return np.asarray(at.plain + at.S0 * above * at.over / below)
 
     def derivatives(
         self, solved: Solved, at: SampledFrequencies, of_l: ComplexArray, of_x: ComplexArray
     ) -> Array:
-        """Twice the real part of ``of_l dl - of_x dx``, the polynomials at the frequencies."""
+        """Twice the real part of ``of_l dl - of_x dx``, dl and dx of what is solved, at ``at``."""
         # Next to a pole of Q on the circle slopes overflow; a descent turns back there anyway.
         with np.errstate(over="ignore", invalid="ignore"):
             by_l = of_l[:, None] * (at.powers[:, -solved.l.size :] @ solved.l_slopes.T)
@@ -330,7 +331,7 @@ class SampledStackedGain(StackedGain):
         return self.gain_in(self.problem.plant, parameters)
 
     def gain_in(self, system: LinearSystem, parameters: Array) -> Array:
-        """Give this gain for the plant in other coordinates, those of the system."""
+        """Give the gain of the parameters for the plant in the coordinates of the system."""
         n_p, plant, solved = self.problem.plant.order, self.sampled, self.solved(parameters)
         model = sampled_model(self.internal_model(parameters), self.problem.dt)
         # z = 1 + sigma t.

@@ -46,7 +46,13 @@ def poles_in_w_plane(A: Array) -> ComplexArray:
 
 
 def factored(system: LinearSystem) -> ZerosAndPoles:
-    """Factor a sampled system with one input and one output in the w-plane."""
+    """Factor a sampled system with one input and one output in the w-plane.
+
+    Raises
+    ------
+    InputError
+        If the system has a pole at z = -1.
+    """
     # Canonical forms have states of very different size, and would look as if singular.
     mapped = bilinear(balanced(system))
     if mapped is None:
@@ -56,5 +62,5 @@ def factored(system: LinearSystem) -> ZerosAndPoles:
 
 
 def continuous_in_w_plane(values: ComplexArray, dt: float) -> ComplexArray:
-    """Give where a sampled loop sees features of a continuous one, aliases folded down."""
+    """Give where samples every dt show the values of continuous poles and zeros, folded down."""
     return np.asarray(np.tanh(0.5 * dt * values), dtype=np.complex128)
