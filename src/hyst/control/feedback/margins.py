@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 _LEFT = math.sqrt(0.5)
+_MOST_TURN = 1500.0  # rad of dead time that are followed
 _FAR = 1e3  # 1 / |L| up to which the turns of a dead time are followed
 
 
@@ -256,7 +257,8 @@ def _grid(plant: LoopPlant, controller: LinearSystem) -> Array:
     loud = w[np.abs(plant.response(w) * of_controller) * _FAR > 1.0]
     end = max(float(loud[-1]) if loud.size else 0.0, 2.0 * math.pi / late)
     end = min(end, plant.nyquist)
-    turns = min(int(end * late / 0.2) + 2, 200_000)
+    end = min(end, _MOST_TURN / late)  # what is as loud beyond, turns as it did before
+    turns = int(end * late / 0.2) + 2
     return np.union1d(w, np.linspace(0.0, end, turns)[1:])
 
 
