@@ -130,7 +130,13 @@ def usual_parameters(gain: StackedGain, kept: int = 2) -> list[Array]:
                 drawn.append((float(gain.values(values, gain.grid).max()), values))
         if kind.size or kind is kinds[0]:
             starts += sorted(drawn, key=lambda each: each[0])[:kept]
-    return [values for _, values in sorted(starts, key=lambda each: each[0])]
+    ordered = [values for _, values in sorted(starts, key=lambda each: each[0])]
+    # Without an eigenvalue to keep close to, both shifts are one start.
+    return [
+        each
+        for i, each in enumerate(ordered)
+        if not any(np.array_equal(each, other) for other in ordered[:i])
+    ]
 
 
 def _slowest(poles: Array, count: int) -> Array:

@@ -25,7 +25,7 @@ Progress = Callable[[str, int, float], None]
 # descent that follows needs no more than a start.
 _FULL, _FEW, _LARGE = 14, 2, 5
 PAYS = 0.95  # of the norm: an eigenvalue more has to bring it below
-USUAL = 3  # starts for the quietest
+USUAL = 2  # starts for the quietest
 MOST_MORE = 6  # eigenvalues
 
 
