@@ -47,7 +47,15 @@ class HowToDesign:
 
 @dataclass(frozen=True)
 class NoObserver:
-    """The design of a block that has none."""
+    """The design of a block that has none.
+
+    Parameters
+    ----------
+    dt
+        Sample time of the block, s.
+    observer, gain, message
+        None, none, and one sentence that says so.
+    """
 
     dt: float
     observer: None = None
