@@ -16,6 +16,7 @@ from hyst.control import (
     Certificate,
     ClosedLoop,
     ControllerDesign,
+    InverseComparison,
     LoopComparison,
     LoopJudgement,
     LoopMargins,
@@ -315,12 +316,8 @@ class ObserverAnswer:
         float
             1 is all of it; NaN where an inverse adds nothing, or a loop diverges.
         """
-        exact = self.without[EXACT].loop.rms_error if EXACT in self.without else math.nan
-        added = self.without[name].loop.rms_error - exact
-        left = self.observed[name].loop.rms_error - exact
-        if not (math.isfinite(added) and math.isfinite(left)) or added <= 1e-9 * exact:
-            return math.nan
-        return 1.0 - left / added
+        loops = [{n: each.loop for n, each in of.items()} for of in (self.without, self.observed)]
+        return InverseComparison(*loops).recovered(name)
 
     def implement_sentence(self) -> str:
         """Say what to implement, in one sentence."""
