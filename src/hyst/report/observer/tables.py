@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyst.control import SampledCertificate, TriedLoop
+from hyst.control import DisturbanceObserver, SampledCertificate, TriedLoop
 from hyst.report.observer.answer import ObserverAnswer
 from hyst.report.observer.feedback_tables import margins_table, parts_table
 from hyst.report.observer.words import STANDINGS, bandwidth_told, hertz, rightmost, told
@@ -200,6 +200,14 @@ def _certified(c: SampledCertificate) -> tuple[str, ...]:
     )
 
 
+def _least(design: DisturbanceObserver) -> str:
+    """Write the lower bounds of a design, with the noise that they cost."""
+    said = f"{number(design.lower_bound)}, at any noise"
+    if design.lower_bound_at_noise is None:
+        return said
+    return f"{number(design.lower_bound_at_noise)} at this noise gain; {said}"
+
+
 def filter_table(answer: ObserverAnswer) -> Table:
     """List what the observer is: its gain, Q(s) and its poles.
 
@@ -239,6 +247,7 @@ def filter_table(answer: ObserverAnswer) -> Table:
     ]
     if own is not None:
         rows.append(("slowest pole of Q", f"{rightmost(own.observer_poles)} 1/s"))
+        rows.append(("no observer of any order has a norm below", _least(design)))
     if answer.noise:
         tried = answer.observed[answer.inverse_name]
         rows.append(
