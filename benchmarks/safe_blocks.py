@@ -124,8 +124,8 @@ def counted(discrete: bool, specs: int, plants: int) -> str:
     took = time.process_time() - start
     return (
         f"{safe} safe, {wrong} of them broken; {refused} refused, {found} of them broken, "
-        f"{broken_or_below} broken or with a margin below 1; {specs - safe - refused} specs were refused as input; "
-        f"{took:.0f} s"
+        f"{broken_or_below} broken or with a margin below 1; {specs - safe - refused} specs "
+        f"refused as input; {took:.0f} s"
     )
 
 
