@@ -150,7 +150,7 @@ def _classical(spec: ObserverSpec) -> Any:
 
 
 def _designed(spec: ObserverSpec, **how: Any) -> Any:
-    noise = spec.noise if spec.noise > 0.0 else None
+    noise = spec.Wn if spec.Wn is not None else spec.noise if spec.noise > 0.0 else None
     with at_work("designing the observer") as say:
         return hyst.control.design_disturbance_observer(
             spec.plant,

@@ -40,8 +40,8 @@ _INVERSES = ("exact", "scaled", "reduced", "file", "none")
 class ObserverSpec:
     """A loop, what is asked of its observer, and how to try it.
 
-    ``plant``, ``true_plant`` (or None), ``controller``, weights ``Wu`` and ``Wp`` and
-    ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
+    ``plant``, ``true_plant`` (or None), ``controller``, weights ``Wu``, ``Wp`` and ``Wn`` (or
+    None) and ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
     ``inverse_name``), ``reference``, at the samples of the block, ``settle``, ``noise``,
     ``disturbance`` and ``seed`` what is simulated; ``filter_dt``, ``filter_method`` and ``delay``
     say what is implemented; ``design`` how, ``limits`` and ``rate`` what its drive may do.
@@ -58,6 +58,7 @@ class ObserverSpec:
     feedforward: Any
     Wu: LinearSystem
     Wp: LinearSystem
+    Wn: LinearSystem | None
     internal_model: InternalModel
     hysteresis: Operator
     inverse: Operator | None
@@ -130,6 +131,7 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         feedforward=controller.feedforward,
         Wu=Wu,
         Wp=weights.section("Wp").system(),
+        Wn=weights.section("Wn").system() if weights.has("Wn") else None,
         internal_model=_internal_model(spec.section("internal_model")),
         hysteresis=hysteresis,
         inverse=inverse,
