@@ -41,8 +41,8 @@ class ObserverSpec:
     """A loop, what is asked of its observer, and how to try it.
 
     ``plant``, ``true_plant`` (or None), ``controller``, weights ``Wu``, ``Wp`` and ``Wn`` (or
-    None) and ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
-    ``inverse_name``), ``reference``, at the samples of the block, ``settle``, ``noise``,
+    None) and ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None,
+    named ``inverse_name``), ``reference``, at the samples of the block, ``settle``, ``noise``,
     ``disturbance`` and ``seed`` what is simulated; ``filter_dt``, ``filter_method`` and ``delay``
     say what is implemented; ``design`` how, ``limits`` and ``rate`` what its drive may do.
     ``controller_design`` is what C was designed by, or None, ``feedforward`` stands beside it, or
