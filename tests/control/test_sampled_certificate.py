@@ -273,3 +273,14 @@ def test_units_do_not_matter() -> None:
     assert millis.uncertainty_frequency == pytest.approx(
         1e3 * seconds.uncertainty_frequency, rel=1e-3
     )
+
+
+def test_slopes_below_zero_count_by_their_size() -> None:
+    """A gain of -0.5 to 0.1 around a slow loop: the plant's deviation is multiplied by 0.5."""
+    block = TrackingController.from_continuous(0.2, 1e-3)
+    loop_value, at = sampled_slope_proof(block, PLANT, (-0.5, 0.1), 0.3)
+    z = np.exp(1j * at * 1e-3)
+    Pd = sampled_plant(PLANT, 1e-3).system.response(np.array([z]))[0, 0, 0]
+    a = hyst.control.folded_uncertainty(sampled_plant(PLANT, 1e-3), 0.3, np.array([at]))[0]
+    by_hand = 0.2 / abs(1.0 - 0.2 * 0.2 * Pd) * (0.3 * abs(Pd) + 0.5 * a)
+    assert loop_value == pytest.approx(by_hand, rel=1e-9)

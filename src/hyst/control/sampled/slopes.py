@@ -34,7 +34,7 @@ def sampled_slope_proof(
     slopes, ``c - rho`` and ``c + rho``. The differences of all signals stay bounded in l2, for
     every plant within Wu, if the loop with the gain c is stable and
 
-        ``rho |Pd K S_c| + (c + rho) a |K S_c| < 1``,   ``S_c = 1 / (1 + c K Pd)``
+        ``rho |Pd K S_c| + (|c| + rho) a |K S_c| < 1``,   ``S_c = 1 / (1 + c K Pd)``
 
     at all frequencies up to pi/dt: the circle criterion on differences, of the sampled loop.
 
@@ -76,7 +76,7 @@ def sampled_slope_proof(
     def left_hand_side(w: Array) -> Array:
         values = loop.at(w, middle)
         a = folded_uncertainty(loop.plant, weight, w)
-        return np.asarray(np.abs(values.N) * (half * np.abs(values.Pd) + (middle + half) * a))
+        return np.asarray(np.abs(values.N) * (half * np.abs(values.Pd) + (abs(middle) + half) * a))
 
     return largest(left_hand_side, loop.grid(weight))
 
@@ -93,7 +93,7 @@ def sampled_slope_failing(
 
     While the plays that move stay the same the loop is linear, with their slope as its gain g. It
     is stable for every plant within Wu if and only if it is for the nominal one and
-    ``g a |K S_g| < 1``.
+    ``|g| a |K S_g| < 1``.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def sampled_slope_failing(
     a = folded_uncertainty(loop.plant, weight, w)
     for slope in each[np.argsort(np.abs(each - 1.0))]:
         stable = np.abs(loop.poles(float(slope))).max(initial=0.0) < 1.0
-        if not stable or (slope * a * np.abs(loop.at(w, float(slope)).N)).max() >= 1.0:
+        if not stable or (abs(slope) * a * np.abs(loop.at(w, float(slope)).N)).max() >= 1.0:
             return float(slope)
     return None
 
