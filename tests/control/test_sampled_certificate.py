@@ -287,12 +287,12 @@ def test_slopes_below_zero_count_by_their_size() -> None:
 
 
 def test_a_resonance_that_one_slope_makes_is_not_overlooked() -> None:
-    """Between the frequencies of a grid: a loop that a slope of 1.9 brings close to the border."""
-    block = TrackingController.from_continuous(([60.0], [1.0, 0.0]), 1e-4)
+    """Between the frequencies of a grid: a loop that a slope of 2.15 brings close to the border."""
+    block = TrackingController.from_continuous(([0.05, 20.0], [1.0, 0.0]), 1e-4)
     plant = ([4e6], [1.0, 60.0, 4e6])
     unstable = next(
         slope
-        for slope in np.arange(0.5, 3.0, 1e-3)
+        for slope in np.arange(1.5, 3.0, 1e-3)
         if abs(closed_loop_poles((np.multiply(plant[0], slope), plant[1]), block)[0]) >= 1.0
     )
     near = float(unstable - 2e-3)
