@@ -1,4 +1,4 @@
-"""Blocks at random, and plants within Wu that may break them: SAFE is true, and refusing was right."""
+"""Blocks and plants within Wu at random: SAFE is true, and what is refused can be broken."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def times(factor: float, weight: LinearSystem) -> LinearSystem:
     return LinearSystem(weight.A, weight.B, factor * weight.C, factor * weight.D)
 
 
-@pytest.mark.parametrize("seed", [*range(9), 10])
+@pytest.mark.parametrize("seed", range(9))
 def test_random_blocks_against_random_plants(seed: int) -> None:
     rng = np.random.default_rng(1000 + seed)
     p = random_problem(seed)
