@@ -132,7 +132,7 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         Wu=Wu,
         Wp=weights.section("Wp").system(),
         Wn=weights.section("Wn").system() if weights.has("Wn") else None,
-        internal_model=_internal_model(spec.section("internal_model")),
+        internal_model=_internal_model(spec.section("internal_model"), filter_dt),
         hysteresis=hysteresis,
         inverse=inverse,
         inverse_name=name,
@@ -194,7 +194,7 @@ def _limits(spec: Section) -> tuple[tuple[float, float] | None, float | None]:
     return drive, rate
 
 
-def _internal_model(given: Section) -> InternalModel:
+def _internal_model(given: Section, dt: float) -> InternalModel:
     sinusoids = given.numbers("sinusoids", ())
     if given.has("A") or given.has("C"):
         model = hyst.control.InternalModel(given.matrix("A"), given.matrix("C"))
@@ -208,6 +208,11 @@ def _internal_model(given: Section) -> InternalModel:
     given.done()
     for frequency in sinusoids:
         as_positive(frequency, "[internal_model] sinusoids", "frequencies in Hz")
+        if frequency * dt >= 0.5:
+            raise hyst.InputError(
+                f"[internal_model] sinusoids has {frequency:g} Hz, and half the sample rate of "
+                f"the block is {0.5 / dt:g} Hz: what it cannot see it cannot reject; leave it out"
+            )
         model = model + hyst.control.InternalModel.sinusoid(2.0 * np.pi * float(frequency))
     return model
 
