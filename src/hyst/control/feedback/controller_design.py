@@ -18,7 +18,7 @@ from hyst.control.feedback.loop_plant import LoopPlant, as_rates, loop_plant
 from hyst.control.feedback.margins import LoopMargins, largest_noise_gain, margins_of
 from hyst.control.feedback.resonances import Resonance, resonances, with_resonances_elsewhere
 from hyst.control.feedback.structures import Shape, controller_points
-from hyst.control.linear_system import as_linear_system
+from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.sampled.folding import folded_uncertainty, weight_response
 from hyst.errors import InputError, SolverError
 
