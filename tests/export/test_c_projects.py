@@ -142,6 +142,10 @@ LIMITED = {
     "limited rate": TrackingController(
         [[1.0]], [[1.0, -1.0]], [0.5], [2.0, -2.0], dt=1e-3, rate=30.0, W=[0.5]
     ),
+    "limited, from a drive of its own": TrackingController(
+        [[1.0]], [[1.0, -1.0]], [0.5], [2.0, -2.0], dt=1e-3, rate=30.0, W=[0.5], u0=7.1,
+        limits=(-1.0, 7.3),
+    ),
 }  # fmt: skip
 CONTROLLERS |= LIMITED
 
@@ -177,6 +181,8 @@ def test_limits_hold_on_a_target(name: str, tmp_path: Path, objects: Objects) ->
     y_ref, y = 100.0 * wandering(2000), 100.0 * wandering(2000, seed=8)
     y_ref[:3], y[1000:1010] = np.nan, np.inf
     u = code.run(state, y_ref, y)
+    # What is answered before there is a sample is the allowed drive nearest to u0.
+    assert u[0] == min(max(model.u0, low), high)
     assert u.min() >= low
     assert u.max() <= high
     assert code.fault(state) == 1 | 16
