@@ -103,7 +103,7 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     weights = spec.section("weights")
     simulation = spec.section("simulation")
     implemented = spec.section("filter")
-    plant = read_plant(spec.section("plant"), folder)
+    plant = read_plant(spec.section("plant"), folder, implemented)
     hysteresis = read_hysteresis(spec, plant, folder)
     if hysteresis is None:
         hysteresis = _hysteresis(spec.section("hysteresis"), folder)
@@ -147,7 +147,7 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         filter_dt=filter_dt,
         filter_method="zoh" if method == "zoh" else "tustin",
         delay=delay,
-        design=read_design(spec, plant.identified is not None and plant.system.dt > 0.0),
+        design=read_design(spec, plant.system.dt > 0.0),
         limits=limits,
         rate=rate,
         identified=plant.identified,

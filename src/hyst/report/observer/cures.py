@@ -54,7 +54,9 @@ def _cure_of_the_rest(answer: ObserverAnswer) -> str:
         )
     failing = answer.failing_slope()
     if failing is None and answer.loop.diverged_at is None:
-        return "A plant that Wu allows breaks it at the edge of what was computed: give a larger Wu."
+        return (
+            "A plant that Wu allows breaks it at the edge of what was computed: give a larger Wu."
+        )
     if failing is None:
         return (
             "No slope that it met is unstable, and yet the simulation diverges: see if the "

@@ -44,7 +44,9 @@ def feedback_tables(answer: ObserverAnswer) -> tuple[Table, ...]:
     worth = () if answer.parts is None else (parts_table(answer.parts),)
     if answer.margins is None:
         return worth
-    return *worth, margins_table(*answer.margins, answer.controller_design)
+    alone, block = answer.margins
+    whole = block if answer.has_observer else None
+    return *worth, margins_table(alone, whole, answer.controller_design)
 
 
 def checks_table(answer: ObserverAnswer) -> Table:
