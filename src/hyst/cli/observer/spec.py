@@ -164,8 +164,8 @@ def _true_plant(spec: Section, plant: LinearSystem) -> LinearSystem | None:
     read = spec.section("true_plant").system()
     if plant.dt > 0.0:
         raise hyst.InputError(
-            "[true_plant] is continuous, and the plant of [plant] file is known at its samples; "
-            'give [plant] form = "continuous", or leave [true_plant] out'
+            "[true_plant] is continuous, and [plant] is known at its samples; leave it out, or, of "
+            'a model file, give [plant] form = "continuous"'
         )
     if read.order and read.poles().real.max() >= 0.0:
         worst = complex(read.poles()[np.argmax(read.poles().real)])

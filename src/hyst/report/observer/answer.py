@@ -326,8 +326,9 @@ class ObserverAnswer:
         if not self.safe:
             return "Nothing: controller.json is not written while the loop is not safe."
         inverse = "no inverse" if self.block.inverse is None else "the inverse of the hysteresis"
+        states = f"{self.block.order} state{'s' * (self.block.order != 1)}"
         return (
-            f"controller.json: {self.block.order} state{'s' * (self.block.order != 1)} and {inverse}, every {self.block.dt:g} s; "
+            f"controller.json: {states} and {inverse}, every {self.block.dt:g} s; "
             f"in the simulation it tracks with rms {number(self.loop.rms_error)}, "
             f"max {number(self.loop.max_error)}."
         )
