@@ -16,6 +16,7 @@ from hyst.control import (
     hinf_norm,
     loop_margins,
 )
+from hyst.control.feedback.loop_plant import loop_plant
 from hyst.errors import InputError
 
 STAGE = mode(500.0, 0.05)
@@ -180,6 +181,24 @@ def test_a_slow_integrator_before_a_fast_plant_with_dead_time() -> None:
     assert found.phase_margin == pytest.approx(90.0 - math.degrees(1.5e-4), rel=1e-8)
     assert found.delay_margin == pytest.approx(0.5 * math.pi - 1.5e-4, rel=1e-8)
     assert found.rejection == pytest.approx(1.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("late", [0.4, 3.0, 40.3])
+def test_response_of_a_late_plant_is_that_of_all_its_states(late: float) -> None:
+    """Whole samples are turns of the plant without them, which takes no state for each."""
+    met = loop_plant(STAGE, STAGE_DT, late * STAGE_DT)
+    w = np.geomspace(1.0, 0.99 * math.pi / STAGE_DT, 200)
+    assert met.sampled is not None
+    states = met.sampled.system.response(np.exp(1j * w * STAGE_DT))[:, 0, 0]
+    # 1e-12: an exponential of the matrix and 40 products.
+    assert met.response(w) == pytest.approx(states, rel=1e-12)
+
+
+def test_half_a_thousand_samples_of_delay_leave_a_slow_loop_its_margins() -> None:
+    """L is 1/s, and 0.05 s late: the gain may grow to pi / 2 / (0.05 + half a sample)."""
+    found = loop_margins(1.0, ([1.0], [1.0, 0.0]), 1e-4, 500e-4)
+    # 1 + L has 1e-4 of a turn more than the dead time: the trapezoidal rule, the hold.
+    assert found.gain_margin == pytest.approx(0.5 * math.pi / 0.05, rel=2e-3)
 
 
 def test_identified_dynamics_bring_their_time_and_their_delay() -> None:

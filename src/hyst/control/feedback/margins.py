@@ -262,7 +262,7 @@ def _grid(plant: LoopPlant, controller: LinearSystem) -> Array:
     """Near all poles, those of the closed loop included, and fine enough for what delay turns."""
     rates = [as_rates(plant.system), as_rates(controller)]
     # What is slow does not feel a dead time, and may be slower than all poles of the open loop.
-    if plant.delay == 0.0 or abs(float(plant.system.D[0, 0] * controller.D[0, 0])) < 1.0:
+    if abs(1.0 + float(plant.system.D[0, 0] * controller.D[0, 0])) > 1e-9:
         poles = loop_poles(plant.system, controller)
         rates.append(rates_of(poles, plant.dt))
     w = frequencies_around(np.concatenate(rates), plant.nyquist)
