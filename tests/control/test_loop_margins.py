@@ -201,6 +201,16 @@ def test_half_a_thousand_samples_of_delay_leave_a_slow_loop_its_margins() -> Non
     assert found.gain_margin == pytest.approx(0.5 * math.pi / 0.05, rel=2e-3)
 
 
+@pytest.mark.parametrize("dt", [None, 1e-3])
+def test_a_static_gain_of_minus_one_makes_a_loop_that_integrates(dt: float | None) -> None:
+    """L = -1 / (s + 1) leaves 1 + L = s / (s + 1): on the border, without rejection at rest."""
+    found = loop_margins(([1.0], [1.0, 1.0]), -1.0, dt)
+    assert found.bandwidth == 0.0
+    assert found.rejection == 0.0
+    assert found.peak_sensitivity > 100.0
+    assert found.gain_reduction == pytest.approx(1.0, rel=1e-9)
+
+
 def test_identified_dynamics_bring_their_time_and_their_delay() -> None:
     dynamics = hyst.LinearDynamics.from_continuous(*STAGE, STAGE_DT, delay=1.4)
     own = loop_margins(dynamics, PI)

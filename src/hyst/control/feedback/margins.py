@@ -218,7 +218,9 @@ def margins_of(plant: LoopPlant, controller: LinearSystem) -> LoopMargins:
     turned, factors = _with_ends(plant, controller, turned, factors)
     peak, place = highest(w, lambda at: 1.0 / np.maximum(np.abs(1.0 + loop(at)), 1e-300))
     at_rest = static_gain(plant.system) * static_gain(controller)
-    whole = 1.0 if math.isinf(at_rest) or math.isnan(at_rest) else _closed(at_rest)
+    whole = 1.0 if math.isinf(at_rest) or math.isnan(at_rest) else math.inf
+    if math.isfinite(at_rest) and at_rest != -1.0:  # at -1 the loop integrates
+        whole = _closed(at_rest)
     return LoopMargins(
         stable=stable,
         gain_margin=float(factors[factors > 1.0].min(initial=math.inf)),
