@@ -115,7 +115,7 @@ def test_delays_add_up_and_whole_ones_are_states() -> None:
     [
         ((PLANT,), "the plant is continuous; give dt"),
         ((PLANT, DT, -1e-4), "delay is -0.0001"),
-        ((PLANT, DT, 2.0), "2000 samples; at most 1000"),
+        ((PLANT, DT, 2.0), "2000 samples; at most 100 "),
         ((LinearDynamics([], [], [], 1.0, DT), 2 * DT), "the plant has dt = 0.001 s, the loop"),
         ((LinearDynamics([], [], [], 1.0, DT), DT, 0.5 * DT), "give whole samples"),
         ((([1.0], [1.0, -1.0]), DT), "is unstable"),

@@ -20,6 +20,9 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Points = NDArray[np.complexfloating[Any, Any]]
 
+# Numbers that are solved for together: some 60 megabytes.
+_MOST_ENTRIES = 4_000_000
+
 
 @dataclass(frozen=True)
 class LinearSystem:
@@ -92,8 +95,14 @@ class LinearSystem:
             return np.broadcast_to(self.D.astype(complex), (points.size, *self.D.shape)).copy()
         # Companion forms of high order have entries of all sizes, where elimination loses digits.
         A, B, C = balanced_matrices(self.A, self.B, self.C)
-        matrices = points[:, None, None] * np.eye(self.order) - A
-        return np.asarray(C @ np.linalg.solve(matrices, B.astype(complex)) + self.D)
+        found = np.empty((points.size, *self.D.shape), dtype=np.complex128)
+        # A few frequencies at a time: a delay of many samples has a matrix of many states at each.
+        together = max(1, _MOST_ENTRIES // self.order**2)
+        for first in range(0, points.size, together):
+            some = slice(first, first + together)
+            matrices = points[some, None, None] * np.eye(self.order) - A
+            found[some] = C @ np.linalg.solve(matrices, B.astype(complex)) + self.D
+        return found
 
     def as_control(self) -> Any:
         """Give the ``control.StateSpace`` of the same matrices.

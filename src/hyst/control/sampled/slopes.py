@@ -16,6 +16,7 @@ from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError
 
 Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 _SLOPES = 40
 
@@ -34,7 +35,7 @@ def sampled_slope_proof(
     slopes, ``c - rho`` and ``c + rho``. The differences of all signals stay bounded in l2, for
     every plant within Wu, if the loop with the gain c is stable and
 
-        ``rho |Pd K S_c| + (c + rho) a |K S_c| < 1``,   ``S_c = 1 / (1 + c K Pd)``
+        ``rho |Pd K S_c| + (|c| + rho) a |K S_c| < 1``,   ``S_c = 1 / (1 + c K Pd)``
 
     at all frequencies up to pi/dt: the circle criterion on differences, of the sampled loop.
 
@@ -76,9 +77,9 @@ def sampled_slope_proof(
     def left_hand_side(w: Array) -> Array:
         values = loop.at(w, middle)
         a = folded_uncertainty(loop.plant, weight, w)
-        return np.asarray(np.abs(values.N) * (half * np.abs(values.Pd) + (middle + half) * a))
+        return np.asarray(np.abs(values.N) * (half * np.abs(values.Pd) + (abs(middle) + half) * a))
 
-    return largest(left_hand_side, loop.grid(weight))
+    return largest(left_hand_side, loop.grid(weight, slope=middle))
 
 
 def sampled_slope_failing(
@@ -93,7 +94,7 @@ def sampled_slope_failing(
 
     While the plays that move stay the same the loop is linear, with their slope as its gain g. It
     is stable for every plant within Wu if and only if it is for the nominal one and
-    ``g a |K S_g| < 1``.
+    ``|g| a |K S_g| < 1``.
 
     Parameters
     ----------
@@ -123,12 +124,21 @@ def sampled_slope_failing(
     loop, weight = BlockLoop(block, plant_of_block(plant, block, delay)), stable_weight(Wu, "Wu")
     each = np.linspace(low, high, _SLOPES)
     w = loop.grid(weight)
-    a = folded_uncertainty(loop.plant, weight, w)
+    everywhere = folded_uncertainty(loop.plant, weight, w), *loop.open(w)
     for slope in each[np.argsort(np.abs(each - 1.0))]:
-        stable = np.abs(loop.poles(float(slope))).max(initial=0.0) < 1.0
-        if not stable or (slope * a * np.abs(loop.at(w, float(slope)).N)).max() >= 1.0:
+        if np.abs(loop.poles(float(slope))).max(initial=0.0) >= 1.0:
+            return float(slope)
+        # A resonance that only this slope makes is narrower than the grid.
+        own = loop.beside_poles(float(slope))
+        beside = folded_uncertainty(loop.plant, weight, own), *loop.open(own)
+        if max(_row(float(slope), *everywhere), _row(float(slope), *beside)) >= 1.0:
             return float(slope)
     return None
+
+
+def _row(slope: float, a: Array, K: ComplexArray, Pd: ComplexArray) -> float:
+    """Give the largest ``|g| a |K S_g|``."""
+    return float((abs(slope) * a * np.abs(K / (1.0 + slope * K * Pd))).max(initial=0.0))
 
 
 def _ordered(slopes: tuple[float, float]) -> tuple[float, float]:

@@ -170,7 +170,7 @@ def _samples(
     given: Any, nominal: LinearSystem | ContinuousDynamics, w: ArrayLike | None, name: str
 ) -> tuple[Array, Complex]:
     if is_frequency_response(given):
-        return _of_response(given, name)
+        return values_of_response(given, name)
     pair = isinstance(given, tuple | list) and len(given) == 2
     if pair and np.iscomplexobj(np.asarray(given[1])):
         return _checked(given[0], given[1], name)
@@ -181,8 +181,26 @@ def _samples(
     return at, response_at(plant, at)
 
 
-def _of_response(given: Any, name: str) -> tuple[Array, Complex]:
-    """Read what has frequencies and values: of hyst in Hz, of python-control in rad/s."""
+def values_of_response(given: Any, name: str) -> tuple[Array, Complex]:
+    """Read what has frequencies and values: of hyst in Hz, of python-control in rad/s.
+
+    Parameters
+    ----------
+    given
+        MeasuredResponse of hyst or frequency response data of python-control.
+    name
+        What messages call it.
+
+    Returns
+    -------
+    w, G : numpy.ndarray
+        rad/s, and output over input.
+
+    Raises
+    ------
+    InputError
+        If it has several inputs or outputs, no values, or one that is not finite.
+    """
     if not hasattr(given, "omega"):
         return _checked(2.0 * np.pi * np.asarray(given.frequency), given.response, name)
     values = np.asarray(given.frdata if hasattr(given, "frdata") else given.fresp)
