@@ -273,3 +273,13 @@ def test_without_feedforward_there_is_nothing_to_compare() -> None:
         compare_loops(
             sine(10.0), DT, plant=STAGE, controller=PI, hysteresis=HYSTERESIS, feedforward=None
         )
+
+
+def test_a_reference_that_the_hysteresis_cannot_give_diverges_and_is_no_error() -> None:
+    """Dahl's force stays below Fc: for an output beyond there is no drive."""
+    found = compare_loops(
+        sine(10.0)[:2000], DT, plant=STAGE, controller=PI, hysteresis=hyst.Dahl(1.0, 5.0)
+    )
+    assert found["inverse + feedback"].mark == "NOT SAFE"
+    assert np.isinf(found["inverse + feedback"].rms)
+    assert np.isfinite(found["feedback alone"].rms)

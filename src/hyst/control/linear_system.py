@@ -22,6 +22,8 @@ Points = NDArray[np.complexfloating[Any, Any]]
 
 # Numbers that are solved for together: some 60 megabytes.
 _MOST_ENTRIES = 4_000_000
+# So near to a pole, as a share, its residue is far above all else, and not yet all rounding.
+_BESIDE = 1e-12
 
 
 @dataclass(frozen=True)
@@ -100,8 +102,7 @@ class LinearSystem:
         together = max(1, _MOST_ENTRIES // self.order**2)
         for first in range(0, points.size, together):
             some = slice(first, first + together)
-            matrices = points[some, None, None] * np.eye(self.order) - A
-            found[some] = C @ np.linalg.solve(matrices, B.astype(complex)) + self.D
+            found[some] = C @ _solved(points[some], A, B.astype(complex)) + self.D
         return found
 
     def as_control(self) -> Any:
@@ -114,6 +115,16 @@ class LinearSystem:
         """
         control = _python_control()
         return control.ss(self.A, self.B, self.C, self.D, self.dt, remove_useless_states=False)
+
+
+def _solved(points: ComplexArray, A: Array, B: ComplexArray) -> ComplexArray:
+    """Solve (s - A) X = B for each s; at a pole itself beside it, as rounding mostly has it."""
+    unit = np.eye(A.shape[0])
+    try:
+        return np.asarray(np.linalg.solve(points[:, None, None] * unit - A, B))
+    except np.linalg.LinAlgError:
+        beside = points * (1.0 + _BESIDE)
+        return np.asarray(np.linalg.solve(beside[:, None, None] * unit - A, B))
 
 
 def balanced(system: LinearSystem) -> LinearSystem:

@@ -28,6 +28,7 @@ Mark: TypeAlias = Literal["proven", "simulated only", "NOT SAFE"]
 _MARKS: dict[str, Mark] = {
     "proven": "proven", "simulated": "simulated only", "not safe": "NOT SAFE"
 }  # fmt: skip
+_HALVINGS = 20  # of a reference that the inverse cannot give
 
 
 @final
@@ -270,14 +271,25 @@ def _mark(open_and_stable: bool, tried: TriedLoop) -> tuple[Mark, str]:
 
 def _line(hysteresis: Operator, inverse: Operator, v: Array) -> Operator:
     """Fit u over w by a straight line, for the drives that the inverse asks for."""
-    u = inverse(v)
-    w = hysteresis(u)
+    u, w = _as_far_as_it_goes(hysteresis, inverse, v)
     if np.ptp(w) <= 1e-12 * np.abs(w).max(initial=0.0):
         return Affine(1.0)
     slope, offset = np.polyfit(w, u, 1)
     if slope == 0.0:
         raise InputError("the hysteresis does not follow its drive, so no line stands for it")
     return Affine(float(slope), float(offset))
+
+
+def _as_far_as_it_goes(hysteresis: Operator, inverse: Operator, v: Array) -> tuple[Array, Array]:
+    """Give drives and outputs for v, or for the largest half, quarter .. of it that it can give."""
+    for halvings in range(_HALVINGS):
+        try:
+            u = inverse(v / 2.0**halvings)
+            return u, hysteresis(u)
+        except InputError:
+            # Hysteresis that saturates, as Dahl's does, has no drive for an output beyond.
+            continue
+    raise InputError("the inverse gives no drive for this reference nor for a part of it; scale it")
 
 
 def _told(value: float) -> str:
