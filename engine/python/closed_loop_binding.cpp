@@ -179,7 +179,8 @@ std::vector<double> copied(const Signal &state, std::size_t length) {
 
 nb::tuple told(const LoopResult &result) {
     static const char *const ends[] = {"done", "diverged", "no-solution"};
-    return nb::make_tuple(ends[static_cast<int>(result.end)], result.samples);
+    return nb::make_tuple(ends[static_cast<int>(result.end)], result.samples,
+                          result.held);
 }
 
 nb::tuple continuous(Matrix step, bool delayed, const Chain &inverse, const Chain &hysteresis,

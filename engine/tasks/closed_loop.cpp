@@ -220,7 +220,10 @@ LoopResult run_limited_loop(std::size_t n, const double *step,
         return hyst_limited_tracking_step(&controller, controller_state.data(), before.data(),
                                           &guard, y_ref, y, &v, &excess);
     };
-    return run_around(n, step, answer, hysteresis, hysteresis_state, signals, limit);
+    LoopResult result =
+        run_around(n, step, answer, hysteresis, hysteresis_state, signals, limit);
+    result.held = guard.limited != 0;
+    return result;
 }
 
 }  // namespace hyst

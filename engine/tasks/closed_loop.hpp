@@ -23,6 +23,7 @@ enum class LoopEnd { done, diverged, no_solution };
 struct LoopResult {
     LoopEnd end;
     std::size_t samples;  // how many are good
+    bool held = false;    // whether a limited drive was ever not that of the inverse
 };
 
 // Controller, observer and plant sampled as one system whose inputs are held:

@@ -145,7 +145,7 @@ def run_continuous_loop(
     inputs: Array,
     outputs: Array,
     limit: float,
-) -> tuple[str, int]: ...
+) -> tuple[str, int, bool]: ...
 def run_sampled_loop(
     step: Array,
     controller: TrackingController,
@@ -155,7 +155,7 @@ def run_sampled_loop(
     inputs: Array,
     outputs: Array,
     limit: float,
-) -> tuple[str, int]: ...
+) -> tuple[str, int, bool]: ...
 def play_gram(
     r: Sequence[float], z: Array, u: Array, y: Array, edges: Sequence[int], result: Array
 ) -> None: ...

@@ -12,6 +12,7 @@ import hyst
 from hyst.control import (
     ClosedLoop,
     TrackingController,
+    judge_loop,
     reference_feedforward,
     simulate_closed_loop,
 )
@@ -223,6 +224,10 @@ def test_a_loop_goes_on_where_no_drive_belongs_to_v(more: dict[str, Any]) -> Non
     # 0.2 s, of which the loop of 100 1/s needs a tenth: e^-20 of 2.
     assert abs(done.e[-1]) < 1e-8
     assert np.abs(done.v - friction(done.u)).max() < 1e-12
+    # It was at neither end, and yet no proof is of it.
+    assert done.held
+    assert np.abs(done.u).max() < 2.9
+    assert judge_loop(limited, plant, 0.0, friction, done).standing == "simulated"
     # Records and steps are the same, and the fault tells.
     assert np.array_equal(limited.run(done.r, done.y)[0], done.u)
     step = limited.stepper()

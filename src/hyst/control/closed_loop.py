@@ -46,6 +46,9 @@ class ClosedLoop:
         Seconds at the start that the metrics leave out.
     diverged_at
         Time of divergence, s, or None.
+    held
+        Whether a TrackingController ever held its drive, at its limits or its rate, or where no
+        drive belongs to v.
     """
 
     dt: float
@@ -59,6 +62,7 @@ class ClosedLoop:
     disturbance: Array
     settle: float
     diverged_at: float | None
+    held: bool = False
 
     @property
     def t(self) -> Array:

@@ -160,13 +160,13 @@ def simulate_closed_loop(
             raise InputError(
                 "a TrackingController has its own inverse and observer; leave them out"
             )
-        end, good = _sampled(controller, sampled_plant(plant, time, delay), actuator, signals)
+        end, good, held = _sampled(controller, sampled_plant(plant, time, delay), actuator, signals)
     else:
         _refuse_late(delay)
         part = joined(feedback_controller(controller), disturbance_observer_of(observer))
         step = held_step(continuous_loop(plant_of(plant), part), time)
         first, late = _chain(inverse, "inverse", time), algebraic_loop == "delay"
-        end, good = _engine.run_continuous_loop(
+        end, good, held = _engine.run_continuous_loop(
             step, late, first, actuator[0], _start(inverse), actuator[1], *signals
         )
     _refuse_unsolved(end, good * time)
@@ -175,7 +175,7 @@ def simulate_closed_loop(
     if isinstance(controller, TrackingController) and controller.E is not None and good:
         d_hat = controller.estimate(r, y + spread)
     diverged_at = good * time if end == "diverged" else None
-    return ClosedLoop(time, r, y, spread, v, u, eta, d_hat, d, settled, diverged_at)
+    return ClosedLoop(time, r, y, spread, v, u, eta, d_hat, d, settled, diverged_at, held)
 
 
 def _refuse_late(delay: float) -> None:
@@ -199,7 +199,7 @@ def _sampled(
     plant: SampledPlant,
     actuator: tuple[_engine.Chain, Array],
     signals: tuple[Array, Array, float],
-) -> tuple[str, int]:
+) -> tuple[str, int, bool]:
     if abs(controller.dt - plant.dt) > 1e-6 * plant.dt:
         raise InputError(
             f"the controller has dt = {controller.dt:.6g} s, the loop {plant.dt:.6g} s; "

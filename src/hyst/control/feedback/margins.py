@@ -248,9 +248,9 @@ def largest_noise_gain(
     Parameters
     ----------
     plant, controller
-        Of the loop.
+        As ``margins_of`` takes them.
     weight
-        Takes frequencies, rad/s, shape (K,), and gives values of this shape; 1 if left out.
+        Of frequencies, rad/s, below half the sample rate; 1 if left out.
     """
     w = _grid(plant, controller)
     # At the highest frequency of samples itself a weight that folds need not be known.

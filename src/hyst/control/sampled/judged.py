@@ -113,7 +113,7 @@ def judge_loop(
 
 
 def limits_met(block: TrackingController, loop: ClosedLoop) -> bool:
-    """Tell whether the drive met the block's own limits.
+    """Tell whether the drive met the block's own limits, or was held for no drive belongs to v.
 
     Parameters
     ----------
@@ -122,6 +122,8 @@ def limits_met(block: TrackingController, loop: ClosedLoop) -> bool:
     loop
         What came of it.
     """
+    if loop.held:
+        return True
     low, high = (-np.inf, np.inf) if block.limits is None else block.limits
     if loop.u.size and (loop.u.min() <= low or loop.u.max() >= high):
         return True
