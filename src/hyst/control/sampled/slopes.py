@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_number
+from hyst.control.linear_system import LinearSystem
 from hyst.control.sampled.block_loop import BlockLoop, largest
 from hyst.control.sampled.certificate import plant_of_block, stable_weight
 from hyst.control.sampled.folding import folded_uncertainty
@@ -34,7 +35,7 @@ def sampled_slope_proof(
     slopes, ``c - rho`` and ``c + rho``. The differences of all signals stay bounded in l2, for
     every plant within Wu, if the loop with the gain c is stable and
 
-        ``rho |Pd K S_c| + (c + rho) a |K S_c| < 1``,   ``S_c = 1 / (1 + c K Pd)``
+        ``rho |Pd K S_c| + (|c| + rho) a |K S_c| < 1``,   ``S_c = 1 / (1 + c K Pd)``
 
     at all frequencies up to pi/dt: the circle criterion on differences, of the sampled loop.
 
@@ -76,9 +77,9 @@ def sampled_slope_proof(
     def left_hand_side(w: Array) -> Array:
         values = loop.at(w, middle)
         a = folded_uncertainty(loop.plant, weight, w)
-        return np.asarray(np.abs(values.N) * (half * np.abs(values.Pd) + (middle + half) * a))
+        return np.asarray(np.abs(values.N) * (half * np.abs(values.Pd) + (abs(middle) + half) * a))
 
-    return largest(left_hand_side, loop.grid(weight))
+    return largest(left_hand_side, loop.grid(weight, slope=middle))
 
 
 def sampled_slope_failing(
@@ -93,7 +94,7 @@ def sampled_slope_failing(
 
     While the plays that move stay the same the loop is linear, with their slope as its gain g. It
     is stable for every plant within Wu if and only if it is for the nominal one and
-    ``g a |K S_g| < 1``.
+    ``|g| a |K S_g| < 1``.
 
     Parameters
     ----------
@@ -122,13 +123,19 @@ def sampled_slope_failing(
     low, high = _ordered(slopes)
     loop, weight = BlockLoop(block, plant_of_block(plant, block, delay)), stable_weight(Wu, "Wu")
     each = np.linspace(low, high, _SLOPES)
-    w = loop.grid(weight)
-    a = folded_uncertainty(loop.plant, weight, w)
     for slope in each[np.argsort(np.abs(each - 1.0))]:
-        stable = np.abs(loop.poles(float(slope))).max(initial=0.0) < 1.0
-        if not stable or (slope * a * np.abs(loop.at(w, float(slope)).N)).max() >= 1.0:
+        if not _is_stable(loop, weight, float(slope)):
             return float(slope)
     return None
+
+
+def _is_stable(loop: BlockLoop, Wu: LinearSystem, slope: float) -> bool:
+    """Tell whether the loop with a gain is stable for every plant within Wu."""
+    if np.abs(loop.poles(slope)).max(initial=0.0) >= 1.0:
+        return False
+    w = loop.grid(Wu, slope=slope)
+    a = folded_uncertainty(loop.plant, Wu, w)
+    return bool((abs(slope) * a * np.abs(loop.at(w, slope).N)).max() < 1.0)
 
 
 def _ordered(slopes: tuple[float, float]) -> tuple[float, float]:

@@ -164,7 +164,7 @@ def _factor(kind: int, w: float, damping: float) -> LinearSystem:
 
 def _directed(loop: BlockLoop, Wu: LinearSystem, slope: float) -> Iterator[LinearSystem]:
     """Deviations whose phases add up against the loop where it is weakest."""
-    w = loop.grid(Wu)
+    w = loop.grid(Wu, slope=slope)
 
     def row(at: Array) -> Array:
         return np.asarray(folded_uncertainty(loop.plant, Wu, at) * np.abs(loop.at(at, slope).N))
