@@ -18,6 +18,7 @@ from hyst.models.realizations import companion
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+_LARGE, _AT_A_TIME, _BLOCK = 60, 2000, 64  # states that are many; points and rows solved at once
 Points = NDArray[np.complexfloating[Any, Any]]
 
 
@@ -92,6 +93,8 @@ class LinearSystem:
             return np.broadcast_to(self.D.astype(complex), (points.size, *self.D.shape)).copy()
         # Companion forms of high order have entries of all sizes, where elimination loses digits.
         A, B, C = balanced_matrices(self.A, self.B, self.C)
+        if self.order > _LARGE:
+            return _by_schur(A, B, C, self.D, points)
         matrices = points[:, None, None] * np.eye(self.order) - A
         return np.asarray(C @ np.linalg.solve(matrices, B.astype(complex)) + self.D)
 
@@ -105,6 +108,25 @@ class LinearSystem:
         """
         control = _python_control()
         return control.ss(self.A, self.B, self.C, self.D, self.dt, remove_useless_states=False)
+
+
+def _by_schur(A: Array, B: Array, C: Array, D: Array, points: ComplexArray) -> ComplexArray:
+    """Values of a transfer function of many states, as long delays have: one triangle for all."""
+    T, U = scipy.linalg.schur(A, output="complex")
+    right, left, n = U.conj().T @ B, C @ U, len(A)
+    values = np.empty((points.size, *D.shape), dtype=np.complex128)
+    for start in range(0, points.size, _AT_A_TIME):
+        z = points[start : start + _AT_A_TIME]
+        X = np.empty((n, B.shape[1], z.size), dtype=np.complex128)
+        for stop in range(n, 0, -_BLOCK):
+            first = max(stop - _BLOCK, 0)
+            # What is solved below a block of rows goes to its right-hand side at once.
+            rest = right[first:stop, :, None] + np.tensordot(T[first:stop, stop:], X[stop:], 1)
+            for i in range(stop - 1, first - 1, -1):
+                inner = np.tensordot(T[i, i + 1 : stop], X[i + 1 : stop], 1)
+                X[i] = (rest[i - first] + inner) / (z - T[i, i])
+        values[start : start + _AT_A_TIME] = np.moveaxis(np.tensordot(left, X, 1), -1, 0) + D
+    return values
 
 
 def balanced(system: LinearSystem) -> LinearSystem:
