@@ -346,3 +346,14 @@ def test_samples_that_follow_absurdly_fast_hide_no_plant() -> None:
     """T of the continuous loop is 1 at frequency 0."""
     quick = TrackingController.from_continuous(SLOW_C, dt=1e-12)
     assert sampled_certificate(quick, STAGE, 1.5).uncertainty_norm > 1.499
+
+
+def test_rounding_of_poles_next_to_one_breaks_nothing() -> None:
+    """A deviation that turns far below the loop's slowest pole leaves a double pole near 1."""
+    den = [3.7828e-51, 8.4376e-44, 1.1182e-33, 7.1095e-27, 6.4273e-17, 1.3273e-10, 1.0]
+    plant, Wu = ([2.0634e-9, 2.8257e-2, 9.6736e8], den), ([3.658e-8, 0.97], [3.0828e-9, 1.0])
+    block = TrackingController.from_continuous(([8.592e-6], [1.0, 0.0]), dt=2.37224e-8)
+    assert sampled_certificate(block, plant, Wu).uncertainty_norm == pytest.approx(0.97, rel=1e-3)
+    assert stress(block, plant, Wu, tries=30).holds
+    more = [each * 1.05 / 0.97 for each in Wu[0]]
+    assert not stress(block, plant, (more, Wu[1]), tries=30).holds

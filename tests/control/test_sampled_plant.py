@@ -147,3 +147,12 @@ def test_refused(given: tuple[object, ...], says: str) -> None:
 def test_what_never_falls_off_has_no_bound() -> None:
     with pytest.raises(InputError, match="has no bound"):
         folded_uncertainty(sampled_plant(([1.0, 2.0], [1.0, 1.0]), DT), 0.1, np.array([1.0]))
+
+
+def test_a_delay_of_hundreds_of_samples_is_a_delay() -> None:
+    lag = sampled_plant(([400.0], [1.0, 400.0]), DT).system
+    late = sampled_plant(([400.0], [1.0, 400.0]), DT, 600 * DT).system
+    z = np.exp(1j * np.linspace(1e-3, np.pi, 1000))
+    # Powers of z to the 600th carry the rounding of z 600 times.
+    wanted = lag.response(z)[:, 0, 0] * z**-600
+    np.testing.assert_allclose(late.response(z)[:, 0, 0], wanted, rtol=1e-11)
