@@ -249,7 +249,7 @@ def test_plants_that_begin_elsewhere_are_covered_at_all_frequencies(dt: float) -
     assert (off / np.abs(found.system.response(points)[:, 0, 0])).max() < 1.005
 
 
-@pytest.mark.parametrize("seed", [0, 7, 12, 15, 21])
+@pytest.mark.parametrize("seed", [0, 7, 8, 12, 21])
 def test_a_cover_does_not_dip_between_samples(seed: float) -> None:
     """Against the straight lines, in logarithms, between samples 9 % apart."""
     w, draw = np.geomspace(1.0, 1e3, 80), np.random.default_rng(seed)
@@ -259,5 +259,5 @@ def test_a_cover_does_not_dip_between_samples(seed: float) -> None:
     found = uncertainty_weight(nominal, [(w, (1.0 + radius) * values(nominal, w))], order=6)
     between = np.geomspace(1.0, 1e3, 30_000)
     line = np.exp(np.interp(np.log(between), np.log(w), np.log(np.maximum(radius, 0.01))))
-    # Beside a dip that was filled some per cent may lack.
-    assert (line / np.abs(values(found.system, between))).max() < 1.03
+    # Lines are asked at five points each.
+    assert (line / np.abs(values(found.system, between))).max() < 1.003

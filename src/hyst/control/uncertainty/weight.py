@@ -36,7 +36,7 @@ _WORTH_AN_ORDER = 0.85  # of the excess before, for one order more
 _MORE_ORDERS = 2  # that are tried beyond the last that was worth it: a resonance takes two
 _POINTS = 300  # that a linear program takes; of more, the largest of each of so many bins
 _DIP = 2.0**0.25  # on either side of what is narrow
-_REPEATS = 8
+_REPEATS, _BETWEEN = 8, 6
 _BESIDE = np.array([-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0])  # widths of a dip
 _WIDE = 1.1  # ratio of neighbouring frequencies from which there are points between
 
@@ -304,6 +304,15 @@ def _with_dips(target: Target, cover: Cover) -> Target:
     return _joined(target, x, line)
 
 
+def _lines(w: Array, radius: Array) -> tuple[Array, Array]:
+    """Give points on the straight lines between samples, in logarithms."""
+    known = w > 0.0
+    at, values = np.log(w[known]), np.log(radius[known])
+    parts = np.arange(1, _BETWEEN)[:, None] / _BETWEEN
+    between = (at[:-1] + parts * np.diff(at)).ravel()
+    return np.exp(between), np.exp(np.interp(between, at, values))
+
+
 def _gain2(cover: Cover, x: Array) -> Array:
     basis = np.hstack([np.ones((x.size, 1)), cover.corners / (x[:, None] + cover.corners)])
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -339,7 +348,9 @@ def _made(
 ) -> UncertaintyWeight:
     """Give the weight, raised by what it lacks between samples, or by rounding of its factors."""
     made = UncertaintyWeight(spectral_factor(cover, dt), cover.excess, w, radius)
-    short = max(float((radius / made.gain).max()), between)
+    at, line = _lines(w, radius)
+    lacks = line / np.abs(response_at(made.system, at))
+    short = max(float((radius / made.gain).max()), float(lacks.max(initial=1.0)), between)
     if not np.isfinite(short):
         raise InputError("the deviations are too large to be covered; leave out what is not finite")
     if short > 1.0:
