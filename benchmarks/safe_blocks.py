@@ -8,8 +8,8 @@ certified; then 100 plants within Wu are tried on each, the first of them direct
 at random, and of those that come closest the loop is simulated, hysteresis and inverse included.
 Prints
 - how many blocks are called safe, and how many of these any plant broke (there must be none),
-- of those refused, the share for which a plant was found that breaks them or whose margin is below
-  1 (at least 0.9 asked).
+- of those refused, for how many a plant was found that breaks them, and for how many there was one
+  or the margin is below 1 (at least 0.9 of them asked).
 
 HYST_SAFE_SPECS and HYST_SAFE_PLANTS shorten it.
 """
@@ -109,7 +109,7 @@ def judged(spec: Spec, plants: int, discrete: bool, seed: int) -> tuple[bool, bo
 
 def counted(discrete: bool, specs: int, plants: int) -> str:
     """Judge all specs, and say how many were right."""
-    safe = wrong = refused = broken_or_below = 0
+    safe = wrong = refused = found = broken_or_below = 0
     start = time.process_time()
     for seed, spec in zip(range(specs), random_specs(19), strict=False):
         try:
@@ -119,12 +119,13 @@ def counted(discrete: bool, specs: int, plants: int) -> str:
         safe += is_safe
         wrong += is_safe and broken
         refused += not is_safe
+        found += not is_safe and broken
         broken_or_below += not is_safe and (broken or margin < 1.0)
     took = time.process_time() - start
     return (
-        f"{safe} safe, {wrong} of them broken; {refused} refused, of these broken or with a margin "
-        f"below 1: {broken_or_below}; {specs - safe - refused} specs were refused as input; "
-        f"{took:.0f} s"
+        f"{safe} safe, {wrong} of them broken; {refused} refused, {found} of them broken, "
+        f"{broken_or_below} broken or with a margin below 1; {specs - safe - refused} specs "
+        f"refused as input; {took:.0f} s"
     )
 
 

@@ -174,6 +174,23 @@ def test_a_settled_start_is_where_the_loop_comes_to_rest(
         assert loop.y[0] == pytest.approx(40.0, rel=1e-12)
 
 
+@pytest.mark.parametrize("leak", [10.0, 0.1, 1e-3, 1e-5])
+@pytest.mark.parametrize("gain", [1e-6, 1.0, 1e6])
+def test_a_settled_start_of_a_slow_leak_is_no_integrator_s(gain: float, leak: float) -> None:
+    """L(0) = 1000 / leak, so y rests at r L / (1 + L) exactly, with an exact inverse."""
+    block = TrackingController.from_continuous(
+        ([0.1 / gain, 1000.0 / gain], [1.0, leak]), DT, inverse=INVERSE
+    )
+    loop = simulate_closed_loop(
+        np.full(100, 40.0 * gain), DT, plant=mode(90.0, 0.8, gain), controller=block,
+        hysteresis=HYSTERESIS, start="settled",
+    )  # fmt: skip
+    at_rest = 40.0 * gain / (1.0 + leak / 1000.0)
+    # Rounding of A, 1e-16 of leak DT, is what is left of the static gain.
+    assert loop.y[0] == pytest.approx(at_rest, rel=1e-10)
+    assert loop.y[-1] == pytest.approx(at_rest, rel=1e-8)
+
+
 def test_a_settled_loop_goes_on_as_one_that_has_settled() -> None:
     """Half a second of rest before the motion, by the long way, and at once."""
     block = TrackingController.from_continuous(PI, DT, inverse=INVERSE, feedforward=True)

@@ -172,6 +172,16 @@ def test_bandwidth_and_rejection_of_a_first_order_loop() -> None:
     assert found.modulus_margin == pytest.approx(1.0, abs=1e-6)  # reached at infinity
 
 
+def test_a_slow_integrator_before_a_fast_plant_with_dead_time() -> None:
+    """L is 1/s far below pole and dead time, so |L| = 1 at 1 rad/s and |S| = 0.707 at 1 rad/s."""
+    found = loop_margins(([1.0], [1e-4, 1.0]), ([1.0], [1.0, 0.0]), delay=5e-5)
+    # Pole and dead time turn by 1.5e-4 rad there, and change |S| as much.
+    assert found.crossovers == pytest.approx([1.0], rel=1e-7)
+    assert found.phase_margin == pytest.approx(90.0 - math.degrees(1.5e-4), rel=1e-8)
+    assert found.delay_margin == pytest.approx(0.5 * math.pi - 1.5e-4, rel=1e-8)
+    assert found.rejection == pytest.approx(1.0, rel=1e-3)
+
+
 def test_identified_dynamics_bring_their_time_and_their_delay() -> None:
     dynamics = hyst.LinearDynamics.from_continuous(*STAGE, STAGE_DT, delay=1.4)
     own = loop_margins(dynamics, PI)

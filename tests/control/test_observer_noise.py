@@ -169,14 +169,16 @@ def test_no_random_gain_is_quieter(quiet: DisturbanceObserver) -> None:
 def test_ties_do_not_cost_what_is_told() -> None:
     """Below 1 stays below 1, and above it only what is the same in all digits is given up."""
     printed = (PLANT, PRINTED_C, WU, WP)
-    best = design_disturbance_observer(*printed, method="descent", flat=0.0)
-    found = design_disturbance_observer(*printed, method="descent")
+    best = design_disturbance_observer(*printed, method="descent", starts=2, flat=0.0)
+    found = design_disturbance_observer(*printed, method="descent", starts=2)
     assert 1.0 < best.gamma <= found.gamma <= 1.0001 * best.gamma * (1.0 + 1e-9)
     assert found.certificate.observer_noise_gain < 0.95 * best.certificate.observer_noise_gain
     # Weights that the best gain meets by 0.5 %: a quieter one may not lose that.
     share = 0.995 / best.gamma
     tight = ([share * each for each in WU[0]], WU[1]), ([share * each for each in WP[0]], WP[1])
-    assert design_disturbance_observer(PLANT, PRINTED_C, *tight, method="descent").feasible
+    assert design_disturbance_observer(
+        PLANT, PRINTED_C, *tight, method="descent", starts=2
+    ).feasible
 
 
 @pytest.mark.parametrize(("parts", "limit"), [(REPAIRED, 600.0), (STAGE_200, 31416.0)])

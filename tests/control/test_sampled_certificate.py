@@ -357,3 +357,30 @@ def test_rounding_of_poles_next_to_one_breaks_nothing() -> None:
     assert stress(block, plant, Wu, tries=30).holds
     more = [each * 1.05 / 0.97 for each in Wu[0]]
     assert not stress(block, plant, (more, Wu[1]), tries=30).holds
+
+
+def test_slopes_below_zero_count_by_their_size() -> None:
+    """A gain of -0.5 to 0.1 around a slow loop: the plant's deviation is multiplied by 0.5."""
+    block = TrackingController.from_continuous(0.2, 1e-3)
+    loop_value, at = sampled_slope_proof(block, PLANT, (-0.5, 0.1), 0.3)
+    z = np.exp(1j * at * 1e-3)
+    Pd = sampled_plant(PLANT, 1e-3).system.response(np.array([z]))[0, 0, 0]
+    a = hyst.control.folded_uncertainty(sampled_plant(PLANT, 1e-3), 0.3, np.array([at]))[0]
+    by_hand = 0.2 / abs(1.0 - 0.2 * 0.2 * Pd) * (0.3 * abs(Pd) + 0.5 * a)
+    assert loop_value == pytest.approx(by_hand, rel=1e-9)
+
+
+def test_a_resonance_that_one_slope_makes_is_not_overlooked() -> None:
+    """Between the frequencies of a grid: a loop that a slope of 2.15 brings close to the border."""
+    block = TrackingController.from_continuous(([0.05, 20.0], [1.0, 0.0]), 1e-4)
+    plant = ([4e6], [1.0, 60.0, 4e6])
+    unstable = next(
+        slope
+        for slope in np.arange(1.5, 3.0, 1e-3)
+        if abs(closed_loop_poles((np.multiply(plant[0], slope), plant[1]), block)[0]) >= 1.0
+    )
+    near = float(unstable - 2e-3)
+    # The pole next to the circle makes K S as large as 1 / (1 - |z|), whatever Wu is small.
+    assert sampled_slope_failing(block, plant, (near, near), 0.02) == near
+    assert not stress(block, plant, 0.02, 40, slope=near).holds
+    assert sampled_slope_failing(block, plant, (0.5, 0.5), 0.02) is None

@@ -142,6 +142,10 @@ LIMITED = {
     "limited rate": TrackingController(
         [[1.0]], [[1.0, -1.0]], [0.5], [2.0, -2.0], dt=1e-3, rate=30.0, W=[0.5]
     ),
+    "limited, from a drive of its own": TrackingController(
+        [[1.0]], [[1.0, -1.0]], [0.5], [2.0, -2.0], dt=1e-3, rate=30.0, W=[0.5], u0=7.1,
+        limits=(-1.0, 7.3),
+    ),
 }  # fmt: skip
 CONTROLLERS |= LIMITED
 
@@ -177,6 +181,8 @@ def test_limits_hold_on_a_target(name: str, tmp_path: Path, objects: Objects) ->
     y_ref, y = 100.0 * wandering(2000), 100.0 * wandering(2000, seed=8)
     y_ref[:3], y[1000:1010] = np.nan, np.inf
     u = code.run(state, y_ref, y)
+    # What is answered before there is a sample is the allowed drive nearest to u0.
+    assert u[0] == min(max(model.u0, low), high)
     assert u.min() >= low
     assert u.max() <= high
     assert code.fault(state) == 1 | 16
@@ -203,6 +209,27 @@ def test_limits_between_which_single_precision_has_no_number(tmp_path: Path) -> 
     narrow = TrackingController([], [], [], [1.0, -1.0], 1.0, limits=(1.0 + 1e-9, 1.0 + 2e-9))
     with pytest.raises(InputError, match="leave no number of single precision"):
         c_project(narrow, tmp_path / "out", precision="single")
+
+
+@pytest.mark.parametrize("change", [5e-6, 1e-4])
+def test_rates_that_get_lost_in_single_precision(change: float, tmp_path: Path) -> None:
+    """Beside 150, 5e-6 is a third of the last place: the drive would stand still from 128 on."""
+    slow = TrackingController(
+        [], [], [], [1.0, -1.0], 1e-5, limits=(0.0, 150.0), rate=change / 1e-5, u0=140.0
+    )
+    assert np.float32(140.0) + np.float32(5e-6) == np.float32(140.0)
+    with pytest.raises(InputError, match="lost beside a drive of 150 in single precision"):
+        c_project(slow, tmp_path / "out", precision="single")
+    c_project(slow, tmp_path / "double")
+
+
+@pytest.mark.parametrize("limits", [None, (0.0, 150.0), (0.0, 1e30)])
+def test_rates_that_single_precision_counts(limits: tuple[float, float] | None) -> None:
+    block = TrackingController([], [], [], [1.0, -1.0], 1e-5, limits=limits, rate=100.0, u0=140.0)
+    step = stepper_of(block_of(block, "single"), "single")
+    u = stepped(step, np.full(1000, 150.0), np.zeros(1000))
+    # 140 + 1000 times 1e-3, which last places of 1.5e-5 change by 1/128 at most.
+    assert u[-1] == pytest.approx(141.0, abs=1e-2)
 
 
 def test_controllers_need_no_chain(tmp_path: Path) -> None:

@@ -75,7 +75,8 @@ class Section:
         """
         where = f"[{key}]" if self._name == "the spec" else f"{self._name} {key}"
         if not self.has(key):
-            raise hyst.InputError(f"{self._name} has no {where}; give it")
+            missing = where if self._name == "the spec" else repr(key)
+            raise hyst.InputError(f"{self._name} has no {missing}; give it")
         return Section(self._data[key], where)
 
     def number(self, key: str, default: float | None = None, *, positive: bool = False) -> float:

@@ -28,8 +28,10 @@ from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.loop_poles import closed_loop_poles
 from hyst.control.plants import (
     IdentifiedPlant,
+    MeasuredPlant,
     has_dynamics_behind,
     identified_plant,
+    measured_plant,
     plant_and_delay,
 )
 from hyst.control.python_control import closed_loop_system, to_nlsys
@@ -79,6 +81,7 @@ __all__ = [
     "LoopJudgement",
     "LoopMargins",
     "LoopResponses",
+    "MeasuredPlant",
     "ObserverProblem",
     "QFilter",
     "QFilterCertificate",
@@ -114,6 +117,7 @@ __all__ = [
     "judge_loop",
     "loop_margins",
     "loop_responses",
+    "measured_plant",
     "observer_problem",
     "plant_and_delay",
     "q_filter",

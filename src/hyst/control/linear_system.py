@@ -18,8 +18,12 @@ from hyst.models.realizations import companion
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-_LARGE, _AT_A_TIME, _BLOCK = 60, 2000, 64  # states that are many; points and rows solved at once
 Points = NDArray[np.complexfloating[Any, Any]]
+
+_LARGE, _AT_A_TIME, _BLOCK = 60, 2000, 64  # states that are many; points and rows solved at once
+
+# Numbers that are solved for together: some 60 megabytes.
+_MOST_ENTRIES = 4_000_000
 
 
 @dataclass(frozen=True)
@@ -95,8 +99,14 @@ class LinearSystem:
         A, B, C = balanced_matrices(self.A, self.B, self.C)
         if self.order > _LARGE:
             return _by_schur(A, B, C, self.D, points)
-        matrices = points[:, None, None] * np.eye(self.order) - A
-        return np.asarray(C @ np.linalg.solve(matrices, B.astype(complex)) + self.D)
+        found = np.empty((points.size, *self.D.shape), dtype=np.complex128)
+        # A few frequencies at a time: each has a matrix of its own.
+        together = max(1, _MOST_ENTRIES // self.order**2)
+        for first in range(0, points.size, together):
+            some = slice(first, first + together)
+            matrices = points[some, None, None] * np.eye(self.order) - A
+            found[some] = C @ np.linalg.solve(matrices, B.astype(complex)) + self.D
+        return found
 
     def as_control(self) -> Any:
         """Give the ``control.StateSpace`` of the same matrices.

@@ -85,6 +85,9 @@ def _draw(axes: Axes, panel: Panel) -> None:
         # Every sample of a long simulation would only make the file large.
         step = max(1, x.size // _MOST_POINTS)
         plot(x[::step], y[::step], style, color=colour, label=label)
+    if panel.logarithmic:
+        # Over many decades there are hundreds of minor ticks, which nobody reads and all are drawn.
+        axes.minorticks_off()
     axes.set_title(panel.title)
     axes.set_xlabel(panel.xlabel)
     axes.set_ylabel(panel.ylabel)

@@ -30,6 +30,7 @@ from hyst.models import GeneralizedPrandtlIshlinskii, PrandtlIshlinskii
 from hyst.operators import Affine, DeadZone, Operator
 from hyst.report.robust_tracking_figures import draw_all
 from hyst.report.table import Table
+from hyst.studies.s1_what_runs import beyond_the_paper
 
 Array = NDArray[np.float64]
 TITLE = "El-Shaer, Al Janaideh, Krejčí and Tomizuka: disturbance observers for inexact inverses"
@@ -187,6 +188,7 @@ def tables() -> tuple[Table, ...]:
         tracking_table(generalized=True),
         bound_table(),
         circle_table(),
+        *beyond_the_paper(designs(repaired=True).best),
         conclusions(),
     )
 
@@ -199,9 +201,8 @@ def figures() -> dict[str, bytes]:
     dict
         PNG by file name.
     """
-    r = reference(2e-4, 2.0)
     loops = tracked(generalized=False), tracked(generalized=True)
-    best = designs(repaired=True).best
+    best, r = designs(repaired=True).best, reference(2e-4, 2.0)
     return draw_all(best, TRUE_PLANT, r, (PLAYS, GENERALIZED), loops)
 
 

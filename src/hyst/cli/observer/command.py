@@ -82,6 +82,9 @@ def observer(
         if answer.safe:
             names.append("controller.json")
             answer.block.save(temporary / names[5])
+    if not answer.safe:
+        # One of an earlier run would stand beside a page that is not about it.
+        (folder / "controller.json").unlink(missing_ok=True)
     _tell(answer)
     for said in () if spec.identified is None else spec.identified.notes:
         note(said)

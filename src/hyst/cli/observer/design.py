@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import hyst
+from hyst.checks.numbers import said
 from hyst.cli.console import at_work, note
 from hyst.cli.spec_section import Section
 
@@ -103,8 +104,12 @@ def read_design(spec: Section, sampled: bool) -> HowToDesign:
 def _order(given: Section, observer: str) -> int | Literal["auto"] | None:
     if not given.has("order"):
         return None
-    if given.whole("order") == "auto" and observer == _GAIN:
-        return "auto"
+    if observer == _GAIN and isinstance(given.whole("order"), str):
+        if given.whole("order") == "auto":
+            return "auto"
+        raise hyst.InputError(
+            f'[design] order is {said(given.whole("order"))}; give a whole number or "auto"'
+        )
     return given.count("order")
 
 
@@ -150,7 +155,7 @@ def _classical(spec: ObserverSpec) -> Any:
 
 
 def _designed(spec: ObserverSpec, **how: Any) -> Any:
-    noise = spec.noise if spec.noise > 0.0 else None
+    noise = spec.Wn if spec.Wn is not None else spec.noise if spec.noise > 0.0 else None
     with at_work("designing the observer") as say:
         return hyst.control.design_disturbance_observer(
             spec.plant,

@@ -11,6 +11,7 @@ import numpy as np
 import hyst
 from hyst.checks.numbers import as_not_negative, said
 from hyst.cli.arguments import load_operator
+from hyst.cli.console import note
 from hyst.cli.spec_section import Section
 
 if TYPE_CHECKING:
@@ -45,8 +46,8 @@ class SpecPlant:
         return None if self.identified is None else self.identified.dt
 
 
-def read_plant(given: Section, folder: Path) -> SpecPlant:
-    """Read ``[plant]``: a system with ``delay``, or ``file``, a model with hysteresis in front.
+def read_plant(given: Section, folder: Path, implemented: Section) -> SpecPlant:
+    """Read ``[plant]``: a system with ``delay``; ``file``, a model; or ``response``, measured.
 
     Parameters
     ----------
@@ -54,7 +55,11 @@ def read_plant(given: Section, folder: Path) -> SpecPlant:
         The section.
     folder
         From which paths count.
+    implemented
+        The section ``[filter]``, whose dt is that of a plant fitted to a response.
     """
+    if given.has("response"):
+        return _from_response(given, folder, implemented)
     late = as_not_negative(given.number("delay", 0.0), "[plant] delay", "a dead time in seconds")
     if not given.has("file"):
         return SpecPlant(given.system(), late, None)
@@ -64,6 +69,20 @@ def read_plant(given: Section, folder: Path) -> SpecPlant:
     plant = found.dynamics if form == "sampled" else found.continuous_plant()
     system, delay = hyst.control.plant_and_delay(plant, late, "[plant]")
     return SpecPlant(system, delay, found)
+
+
+def _from_response(given: Section, folder: Path, implemented: Section) -> SpecPlant:
+    """Fit the plant to a frequency response; behind a hysteresis in units of y its gain is 1."""
+    response = hyst.read_frequency_response(folder / given.text("response"))
+    gain = given.number("gain", 1.0)
+    given.done()
+    found = hyst.control.measured_plant(response, implemented.number("dt", positive=True), gain)
+    note(
+        f"the plant is of order {found.dynamics.order}, {found.dynamics.delay} samples late, and "
+        f"leaves {100.0 * found.error:.2g} % of the response; its gain at rest, "
+        f"{found.measured_gain:.4g} as measured, is {gain:g}"
+    )
+    return SpecPlant(found.system, 0.0, None)
 
 
 def read_hysteresis(spec: Section, plant: SpecPlant, folder: Path) -> Operator | None:

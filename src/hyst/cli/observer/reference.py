@@ -91,6 +91,12 @@ def read_reference(
         raise hyst.InputError(
             f"[reference] ramp is {ramp:g} s of {duration:g} s; leave some to follow"
         )
+    for _, frequency, _ in sines:
+        if abs(frequency) * dt >= 0.5:
+            raise hyst.InputError(
+                f"[reference] sines has {frequency:g} Hz, and half the sample rate is "
+                f"{0.5 / dt:g} Hz: its samples would show a slower one; lower it"
+            )
     t = np.arange(samples, dtype=np.float64) * dt
     wanted = np.asarray(sum(a * np.sin(2.0 * np.pi * f * t + p) for a, f, p in sines))
     if moved:

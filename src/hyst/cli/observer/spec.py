@@ -40,9 +40,9 @@ _INVERSES = ("exact", "scaled", "reduced", "file", "none")
 class ObserverSpec:
     """A loop, what is asked of its observer, and how to try it.
 
-    ``plant``, ``true_plant`` (or None), ``controller``, weights ``Wu`` and ``Wp`` and
-    ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None, named
-    ``inverse_name``), ``reference``, at the samples of the block, ``settle``, ``noise``,
+    ``plant``, ``true_plant`` (or None), ``controller``, weights ``Wu``, ``Wp`` and ``Wn`` (or
+    None) and ``internal_model`` are what is designed with; ``hysteresis``, ``inverse`` (or None,
+    named ``inverse_name``), ``reference``, at the samples of the block, ``settle``, ``noise``,
     ``disturbance`` and ``seed`` what is simulated; ``filter_dt``, ``filter_method`` and ``delay``
     say what is implemented; ``design`` how, ``limits`` and ``rate`` what its drive may do.
     ``controller_design`` is what C was designed by, or None, ``feedforward`` stands beside it, or
@@ -58,6 +58,7 @@ class ObserverSpec:
     feedforward: Any
     Wu: LinearSystem
     Wp: LinearSystem
+    Wn: LinearSystem | None
     internal_model: InternalModel
     hysteresis: Operator
     inverse: Operator | None
@@ -102,7 +103,7 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     weights = spec.section("weights")
     simulation = spec.section("simulation")
     implemented = spec.section("filter")
-    plant = read_plant(spec.section("plant"), folder)
+    plant = read_plant(spec.section("plant"), folder, implemented)
     hysteresis = read_hysteresis(spec, plant, folder)
     if hysteresis is None:
         hysteresis = _hysteresis(spec.section("hysteresis"), folder)
@@ -130,7 +131,8 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         feedforward=controller.feedforward,
         Wu=Wu,
         Wp=weights.section("Wp").system(),
-        internal_model=_internal_model(spec.section("internal_model")),
+        Wn=weights.section("Wn").system() if weights.has("Wn") else None,
+        internal_model=_internal_model(spec.section("internal_model"), filter_dt),
         hysteresis=hysteresis,
         inverse=inverse,
         inverse_name=name,
@@ -145,7 +147,7 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
         filter_dt=filter_dt,
         filter_method="zoh" if method == "zoh" else "tustin",
         delay=delay,
-        design=read_design(spec, plant.identified is not None and plant.system.dt > 0.0),
+        design=read_design(spec, plant.system.dt > 0.0),
         limits=limits,
         rate=rate,
         identified=plant.identified,
@@ -192,7 +194,7 @@ def _limits(spec: Section) -> tuple[tuple[float, float] | None, float | None]:
     return drive, rate
 
 
-def _internal_model(given: Section) -> InternalModel:
+def _internal_model(given: Section, dt: float) -> InternalModel:
     sinusoids = given.numbers("sinusoids", ())
     if given.has("A") or given.has("C"):
         model = hyst.control.InternalModel(given.matrix("A"), given.matrix("C"))
@@ -206,6 +208,11 @@ def _internal_model(given: Section) -> InternalModel:
     given.done()
     for frequency in sinusoids:
         as_positive(frequency, "[internal_model] sinusoids", "frequencies in Hz")
+        if frequency * dt >= 0.5:
+            raise hyst.InputError(
+                f"[internal_model] sinusoids has {frequency:g} Hz, and half the sample rate of "
+                f"the block is {0.5 / dt:g} Hz: what it cannot see it cannot reject; leave it out"
+            )
         model = model + hyst.control.InternalModel.sinusoid(2.0 * np.pi * float(frequency))
     return model
 

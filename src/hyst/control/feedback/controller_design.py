@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
@@ -14,10 +15,10 @@ from hyst.control.feedback.designed_controller import ControllerDesign, Tried
 from hyst.control.feedback.frequencies import frequencies_around
 from hyst.control.feedback.gain_search import Demands, best_shape
 from hyst.control.feedback.loop_plant import LoopPlant, as_rates, loop_plant
-from hyst.control.feedback.margins import LoopMargins, margins_of
+from hyst.control.feedback.margins import LoopMargins, largest_noise_gain, margins_of
 from hyst.control.feedback.resonances import Resonance, resonances, with_resonances_elsewhere
 from hyst.control.feedback.structures import Shape, controller_points
-from hyst.control.linear_system import as_linear_system
+from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.sampled.folding import folded_uncertainty, weight_response
 from hyst.errors import InputError, SolverError
 
@@ -120,7 +121,7 @@ def design_controller(
         plants=np.array([math.copysign(1.0, gain) * each.response(w) for each in (met, *others)]),
         dt=met.dt,
         peak=1.0 + _BELOW * (float(peak_sensitivity) - 1.0),
-        noise_gain=float(noise_gain) / abs(gain),
+        noise_gain=_BELOW * float(noise_gain) / abs(gain),
         gain_margin=gain_margin,
         phase_margin=phase_margin,
         deviation=None if Wu is None else _deviation(met, Wu, w, abs(gain)),
@@ -128,13 +129,16 @@ def design_controller(
     times = _candidate_times(met)
     notched = () if notch is False else found
     kinds = ("i", "pi", "pid") if kind == "auto" else (kind,)
+    promised = _Promised(
+        float(peak_sensitivity), gain_margin, phase_margin, float(noise_gain) / abs(gain), Wu
+    )
     tried: list[Tried] = []
     for each in kinds:
         shape, ki = best_shape(demands, each, times, notched, notch is True)
         if ki > 0.0:
             signed = math.copysign(ki, gain)
             plants = (met, *others)
-            held = _tried(each, shape, signed, plants, peak_sensitivity, demands)
+            held = _tried(each, shape, signed, plants, promised)
             tried += [held] if held is not None else []
     if not tried:
         raise SolverError(
@@ -224,12 +228,16 @@ def _grid(plants: list[LoopPlant]) -> Array:
     return w[w < plants[0].nyquist * (1.0 - 1e-9)] if plants[0].dt else w
 
 
-def _deviation(plant: LoopPlant, Wu: Any, w: Array, gain: float) -> Array:
+def _uncertain(plant: LoopPlant, Wu: Any, w: Array) -> Array:
+    """Give by how much the plant may be off."""
     if plant.sampled is not None:
-        found = folded_uncertainty(plant.sampled, Wu, w)
-    else:
-        weight = weight_response(as_linear_system(Wu, "Wu"), w)
-        found = np.asarray(np.abs(weight * plant.response(w)))
+        return folded_uncertainty(plant.sampled, Wu, w)
+    weight = weight_response(as_linear_system(Wu, "Wu"), w)
+    return np.asarray(np.abs(weight * plant.response(w)))
+
+
+def _deviation(plant: LoopPlant, Wu: Any, w: Array, gain: float) -> Array:
+    found = _uncertain(plant, Wu, w)
     if found[0] >= gain:
         raise InputError(
             f"Wu is {found[0] / gain:.4g} at low frequencies, so the static gain may have either "
@@ -249,32 +257,53 @@ def _candidate_times(plant: LoopPlant) -> Array:
     return np.geomspace(fast, max(4.0 * max(known), 10.0 * fast), _TIMES)
 
 
+@dataclass(frozen=True, eq=False)
+class _Promised:
+    """What a design says that it keeps, at all frequencies."""
+
+    peak: float
+    gain_margin: float | None
+    phase_margin: float | None
+    noise_gain: float
+    Wu: Any
+
+
 def _tried(
-    kind: str,
-    shape: Shape,
-    ki: float,
-    plants: tuple[LoopPlant, ...],
-    peak: float,
-    demands: Demands,
+    kind: str, shape: Shape, ki: float, plants: tuple[LoopPlant, ...], promised: _Promised
 ) -> Tried | None:
     """Hold a candidate to its demands between the points of the grid, and lower its gain if not."""
+    dt = plants[0].dt
     for k in range(_SHRINKS):
-        continuous = shape.system(ki, demands.dt)
-        system = discretize(continuous, demands.dt) if demands.dt else continuous
+        continuous = shape.system(ki, dt)
+        system = discretize(continuous, dt) if dt else continuous
         found = [margins_of(each, system) for each in plants]
-        if all(_kept(each, peak, demands) for each in found):
+        if all(_kept(each, promised) for each in found) and _quiet(plants, system, promised):
             return Tried(kind, shape, ki, continuous, system, found[0], _worst(found))
         ki *= _SHRINK ** (1 + k // 2)
     return None
 
 
-def _kept(found: LoopMargins, peak: float, demands: Demands) -> bool:
+def _kept(found: LoopMargins, promised: _Promised) -> bool:
+    gain, phase = promised.gain_margin, promised.phase_margin
     return (
         found.stable
-        and found.peak_sensitivity <= peak
-        and (demands.gain_margin is None or found.gain_margin >= demands.gain_margin * (1 - 1e-6))
-        and (demands.phase_margin is None or found.phase_margin >= demands.phase_margin - 1e-4)
+        and found.peak_sensitivity <= promised.peak
+        and (gain is None or found.gain_margin >= gain * (1 - 1e-6))
+        and (phase is None or found.phase_margin >= phase - 1e-4)
     )
+
+
+def _quiet(plants: tuple[LoopPlant, ...], system: LinearSystem, promised: _Promised) -> bool:
+    """Tell whether ``|C S|`` stays within what noise and Wu allow, the latter for the plant."""
+    if any(largest_noise_gain(each, system) > promised.noise_gain for each in plants):
+        return False
+    if promised.Wu is None:
+        return True
+
+    def weight(w: Array) -> Array:
+        return _uncertain(plants[0], promised.Wu, w)
+
+    return largest_noise_gain(plants[0], system, weight) < 1.0
 
 
 def _worst(found: list[LoopMargins]) -> LoopMargins:

@@ -238,6 +238,22 @@ def margins_of(plant: LoopPlant, controller: LinearSystem) -> LoopMargins:
     )
 
 
+def largest_noise_gain(
+    plant: LoopPlant, controller: LinearSystem, weight: Callable[[Array], Array] | None = None
+) -> float:
+    """Give ``max |C S|``, or that of its product with a weight of frequency."""
+    w = _grid(plant, controller)
+    # At the highest frequency of samples itself a weight that folds need not be known.
+    w = w[w < plant.nyquist * (1.0 - 1e-9)]
+
+    def size(at: Array) -> Array:
+        of_controller = controller.response(points(at, plant.dt))[:, 0, 0]
+        gain = np.abs(of_controller / (1.0 + plant.response(at) * of_controller))
+        return gain if weight is None else gain * weight(at)
+
+    return highest(w, size)[0]
+
+
 def _closed(loop: Any) -> Any:
     return loop / (1.0 + loop)
 
@@ -245,7 +261,8 @@ def _closed(loop: Any) -> Any:
 def _grid(plant: LoopPlant, controller: LinearSystem) -> Array:
     """Near all poles, those of the closed loop included, and fine enough for what delay turns."""
     rates = [as_rates(plant.system), as_rates(controller)]
-    if plant.delay == 0.0:
+    # What is slow does not feel a dead time, and may be slower than all poles of the open loop.
+    if plant.delay == 0.0 or abs(float(plant.system.D[0, 0] * controller.D[0, 0])) < 1.0:
         poles = loop_poles(plant.system, controller)
         rates.append(rates_of(poles, plant.dt))
     w = frequencies_around(np.concatenate(rates), plant.nyquist)

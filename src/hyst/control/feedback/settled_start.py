@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import scipy.linalg
 import scipy.optimize
 from numpy.typing import NDArray
 
@@ -19,7 +20,7 @@ from hyst.operators import Affine, Operator
 
 Array = NDArray[np.float64]
 
-_AT_ONE = 1e-7  # of a pole, from 1: an integrator
+_AT_ONE = 1e-12  # of I - A, over its size, below which it is singular: an integrator
 _KEPT = 1e-7  # what a resting state may move, over its own size
 _WIDENINGS = 60
 
@@ -138,14 +139,16 @@ def settled_start(
         u = drive(v)
         return u if hysteresis is None else float(hysteresis(np.array([u]))[0])
 
-    poles = np.linalg.eigvals(block.A) if block.order else np.zeros(0)
-    integrates = bool((np.abs(poles - 1.0) < _AT_ONE).any())
-    if integrates:
-        v = _root(lambda v: gain * given(v) - reference, reference / gain, reference)
+    if _integrates(block):
+        wanted = reference / gain
+        v = _root(lambda v: given(v) - wanted, wanted, reference)
     else:
         of_r, of_y = _static_gains(block)
-        wanted = of_r * reference
-        v = _root(lambda v: v - wanted - of_y * gain * given(v), wanted, reference)
+        # Over what v would miss if hysteresis and inverse cancelled, so that v is found to rounding
+        # of its own size however large the static gain of the loop is.
+        wanted, loop = of_r * reference, of_y * gain
+        share = 1.0 - loop if loop != 1.0 else 1.0
+        v = _root(lambda v: (v - wanted - loop * given(v)) / share, wanted / share, reference)
     w, u = given(v), drive(v)
     if block.limits is not None and not block.limits[0] <= u <= block.limits[1]:
         raise InputError(
@@ -154,6 +157,15 @@ def settled_start(
         )
     x0 = _resting_state(block, np.array([reference, gain * w]), v)
     return SettledStart(_with_start(block, x0, u), v, w, gain * w)
+
+
+def _integrates(block: TrackingController) -> bool:
+    """Tell integrators from slow leaks, whose poles may lie as near to 1 as rounding moves two."""
+    if block.order == 0:
+        return False
+    scaled = scipy.linalg.matrix_balance(block.A, permute=False)[0]
+    sizes = scipy.linalg.svdvals(np.eye(block.order) - scaled)
+    return bool(sizes[-1] <= _AT_ONE * max(1.0, float(sizes[0])))
 
 
 def _static_gains(block: TrackingController) -> tuple[float, float]:
@@ -169,7 +181,7 @@ def _root(value: Any, guess: float, reference: float) -> float:
     missed = value(guess)
     if missed == 0.0:
         return guess
-    reach = 0.1 * max(abs(guess), abs(reference), abs(missed))
+    reach = 0.1 * max(abs(guess), abs(missed))
     for _ in range(_WIDENINGS):
         low, high = guess - reach, guess + reach
         ends = value(low), value(high)
@@ -190,7 +202,8 @@ def _resting_state(block: TrackingController, given: Array, v: float) -> Array:
     rows = np.vstack([block.A - np.eye(block.order), block.C])
     wanted = np.append(-block.B @ given, v - float(block.D @ given))
     sizes = np.abs(rows).max(axis=1)
-    sizes[sizes == 0.0] = 1.0
+    # A row of rounding stays one: made equal, it would count as much as v.
+    sizes[np.append(sizes[:-1] <= _AT_ONE, sizes[-1] == 0.0)] = 1.0
     columns = np.abs(rows / sizes[:, None]).max(axis=0)
     columns[columns == 0.0] = 1.0
     x0 = np.linalg.lstsq(rows / sizes[:, None] / columns, wanted / sizes, rcond=1e-13)[0] / columns

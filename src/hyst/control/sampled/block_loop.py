@@ -98,10 +98,39 @@ class BlockLoop:
             As in ``closed``.
         """
         z = np.exp(1j * w * self.dt)
-        K, Pd = -self.feedback.response(z)[:, 0, 0], self.plant.system.response(z)[:, 0, 0]
+        K, Pd = self.open(w)
         alone = -self.controller.response(z)[:, 0, 0]
         below = 1.0 + slope * K * Pd
         return LoopValues(w, Pd, K / below, 1.0 / below, (1.0 + slope * alone * Pd) / below)
+
+    def open(self, w: Array) -> tuple[ComplexArray, ComplexArray]:
+        """Evaluate block and plant over frequency.
+
+        Parameters
+        ----------
+        w
+            As in ``at``.
+
+        Returns
+        -------
+        K, Pd : numpy.ndarray
+        """
+        z = np.exp(1j * w * self.dt)
+        return -self.feedback.response(z)[:, 0, 0], self.plant.system.response(z)[:, 0, 0]
+
+    def beside_poles(self, slope: float) -> Array:
+        """Give frequencies at and beside the poles of the closed loop, folded below pi/dt.
+
+        Parameters
+        ----------
+        slope
+            As in ``closed``.
+        """
+        nyquist = np.pi / self.dt
+        poles = _continuous(self.closed(slope).poles(), self.dt)
+        sharp = poles.imag[:, None] + np.abs(poles.real)[:, None] * _AROUND
+        w = np.abs(_folded(sharp.ravel(), nyquist))
+        return np.asarray(np.unique(w[(w > 0.0) & (w <= nyquist)]))
 
     def grid(self, *weights: LinearSystem, slope: float = 1.0) -> Array:
         """Give frequencies that show all poles of loop, plant and weights, folded below pi/dt.

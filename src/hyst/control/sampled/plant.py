@@ -17,7 +17,8 @@ from hyst.errors import InputError
 
 Array = NDArray[np.float64]
 
-_MOST_SAMPLES = 1000  # of delay; a state each
+# Of delay, a state each: with more a certificate takes minutes, and its poles lose their digits.
+_MOST_SAMPLES = 100
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ def sampled_plant(plant: Any, dt: float | None = None, delay: float = 0.0) -> Sa
     dt
         Sample time, s, > 0; that of a sampled plant if left out.
     delay
-        s, >= 0, of computation and conversion, at most 1000 samples; whole samples for a plant that
+        s, >= 0, of computation and conversion, at most 100 samples; whole samples for a plant that
         is itself sampled.
 
     Returns
@@ -120,7 +121,7 @@ def _split(delay: float, dt: float) -> tuple[int, float]:
     if samples > _MOST_SAMPLES:
         raise InputError(
             f"the delay of {delay:.6g} s is {samples:.4g} samples; at most {_MOST_SAMPLES} can be "
-            "taken in"
+            "taken in; give a longer dt"
         )
     nearest = round(samples)
     if abs(samples - nearest) < 1e-9 * max(1.0, samples):

@@ -191,7 +191,7 @@ def _is_pair_of_samples(given: Any) -> bool:
 
 def _samples(given: Any, name: str) -> tuple[Array, Complex]:
     if is_frequency_response(given):
-        return _of_response(given, name)
+        return values_of_response(given, name)
     return _checked(given[0], given[1], name)
 
 
@@ -227,8 +227,26 @@ def _tops_added(
     return np.union1d(grid, found[np.abs(found - grid[tops]) > 1e-9 * found])
 
 
-def _of_response(given: Any, name: str) -> tuple[Array, Complex]:
-    """Read what has frequencies and values: of hyst in Hz, of python-control in rad/s."""
+def values_of_response(given: Any, name: str) -> tuple[Array, Complex]:
+    """Read what has frequencies and values: of hyst in Hz, of python-control in rad/s.
+
+    Parameters
+    ----------
+    given
+        MeasuredResponse of hyst or frequency response data of python-control.
+    name
+        What messages call it.
+
+    Returns
+    -------
+    w, G : numpy.ndarray
+        rad/s, and output over input.
+
+    Raises
+    ------
+    InputError
+        If it has several inputs or outputs, no values, or one that is not finite.
+    """
     if not hasattr(given, "omega"):
         return _checked(2.0 * np.pi * np.asarray(given.frequency), given.response, name)
     values = np.asarray(given.frdata if hasattr(given, "frdata") else given.fresp)

@@ -294,7 +294,7 @@ def _limited(
     stages = LimitedStages(_linear_part(model), inverse, forward, numbers, tuple(W.tolist()))
     code = StageCode(stages.all, precision)
     low, high, _ = numbers
-    last = within((low, high), 0.0)
+    last = within((low, high), model.u0)
     reach = [abs(each) for each in model.limits or () if each != 0.0]
     return Block(
         kind=KIND,

@@ -18,6 +18,9 @@ OUT_OF_RANGE = (
     "held */\n"
 )
 
+# Of the largest drive: a change a sample of 8 units of its last place, by 1/16 off at most.
+_LOST = 8.0 * float(np.finfo(np.float32).eps)
+
 
 def limits_in(
     precision: Precision, low: float, high: float, change: float
@@ -34,7 +37,8 @@ def limits_in(
     Raises
     ------
     InputError
-        If no number of that precision is left between them, or of the change.
+        If no number of that precision is left between them, or of the change, or the change gets
+        lost beside the largest drive.
     """
     if precision == "double":
         return low, high, change
@@ -43,6 +47,14 @@ def limits_in(
         raise InputError(
             f"the limits {low:.9g} to {high:.9g}, {change:.9g} a sample, leave no number of single "
             "precision; choose double, or wider limits"
+        )
+    largest = max(abs(low), abs(high))
+    # Ends that are a day's motion at a megahertz away, as those of no limits, are never reached.
+    if _LOST * largest > change > 1e-12 * largest:
+        raise InputError(
+            f"a rate of {change:.6g} a sample is lost beside a drive of {largest:.6g} in single "
+            "precision, where it would stand still or move too fast; choose double, or a larger "
+            "rate or dt"
         )
     return inner
 

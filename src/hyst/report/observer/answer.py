@@ -16,6 +16,7 @@ from hyst.control import (
     Certificate,
     ClosedLoop,
     ControllerDesign,
+    InverseComparison,
     LoopComparison,
     LoopJudgement,
     LoopMargins,
@@ -24,6 +25,7 @@ from hyst.control import (
     TrackingController,
     TriedLoop,
 )
+from hyst.control.sampled.judged import limits_met
 from hyst.report.observer.words import finite, hertz, told
 from hyst.report.table import number
 
@@ -221,15 +223,46 @@ class ObserverAnswer:
         )
 
     def _cure(self) -> str:
-        """Say what to change, where that is known."""
+        """Say what to change, where that is known; of the block, whatever its design promised."""
         c, margin = self.certificate, self.margin_of_design
-        if margin is not None and margin > 1.0 and not c.robustly_stable:
+        if c.robustly_stable:
+            return self._cure_of_the_rest()
+        if not c.nominal_stable and self.margins is not None and not self.margins[0].stable:
+            return (
+                "The controller alone does not stabilize the nominal plant as it runs, "
+                f"{self.sampled()}: lower its gain, or let it be designed, "
+                '[controller] kind = "auto".'
+            )
+        if margin is not None and margin > 1.0:
+            by = "sampling and delay break it" if c.delay else "sampling breaks it"
             return (
                 f"The design in continuous time would hold (Wu may grow {margin:.3g} times): "
-                'sampling breaks it. Give [design] time = "discrete", a shorter [filter] dt, or a '
+                f'{by}. Give [design] time = "discrete", a shorter [filter] dt, or a '
                 "Wp that asks for less."
             )
         return f"The design: {self.design.message}."
+
+    def _cure_of_the_rest(self) -> str:
+        """Say what to change where the block itself is stable for every plant within Wu."""
+        true = self.true_plant
+        if true is not None and not true.within:
+            return (
+                f"The true plant is off by up to {number(true.used)} |Wu|, at "
+                f"{hertz(true.frequency)}: give a Wu that holds it, and design again."
+            )
+        failing = self._failing_slope()
+        if failing is None:
+            return (
+                "No slope that it met is unstable, and yet the simulation diverges: see if the "
+                "actuator can reach the reference, and tell the block what its drive may be, "
+                "[limits] drive."
+            )
+        closer = "" if self.inverse_name == EXACT else "an inverse closer to the exact one, or "
+        return (
+            f"The block is stable where the inverse is exact; with this one ({self.inverse_name}) "
+            f"hysteresis and inverse make a gain of {failing:.3g}, at which it is not. Give "
+            f"{closer}a controller of lower gain."
+        )
 
     @property
     def margin_of_design(self) -> float | None:
@@ -243,6 +276,8 @@ class ObserverAnswer:
         said = ""
         if self.true_plant is not None and not self.true_plant.within:
             said += " BUT the true plant is not within Wu: widen Wu."
+        if limits_met(self.block, self.loop):
+            said += " BUT the drive met its limits: while it does, nothing is rejected."
         if self.identified is not None and not self.within_identified:
             (low, high), (least, most) = self.drive_range, self.identified
             said += (
@@ -315,12 +350,8 @@ class ObserverAnswer:
         float
             1 is all of it; NaN where an inverse adds nothing, or a loop diverges.
         """
-        exact = self.without[EXACT].loop.rms_error if EXACT in self.without else math.nan
-        added = self.without[name].loop.rms_error - exact
-        left = self.observed[name].loop.rms_error - exact
-        if not (math.isfinite(added) and math.isfinite(left)) or added <= 1e-9 * exact:
-            return math.nan
-        return 1.0 - left / added
+        loops = [{n: each.loop for n, each in of.items()} for of in (self.without, self.observed)]
+        return InverseComparison(*loops).recovered(name)
 
     def implement_sentence(self) -> str:
         """Say what to implement, in one sentence."""

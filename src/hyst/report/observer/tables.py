@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyst.control import SampledCertificate, TriedLoop
+from hyst.control import DisturbanceObserver, SampledCertificate, TriedLoop
 from hyst.report.observer.answer import ObserverAnswer
 from hyst.report.observer.feedback_tables import margins_table, parts_table
 from hyst.report.observer.words import STANDINGS, bandwidth_told, hertz, rightmost, told
@@ -200,6 +200,14 @@ def _certified(c: SampledCertificate) -> tuple[str, ...]:
     )
 
 
+def _least(design: DisturbanceObserver) -> str:
+    """Write the lower bounds of a design, with the noise that they cost."""
+    said = f"{number(design.lower_bound)}, at any noise"
+    if design.lower_bound_at_noise is None:
+        return said
+    return f"{number(design.lower_bound_at_noise)} at this noise gain; {said}"
+
+
 def filter_table(answer: ObserverAnswer) -> Table:
     """List what the observer is: its gain, Q(s) and its poles.
 
@@ -212,24 +220,12 @@ def filter_table(answer: ObserverAnswer) -> Table:
     -------
     Table
     """
-    c, design = answer.certificate, answer.design
-    rows: list[tuple[str, str]] = []
-    if getattr(design, "gain", None) is not None:
-        rows.append(("gain L", ", ".join(number(each, 8) for each in design.gain)))
-    own = None if answer.margin_of_design is None else design.certificate
-    if own is not None:
-        rows += [
-            ("Q(s) numerator", ", ".join(number(each, 8) for each in own.Q_numerator)),
-            ("Q(s) denominator", ", ".join(number(each, 8) for each in own.Q_denominator)),
-        ]
-    fastest = c.fastest_pole if own is None else float(np.abs(own.observer_poles).max(initial=0.0))
-    # A design in discrete time is of this sample time.
-    beyond = "" if own is None or fastest < c.nyquist else ": too fast for this sample time"
-    rows += [
+    c = answer.certificate
+    rows: list[tuple[str, str]] = [
         ("rejects disturbances up to", bandwidth_told(c.rejection_bandwidth)),
         (
             "fastest pole",
-            f"{hertz(fastest)}; half the sample rate is {hertz(c.nyquist)}{beyond}",
+            f"{hertz(c.fastest_pole)}; half the sample rate is {hertz(c.nyquist)}",
         ),
         (
             "sensor noise of 1, white",
@@ -237,8 +233,6 @@ def filter_table(answer: ObserverAnswer) -> Table:
             f"at most {number(c.noise_gain)} at {hertz(c.noise_frequency)}",
         ),
     ]
-    if own is not None:
-        rows.append(("slowest pole of Q", f"{rightmost(own.observer_poles)} 1/s"))
     if answer.noise:
         tried = answer.observed[answer.inverse_name]
         rows.append(
@@ -255,4 +249,24 @@ def filter_table(answer: ObserverAnswer) -> Table:
                 f"{number(answer.bound.output_bound)}, for |v| up to {number(answer.bound.y_max)}",
             )
         )
+    rows += _of_design(answer)
     return Table("What is it?", ("what", "value"), tuple(rows))
+
+
+def _of_design(answer: ObserverAnswer) -> list[tuple[str, str]]:
+    """List what the block was sampled from; one that was designed as it runs has a gain alone."""
+    gain = getattr(answer.design, "gain", None)
+    rows = [] if gain is None else [("gain L", ", ".join(number(each, 8) for each in gain))]
+    if answer.margin_of_design is None:
+        return rows
+    own, nyquist = answer.design.certificate, answer.certificate.nyquist
+    fastest = float(np.abs(own.observer_poles).max(initial=0.0))
+    beyond = "" if fastest < nyquist else ": too fast for this sample time"
+    rows += [
+        ("Q(s) numerator", ", ".join(number(each, 8) for each in own.Q_numerator)),
+        ("Q(s) denominator", ", ".join(number(each, 8) for each in own.Q_denominator)),
+        ("fastest pole of Q(s)", f"{hertz(fastest)}{beyond}"),
+        ("slowest pole of Q(s)", f"{rightmost(own.observer_poles)} 1/s"),
+        ("no observer of any order has a norm below", _least(answer.design)),
+    ]
+    return [(f"continuous design: {what}", value) for what, value in rows]
