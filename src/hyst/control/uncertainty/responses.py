@@ -223,8 +223,8 @@ def _tops_added(
         points = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, 9)
         best = radius(points.ravel()).reshape(points.shape)[:, 1:-1].argmax(axis=1) + 1
         low, high = points[rows, best - 1], points[rows, best + 1]
-    found = 0.5 * (low + high)
-    return np.union1d(grid, found[np.abs(found - grid[tops]) > 1e-9 * found])
+    reached = 0.5 * (low + high)
+    return np.union1d(grid, reached[np.abs(reached - grid[tops]) > 1e-9 * reached])
 
 
 def values_of_response(given: Any, name: str) -> tuple[Array, Complex]:
