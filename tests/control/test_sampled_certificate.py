@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy.signal
 from observer_cases import OMEGA, PLANT, REPAIRED_C, TWO_MODES, WP, WU
 
 import hyst
@@ -273,6 +274,89 @@ def test_units_do_not_matter() -> None:
     assert millis.uncertainty_frequency == pytest.approx(
         1e3 * seconds.uncertainty_frequency, rel=1e-3
     )
+
+
+@pytest.mark.parametrize("damping", [1e-2, 1e-4])
+def test_what_is_used_of_wu_is_largest_where_the_nominal_plant_has_a_zero(damping: float) -> None:
+    """An antiresonance that is elsewhere by 1 % is a large deviation, in a narrow band."""
+    den = np.polymul([1.0, 12.0, 9e4], [2e-4, 1.0])
+    nominal, true = ([9.0 * z / w**2 for z in (1.0, 2.0 * damping * w, w**2)] for w in (1e2, 101.0))
+    systems = (as_linear_system(each) for each in ((nominal, den), 0.5, (true, den)))
+    w = np.linspace(99.0, 102.0, 300_001)
+    off = np.abs(np.polyval(true, 1j * w) / np.polyval(nominal, 1j * w) - 1.0)
+    # The reference's grid has steps of 1e-3 of the half-width.
+    assert uncertainty_used(*systems)[0] == pytest.approx(off.max() / 0.5, rel=1e-5)
+
+
+def test_the_same_zero_on_the_axis_is_no_deviation() -> None:
+    nominal = as_linear_system(([1.0, 0.0, 1e4], [1.0, 30.0, 300.0, 1e5]))
+    more = as_linear_system(([1.1, 0.0, 1.1e4], [1.0, 30.0, 300.0, 1e5]))
+    # To the rounding of responses beside the zero.
+    assert uncertainty_used(nominal, as_linear_system(0.1), more)[0] == pytest.approx(1.0, rel=1e-5)
+
+
+def test_a_narrow_peak_of_the_loop_with_its_slope_is_found() -> None:
+    """Of the loop with the middle slope, next to the border of stability, on a low background."""
+    block = TrackingController.from_continuous(([1.98], [1.0, 0.0]), dt=1e-3)
+    plant = sampled_plant(([9.248e6], [1.0, 2.5804, 9.248e6]), 1e-3)
+    low, high = 1.0, 1e5
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        stable = np.abs(_poles_with(block, plant, middle)).max() < 1.0
+        low, high = (middle, high) if stable else (low, middle)
+    slope, spread = low * (1.0 - 1e-6), 1e-7
+    found, _ = sampled_slope_proof(block, plant, (slope * (1 - spread), slope * (1 + spread)))
+    # From transfer functions: the trapezoidal rule's integrator, and the held plant of scipy.
+    num, den, _ = scipy.signal.cont2discrete(([9.248e6], [1.0, 2.5804, 9.248e6]), 1e-3)
+    pole = _poles_with(block, plant, slope)
+    pole = pole[np.argmax(np.abs(pole))]
+    z = np.exp(1j * (abs(np.angle(pole)) + (1.0 - abs(pole)) * np.linspace(-5.0, 5.0, 2001)))
+    L = slope * 1.98e-3 / 2.0 * (z + 1.0) / (z - 1.0) * np.polyval(num[0], z) / np.polyval(den, z)
+    # Rounding moves a pole that is 1e-9 from the circle by some 1e-14.
+    assert found == pytest.approx(spread * np.abs(L / (1.0 + L)).max(), rel=1e-3)
+    assert sampled_slope_failing(block, plant, (0.99 * slope, slope), Wu=1e-5) is not None
+
+
+def _poles_with(block: TrackingController, plant: Any, slope: float) -> Any:
+    gained = LinearSystem(
+        plant.system.A, slope * plant.system.B, plant.system.C, plant.system.D, plant.dt
+    )
+    return closed_loop_poles(gained, block)
+
+
+def test_slopes_that_fall_count_with_their_size() -> None:
+    """A slope of -1 with a plant of 1.3 times the gain: against the poles of that loop."""
+    leaky = TrackingController.from_continuous(([7.8], [1.0, 10.0]), dt=1e-3)
+    stage = sampled_plant(([100.0], [1.0, 100.0]), 1e-3)
+    assert np.abs(_poles_with(leaky, stage, -1.3)).max() > 1.0
+    assert sampled_slope_proof(leaky, stage, (-1.0, 0.9), Wu=0.3)[0] > 1.0
+    assert sampled_slope_failing(leaky, stage, (-1.0, 0.9), Wu=0.3) is not None
+
+
+def test_what_is_largest_at_frequency_zero_is_found() -> None:
+    """T of an integrator is 1 there: a plant of the other sign is within a Wu just above 1."""
+    block = TrackingController.from_continuous(SLOW_C, dt=1e-3)
+    turned = ([-1e-5 * STAGE[0][0]], STAGE[1])
+    assert np.abs(closed_loop_poles(sampled_plant(turned, 1e-3).system, block)).max() > 1.0
+    assert not sampled_certificate(block, STAGE, 1.00001).robustly_stable
+    assert sampled_certificate(block, STAGE, 0.99999).uncertainty_norm > 0.9999
+
+
+def test_samples_that_follow_absurdly_fast_hide_no_plant() -> None:
+    """T of the continuous loop is 1 at frequency 0."""
+    quick = TrackingController.from_continuous(SLOW_C, dt=1e-12)
+    assert sampled_certificate(quick, STAGE, 1.5).uncertainty_norm > 1.499
+
+
+def test_rounding_of_poles_next_to_one_breaks_nothing() -> None:
+    """A deviation that turns far below the loop's slowest pole leaves a double pole near 1."""
+    den = [3.7828e-51, 8.4376e-44, 1.1182e-33, 7.1095e-27, 6.4273e-17, 1.3273e-10, 1.0]
+    plant, Wu = ([2.0634e-9, 2.8257e-2, 9.6736e8], den), ([3.658e-8, 0.97], [3.0828e-9, 1.0])
+    block = TrackingController.from_continuous(([8.592e-6], [1.0, 0.0]), dt=2.37224e-8)
+    assert sampled_certificate(block, plant, Wu).uncertainty_norm == pytest.approx(0.97, rel=1e-3)
+    assert stress(block, plant, Wu, tries=30).holds
+    more = [each * 1.05 / 0.97 for each in Wu[0]]
+    assert not stress(block, plant, (more, Wu[1]), tries=30).holds
 
 
 def test_slopes_below_zero_count_by_their_size() -> None:

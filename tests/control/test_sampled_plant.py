@@ -93,6 +93,22 @@ def test_a_weight_with_fast_poles_and_a_resonance_above_half_the_rate_is_summed(
     assert (found <= true * 1.01).all()
 
 
+@pytest.mark.parametrize("damping", [1e-6, 1e-2])
+def test_a_resonance_thousands_of_rates_away_is_summed(damping: float) -> None:
+    """A slow loop around a light structure: neither missed nor taken to be everywhere."""
+    resonance = 2.0 * np.pi * 1692.345
+    plant = ([resonance**2], [1.0, 2.0 * damping * resonance, resonance**2])
+    folded = 2.0 * np.pi * 0.345
+    w = np.array([0.5, folded, np.pi])
+    found = folded_uncertainty(sampled_plant(plant, 1.0), 0.3, w)
+    s = 1j * (w[:, None] + 2.0 * np.pi * np.arange(-100_000, 100_001))
+    value = 0.3 * np.polyval(plant[0], s) / np.polyval(plant[1], s)
+    true = np.abs(value * (1.0 - np.exp(-s)) / s).sum(axis=1)
+    # Terms past these fall like 1/k^3; the bound counts the largest one of each lump twice.
+    assert (found >= true * (1.0 - 1e-9)).all()
+    assert (found <= true * 1.2).all()
+
+
 def test_of_a_plant_known_at_its_samples_wu_is_of_the_samples() -> None:
     stage = LinearDynamics.from_transfer_function([0.5], [1.0, -0.5], dt=DT, delay=2)
     w = np.array([10.0, 1000.0])
@@ -131,3 +147,12 @@ def test_refused(given: tuple[object, ...], says: str) -> None:
 def test_what_never_falls_off_has_no_bound() -> None:
     with pytest.raises(InputError, match="has no bound"):
         folded_uncertainty(sampled_plant(([1.0, 2.0], [1.0, 1.0]), DT), 0.1, np.array([1.0]))
+
+
+def test_a_delay_of_a_hundred_samples_is_a_delay() -> None:
+    lag = sampled_plant(([400.0], [1.0, 400.0]), DT).system
+    late = sampled_plant(([400.0], [1.0, 400.0]), DT, 100 * DT).system
+    z = np.exp(1j * np.linspace(1e-3, np.pi, 1000))
+    # Powers of z to the 100th carry the rounding of z 100 times.
+    wanted = lag.response(z)[:, 0, 0] * z**-100
+    np.testing.assert_allclose(late.response(z)[:, 0, 0], wanted, rtol=1e-11)

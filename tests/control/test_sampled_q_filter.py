@@ -222,3 +222,17 @@ def test_problems_without_a_solution(change: dict[str, Any], message: str) -> No
     }  # fmt: skip
     with pytest.raises(InputError, match=message):
         design_sampled_q_filter(**(given | change))
+
+
+def test_noise_in_units_that_differ_by_many_decades() -> None:
+    """A plant of gain 5e-9: the drive is 2e8 times that of a plant of gain 1, and no warning."""
+    lag, shape = 0.12342440270630625, [2.57016846, 0.53704661, 1.0]
+    Wu, Wp = ([0.486, 5.77e-3], [0.0103, 1.0]), ([0.0331, 0.254], [1.0, 2.54e-4])
+    rms = [
+        design_sampled_q_filter(
+            ([gain], shape), ([0.0204 / gain], [1.0, 0.0]), Wu, Wp, dt=0.08043054, delay=lag
+        ).certificate.noise_rms
+        for gain in (5.02857e-9, 1.0)
+    ]
+    # Rounding, magnified by the conditioning of the Lyapunov equation.
+    assert rms[0] * 5.02857e-9 == pytest.approx(rms[1], rel=1e-8)

@@ -125,18 +125,25 @@ def held(system: LinearSystem, dt: float) -> tuple[Array, Array, Array, Array]:
         return system.A, system.B, system.C, system.D
     block = np.zeros((n + m, n + m))
     # Canonical forms have entries of very different size, on which the exponential loses digits.
-    balanced, (scale, _) = scipy.linalg.matrix_balance(system.A, permute=False, separate=True)
+    balanced, scale = _balanced(system.A)
     block[:n, :n], block[:n, n:] = balanced * dt, system.B / scale[:, None] * dt
     sampled = scipy.linalg.expm(block)
     A = sampled[:n, :n] * scale[:, None] / scale
     return A, sampled[:n, n:] * scale[:, None], system.C, system.D
 
 
+def _balanced(A: Array) -> tuple[Array, Array]:
+    # Scales beyond 2^63 are cast to whole numbers for a permutation that nobody asks for.
+    with np.errstate(invalid="ignore"):
+        balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
+    return balanced, scale
+
+
 def _trapezoidal(system: LinearSystem, dt: float) -> tuple[Array, Array, Array, Array]:
     if system.order == 0:
         return system.A, system.B, system.C, system.D
     # Unbalanced, an observer whose states differ by 1e10 in size would look singular.
-    balanced, (scale, _) = scipy.linalg.matrix_balance(system.A, permute=False, separate=True)
+    balanced, scale = _balanced(system.A)
     half, one = 0.5 * dt * balanced, np.eye(system.order)
     if np.linalg.cond(one - half) > 1e14:
         raise InputError(

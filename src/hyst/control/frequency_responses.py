@@ -11,12 +11,15 @@ from numpy.typing import NDArray
 from hyst.control.disturbance_observer import DisturbanceObserver
 from hyst.control.disturbance_observer.discrete.problem import SampledObserverProblem
 from hyst.control.linear_system import LinearSystem
+from hyst.control.sampled.block_loop import largest
 from hyst.control.sampled.plant import sampled_plant
+from hyst.control.zeros_and_poles import zeros_and_poles
 from hyst.errors import InputError
 
 Array = NDArray[np.float64]
 
 _PER_DECADE = 100
+_STEP = 1.1  # to what is beside a frequency
 _BESIDE = np.array([-3.0, -1.0, -0.3, 0.0, 0.3, 1.0, 3.0])
 
 
@@ -112,7 +115,8 @@ def uncertainty_used(
     Returns
     -------
     ratio : float
-        At most 1, and a little rounding, if the plant is within Wu; on a grid around all poles.
+        At most 1, and a little rounding, if the plant is within Wu; closed in on around all poles,
+        and zeros of Pn and Wu.
     frequency : float
         rad/s.
 
@@ -130,13 +134,23 @@ def uncertainty_used(
             f"the plant has dt = {plant.dt:g} s, the true plant {true.dt:g} s (0 is continuous); "
             "give both in the same time"
         )
-    w = _around(plant, Wu, true)
-    P, Pn, weight = (_values(each, w) for each in (true, plant, Wu))
-    off = np.abs(P / Pn - 1.0)
-    # What both round to zero is no deviation.
-    ratio = np.where(off > 1e-9, off / np.maximum(np.abs(weight), 1e-300), 0.0)
-    worst = int(ratio.argmax())
-    return float(ratio[worst]), float(w[worst])
+
+    def used(w: Array) -> Array:
+        P, Pn, weight, above, below = (
+            _values(each, at)
+            for each, at in (
+                *((true, w), (plant, w), (Wu, w)),
+                *((plant, w * _STEP), (plant, w / _STEP)),
+            )
+        )
+        # At a zero on the axis both are rounding of what they are beside it.
+        nothing = 1e-9 * np.minimum(np.abs(above), np.abs(below))
+        off = np.abs(P - Pn) / np.maximum(np.maximum(np.abs(Pn), nothing), 1e-300)
+        # What both round to zero is no deviation.
+        return np.where(off > 1e-9, off / np.maximum(np.abs(weight), 1e-300), 0.0)
+
+    grid = _around(plant, Wu, true, zeros_of=(plant, Wu), beyond=1e3)
+    return largest(used, grid)
 
 
 def _values(system: LinearSystem, w: Array) -> NDArray[np.complex128]:
@@ -144,24 +158,29 @@ def _values(system: LinearSystem, w: Array) -> NDArray[np.complex128]:
     return np.asarray(system.response(points)[:, 0, 0])
 
 
-def _around(*systems: LinearSystem) -> Array:
-    """Frequencies around the poles of systems; of sampled ones up to half the rate."""
-    continuous = []
-    for each in systems:
-        poles = each.poles()
-        if each.dt > 0.0:
-            poles = np.log(poles[np.abs(poles) > 1e-12].astype(complex)) / each.dt
-        continuous.append(poles)
-    poles = np.concatenate(continuous)
+def _around(
+    *systems: LinearSystem, zeros_of: tuple[LinearSystem, ...] = (), beyond: float = 10.0
+) -> Array:
+    """Frequencies around poles, and zeros of some, so far beyond; of samples up to pi/dt."""
+    poles = np.concatenate([_rates(each.poles(), each.dt) for each in systems])
+    zeros = [_rates(zeros_and_poles(each).zeros, each.dt) for each in zeros_of]
     size = np.abs(poles)
     size = size[size > 1e-9 * size.max(initial=1.0)]
-    low, high = np.log10(size.min(initial=1.0) / 10.0), np.log10(size.max(initial=1.0) * 10.0)
+    low, high = np.log10(size.min(initial=1.0) / beyond), np.log10(size.max(initial=1.0) * beyond)
     even = np.logspace(low, high, int(_PER_DECADE * (high - low)) + 2)
     # A resonance that is narrower than the grid peaks near its poles.
-    sharp = np.abs(poles.imag)[:, None] + np.abs(poles.real)[:, None] * _BESIDE
+    features = np.concatenate([poles, *zeros])
+    sharp = np.abs(features.imag)[:, None] + np.abs(features.real)[:, None] * _BESIDE
     w = np.union1d(np.concatenate([even, sharp.ravel()]), size)
     highest = min([np.pi / each.dt for each in systems if each.dt > 0.0], default=np.inf)
     return np.asarray(w[(w > 0.0) & (w <= highest)])
+
+
+def _rates(roots: NDArray[np.complex128], dt: float) -> NDArray[np.complex128]:
+    """Give roots in the plane of s; of samples, those at 0 die within one."""
+    if dt == 0.0:
+        return roots
+    return np.asarray(np.log(roots[np.abs(roots) > 1e-12].astype(complex)) / dt)
 
 
 def _grid(design: DisturbanceObserver) -> Array:

@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Points = NDArray[np.complexfloating[Any, Any]]
 
+_LARGE, _AT_A_TIME, _BLOCK = 60, 2000, 64  # states that are many; points and rows solved at once
+
 # Numbers that are solved for together: some 60 megabytes.
 _MOST_ENTRIES = 4_000_000
 # So near to a pole, as a share, its residue is far above all else, and not yet all rounding.
@@ -97,8 +99,10 @@ class LinearSystem:
             return np.broadcast_to(self.D.astype(complex), (points.size, *self.D.shape)).copy()
         # Companion forms of high order have entries of all sizes, where elimination loses digits.
         A, B, C = balanced_matrices(self.A, self.B, self.C)
+        if self.order > _LARGE:
+            return _by_schur(A, B, C, self.D, points)
         found = np.empty((points.size, *self.D.shape), dtype=np.complex128)
-        # A few frequencies at a time: a delay of many samples has a matrix of many states at each.
+        # A few frequencies at a time: each has a matrix of its own.
         together = max(1, _MOST_ENTRIES // self.order**2)
         for first in range(0, points.size, together):
             some = slice(first, first + together)
@@ -125,6 +129,25 @@ def _solved(points: ComplexArray, A: Array, B: ComplexArray) -> ComplexArray:
     except np.linalg.LinAlgError:
         beside = points * (1.0 + _BESIDE)
         return np.asarray(np.linalg.solve(beside[:, None, None] * unit - A, B))
+
+
+def _by_schur(A: Array, B: Array, C: Array, D: Array, points: ComplexArray) -> ComplexArray:
+    """Values of a transfer function of many states, as long delays have: one triangle for all."""
+    T, U = scipy.linalg.schur(A, output="complex")
+    right, left, n = U.conj().T @ B, C @ U, len(A)
+    values = np.empty((points.size, *D.shape), dtype=np.complex128)
+    for start in range(0, points.size, _AT_A_TIME):
+        z = points[start : start + _AT_A_TIME]
+        X = np.empty((n, B.shape[1], z.size), dtype=np.complex128)
+        for stop in range(n, 0, -_BLOCK):
+            first = max(stop - _BLOCK, 0)
+            # What is solved below a block of rows goes to its right-hand side at once.
+            rest = right[first:stop, :, None] + np.tensordot(T[first:stop, stop:], X[stop:], 1)
+            for i in range(stop - 1, first - 1, -1):
+                inner = np.tensordot(T[i, i + 1 : stop], X[i + 1 : stop], 1)
+                X[i] = (rest[i - first] + inner) / (z - T[i, i])
+        values[start : start + _AT_A_TIME] = np.moveaxis(np.tensordot(left, X, 1), -1, 0) + D
+    return values
 
 
 def balanced(system: LinearSystem) -> LinearSystem:

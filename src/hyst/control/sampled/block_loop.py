@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 _PER_DECADE, _EVEN = 60, 400
+_SLOWER = 1e4  # than all poles: what is largest at frequency 0 is found to 1e-8 of itself
 _AROUND = np.array([-8.0, -4.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0])
 _ROUNDS, _POINTS, _TOPS = 6, 21, 12
 
@@ -139,20 +140,23 @@ class BlockLoop:
         weights
             Continuous or sampled.
         slope
-            As in ``closed``.
+            As in ``closed``: peaks are where the loop with this gain has them.
         """
         nyquist = np.pi / self.dt
         sampled = [self.closed(slope).poles(), self.plant.system.poles(), self.feedback.poles()]
-        poles = [_continuous(each, self.dt) for each in sampled]
+        # Of samples an integrator is only known to rounding, and nothing slower than that.
+        poles = [_known(_continuous(each, self.dt), 1e-9 * nyquist) for each in sampled]
         systems = [*weights] if self.plant.continuous is None else [self.plant.continuous, *weights]
         for each in systems:
-            poles.append(_continuous(each.poles(), each.dt) if each.dt > 0.0 else each.poles())
-        features = np.concatenate(poles) if poles else np.zeros(0, complex)
-        features = features[np.isfinite(features)]
+            if each.dt > 0.0:
+                poles.append(_known(_continuous(each.poles(), each.dt), 1e-9 * nyquist))
+            else:
+                poles.append(_known(each.poles(), 1e-12 * np.abs(each.poles()).max(initial=0.0)))
+        features = np.concatenate(poles)
         sharp = features.imag[:, None] + np.abs(features.real)[:, None] * _AROUND
         size = np.abs(features)
         folded = np.abs(_folded(np.concatenate([sharp.ravel(), size]), nyquist))
-        slow = min(float(size[size > 1e-9 * nyquist].min(initial=nyquist)) / 100.0, 1e-3 * nyquist)
+        slow = min(float(size.min(initial=nyquist)) / _SLOWER, 1e-3 * nyquist)
         even = np.linspace(0.0, nyquist, _EVEN + 1)[1:]
         decades = np.log10(nyquist / slow)
         log = np.geomspace(slow, nyquist, int(_PER_DECADE * decades) + 2)
@@ -208,6 +212,11 @@ def _continuous(poles: ComplexArray, dt: float) -> ComplexArray:
     """Give the continuous poles that samples at dt show at z; those at 0 die within a sample."""
     away = poles[np.abs(poles) > 1e-12]
     return np.asarray(np.log(away.astype(complex)) / dt)
+
+
+def _known(poles: ComplexArray, least: float) -> ComplexArray:
+    """Leave out integrators, and what is no number."""
+    return np.asarray(poles[np.isfinite(poles) & (np.abs(poles) > least)])
 
 
 def _folded(w: Array, nyquist: float) -> Array:

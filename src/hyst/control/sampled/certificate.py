@@ -245,8 +245,11 @@ def _bandwidth(rows: _Rows, w: Array) -> float:
 
 def _spread(loop: BlockLoop) -> tuple[float, float]:
     """Give standard deviations of v and of its change in a sample, for white noise of 1 at y."""
-    closed = balanced(loop.closed())
-    A, b, c, d = closed.A, closed.B, closed.C, float(closed.D[0, 0])
+    plain = loop.closed()
+    # In units of v in which y makes about as much v: else states of both differ by the gain.
+    unit = float(np.linalg.norm(plain.B) * np.linalg.norm(plain.C)) or 1.0
+    closed = balanced(LinearSystem(plain.A, plain.B, plain.C / unit, plain.D, loop.dt))
+    A, b, c, d = closed.A, closed.B, unit * closed.C, float(closed.D[0, 0])
     X = scipy.linalg.solve_discrete_lyapunov(A, b @ b.T)
     rms = (c @ X @ c.T).item() + d**2
     change = c @ A - c

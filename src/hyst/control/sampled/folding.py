@@ -82,17 +82,50 @@ def _summed(plant: SampledPlant, P: ZerosAndPoles, Wu: ZerosAndPoles, w: Array) 
     features = np.concatenate([P.zeros, P.poles, Wu.zeros, Wu.poles])
     fastest = float(np.abs(features).max(initial=0.0))
     last = int(np.clip(np.ceil(_BEYOND * fastest / rate), _FEWEST, _MOST))
-    k = np.arange(-last, last + 1)
-    at = w[:, None] + rate * k
-    # |1 - e^{-s dt}| is the same at all aliases.
-    hold = 2.0 * np.abs(np.sin(0.5 * w * dt))[:, None] / np.abs(at)
-    values = _product(P, Wu, np.abs(at).ravel()).reshape(at.shape) * hold
-    # Past the last alias |P Wu| is below M / w, hence each pair of terms below 2 M / w_k^2.
     edge = (last + 0.5) * rate
-    beyond = np.geomspace(edge, max(1e3 * fastest, 10.0 * edge), 200)
-    M = 1.02 * float((_product(P, Wu, beyond) * beyond).max())
-    tail = 2.0 * M * 2.0 / (rate**2 * (last - 0.5))
-    return np.asarray((values.sum(axis=1) + tail * np.abs(np.sin(0.5 * w * dt))) / dt)
+    poles = np.concatenate([P.poles, Wu.poles])
+    far = poles[np.abs(poles) > edge]
+    shown = far.imag[np.abs(far.imag) > edge]
+    at = w[:, None] + rate * np.concatenate(
+        [np.tile(np.arange(-last, last + 1.0), (w.size, 1)), _next_to(shown, w, rate)], axis=1
+    )
+    # |1 - e^{-s dt}| is the same at all aliases.
+    hold = 2.0 * np.abs(np.sin(0.5 * w * dt))[:, None]
+    values = _product(P, Wu, np.abs(at).ravel()).reshape(at.shape) / np.abs(at)
+    rest = 2.0 * _beyond(P, Wu, edge, far, rate)
+    return np.asarray((values.sum(axis=1) + rest) * hold[:, 0] / dt)
+
+
+def _next_to(resonances: Array, w: Array, rate: float) -> Array:
+    """Numbers of the aliases closest to resonances that are past the last one, (K, p)."""
+    nearest = np.round((resonances - w[:, None]) / rate)
+    return np.concatenate([nearest - 1.0, nearest, nearest + 1.0], axis=1)
+
+
+def _beyond(
+    P: ZerosAndPoles, Wu: ZerosAndPoles, edge: float, far: NDArray[np.complex128], rate: float
+) -> float:
+    """Bound the sum of ``|P Wu| / w`` over all aliases past the edge on one side.
+
+    What rises and falls once adds up to no more than its integral over the rate, and its largest
+    value; the aliases next to resonances are summed by themselves.
+    """
+    size = np.abs(far.imag)
+    skirt = np.geomspace(0.1 * np.maximum(np.abs(far.real), rate), 0.1 * np.abs(far) + rate, 40)
+    end = max(1e3 * float(np.abs(far).max(initial=0.0)), 1e3 * edge)
+    around = np.maximum(np.concatenate([np.abs(size - rate), size + rate]), edge)
+    parts = [np.geomspace(edge, end, 400), (size - skirt).ravel(), (size + skirt).ravel()]
+    grid = np.concatenate([*parts, np.abs(far), size, around])
+    grid = np.unique(grid[(grid >= edge) & (grid <= end)])
+    f = _product(P, Wu, grid) / grid
+    higher = np.maximum(f[1:], f[:-1])
+    middles = 0.5 * (grid[1:] + grid[:-1])
+    for each in size[size > edge]:
+        higher[np.abs(middles - each) < rate] = 0.0
+    # Past the end |P Wu| w is at most what it is there, and a little.
+    area = float((higher * np.diff(grid)).sum()) + 1.02 * float(f[-1]) * end
+    tops = np.concatenate([_product(P, Wu, around) / around, f[:1]])
+    return area / rate + float(tops.sum())
 
 
 def _product(P: ZerosAndPoles, Wu: ZerosAndPoles, w: Array) -> Array:

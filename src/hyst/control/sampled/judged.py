@@ -156,8 +156,10 @@ def slopes_met(loop: ClosedLoop) -> tuple[float, float]:
 
 
 def _off(slopes: tuple[float, float], error: float) -> tuple[float, float]:
-    """Widen slopes by a relative error."""
-    return slopes[0] * max(1.0 - error, 0.0), slopes[1] * (1.0 + error)
+    """Widen slopes by a relative error; what falls widens the other way."""
+    less, more = max(1.0 - error, 0.0), 1.0 + error
+    low, high = slopes
+    return low * (less if low >= 0.0 else more), high * (more if high >= 0.0 else less)
 
 
 def _slopes(

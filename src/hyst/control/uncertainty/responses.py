@@ -20,7 +20,8 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 _PER_DECADE, _BEYOND = 60, 100.0  # of grids for systems, and how far they go beyond all poles
-_AROUND = np.linspace(-4.0, 4.0, 33)  # half-widths about a resonance
+_AROUND = np.linspace(-4.0, 4.0, 65)  # half-widths about a resonance
+_ROUNDS, _EVEN = 4, 1e-4  # of closing in on a top between points
 _ZERO = 1e-12  # of the largest response: a nominal plant of less has none to compare with
 
 
@@ -116,9 +117,16 @@ def deviations_of(
         raise InputError("responses is no list of frequency responses; give one or more")
     highest = np.pi / sample_time(nominal) if sample_time(nominal) else np.inf
     found = []
-    for number, each in enumerate(responses, 1):
-        name = f"response {number}"
-        at, values = _samples(each, nominal, w, name)
+    names = [f"response {number}" for number in range(1, len(responses) + 1)]
+    systems = [_system_of(each, name) for each, name in zip(responses, names, strict=True)]
+    # All on one grid: where one plant begins, the others are known as well.
+    grid = _shown(nominal, _grid(nominal, *(each for each in systems if each is not None)))
+    for each, system, name in zip(responses, systems, names, strict=True):
+        if system is None:
+            at, values = _samples(each, name)
+        else:
+            at = _tops_added(grid, nominal, system) if w is None else _checked(w, w, name)[0]
+            values = response_at(system, at)
         kept = at <= highest * (1.0 + 1e-9)
         if not kept.any():
             raise InputError(
@@ -166,19 +174,57 @@ def _deviations(
     return Deviations(w, np.abs(values / Pn - 1.0))
 
 
-def _samples(
-    given: Any, nominal: LinearSystem | ContinuousDynamics, w: ArrayLike | None, name: str
-) -> tuple[Array, Complex]:
-    if is_frequency_response(given):
-        return values_of_response(given, name)
-    pair = isinstance(given, tuple | list) and len(given) == 2
-    if pair and np.iscomplexobj(np.asarray(given[1])):
-        return _checked(given[0], given[1], name)
+def _system_of(given: Any, name: str) -> LinearSystem | ContinuousDynamics | None:
+    """Read a response that is given as a system; None of one that was measured."""
+    if is_frequency_response(given) or _is_pair_of_samples(given):
+        return None
     plant = given if isinstance(given, ContinuousDynamics) else as_linear_system(given, name)
     if isinstance(plant, LinearSystem):
         _require_single(plant, name)
-    at = _grid(nominal, plant) if w is None else _checked(w, np.ones(np.size(w)), name)[0]
-    return at, response_at(plant, at)
+    return plant
+
+
+def _is_pair_of_samples(given: Any) -> bool:
+    pair = isinstance(given, tuple | list) and len(given) == 2
+    return pair and np.iscomplexobj(np.asarray(given[1]))
+
+
+def _samples(given: Any, name: str) -> tuple[Array, Complex]:
+    if is_frequency_response(given):
+        return values_of_response(given, name)
+    return _checked(given[0], given[1], name)
+
+
+def _shown(nominal: LinearSystem | ContinuousDynamics, grid: Array) -> Array:
+    """Leave out the ends of a grid at which the nominal plant has decayed to rounding."""
+    size = np.abs(response_at(nominal, grid))
+    some = np.flatnonzero(size > 2.0 * _ZERO * size.max())
+    return grid[some[0] : some[-1] + 1] if some.size else grid
+
+
+def _tops_added(
+    grid: Array,
+    nominal: LinearSystem | ContinuousDynamics,
+    plant: LinearSystem | ContinuousDynamics,
+) -> Array:
+    """Add where ``|P / Pn - 1|`` is largest between the points of a grid."""
+
+    def radius(w: Array) -> Array:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.abs(response_at(plant, w) / response_at(nominal, w) - 1.0)
+
+    values = radius(grid)
+    # Where it is even, what is largest is rounding.
+    beside = np.maximum(values[:-2], values[2:]), np.minimum(values[:-2], values[2:])
+    found = (values[1:-1] >= beside[0]) & (values[1:-1] > (1.0 + _EVEN) * beside[1])
+    tops = 1 + np.flatnonzero(found)
+    low, high, rows = grid[tops - 1], grid[tops + 1], np.arange(tops.size)
+    for _ in range(_ROUNDS):
+        points = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, 9)
+        best = radius(points.ravel()).reshape(points.shape)[:, 1:-1].argmax(axis=1) + 1
+        low, high = points[rows, best - 1], points[rows, best + 1]
+    reached = 0.5 * (low + high)
+    return np.union1d(grid, reached[np.abs(reached - grid[tops]) > 1e-9 * reached])
 
 
 def values_of_response(given: Any, name: str) -> tuple[Array, Complex]:
@@ -238,7 +284,9 @@ def _grid(*plants: LinearSystem | ContinuousDynamics) -> Array:
     sharp = roots[(roots.imag > 0.0) & (np.abs(roots.real) < 0.3 * np.abs(roots))]
     grid += [abs(each) + abs(each.real) * _AROUND for each in sharp]
     w = np.unique(np.concatenate(grid))
-    return np.asarray(w[(w > 0.0) & (w <= high)])
+    w = w[(w > 0.0) & (w <= high)]
+    # The same root of two plants is one.
+    return np.asarray(w[np.append(True, np.diff(w) > 1e-9 * w[1:])])
 
 
 def _roots(plant: LinearSystem | ContinuousDynamics) -> Complex:

@@ -36,6 +36,8 @@ _WORTH_AN_ORDER = 0.85  # of the excess before, for one order more
 _MORE_ORDERS = 2  # that are tried beyond the last that was worth it: a resonance takes two
 _POINTS = 300  # that a linear program takes; of more, the largest of each of so many bins
 _DIP = 2.0**0.25  # on either side of what is narrow
+_REPEATS, _BETWEEN = 8, 6
+_BESIDE = np.array([-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0])  # widths of a dip
 _WIDE = 1.1  # ratio of neighbouring frequencies from which there are points between
 
 
@@ -173,14 +175,15 @@ def cover_of(
     x[x > 1e20] = np.inf if dt else x[x > 1e20]
     whole = Target(x, radius, limit)
     few = _thinned(whole)
-    for _ in range(4):
+    for _ in range(_REPEATS):
         cover = _of_order(few, wanted) if wanted is not None else _of_least_order(few, tight)
+        whole = _with_dips(whole, cover)
         missed = _missed(cover, whole)
         if not missed.any():
             break
         few = _with(few, whole, missed)
         wanted = cover.order  # what was left out adds points, no other question
-    return _made(cover, w, radius, limit, dt)
+    return _made(cover, w, radius, limit, dt, _short(cover, _with_dips(whole, cover)))
 
 
 def envelope(
@@ -286,28 +289,68 @@ def _thinned(target: Target) -> Target:
     return Target(target.x[kept], target.radius[kept], target.tight[kept])
 
 
-def _missed(cover: Cover, target: Target) -> NDArray[np.bool_]:
-    basis = np.hstack(
-        [np.ones((target.x.size, 1)), cover.corners / (target.x[:, None] + cover.corners)]
-    )
+def _with_dips(target: Target, cover: Cover) -> Target:
+    """Ask at the zeros of a cover as well, which may dip between two samples."""
+    roots = cover.roots(cover.above)
+    width = np.clip(np.abs(np.angle(roots)), 1e-3, 0.1)
+    x = np.unique(np.abs(roots) * np.exp(width * _BESIDE[:, None]))
+    inner = target.x[np.isfinite(target.x) & (target.x > 0.0)]
+    x = x[(x > inner.min(initial=np.inf)) & (x < inner.max(initial=0.0)) & ~np.isin(x, target.x)]
+    if not x.size:
+        return target
+    known = np.isfinite(target.x) & (target.x > 0.0)
+    at = np.log(target.x[known]), np.log(target.radius[known])
+    line = np.exp(np.interp(np.log(x), *at))
+    return _joined(target, x, line)
+
+
+def _lines(w: Array, radius: Array) -> tuple[Array, Array]:
+    """Give points on the straight lines between samples, in logarithms."""
+    known = w > 0.0
+    at, values = np.log(w[known]), np.log(radius[known])
+    parts = np.arange(1, _BETWEEN)[:, None] / _BETWEEN
+    between = (at[:-1] + parts * np.diff(at)).ravel()
+    return np.exp(between), np.exp(np.interp(between, at, values))
+
+
+def _gain2(cover: Cover, x: Array) -> Array:
+    basis = np.hstack([np.ones((x.size, 1)), cover.corners / (x[:, None] + cover.corners)])
     with np.errstate(invalid="ignore", divide="ignore"):
-        gain2 = (basis @ cover.above) / (basis @ cover.below)
-    return ~(gain2 >= np.square(target.radius) * (1.0 - 1e-6))
+        return np.asarray((basis @ cover.above) / (basis @ cover.below))
+
+
+def _missed(cover: Cover, target: Target) -> NDArray[np.bool_]:
+    return ~(_gain2(cover, target.x) >= np.square(target.radius) * (1.0 - 1e-6))
+
+
+def _short(cover: Cover, target: Target) -> float:
+    """Factor that the cover lacks at worst, between samples as well."""
+    gain2 = _gain2(cover, target.x)
+    sound = gain2 > 0.0
+    return float(np.sqrt(np.square(target.radius[sound]) / gain2[sound]).max(initial=1.0))
 
 
 def _with(few: Target, whole: Target, missed: NDArray[np.bool_]) -> Target:
     """Add what is not covered; only to be covered, not to be tight on."""
-    x = np.concatenate([few.x, whole.x[missed]])
-    radius = np.concatenate([few.radius, whole.radius[missed]])
-    tight = np.concatenate([few.tight, np.full(int(missed.sum()), np.inf)])
+    return _joined(few, whole.x[missed], whole.radius[missed])
+
+
+def _joined(target: Target, x: Array, radius: Array) -> Target:
+    """Add points that are only to be covered."""
+    x, radius = np.concatenate([target.x, x]), np.concatenate([target.radius, radius])
+    tight = np.concatenate([target.tight, np.full(x.size - target.x.size, np.inf)])
     order = np.argsort(x, kind="stable")
     return Target(x[order], radius[order], tight[order])
 
 
-def _made(cover: Cover, w: Array, radius: Array, tight: Array, dt: float) -> UncertaintyWeight:
-    """Give the weight, raised by what rounding of its factors left uncovered."""
+def _made(
+    cover: Cover, w: Array, radius: Array, tight: Array, dt: float, between: float
+) -> UncertaintyWeight:
+    """Give the weight, raised by what it lacks between samples, or by rounding of its factors."""
     made = UncertaintyWeight(spectral_factor(cover, dt), cover.excess, w, radius)
-    short = float((radius / made.gain).max())
+    at, line = _lines(w, radius)
+    lacks = line / np.abs(response_at(made.system, at))
+    short = max(float((radius / made.gain).max()), float(lacks.max(initial=1.0)), between)
     if not np.isfinite(short):
         raise InputError("the deviations are too large to be covered; leave out what is not finite")
     if short > 1.0:
