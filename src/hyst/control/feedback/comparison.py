@@ -15,6 +15,7 @@ from hyst.control.discretization import Method
 from hyst.control.drive_limits import Limits
 from hyst.control.feedback.loop_plant import static_gain
 from hyst.control.loop_system import plant_of
+from hyst.control.sampled.plant import sampled_plant
 from hyst.control.sampled.tried import TriedLoop, try_block
 from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError
@@ -231,6 +232,10 @@ def compare_loops(
     if feedforward is None or feedforward is False:
         raise InputError("feedforward is left out, and two of the loops are with it; give True")
     r = one_record(reference, "reference")
+    for name, given in (("hysteresis", hysteresis), ("inverse", inverse)):
+        if not isinstance(given, Operator) and (given is not None or name == "hysteresis"):
+            raise InputError(f"{name} is {type(given).__name__}; give an operator")
+    rests = math.isfinite(static_gain(sampled_plant(plant, dt).system))
     cancels = hysteresis.inverse() if inverse is None else inverse
     line = _line(hysteresis, cancels, r / static_gain(plant_of(plant)))
     with_observer = {} if observer is None else {
@@ -253,13 +258,13 @@ def compare_loops(
         tried = try_block(
             block, r, plant=plant, Wu=Wu, hysteresis=hysteresis, noise=noise, **options
         )
-        rows.append(ComparedLoop(name, tried, *_mark(name, tried)))
+        rows.append(ComparedLoop(name, tried, *_mark(name == "inverse alone" and rests, tried)))
     return LoopComparison(tuple(rows), noise)
 
 
-def _mark(name: str, tried: TriedLoop) -> tuple[Mark, str]:
+def _mark(open_and_stable: bool, tried: TriedLoop) -> tuple[Mark, str]:
     judged = tried.judgement
-    if name == "inverse alone" and tried.loop.diverged_at is None:
+    if open_and_stable and tried.loop.diverged_at is None:
         return "proven", "there is no feedback that could make a stable plant unstable"
     return _MARKS[judged.standing], judged.reason
 
