@@ -243,7 +243,19 @@ def margins_of(plant: LoopPlant, controller: LinearSystem) -> LoopMargins:
 def largest_noise_gain(
     plant: LoopPlant, controller: LinearSystem, weight: Callable[[Array], Array] | None = None
 ) -> float:
-    """Give ``max |C S|``, or that of its product with a weight of frequency."""
+    """Give ``max |C S|``, or that of its product with a weight of frequency.
+
+    Parameters
+    ----------
+    plant, controller
+        Of the loop.
+    weight
+        Takes frequencies in rad/s, shape (K,), and gives what multiplies ``|C S|`` there.
+
+    Returns
+    -------
+    float
+    """
     w = _grid(plant, controller)
     # At the highest frequency of samples itself a weight that folds need not be known.
     w = w[w < plant.nyquist * (1.0 - 1e-9)]
