@@ -1,0 +1,78 @@
+"""hyst observer: what page and verdict say is of the block beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from command_runs import Run
+
+import hyst
+from hyst.cli.observer.template import TEMPLATE
+
+# As quick as it can be: one period after the start is left out.
+QUICK = TEMPLATE.replace("duration = 3.0", "duration = 1.5").replace("settle = 1.0", "settle = 0.5")
+LIMITED = "drive = [-20.0, 20.0]"
+
+
+def test_a_page_has_no_block_of_another_run_beside_it(run: Run, folder: Path) -> None:
+    """A block that is not safe takes the file of an earlier, safe one away; and says what to do."""
+    (folder / "spec.toml").write_text(QUICK, encoding="utf-8")
+    assert run("observer", "spec.toml", "-o", "out").code == 0
+    assert (folder / "out" / "controller.json").exists()
+    steep = QUICK.replace('kind = "scaled"\nfactor = 0.7', 'kind = "none"')
+    (folder / "spec.toml").write_text(steep, encoding="utf-8")
+    ended = run("observer", "spec.toml", "-o", "out")
+    assert "NOT SAFE" in ended.out
+    assert not (folder / "out" / "controller.json").exists()
+    # The design in continuous time knows nothing of the inverse: its praise is not repeated here.
+    answer = ended.out.splitlines()[0]
+    assert "with this one (none)" in answer
+    assert "stable for every plant within Wu, 1.3 times over" not in answer
+
+
+def test_a_delay_that_the_controller_does_not_bear_is_not_put_on_sampling(
+    run: Run, folder: Path
+) -> None:
+    (folder / "spec.toml").write_text(QUICK.replace("delay = 0.0", "delay = 2e-3"), "utf-8")
+    ended = run("observer", "spec.toml", "-o", "out")
+    # Its delay margin is 0.75 ms, whatever the design and however fast it is sampled.
+    assert "The controller alone does not stabilize" in ended.out
+    assert "0.002 s late" in ended.out
+    assert "sampling breaks it" not in ended.out
+
+
+def test_a_drive_at_its_limits_is_told_in_the_verdict(run: Run, folder: Path) -> None:
+    text = QUICK.replace("# [limits]", "[limits]").replace("# drive = [-50.0, 50.0]", LIMITED)
+    assert text.count(LIMITED) == 1
+    (folder / "spec.toml").write_text(text, encoding="utf-8")
+    ended = run("observer", "spec.toml", "-o", "out")
+    # The exact inverse needs 37 for this reference.
+    assert "BUT the drive met its limits" in ended.out.splitlines()[0]
+
+
+def test_a_model_that_is_unfit_is_not_called_safe_without_a_word(
+    run: Run, folder: Path, refused: Callable[..., str]
+) -> None:
+    verdict = hyst.operators.Verdict("unfit", ("It does not describe the record.",))
+    about = hyst.operators.ModelDescription(verdict=verdict)
+    hyst.PrandtlIshlinskii([0.3], [1.0], 0.8).save(folder / "model.json", about)
+    plays = QUICK[QUICK.index("p0 = 0.1") : QUICK.index("# envelope")]
+    text = QUICK.replace(plays, 'file = "model.json"\n')
+    (folder / "spec.toml").write_text(text, encoding="utf-8")
+    assert "unfit" in refused("observer", "spec.toml", "-o", "out")
+    ended = run("observer", "spec.toml", "-o", "out", "--despite-verdict")
+    assert "BUT the verdict on the model is unfit" in ended.out.splitlines()[0]
+
+
+def test_poles_are_told_of_the_block_apart_from_those_of_its_design(run: Run, folder: Path) -> None:
+    (folder / "spec.toml").write_text(QUICK, encoding="utf-8")
+    assert run("observer", "spec.toml", "-o", "out").code == 0
+    out = folder / "out"
+    page = (out / "report.html").read_text(encoding="utf-8")
+    block = hyst.load(out / "controller.json")
+    fastest = np.abs(np.log(np.linalg.eigvals(block.A).astype(complex))).max() / block.dt
+    # Four digits are told.
+    assert f"{fastest / (2.0 * np.pi):.4g} Hz; half the sample rate" in page
+    assert "continuous design: Q(s) denominator" in page
