@@ -90,6 +90,9 @@ public:
     bool fault() const { return guard_.guard.fault != 0; }
     bool limited() const { return guard_.limited != 0; }
     void clear_fault() { guard_.guard.fault = 0, guard_.limited = 0; }
+    // Whether a sample, before which the faults were cleared, was answered: where no drive belongs to
+    // v, a limited block holds the last one and goes on, as it does on a target.
+    bool answered() const { return !fault() || limited(); }
     double v() const { return v_; }
     double excess() const { return excess_; }
 
@@ -108,8 +111,9 @@ std::ptrdiff_t Controller::run(Vector state, Signal y_ref, Signal y, Vector u) c
     const nb::gil_scoped_release released;
     Steps steps(*this, state.data());
     for (std::size_t k = 0; k < samples; ++k) {
+        steps.clear_fault();
         u(k) = steps.step(y_ref(k), y(k));
-        if (steps.fault()) return static_cast<std::ptrdiff_t>(k);
+        if (!steps.answered()) return static_cast<std::ptrdiff_t>(k);
     }
     return -1;
 }
@@ -127,10 +131,11 @@ std::ptrdiff_t Controller::tell(Vector state, Signal y_ref, Signal y, const std:
         // In the order of the core's linear part, so that without limits the bits are its own.
         double estimate = f_ref * y_ref(k) + f * y(k);
         for (std::size_t j = 0; j < n; ++j) estimate += e[j] * state(j);
+        steps.clear_fault();
         steps.step(y_ref(k), y(k));
         if (steps.excess() != 0.0) estimate += g * steps.excess();
         v(k) = steps.v(), d_hat(k) = estimate;
-        if (steps.fault()) return static_cast<std::ptrdiff_t>(k);
+        if (!steps.answered()) return static_cast<std::ptrdiff_t>(k);
     }
     return -1;
 }

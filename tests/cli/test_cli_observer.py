@@ -102,6 +102,20 @@ def test_a_drive_at_its_limits_is_told_in_the_verdict(run: Run, folder: Path) ->
     assert "BUT the drive met its limits" in ended.out.splitlines()[0]
 
 
+def test_a_model_that_is_unfit_is_not_called_safe_without_a_word(
+    run: Run, folder: Path, refused: Callable[..., str]
+) -> None:
+    verdict = hyst.operators.Verdict("unfit", ("It does not describe the record.",))
+    about = hyst.operators.ModelDescription(verdict=verdict)
+    hyst.PrandtlIshlinskii([0.3], [1.0], 0.8).save(folder / "model.json", about)
+    plays = QUICK[QUICK.index("p0 = 0.1") : QUICK.index("# envelope")]
+    text = QUICK.replace(plays, 'file = "model.json"\n')
+    (folder / "spec.toml").write_text(text, encoding="utf-8")
+    assert "unfit" in refused("observer", "spec.toml", "-o", "out")
+    ended = run("observer", "spec.toml", "-o", "out", "--despite-verdict")
+    assert "BUT the verdict on the model is unfit" in ended.out.splitlines()[0]
+
+
 def test_poles_are_told_of_the_block_apart_from_those_of_its_design(
     answered: Callable[[str, str], Path],
 ) -> None:

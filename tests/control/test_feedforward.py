@@ -249,8 +249,37 @@ def test_a_loop_that_is_not_safe_is_marked_in_the_table() -> None:
     assert "NOT SAFE: at a slope of" in row
 
 
+def test_no_row_with_a_plant_that_integrates_is_proven() -> None:
+    """Feedforward alone leaves it where any disturbance carries it."""
+    found = compare_loops(
+        sine(10.0, 0.02), DT, plant=([1.0], [1e-3, 1.0, 0.0]), controller=([1.0], [1.0]),
+        hysteresis=HYSTERESIS, feedforward=0.5,
+    )  # fmt: skip
+    assert found["inverse alone"].mark != "proven"
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [({"hysteresis": None}, "hysteresis is NoneType"), ({"inverse": 2.0}, "inverse is float")],
+)
+def test_what_is_compared_needs_operators(given: dict[str, Any], said: str) -> None:
+    whole: dict[str, Any] = {"plant": STAGE, "controller": PI, "hysteresis": HYSTERESIS} | given
+    with pytest.raises(InputError, match=said):
+        compare_loops(sine(10.0, 0.02), DT, **whole)
+
+
 def test_without_feedforward_there_is_nothing_to_compare() -> None:
     with pytest.raises(InputError, match="feedforward is left out"):
         compare_loops(
             sine(10.0), DT, plant=STAGE, controller=PI, hysteresis=HYSTERESIS, feedforward=None
         )
+
+
+def test_a_reference_that_the_hysteresis_cannot_give_diverges_and_is_no_error() -> None:
+    """Dahl's force stays below Fc: for an output beyond there is no drive."""
+    found = compare_loops(
+        sine(10.0)[:2000], DT, plant=STAGE, controller=PI, hysteresis=hyst.Dahl(1.0, 5.0)
+    )
+    assert found["inverse + feedback"].mark == "NOT SAFE"
+    assert np.isinf(found["inverse + feedback"].rms)
+    assert np.isfinite(found["feedback alone"].rms)

@@ -114,6 +114,15 @@ def test_bad_samples_hold_a_drive_within_the_limits(bad: float) -> None:
     assert np.array_equal(step.state, before)
 
 
+def test_a_state_with_a_drive_beyond_the_limits_holds_one_within() -> None:
+    block = limited((5.0, 30.0))
+    state = block.initial_state()
+    state[-1] = 100.0
+    step = block.stepper(state)
+    assert step(np.nan, 0.0) == 30.0
+    assert state[-1] == 100.0
+
+
 def invertible_both_ways() -> list[str]:
     found = []
     for name, model in EXAMPLES.items():

@@ -207,3 +207,24 @@ def test_a_loop_that_has_settled_starts_from_the_drive_it_rests_with() -> None:
         simulate_closed_loop(
             np.full(9, 40.0), 1e-3, plant=plant, controller=block, hysteresis=stage, start="settled"
         )
+
+
+@pytest.mark.parametrize("more", [{"limits": (-3.0, 3.0)}, {"rate": 300.0}])
+def test_a_loop_goes_on_where_no_drive_belongs_to_v(more: dict[str, Any]) -> None:
+    """Dahl's friction never gives more than 1; a reference of 2 for 0.1 s, and one within reach."""
+    friction = hyst.Dahl(5.0, 1.0)
+    limited = TrackingController.from_continuous(
+        ([0.2, 100.0], [1.0, 0.0]), 1e-4, inverse=friction.inverse(), **more
+    )
+    r = np.where(np.arange(3000) < 1000, 2.0, 0.3)
+    plant = ([1000.0], [1.0, 1000.0])
+    done = simulate_closed_loop(r, 1e-4, plant=plant, controller=limited, hysteresis=friction)
+    assert done.r.size == r.size
+    # 0.2 s, of which the loop of 100 1/s needs a tenth: e^-20 of 2.
+    assert abs(done.e[-1]) < 1e-8
+    assert np.abs(done.v - friction(done.u)).max() < 1e-12
+    # Records and steps are the same, and the fault tells.
+    assert np.array_equal(limited.run(done.r, done.y)[0], done.u)
+    step = limited.stepper()
+    assert np.array_equal([step(a, b) for a, b in zip(done.r, done.y, strict=True)], done.u)
+    assert (step.fault, step.limited) == (True, True)

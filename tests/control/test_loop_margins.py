@@ -16,6 +16,7 @@ from hyst.control import (
     hinf_norm,
     loop_margins,
 )
+from hyst.control.feedback.loop_plant import loop_plant
 from hyst.errors import InputError
 
 STAGE = mode(500.0, 0.05)
@@ -102,10 +103,12 @@ def test_modulus_margin_is_the_norm_of_the_sensitivity(case: str) -> None:
 def test_margins_are_where_the_sampled_loop_gets_unstable(late: float) -> None:
     """Poles of the loop as it is simulated, gain and delay a little below and above the margin."""
     delay = late * STAGE_DT
-    found = loop_margins(STAGE, PI, STAGE_DT, delay)
+    # 1.2 times PI: its delay margin is then within the 100 samples of delay that poles are told of.
+    faster = ([1.2 * each for each in PI[0]], PI[1])
+    found = loop_margins(STAGE, faster, STAGE_DT, delay)
 
     def radius(gain: float, more: float) -> float:
-        controller = ([gain * each for each in PI[0]], PI[1])
+        controller = ([gain * each for each in faster[0]], PI[1])
         block = TrackingController.from_continuous(controller, STAGE_DT)
         poles = closed_loop_poles(STAGE, block, delay=delay + more)
         return float(np.abs(poles).max())
@@ -113,7 +116,7 @@ def test_margins_are_where_the_sampled_loop_gets_unstable(late: float) -> None:
     assert found.stable
     assert radius(0.999 * found.gain_margin, 0.0) < 1.0 < radius(1.001 * found.gain_margin, 0.0)
     # A dead time in a hold is not quite exp(-jw delay), less so the slower the crossover: here
-    # the crossover is at 0.015 rad a sample.
+    # the crossover is at 0.018 rad a sample.
     margin = found.delay_margin
     assert radius(1.0, 0.99 * margin) < 1.0 < radius(1.0, 1.01 * margin)
 
@@ -180,6 +183,34 @@ def test_a_slow_integrator_before_a_fast_plant_with_dead_time() -> None:
     assert found.phase_margin == pytest.approx(90.0 - math.degrees(1.5e-4), rel=1e-8)
     assert found.delay_margin == pytest.approx(0.5 * math.pi - 1.5e-4, rel=1e-8)
     assert found.rejection == pytest.approx(1.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("late", [0.4, 3.0, 40.3])
+def test_response_of_a_late_plant_is_that_of_all_its_states(late: float) -> None:
+    """Whole samples are turns of the plant without them, which takes no state for each."""
+    met = loop_plant(STAGE, STAGE_DT, late * STAGE_DT)
+    w = np.geomspace(1.0, 0.99 * math.pi / STAGE_DT, 200)
+    assert met.sampled is not None
+    states = met.sampled.system.response(np.exp(1j * w * STAGE_DT))[:, 0, 0]
+    # 1e-12: an exponential of the matrix and 40 products.
+    assert met.response(w) == pytest.approx(states, rel=1e-12)
+
+
+def test_ninety_samples_of_delay_leave_a_slow_loop_its_margins() -> None:
+    """The integrator turns by 90 degrees, and y is of the drive of the sample before."""
+    found = loop_margins(1.0, ([1.0], [1.0, 0.0]), 1e-4, 90e-4)
+    # 91 samples turn by 90 degrees at w, where |L| is dt / 2 / tan(w dt / 2), 1/w to 3e-5.
+    assert found.gain_margin == pytest.approx(0.5 * math.pi / 91e-4, rel=1e-4)
+
+
+@pytest.mark.parametrize("dt", [None, 1e-3])
+def test_a_static_gain_of_minus_one_makes_a_loop_that_integrates(dt: float | None) -> None:
+    """L = -1 / (s + 1) leaves 1 + L = s / (s + 1): on the border, without rejection at rest."""
+    found = loop_margins(([1.0], [1.0, 1.0]), -1.0, dt)
+    assert found.bandwidth == 0.0
+    assert found.rejection == 0.0
+    assert found.peak_sensitivity > 100.0
+    assert found.gain_reduction == pytest.approx(1.0, rel=1e-9)
 
 
 def test_identified_dynamics_bring_their_time_and_their_delay() -> None:

@@ -384,3 +384,11 @@ def test_a_resonance_that_one_slope_makes_is_not_overlooked() -> None:
     assert sampled_slope_failing(block, plant, (near, near), 0.02) == near
     assert not stress(block, plant, 0.02, 40, slope=near).holds
     assert sampled_slope_failing(block, plant, (0.5, 0.5), 0.02) is None
+
+
+def test_a_response_at_a_pole_on_the_circle_is_large_and_no_failure() -> None:
+    """There a block that rejects a sine has a pole; K S, which is wanted, is 1 / Pd."""
+    exactly = np.array([[0.0, 1.0], [-1.0, 0.0]])
+    at_pole = LinearSystem(exactly, np.eye(2)[:, 1:], np.eye(2)[:1], np.zeros((1, 1)), 1.0)
+    # 1/2 over what a double can tell from 1j, with a few digits left.
+    assert np.abs(at_pole.response(np.array([1j]))).max() > 1e9

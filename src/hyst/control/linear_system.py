@@ -24,6 +24,8 @@ _LARGE, _AT_A_TIME, _BLOCK = 60, 2000, 64  # states that are many; points and ro
 
 # Numbers that are solved for together: some 60 megabytes.
 _MOST_ENTRIES = 4_000_000
+# So near to a pole, as a share, its residue is far above all else, and not yet all rounding.
+_BESIDE = 1e-12
 
 
 @dataclass(frozen=True)
@@ -104,8 +106,7 @@ class LinearSystem:
         together = max(1, _MOST_ENTRIES // self.order**2)
         for first in range(0, points.size, together):
             some = slice(first, first + together)
-            matrices = points[some, None, None] * np.eye(self.order) - A
-            found[some] = C @ np.linalg.solve(matrices, B.astype(complex)) + self.D
+            found[some] = C @ _solved(points[some], A, B.astype(complex)) + self.D
         return found
 
     def as_control(self) -> Any:
@@ -124,6 +125,7 @@ def _by_schur(A: Array, B: Array, C: Array, D: Array, points: ComplexArray) -> C
     """Values of a transfer function of many states, as long delays have: one triangle for all."""
     T, U = scipy.linalg.schur(A, output="complex")
     right, left, n = U.conj().T @ B, C @ U, len(A)
+    points = np.where(np.isin(points, np.diag(T)), points * (1.0 + _BESIDE), points)
     values = np.empty((points.size, *D.shape), dtype=np.complex128)
     for start in range(0, points.size, _AT_A_TIME):
         z = points[start : start + _AT_A_TIME]
@@ -137,6 +139,16 @@ def _by_schur(A: Array, B: Array, C: Array, D: Array, points: ComplexArray) -> C
                 X[i] = (rest[i - first] + inner) / (z - T[i, i])
         values[start : start + _AT_A_TIME] = np.moveaxis(np.tensordot(left, X, 1), -1, 0) + D
     return values
+
+
+def _solved(points: ComplexArray, A: Array, B: ComplexArray) -> ComplexArray:
+    """Solve (s - A) X = B for each s; at a pole itself beside it, as rounding mostly has it."""
+    unit = np.eye(A.shape[0])
+    try:
+        return np.asarray(np.linalg.solve(points[:, None, None] * unit - A, B))
+    except np.linalg.LinAlgError:
+        beside = points * (1.0 + _BESIDE)
+        return np.asarray(np.linalg.solve(beside[:, None, None] * unit - A, B))
 
 
 def balanced(system: LinearSystem) -> LinearSystem:

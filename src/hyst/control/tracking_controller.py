@@ -336,6 +336,8 @@ class TrackingController(WatchedBlock):
     def _checked_state(self, state: ArrayLike | None) -> Array:
         start = self.initial_state() if state is None else state
         memory: Array = as_state(start, self.compiled.state_length, None)[0]
+        if self.is_limited:  # the last drive answers a first sample that is not finite
+            memory[-1] = within(self.limits, float(memory[-1]))
         return memory
 
 

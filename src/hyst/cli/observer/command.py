@@ -110,10 +110,9 @@ def _bode(spec: ObserverSpec, answer: ObserverAnswer) -> bytes:
 
 def _loops(answer: ObserverAnswer) -> bytes:
     name = answer.inverse_name
-    loops = {
-        f"{name}, without": answer.without[name].loop,
-        f"{name}, observer": answer.observed[name].loop,
-    }
+    loops = {f"{name}, without": answer.without[name].loop}
+    if answer.has_observer:
+        loops[f"{name}, observer"] = answer.observed[name].loop
     if hyst.control.EXACT in answer.without and name != hyst.control.EXACT:
         loops["exact, without"] = answer.without[hyst.control.EXACT].loop
     return hyst.report.draw_closed_loops(loops, "Closed loop with the true hysteresis")

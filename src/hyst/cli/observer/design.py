@@ -94,7 +94,7 @@ def read_design(spec: Section, sampled: bool) -> HowToDesign:
     if sampled and time == "continuous":
         raise hyst.InputError(
             '[design] time is "continuous", and the plant is known at its samples; leave it out, '
-            'or give [plant] form = "continuous"'
+            'or, of a model file, give [plant] form = "continuous"'
         )
     jitter = given.number("jitter", positive=True) if given.has("jitter") else None
     given.done()

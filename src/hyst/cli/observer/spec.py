@@ -125,7 +125,7 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     )
     read = ObserverSpec(
         plant=plant.system,
-        true_plant=spec.section("true_plant").system() if spec.has("true_plant") else None,
+        true_plant=_true_plant(spec, plant.system),
         controller=controller.system,
         controller_design=controller.design,
         feedforward=controller.feedforward,
@@ -154,6 +154,25 @@ def _spec(spec: Section, folder: Path) -> ObserverSpec:
     )
     for each in (spec, weights, simulation, implemented):
         each.done()
+    return read
+
+
+def _true_plant(spec: Section, plant: LinearSystem) -> LinearSystem | None:
+    """Read ``[true_plant]``, which may be left out; it comes as late as the nominal one."""
+    if not spec.has("true_plant"):
+        return None
+    read = spec.section("true_plant").system()
+    if plant.dt > 0.0:
+        raise hyst.InputError(
+            "[true_plant] is continuous, and [plant] is known at its samples; leave it out, or, of "
+            'a model file, give [plant] form = "continuous"'
+        )
+    if read.order and read.poles().real.max() >= 0.0:
+        worst = complex(read.poles()[np.argmax(read.poles().real)])
+        raise hyst.InputError(
+            f"[true_plant] is not stable, pole at {worst:.4g} 1/s; give the stable plant that the "
+            "loop meets"
+        )
     return read
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import hyst
 from hyst.cli.console import at_work, note, progress_bar
+from hyst.operators.verdict import UNFIT
 
 if TYPE_CHECKING:
     from hyst.cli.observer.spec import ObserverSpec
@@ -73,7 +74,13 @@ def tried(spec: ObserverSpec, design: Any, stress: int | None) -> ObserverAnswer
             ),
             controller_design=spec.controller_design,
             parts=_parts(spec, design),
+            unfit=any(_unfit(each) for each in (spec.hysteresis, spec.inverse)),
         )
+
+
+def _unfit(operator: hyst.Operator | None) -> bool:
+    verdict = None if operator is None else operator.description.verdict
+    return verdict is not None and verdict.level == UNFIT
 
 
 def _block(spec: ObserverSpec, design: Any, inverse: hyst.Operator | None) -> TrackingController:

@@ -15,6 +15,7 @@ from hyst.control.discretization import Method
 from hyst.control.drive_limits import Limits
 from hyst.control.feedback.loop_plant import static_gain
 from hyst.control.loop_system import plant_of
+from hyst.control.sampled.plant import sampled_plant
 from hyst.control.sampled.tried import TriedLoop, try_block
 from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError
@@ -27,6 +28,7 @@ Mark: TypeAlias = Literal["proven", "simulated only", "NOT SAFE"]
 _MARKS: dict[str, Mark] = {
     "proven": "proven", "simulated": "simulated only", "not safe": "NOT SAFE"
 }  # fmt: skip
+_HALVINGS = 20  # of a reference that the inverse cannot give
 
 
 @final
@@ -230,6 +232,10 @@ def compare_loops(
     if feedforward is None or feedforward is False:
         raise InputError("feedforward is left out, and two of the loops are with it; give True")
     r = one_record(reference, "reference")
+    for name, given in (("hysteresis", hysteresis), ("inverse", inverse)):
+        if not isinstance(given, Operator) and (given is not None or name == "hysteresis"):
+            raise InputError(f"{name} is {type(given).__name__}; give an operator")
+    rests = math.isfinite(static_gain(sampled_plant(plant, dt).system))
     cancels = hysteresis.inverse() if inverse is None else inverse
     line = _line(hysteresis, cancels, r / static_gain(plant_of(plant)))
     with_observer = {} if observer is None else {
@@ -252,27 +258,38 @@ def compare_loops(
         tried = try_block(
             block, r, plant=plant, Wu=Wu, hysteresis=hysteresis, noise=noise, **options
         )
-        rows.append(ComparedLoop(name, tried, *_mark(name, tried)))
+        rows.append(ComparedLoop(name, tried, *_mark(name == "inverse alone" and rests, tried)))
     return LoopComparison(tuple(rows), noise)
 
 
-def _mark(name: str, tried: TriedLoop) -> tuple[Mark, str]:
+def _mark(open_and_stable: bool, tried: TriedLoop) -> tuple[Mark, str]:
     judged = tried.judgement
-    if name == "inverse alone" and tried.loop.diverged_at is None:
+    if open_and_stable and tried.loop.diverged_at is None:
         return "proven", "there is no feedback that could make a stable plant unstable"
     return _MARKS[judged.standing], judged.reason
 
 
 def _line(hysteresis: Operator, inverse: Operator, v: Array) -> Operator:
     """Fit u over w by a straight line, for the drives that the inverse asks for."""
-    u = inverse(v)
-    w = hysteresis(u)
+    u, w = _as_far_as_it_goes(hysteresis, inverse, v)
     if np.ptp(w) <= 1e-12 * np.abs(w).max(initial=0.0):
         return Affine(1.0)
     slope, offset = np.polyfit(w, u, 1)
     if slope == 0.0:
         raise InputError("the hysteresis does not follow its drive, so no line stands for it")
     return Affine(float(slope), float(offset))
+
+
+def _as_far_as_it_goes(hysteresis: Operator, inverse: Operator, v: Array) -> tuple[Array, Array]:
+    """Give drives and outputs for v, or for the largest half, quarter .. of it that it can give."""
+    for halvings in range(_HALVINGS):
+        try:
+            u = inverse(v / 2.0**halvings)
+            return u, hysteresis(u)
+        except InputError:
+            # Hysteresis that saturates, as Dahl's does, has no drive for an output beyond.
+            continue
+    raise InputError("the inverse gives no drive for this reference nor for a part of it; scale it")
 
 
 def _told(value: float) -> str:

@@ -31,6 +31,7 @@ _WORTH = {"i": 1.0, "pi": 1.2, "pid": 1.5}  # by how much a richer kind has to b
 _OF_NYQUIST = 0.8
 _OFF = (-1.0, 1.0, -0.5, 0.5)  # of the mismatch; its ends come first
 _SHRINK, _SHRINKS = 0.995, 20  # steps that grow
+_NEAR = 0.9  # of a bound, from which what lies between two frequencies of the grid is looked at
 _BELOW = 0.999  # of Ms is searched, so that what lies between two frequencies of the grid is kept
 
 
@@ -138,7 +139,7 @@ def design_controller(
         if ki > 0.0:
             signed = math.copysign(ki, gain)
             plants = (met, *others)
-            held = _tried(each, shape, signed, plants, promised)
+            held = _tried(each, shape, signed, plants, demands, promised)
             tried += [held] if held is not None else []
     if not tried:
         raise SolverError(
@@ -162,7 +163,7 @@ def _refuse_demands(
 ) -> None:
     if kind not in get_args(Kind):
         raise InputError(f"kind is {kind!r}; give one of {', '.join(get_args(Kind))}")
-    if notch not in (True, False, "auto"):
+    if not (isinstance(notch, bool) or (isinstance(notch, str) and notch == "auto")):
         raise InputError(f"notch is {notch!r}; give 'auto', True or False")
     if not 1.0 < as_number(peak, "peak_sensitivity") <= 10.0:
         raise InputError(f"peak_sensitivity is {peak:g}; give a number above 1, 10 at most")
@@ -269,15 +270,24 @@ class _Promised:
 
 
 def _tried(
-    kind: str, shape: Shape, ki: float, plants: tuple[LoopPlant, ...], promised: _Promised
+    kind: str,
+    shape: Shape,
+    ki: float,
+    plants: tuple[LoopPlant, ...],
+    demands: Demands,
+    promised: _Promised,
 ) -> Tried | None:
     """Hold a candidate to its demands between the points of the grid, and lower its gain if not."""
     dt = plants[0].dt
+    response = shape.response(demands.s, dt)
     for k in range(_SHRINKS):
         continuous = shape.system(ki, dt)
         system = discretize(continuous, dt) if dt else continuous
         found = [margins_of(each, system) for each in plants]
-        if all(_kept(each, promised) for each in found) and _quiet(plants, system, promised):
+        gains = demands.noise_gains(abs(ki) * response)
+        if all(_kept(each, promised) for each in found) and _quiet(
+            plants, system, gains, demands, promised
+        ):
             return Tried(kind, shape, ki, continuous, system, found[0], _worst(found))
         ki *= _SHRINK ** (1 + k // 2)
     return None
@@ -293,11 +303,22 @@ def _kept(found: LoopMargins, promised: _Promised) -> bool:
     )
 
 
-def _quiet(plants: tuple[LoopPlant, ...], system: LinearSystem, promised: _Promised) -> bool:
-    """Tell whether ``|C S|`` stays within what noise and Wu allow, the latter for the plant."""
-    if any(largest_noise_gain(each, system) > promised.noise_gain for each in plants):
-        return False
-    if promised.Wu is None:
+def _quiet(
+    plants: tuple[LoopPlant, ...],
+    system: LinearSystem,
+    gains: Array,
+    demands: Demands,
+    promised: _Promised,
+) -> bool:
+    """Tell whether ``|C S|`` stays within what noise and Wu allow, the latter for the plant.
+
+    ``gains`` are those on the grid: where they are far from the bound, so is what lies between.
+    """
+    for plant, gain in zip(plants, gains, strict=True):
+        near = gain.max() > _NEAR * promised.noise_gain
+        if near and largest_noise_gain(plant, system) > promised.noise_gain:
+            return False
+    if demands.deviation is None or (demands.deviation * gains[0]).max() < _NEAR:
         return True
 
     def weight(w: Array) -> Array:

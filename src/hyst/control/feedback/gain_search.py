@@ -60,6 +60,16 @@ class Demands:
     noise_gain: float
     deviation: Array | None
 
+    def noise_gains(self, controller: ComplexArray) -> Array:
+        """Give ``|C S|`` of each plant on the grid, shape (plants, K).
+
+        Parameters
+        ----------
+        controller
+            Response of C times the sign of the static gain, shape (K,).
+        """
+        return np.asarray(np.abs(controller / (1.0 + self.plants * controller)))
+
     def largest_gain(self, shapes: ComplexArray, most: int | None = None) -> Array:
         """Give the largest ki for responses of C / ki, shape (shapes, K).
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -61,8 +62,24 @@ class LoopPlant:
     def response(self, w: Array) -> ComplexArray:
         """Values at frequencies, rad/s, (n,)."""
         s = points(w, self.dt)
+        whole = self._whole_samples()
+        if whole:
+            return np.asarray(self._undelayed.response(s)[:, 0, 0] * s ** -float(whole))
         found = self.system.response(s)[:, 0, 0]
         return np.asarray(found * np.exp(-s * self.delay) if self.delay else found)
+
+    def _whole_samples(self) -> int:
+        """Count the whole samples of dead time, each of them a state of the system."""
+        if self.sampled is None or self.sampled.continuous is None:
+            return 0
+        return int(self.sampled.delay / self.dt + 1e-9)
+
+    @cached_property
+    def _undelayed(self) -> LinearSystem:
+        """The sampled plant without them: a response of hundreds of states takes minutes."""
+        late = self.dead_time - self._whole_samples() * self.dt
+        rest = late if late > 1e-9 * self.dead_time else 0.0
+        return sampled_plant(self.continuous, self.dt, rest).system
 
     def static_gain(self) -> float:
         """Give the output per constant input; infinite with a pole at the origin."""

@@ -218,7 +218,9 @@ def margins_of(plant: LoopPlant, controller: LinearSystem) -> LoopMargins:
     turned, factors = _with_ends(plant, controller, turned, factors)
     peak, place = highest(w, lambda at: 1.0 / np.maximum(np.abs(1.0 + loop(at)), 1e-300))
     at_rest = static_gain(plant.system) * static_gain(controller)
-    whole = 1.0 if math.isinf(at_rest) or math.isnan(at_rest) else _closed(at_rest)
+    whole = 1.0 if math.isinf(at_rest) or math.isnan(at_rest) else math.inf
+    if math.isfinite(at_rest) and at_rest != -1.0:  # at -1 the loop integrates
+        whole = _closed(at_rest)
     return LoopMargins(
         stable=stable,
         gain_margin=float(factors[factors > 1.0].min(initial=math.inf)),
@@ -262,7 +264,7 @@ def _grid(plant: LoopPlant, controller: LinearSystem) -> Array:
     """Near all poles, those of the closed loop included, and fine enough for what delay turns."""
     rates = [as_rates(plant.system), as_rates(controller)]
     # What is slow does not feel a dead time, and may be slower than all poles of the open loop.
-    if plant.delay == 0.0 or abs(float(plant.system.D[0, 0] * controller.D[0, 0])) < 1.0:
+    if abs(1.0 + float(plant.system.D[0, 0] * controller.D[0, 0])) > 1e-9:
         poles = loop_poles(plant.system, controller)
         rates.append(rates_of(poles, plant.dt))
     w = frequencies_around(np.concatenate(rates), plant.nyquist)

@@ -26,6 +26,7 @@ from hyst.control import (
     TriedLoop,
 )
 from hyst.control.sampled.judged import limits_met
+from hyst.report.observer.cures import cure_of
 from hyst.report.observer.words import finite, hertz, told
 from hyst.report.table import number
 
@@ -94,6 +95,8 @@ class ObserverAnswer:
         What C was designed by; None if it was written.
     parts
         What inverse, feedback and observer are worth alone and together; None if not asked for.
+    unfit
+        Whether the verdict on a model that this rests on is unfit, and it was asked for despite it.
     """
 
     design: Any
@@ -110,6 +113,7 @@ class ObserverAnswer:
     margins: tuple[LoopMargins, LoopMargins] | None = None
     controller_design: ControllerDesign | None = None
     parts: LoopComparison | None = None
+    unfit: bool = False
 
     @property
     def block(self) -> TrackingController:
@@ -145,7 +149,7 @@ class ObserverAnswer:
             of_true = float(np.abs(self.true_plant.poles).max(initial=0.0))
             said = f"largest |z| {of_true:.6f}"
             rows.append(("stable around the true plant", of_true < 1.0, said))
-        failing = self._failing_slope()
+        failing = self.failing_slope()
         met = f"stable at each slope that was met, {j.met[0]:.3g} to {j.met[1]:.3g}"
         by = "for every plant within Wu" if failing is None else f"unstable at {failing:.3g}"
         rows.append((met, failing is None, by))
@@ -160,7 +164,8 @@ class ObserverAnswer:
             rows.append(("no plant within Wu found that breaks it", self.stress.holds, said))
         return tuple(rows)
 
-    def _failing_slope(self) -> float | None:
+    def failing_slope(self) -> float | None:
+        """Give a slope that was met and at which some plant that counts is unstable."""
         if self.true_plant is not None and self.true_plant.failing is not None:
             return self.true_plant.failing
         return self.judgement.failing
@@ -207,7 +212,7 @@ class ObserverAnswer:
         failed = [what for what, holds, _ in self.checks() if not holds]
         c = self.certificate
         if failed:
-            return f"NOT SAFE. It fails: {'; '.join(failed)}. {self._cure()}"
+            return f"NOT SAFE. It fails: {'; '.join(failed)}. {cure_of(self)}"
         demand = (
             "rejects what Wp asks for"
             if self.meets_demand
@@ -222,48 +227,6 @@ class ObserverAnswer:
             f"it {inverse}; {rejects}.{self._but()}"
         )
 
-    def _cure(self) -> str:
-        """Say what to change, where that is known; of the block, whatever its design promised."""
-        c, margin = self.certificate, self.margin_of_design
-        if c.robustly_stable:
-            return self._cure_of_the_rest()
-        if not c.nominal_stable and self.margins is not None and not self.margins[0].stable:
-            return (
-                "The controller alone does not stabilize the nominal plant as it runs, "
-                f"{self.sampled()}: lower its gain, or let it be designed, "
-                '[controller] kind = "auto".'
-            )
-        if margin is not None and margin > 1.0:
-            by = "sampling and delay break it" if c.delay else "sampling breaks it"
-            return (
-                f"The design in continuous time would hold (Wu may grow {margin:.3g} times): "
-                f'{by}. Give [design] time = "discrete", a shorter [filter] dt, or a '
-                "Wp that asks for less."
-            )
-        return f"The design: {self.design.message}."
-
-    def _cure_of_the_rest(self) -> str:
-        """Say what to change where the block itself is stable for every plant within Wu."""
-        true = self.true_plant
-        if true is not None and not true.within:
-            return (
-                f"The true plant is off by up to {number(true.used)} |Wu|, at "
-                f"{hertz(true.frequency)}: give a Wu that holds it, and design again."
-            )
-        failing = self._failing_slope()
-        if failing is None:
-            return (
-                "No slope that it met is unstable, and yet the simulation diverges: see if the "
-                "actuator can reach the reference, and tell the block what its drive may be, "
-                "[limits] drive."
-            )
-        closer = "" if self.inverse_name == EXACT else "an inverse closer to the exact one, or "
-        return (
-            f"The block is stable where the inverse is exact; with this one ({self.inverse_name}) "
-            f"hysteresis and inverse make a gain of {failing:.3g}, at which it is not. Give "
-            f"{closer}a controller of lower gain."
-        )
-
     @property
     def margin_of_design(self) -> float | None:
         """How often Wu may grow around the design in continuous time; None if there is none."""
@@ -274,6 +237,11 @@ class ObserverAnswer:
 
     def _but(self) -> str:
         said = ""
+        if self.unfit:
+            said += (
+                " BUT the verdict on the model is unfit: it does not describe the actuator, and "
+                "all of this is of the model."
+            )
         if self.true_plant is not None and not self.true_plant.within:
             said += " BUT the true plant is not within Wu: widen Wu."
         if limits_met(self.block, self.loop):
@@ -358,8 +326,9 @@ class ObserverAnswer:
         if not self.safe:
             return "Nothing: controller.json is not written while the loop is not safe."
         inverse = "no inverse" if self.block.inverse is None else "the inverse of the hysteresis"
+        states = f"{self.block.order} state{'s' * (self.block.order != 1)}"
         return (
-            f"controller.json: {self.block.order} states and {inverse}, every {self.block.dt:g} s; "
+            f"controller.json: {states} and {inverse}, every {self.block.dt:g} s; "
             f"in the simulation it tracks with rms {number(self.loop.rms_error)}, "
             f"max {number(self.loop.max_error)}."
         )
@@ -381,7 +350,7 @@ class ObserverAnswer:
             "inverse_error_bound": None if self.bound is None else self.bound.to_dict(),
             "slopes": None if j.slopes is None else list(j.slopes),
             "seen_slopes": list(j.met),
-            "failing_slope": self._failing_slope(),
+            "failing_slope": self.failing_slope(),
             "slope_proof": finite(j.proof),
             "uncertainty_used": None if true is None else [true.used, true.frequency],
             "drive_range": list(self.drive_range),

@@ -44,7 +44,9 @@ def feedback_tables(answer: ObserverAnswer) -> tuple[Table, ...]:
     worth = () if answer.parts is None else (parts_table(answer.parts),)
     if answer.margins is None:
         return worth
-    return *worth, margins_table(*answer.margins, answer.controller_design)
+    alone, block = answer.margins
+    whole = block if answer.has_observer else None
+    return *worth, margins_table(alone, whole, answer.controller_design)
 
 
 def checks_table(answer: ObserverAnswer) -> Table:
@@ -84,7 +86,8 @@ def checks_table(answer: ObserverAnswer) -> Table:
 def _proof(answer: ObserverAnswer) -> list[tuple[str, str, str]]:
     j = answer.judgement
     if j.slopes is None:
-        return []
+        what = "proven for all slopes of this inverse"
+        return [(what, "open", "they are known for plays between maps alone")]
     low, high = j.slopes
     what = f"proven for slopes {low:.3g} to {high:.3g} of this inverse"
     if j.proof is None:
