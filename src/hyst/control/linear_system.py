@@ -121,20 +121,11 @@ class LinearSystem:
         return control.ss(self.A, self.B, self.C, self.D, self.dt, remove_useless_states=False)
 
 
-def _solved(points: ComplexArray, A: Array, B: ComplexArray) -> ComplexArray:
-    """Solve (s - A) X = B for each s; at a pole itself beside it, as rounding mostly has it."""
-    unit = np.eye(A.shape[0])
-    try:
-        return np.asarray(np.linalg.solve(points[:, None, None] * unit - A, B))
-    except np.linalg.LinAlgError:
-        beside = points * (1.0 + _BESIDE)
-        return np.asarray(np.linalg.solve(beside[:, None, None] * unit - A, B))
-
-
 def _by_schur(A: Array, B: Array, C: Array, D: Array, points: ComplexArray) -> ComplexArray:
     """Values of a transfer function of many states, as long delays have: one triangle for all."""
     T, U = scipy.linalg.schur(A, output="complex")
     right, left, n = U.conj().T @ B, C @ U, len(A)
+    points = np.where(np.isin(points, np.diag(T)), points * (1.0 + _BESIDE), points)
     values = np.empty((points.size, *D.shape), dtype=np.complex128)
     for start in range(0, points.size, _AT_A_TIME):
         z = points[start : start + _AT_A_TIME]
@@ -148,6 +139,16 @@ def _by_schur(A: Array, B: Array, C: Array, D: Array, points: ComplexArray) -> C
                 X[i] = (rest[i - first] + inner) / (z - T[i, i])
         values[start : start + _AT_A_TIME] = np.moveaxis(np.tensordot(left, X, 1), -1, 0) + D
     return values
+
+
+def _solved(points: ComplexArray, A: Array, B: ComplexArray) -> ComplexArray:
+    """Solve (s - A) X = B for each s; at a pole itself beside it, as rounding mostly has it."""
+    unit = np.eye(A.shape[0])
+    try:
+        return np.asarray(np.linalg.solve(points[:, None, None] * unit - A, B))
+    except np.linalg.LinAlgError:
+        beside = points * (1.0 + _BESIDE)
+        return np.asarray(np.linalg.solve(beside[:, None, None] * unit - A, B))
 
 
 def balanced(system: LinearSystem) -> LinearSystem:

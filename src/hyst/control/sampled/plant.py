@@ -18,7 +18,7 @@ from hyst.errors import InputError
 Array = NDArray[np.float64]
 
 # Of delay, a state each: with more a certificate takes minutes, and its poles lose their digits.
-_MOST_SAMPLES = 100
+LARGEST_DELAY = 100
 
 
 @dataclass(frozen=True)
@@ -118,9 +118,9 @@ def _with(plant: SampledPlant, dt: float | None, delay: float) -> SampledPlant:
 def _split(delay: float, dt: float) -> tuple[int, float]:
     """Whole samples of a delay, and the rest in seconds."""
     samples = delay / dt
-    if samples > _MOST_SAMPLES:
+    if samples > LARGEST_DELAY:
         raise InputError(
-            f"the delay of {delay:.6g} s is {samples:.4g} samples; at most {_MOST_SAMPLES} can be "
+            f"the delay of {delay:.6g} s is {samples:.4g} samples; at most {LARGEST_DELAY} can be "
             "taken in; give a longer dt"
         )
     nearest = round(samples)

@@ -17,7 +17,7 @@ from hyst.control.disturbance_observer.discrete.problem import SampledObserverPr
 from hyst.control.disturbance_observer.discrete.w_plane import factored, poles_in_w_plane
 from hyst.control.disturbance_observer.stacked_gain import feedback_matrix
 from hyst.control.linear_system import LinearSystem, as_linear_system
-from hyst.control.sampled.plant import SampledPlant, sampled_plant
+from hyst.control.sampled.plant import LARGEST_DELAY, SampledPlant, sampled_plant
 from hyst.control.zeros_and_poles import zeros_and_poles
 from hyst.errors import InputError
 
@@ -155,6 +155,8 @@ def check_controller(
         raise InputError(f"{start}; lower its gain or check its sign")
     for halvings in range(1, 12):
         dt = plant.dt / 2.0**halvings
+        if plant.delay > LARGEST_DELAY * dt:
+            break
         faster = sampled_plant(continuous, dt, plant.delay)
         if faster.system.order > _TRIED:
             break
