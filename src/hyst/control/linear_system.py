@@ -151,6 +151,26 @@ def _solved(points: ComplexArray, A: Array, B: ComplexArray) -> ComplexArray:
         return np.asarray(np.linalg.solve(beside[:, None, None] * unit - A, B))
 
 
+def in_series(first: LinearSystem, *others: LinearSystem) -> LinearSystem:
+    """Put systems one behind the other, each with its own states: no polynomial of high order.
+
+    Parameters
+    ----------
+    first, others
+        In the order of the signal, all continuous or all of one dt; a system has as many inputs as
+        the one before it outputs.
+    """
+    whole = first
+    for each in others:
+        n, m = whole.order, each.order
+        A = np.zeros((n + m, n + m))
+        A[:n, :n], A[n:, :n], A[n:, n:] = whole.A, each.B @ whole.C, each.A
+        B = np.vstack([whole.B, each.B @ whole.D])
+        C = np.hstack([each.D @ whole.C, each.C])
+        whole = LinearSystem(A, B, C, each.D @ whole.D, each.dt)
+    return whole
+
+
 def balanced(system: LinearSystem) -> LinearSystem:
     """Scale the states of system by powers of two, which changes no digit."""
     return LinearSystem(*balanced_matrices(system.A, system.B, system.C), system.D, system.dt)

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from hyst.control.feedback.frequencies import highest
 from hyst.control.feedback.loop_plant import LoopPlant, as_rates, points, static_gain
-from hyst.control.feedback.structures import in_series
-from hyst.control.linear_system import LinearSystem
+from hyst.control.linear_system import LinearSystem, in_series
 from hyst.models.realizations import companion
 
 Array = NDArray[np.float64]
@@ -104,7 +103,7 @@ def with_resonances_elsewhere(
         above = above * np.polyval(below, one) / np.polyval(above, one)
         A, B, C, D = companion(above, below)
         moved = LinearSystem(A, B.reshape(-1, 1), C.reshape(1, -1), np.array([[D]]), plant.dt)
-        plant = in_series([plant, moved])
+        plant = in_series(plant, moved)
     return plant
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.control.linear_system import LinearSystem
+from hyst.control.linear_system import LinearSystem, in_series
 from hyst.models.realizations import companion
 
 Array = NDArray[np.float64]
@@ -109,7 +109,7 @@ class Shape:
                     np.array([1.0, 2.0 * notch.pole_damping * w, w * w]),
                 )
             )
-        return in_series(parts)
+        return in_series(*parts)
 
 
 def times_response(s: ComplexArray, times: Array) -> ComplexArray:
@@ -154,25 +154,6 @@ def warped(w: float, dt: float) -> float:
         Sample time, s, or 0.
     """
     return 2.0 / dt * math.tan(0.5 * w * dt) if dt else w
-
-
-def in_series(parts: list[LinearSystem]) -> LinearSystem:
-    """Put systems one behind the other, each with its own states: no polynomial of high order.
-
-    Parameters
-    ----------
-    parts
-        In the order of the signal; one input and output each.
-    """
-    whole = parts[0]
-    for each in parts[1:]:
-        n, m = whole.order, each.order
-        A = np.zeros((n + m, n + m))
-        A[:n, :n], A[n:, :n], A[n:, n:] = whole.A, each.B @ whole.C, each.A
-        B = np.vstack([whole.B, each.B @ whole.D])
-        C = np.hstack([each.D @ whole.C, each.C])
-        whole = LinearSystem(A, B, C, each.D @ whole.D, whole.dt)
-    return whole
 
 
 def _realized(above: Array, below: Array) -> LinearSystem:

@@ -6,7 +6,7 @@ import numpy as np
 import scipy.linalg
 
 from hyst.control.disturbance_observer.stacked_gain import feedback_matrix
-from hyst.control.linear_system import LinearSystem
+from hyst.control.linear_system import LinearSystem, in_series
 from hyst.control.q_filters.family import QFilter
 from hyst.control.q_filters.problem import QFilterProblem
 from hyst.control.q_filters.realization import Channel, shared_realization
@@ -109,16 +109,6 @@ def _without(values: np.ndarray, taken: np.ndarray) -> np.ndarray:
     for each in taken:
         left.pop(int(np.argmin(np.abs(np.array(left) - each))))
     return np.array(left, dtype=complex)
-
-
-def in_series(first: LinearSystem, second: LinearSystem) -> LinearSystem:
-    """Give second after first."""
-    n, m = first.order, second.order
-    A = np.zeros((n + m, n + m))
-    A[:n, :n], A[n:, n:], A[n:, :n] = first.A, second.A, second.B @ first.C
-    B = np.vstack([first.B, second.B @ first.D])
-    C = np.hstack([second.D @ first.C, second.C])
-    return LinearSystem(A, B, C, second.D @ first.D)
 
 
 def _side_by_side(first: LinearSystem, second: LinearSystem) -> LinearSystem:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from hyst.checks.numbers import whole_number
 from hyst.control.discretization import discretize
-from hyst.control.linear_system import LinearSystem, balanced
+from hyst.control.linear_system import LinearSystem, balanced, in_series
 from hyst.control.sampled.block_loop import BlockLoop, largest
 from hyst.control.sampled.certificate import plant_of_block, stable_weight
 from hyst.control.sampled.folding import folded_uncertainty
@@ -138,18 +138,9 @@ def _judged(closed: LinearSystem) -> tuple[bool, float]:
 def _deviated(plant: SampledPlant, Wu: LinearSystem, delta: LinearSystem) -> LinearSystem:
     """Give ``P = Pn (1 + Wu Delta)``, continuous where the nominal plant is."""
     nominal = plant.system if plant.continuous is None else plant.continuous
-    off = _series(Wu, delta)
+    off = in_series(Wu, delta)
     one_more = LinearSystem(off.A, off.B, off.C, off.D + 1.0, off.dt)
-    return _series(one_more, nominal)
-
-
-def _series(first: LinearSystem, second: LinearSystem) -> LinearSystem:
-    m, n = first.order, second.order
-    A = np.zeros((m + n, m + n))
-    A[:m, :m], A[m:, :m], A[m:, m:] = first.A, second.B @ first.C, second.A
-    B = np.vstack([first.B, second.B @ first.D])
-    C = np.hstack([second.D @ first.C, second.C])
-    return LinearSystem(A, B, C, second.D @ first.D, second.dt)
+    return in_series(one_more, nominal)
 
 
 def _deltas(
@@ -164,7 +155,7 @@ def _deltas(
             w = nyquist * 10.0 ** draw.uniform(-2.5, 0.7)
             damping = 10.0 ** draw.uniform(-2.5, 0.3)
             kind = int(draw.integers(0, 4))
-            total = _series(total, _factor(kind, w, damping))
+            total = in_series(total, _factor(kind, w, damping))
         yield _of_time(total, loop)
 
 
@@ -209,7 +200,7 @@ def _pointing(
     for _ in range(20):
         total = _gain(1.0)
         for each, turn in zip(at, turns, strict=True):
-            total = _series(total, _turning(float(each), float(turn), damping))
+            total = in_series(total, _turning(float(each), float(turn), damping))
         reached = np.angle(total.response(1j * at)[:, 0, 0])
         off = (wanted - reached + np.pi) % (2.0 * np.pi) - np.pi
         if np.abs(off).max() < 1e-6:
