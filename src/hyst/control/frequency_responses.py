@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from hyst.control.disturbance_observer import DisturbanceObserver
 from hyst.control.disturbance_observer.discrete.problem import SampledObserverProblem
+from hyst.control.largest_value import largest
 from hyst.control.linear_system import LinearSystem
-from hyst.control.sampled.block_loop import largest
 from hyst.control.sampled.plant import sampled_plant
 from hyst.control.zeros_and_poles import zeros_and_poles
 from hyst.errors import InputError

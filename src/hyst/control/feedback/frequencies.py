@@ -74,35 +74,3 @@ def crossings(w: Array, value: Callable[[Array], Array]) -> Array:
         first = np.argmax(above[1:] != above[:-1], axis=0)
         low, high = tried[first, columns], tried[first + 1, columns]
     return np.asarray(0.5 * (low + high))
-
-
-def highest(w: Array, value: Callable[[Array], Array]) -> tuple[float, float]:
-    """Give the largest value of a function on a grid, searched between its points, and where it is.
-
-    Parameters
-    ----------
-    w
-        Grid, rad/s, ascending.
-    value
-        The function.
-
-    Returns
-    -------
-    value, frequency
-    """
-    at = value(w)
-    inside = np.flatnonzero((at[1:-1] >= at[:-2]) & (at[1:-1] >= at[2:])) + 1
-    inside = inside[np.argsort(-at[inside])][:4]
-    best, place = float(at.max()), float(w[int(np.argmax(at))])
-    low, high = w[inside - 1].copy(), w[inside + 1].copy()
-    for _ in range(4 if inside.size else 0):
-        tried = low + (high - low) * np.linspace(0.0, 1.0, 21)[:, None]
-        values = value(tried.ravel()).reshape(tried.shape)
-        k = np.argmax(values, axis=0)
-        columns = np.arange(inside.size)
-        top = values[k, columns]
-        if top.max() > best:
-            best, place = float(top.max()), float(tried[k[top.argmax()], top.argmax()])
-        low = tried[np.maximum(k - 1, 0), columns]
-        high = tried[np.minimum(k + 1, 20), columns]
-    return best, place

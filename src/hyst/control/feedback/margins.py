@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from hyst.control.controller_parts import feedback_controller
 from hyst.control.discretization import Method, discretize
-from hyst.control.feedback.frequencies import crossings, frequencies_around, highest
+from hyst.control.feedback.frequencies import crossings, frequencies_around
 from hyst.control.feedback.loop_plant import (
     LoopPlant,
     as_rates,
@@ -22,6 +22,7 @@ from hyst.control.feedback.loop_plant import (
     static_gain,
 )
 from hyst.control.feedback.stability import is_stable, loop_poles
+from hyst.control.largest_value import largest
 from hyst.control.linear_system import LinearSystem
 from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError
@@ -216,7 +217,7 @@ def margins_of(plant: LoopPlant, controller: LinearSystem) -> LoopMargins:
         counted = (factors < _FAR) | (np.arange(turned.size) == 0)
         turned, factors = turned[counted], factors[counted]
     turned, factors = _with_ends(plant, controller, turned, factors)
-    peak, place = highest(w, lambda at: 1.0 / np.maximum(np.abs(1.0 + loop(at)), 1e-300))
+    peak, place = largest(lambda at: 1.0 / np.maximum(np.abs(1.0 + loop(at)), 1e-300), w)
     at_rest = static_gain(plant.system) * static_gain(controller)
     whole = 1.0 if math.isinf(at_rest) or math.isnan(at_rest) else math.inf
     if math.isfinite(at_rest) and at_rest != -1.0:  # at -1 the loop integrates
@@ -261,7 +262,7 @@ def largest_noise_gain(
         gain = np.abs(of_controller / (1.0 + plant.response(at) * of_controller))
         return gain if weight is None else gain * weight(at)
 
-    return highest(w, size)[0]
+    return largest(size, w)[0]
 
 
 def _closed(loop: Any) -> Any:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.control.feedback.frequencies import highest
 from hyst.control.feedback.loop_plant import LoopPlant, as_rates, points, static_gain
+from hyst.control.largest_value import largest
 from hyst.control.linear_system import LinearSystem, in_series
 from hyst.models.realizations import companion
 
@@ -71,7 +71,7 @@ def resonances(plant: LoopPlant) -> tuple[Resonance, ...]:
         def gain(w: Array) -> Array:
             return np.abs(source.response(points(w, source.dt))[:, 0, 0])
 
-        peak = highest(near, gain)[0] / at_rest
+        peak = largest(gain, near)[0] / at_rest
         if peak > _HEARD:
             found.append(Resonance(natural, float(damping), peak, complex(pole)))
     return tuple(sorted(found, key=lambda each: -each.peak))

@@ -8,9 +8,10 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.control.largest_value import largest
 from hyst.control.q_filters.family import QFilter
 from hyst.control.q_filters.problem import QFilterProblem
-from hyst.control.q_filters.responses import grid_of, largest_refined, responses_of
+from hyst.control.q_filters.responses import grid_of, responses_of
 from hyst.control.zeros_and_poles import ZerosAndPoles
 from hyst.errors import InputError
 
@@ -110,8 +111,8 @@ def robust_performance_of(
         # Beyond the border every frequency is as bad.
         return np.where(np.isnan(left), 0.0, np.minimum(left, 1e300))
 
-    value, frequency = largest_refined(total, w)
-    most, at_most = largest_refined(worst, w)
+    value, frequency = largest(total, w)
+    most, at_most = largest(worst, w)
     return RobustPerformance(value, frequency, most if most < 1e299 else np.inf, at_most)
 
 

@@ -148,20 +148,6 @@ def grid_of(problem: QFilterProblem, Q: QFilter | None = None) -> Array:
     return np.unique(np.concatenate([even, near[near > 10.0**low], size]))
 
 
-def largest_refined(function: Callable[[Array], Array], w: Array) -> tuple[float, float]:
-    """Give the largest value of a function of frequency and where, from a grid and around its tops.
-
-    Parameters
-    ----------
-    function
-        Takes and gives (K,).
-    w
-        Grid, rad/s, ascending.
-    """
-    where, values = refined_tops(function, w)
-    return float(values[0]), float(where[0])
-
-
 def refined_tops(
     function: Callable[[Array], Array], w: Array, share: float = 0.0, rounds: int = 5
 ) -> tuple[Array, Array]:

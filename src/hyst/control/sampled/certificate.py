@@ -11,8 +11,9 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
+from hyst.control.largest_value import largest
 from hyst.control.linear_system import LinearSystem, as_linear_system, balanced
-from hyst.control.sampled.block_loop import BlockLoop, largest
+from hyst.control.sampled.block_loop import BlockLoop
 from hyst.control.sampled.folding import folded_uncertainty, weight_response
 from hyst.control.sampled.plant import SampledPlant, sampled_plant
 from hyst.control.tracking_controller import TrackingController

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.checks.numbers import as_number
-from hyst.control.sampled.block_loop import BlockLoop, largest
+from hyst.control.largest_value import largest
+from hyst.control.sampled.block_loop import BlockLoop
 from hyst.control.sampled.certificate import plant_of_block, stable_weight
 from hyst.control.sampled.folding import folded_uncertainty
 from hyst.control.tracking_controller import TrackingController

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from hyst.checks.numbers import whole_number
 from hyst.control.discretization import discretize
+from hyst.control.largest_value import largest
 from hyst.control.linear_system import LinearSystem, balanced, in_series
-from hyst.control.sampled.block_loop import BlockLoop, largest
+from hyst.control.sampled.block_loop import BlockLoop
 from hyst.control.sampled.certificate import plant_of_block, stable_weight
 from hyst.control.sampled.folding import folded_uncertainty
 from hyst.control.sampled.plant import SampledPlant, sampled_plant

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from hyst.control.disturbance_observer.certificate import plain
 from hyst.control.disturbance_observer.discrete.problem import SampledObserverProblem
 from hyst.control.disturbance_observer.stacked_gain import feedback_matrix
+from hyst.control.largest_value import largest
 from hyst.control.linear_system import LinearSystem
 from hyst.control.loop_poles import closed_loop_poles
-from hyst.control.sampled.block_loop import BlockLoop, largest
+from hyst.control.sampled.block_loop import BlockLoop
 from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
 from hyst.control.sampled.folding import folded_uncertainty, weight_response
 from hyst.control.sampled.plant import SampledPlant
