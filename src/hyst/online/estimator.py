@@ -98,7 +98,8 @@ class Estimator(Saved):
         Parameters
         ----------
         u, y
-            Input and measured output; one that is not finite is skipped and counted.
+            Input and measured output; one that is not finite is skipped and counted. Where only
+            the output is missing, let the memory ``follow`` the input.
 
         Returns
         -------
