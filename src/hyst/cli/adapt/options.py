@@ -7,8 +7,6 @@ from typing import Annotated
 
 import typer
 
-import hyst
-
 Files = Annotated[
     list[Path],
     typer.Argument(
@@ -50,7 +48,7 @@ Which = Annotated[
     typer.Option(
         "--estimator",
         metavar="NAME",
-        help=f"Which one: auto by the model, or {', '.join(hyst.online.ESTIMATORS)}.",
+        help="Which one: auto by the model, or scale, joint.",  # hyst.online.ESTIMATORS
     ),
 ]
 Guard = Annotated[
