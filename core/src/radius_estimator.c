@@ -186,6 +186,20 @@ static void least_squares(const hyst_radius *radius, const hyst_radius_layout *a
     }
 }
 
+/* The first input: plays that it is farther from than their radii go with it (S2 eq. 1). */
+static void begin_input(const hyst_radius *radius, const hyst_radius_layout *at, hyst_real *state,
+                        hyst_real u)
+{
+    state[HYST_RADIUS_INPUT] = state[HYST_RADIUS_EXTREME] = u;
+    for (size_t i = 0; i < radius->plays; ++i) {
+        const hyst_real way = u - state[at->home + i];
+        if (way > state[at->r + i] || -way > state[at->r + i]) {
+            state[at->home + i] = u;
+            state[at->side + i] = way > ZERO ? -ONE : ONE;
+        }
+    }
+}
+
 /* Outputs before this one were not measured, so the slope begins here; it can do so for good once the
  * output at the farthest input is known. */
 static void begin_slope(hyst_real *state, hyst_real u, hyst_real y)
@@ -211,7 +225,7 @@ static int advance(const hyst_radius *radius, const hyst_radius_layout *at, hyst
     }
     if (!(state[HYST_RADIUS_STARTED] > ZERO)) {
         state[HYST_RADIUS_STARTED] = ONE;
-        state[HYST_RADIUS_INPUT] = state[HYST_RADIUS_EXTREME] = u;
+        begin_input(radius, at, state, u);
         state[HYST_RADIUS_OUTPUT] = y;
         return -1;
     }
@@ -307,7 +321,9 @@ int hyst_radius_step_told(const hyst_radius *radius, hyst_real *state, hyst_real
     } else if (moves) {
         state[HYST_RADIUS_REGIME] = -ONE;
     }
-    return learn(radius, &at, state, u, y);
+    const int used = learn(radius, &at, state, u, y);
+    state[HYST_RADIUS_TOLD] += used ? ONE : ZERO;
+    return used;
 }
 
 void hyst_radius_follow(const hyst_radius *radius, hyst_real *state, hyst_real u)
@@ -318,7 +334,7 @@ void hyst_radius_follow(const hyst_radius *radius, hyst_real *state, hyst_real u
         return;
     }
     if (!(state[HYST_RADIUS_STARTED] > ZERO)) {
-        state[HYST_RADIUS_INPUT] = state[HYST_RADIUS_EXTREME] = u;
+        begin_input(radius, &at, state, u);
     }
     state[HYST_RADIUS_STARTED] = HYST_REAL(2.0);
     state[HYST_RADIUS_REGIME] = -ONE;

@@ -53,6 +53,7 @@ enum {
     HYST_RADIUS_SKIPPED, /* samples not finite, too large to be squared, or leading to an overflow */
     HYST_RADIUS_SQUARES, /* means of the last 150 squared errors, and of their products with the */
     HYST_RADIUS_PRODUCTS, /* error before each */
+    HYST_RADIUS_TOLD,    /* samples used whose regime came from outside */
     HYST_RADIUS_STARTED, /* 0: no sample yet, 1: yes, 2: but the last output is not known */
     HYST_RADIUS_INPUT,     /* last input */
     HYST_RADIUS_DIRECTION, /* s */

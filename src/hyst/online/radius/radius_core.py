@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 _TOLERANCES = {"gradient": 1.0, "least-squares": 0.25}
 # Places of the scalars in the state, as radius_estimator.h has them.
-_INPUT, _DIRECTION, _EXTREME = 8, 9, 10
+_INPUT, _DIRECTION, _EXTREME = 9, 10, 11
 
 
 def checked_settings(start: PrandtlIshlinskii, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -120,10 +120,16 @@ def radii_of(model: Operator, settings: Mapping[str, Any]) -> Array:
     return parts.pi.r
 
 
-def reasons_of(names: tuple[str, ...], p: Array, sides: Array, method: str) -> dict[str, str]:
+def reasons_of(
+    names: tuple[str, ...], p: Array, sides: Array, method: str, measures_regimes: bool
+) -> dict[str, str]:
     """Say why radii are not determined, by name."""
     if method == "gradient":
         return dict.fromkeys(names, "the gradient has no standard error")
+    if measures_regimes:
+        return dict.fromkeys(
+            names, "regimes come from the measured slope, which noise and large steps make wrong"
+        )
     reasons = {}
     for name, weight, side in zip(names, p.tolist(), sides.tolist(), strict=True):
         if weight == 0.0:

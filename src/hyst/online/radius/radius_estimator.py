@@ -33,8 +33,8 @@ from hyst.signals import Record
 Array = NDArray[np.float64]
 
 # Places of the scalars in the state, as radius_estimator.h has them.
-_ERROR, _SLOPE, _REGIME, _UPDATES, _SKIPPED, _SQUARES, _PRODUCTS = range(7)
-_KEPT = slice(7, 18)  # memory of the input and of the slope filter
+_ERROR, _SLOPE, _REGIME, _UPDATES, _SKIPPED, _SQUARES, _PRODUCTS, _TOLD = range(8)
+_KEPT = slice(8, 19)  # memory of the input and of the slope filter
 
 
 @final
@@ -97,8 +97,8 @@ class RadiusEstimator(Estimator):
     S2 eqs. 17-26, NOTES on the collapse of its 18 cases in ``docs/online.md``. The regime comes
     from the measured slope, which noise hides; whoever knows slope or regime better tells it to
     ``update`` or ``run``. See ``JointEstimator`` for one that needs no slope. The gradient has no
-    standard errors, so its ``knowledge`` says that nothing is known; those of least squares hold
-    where regimes are right.
+    standard errors, so its ``knowledge`` says that nothing is known; least squares has some where
+    every regime was told.
 
     Examples
     --------
@@ -160,6 +160,10 @@ class RadiusEstimator(Estimator):
         self.state[first : first + r.size] = r
         self._core.start(self.state, np.array(self.settings["z0"]))
 
+    def _measures_regimes(self) -> bool:
+        """Whether a regime was taken from the measured slope: then it may be wrong, and bands too."""
+        return bool(self.state[_TOLD] < self.state[_UPDATES])
+
     def _memory(self) -> Array:
         return memory_of(self.state, self._at, self.radii)
 
@@ -191,9 +195,9 @@ class RadiusEstimator(Estimator):
 
     @property
     def covariance(self) -> Array:
-        """Shape (n, n), by ``noise``; NaN for the gradient, which has none."""
+        """Shape (n, n), by ``noise``; NaN by the gradient and where regimes were measured."""
         n = self._p.size
-        if self.settings["method"] == "gradient":
+        if self.settings["method"] == "gradient" or self._measures_regimes():
             return np.full((n, n), np.nan)
         d, u = self._at["d"], self._at["u"]
         shape = covariance_of(self.state[d:u], self.state[u : u + n * (n - 1) // 2])
@@ -216,7 +220,8 @@ class RadiusEstimator(Estimator):
     def knowledge(self) -> Knowledge:
         """What is known of each radius: nothing by the gradient, bands by least squares."""
         sides = self.state[self._at["side"] : self._at["age"]]
-        reasons = reasons_of(self.names, self._p, sides, self.settings["method"])
+        measures = self._measures_regimes()
+        reasons = reasons_of(self.names, self._p, sides, self.settings["method"], measures)
         doubt = () if self.innovation.consistent else (f"bands do not hold: {self.innovation}",)
         return knowledge_from(self.names, self.radii, self.standard_errors, reasons, doubt)
 
