@@ -161,7 +161,7 @@ class RadiusEstimator(Estimator):
         self._core.start(self.state, np.array(self.settings["z0"]))
 
     def _measures_regimes(self) -> bool:
-        """Whether a regime was taken from the measured slope: then it may be wrong, and bands too."""
+        """Whether a regime was taken from the measured slope, so that it may be wrong."""
         return bool(self.state[_TOLD] < self.state[_UPDATES])
 
     def _memory(self) -> Array:
