@@ -50,8 +50,8 @@ class Judgement:
             )
         if self.trusted:
             return (
-                f"commands come from the estimate{doubt.rstrip(',')}; {window} it missed the output by "
-                f"{self.estimate:.3g} rms, the last good model by {self.good:.3g}"
+                f"commands come from the estimate{doubt.rstrip(',')}; {window} it missed the "
+                f"output by {self.estimate:.3g} rms, the last good model by {self.good:.3g}"
             )
         head = (
             f"commands come from the last good model, which missed the output by {self.good:.3g} "
