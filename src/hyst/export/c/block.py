@@ -25,14 +25,21 @@ from hyst.models.schedule_run import ScheduledSystem
 from hyst.models.scheduled import Scheduled
 from hyst.models.scheduled_inverse import ScheduledInverse
 from hyst.models.stable_inverse import StableInverse
-from hyst.online import JointEstimator
+from hyst.online import JointEstimator, ScaleEstimator
 from hyst.operators import Affine, ModelDescription, Operator, Play
 from hyst.operators.registry import compose
 from hyst.operators.verdict import refuse_if_unfit
 
 Array = NDArray[np.float64]
 
-Model = Operator | ScheduledSystem | TrackingController | StableInverse | JointEstimator
+Model = (
+    Operator
+    | ScheduledSystem
+    | TrackingController
+    | StableInverse
+    | JointEstimator
+    | ScaleEstimator
+)
 
 
 @final
@@ -85,6 +92,8 @@ class Block:
         one call of the stages after the other.
     limits
         Lowest and highest output, in numbers of the target; None without limits.
+    source_template
+        Of the source file, where it is another one than that of its header.
     """
 
     kind: str
@@ -108,6 +117,7 @@ class Block:
     faults: str = ""
     written: Callable[[StageCode], str] | None = None
     limits: tuple[float, float] | None = None
+    source_template: str = ""
 
     def sha256(self) -> str:
         """Give the hash of the model."""
@@ -139,10 +149,11 @@ def stepper_of(block: Block, precision: Precision) -> Callable[..., float]:
         return block.stepper()
     if block.single_stepper is not None:
         return block.single_stepper()
-    return _single.Stepper([_told(stage) for stage in block.stages], block.start)
+    return _single.Stepper([told(stage) for stage in block.stages], block.start)
 
 
-def _told(stage: CoreStage) -> tuple[Any, ...]:
+def told(stage: CoreStage) -> tuple[Any, ...]:
+    """Give a ``stage`` as the twin in single precision takes it."""
     choices = {**stage.choices, **({"inside": stage.inside} if stage.inside else {})}
     return stage.kind, stage.form, dict(stage.numbers), dict(stage.tables), choices
 
@@ -231,7 +242,7 @@ def _scheduled(model: Scheduled | ScheduledInverse, precision: Precision) -> Blo
     start = tuple(model.initial_state().tolist())
 
     def single_stepper() -> Callable[..., float]:
-        knots = [[_told(stage) for stage in each] for each in code.knots]
+        knots = [[told(stage) for stage in each] for each in code.knots]
         return _single.MovingStepper(model.values.tolist(), knots, start)
 
     first = model.models[0] if isinstance(model, Scheduled) else model.scheduled.models[0].inverse()
