@@ -13,19 +13,15 @@ import typer
 import hyst
 from hyst.cli.console import note
 
-InputColumn = Annotated[
-    str,
-    typer.Option(
-        "--input",
-        metavar="COL",
-        show_default=False,
-        help="Column of the input: name or index from 0.",
-    ),
-]
-OutputColumn = Annotated[
-    str,
-    typer.Option("--output", metavar="COL", show_default=False, help="Column of the output."),
-]
+_INPUT = typer.Option(
+    "--input",
+    metavar="COL",
+    show_default=False,
+    help="Column of the input: name or index from 0.",
+)
+_OUTPUT = typer.Option("--output", metavar="COL", show_default=False, help="Column of the output.")
+InputColumn = Annotated[str, _INPUT]
+OutputColumn = Annotated[str, _OUTPUT]
 Rate = Annotated[
     float | None, typer.Option(metavar="HZ", show_default=False, help="Samples per second.")
 ]
@@ -146,6 +142,15 @@ Verb = Callable[..., Any]
 def reads_records(verb: Verb) -> Verb:
     """Give a verb the options of reading records; it gets them as ``how``, for ``read_told``."""
     return _with_options(verb, _OF_A_RECORD)
+
+
+def may_read_records(verb: Verb) -> Verb:
+    """Give a verb the same options where files may be left out, and so their columns too."""
+    columns = {
+        "input_column": (Annotated[str | None, _INPUT], None),
+        "output_column": (Annotated[str | None, _OUTPUT], None),
+    }
+    return _with_options(verb, _OF_A_RECORD | columns)
 
 
 def reads_columns(verb: Verb) -> Verb:
