@@ -7,8 +7,8 @@ Prints, for one machine and one run,
 - root mean square errors of 50 runs of 100 s at 10, 20 and 30 dB over the Cramer-Rao bound, from
   radii and weights all too small or all too large, and at 10 and 20 dB each in its own direction,
 - the same of 40 runs of 30 s at 20 to 60 dB, with the search and without,
-- the same for the paper's law on sine and staircase, over the bound of the radii alone, with regimes
-  from the noisy output and from the slope of the output before the noise,
+- the same for the paper's law on sine and staircase, over the bound of the radii alone, with
+  regimes from the noisy output and from the slope of the output before the noise,
 - the tracking error of the adaptive inverse over that of a frozen one, while a weight and a radius
   drift by 30 % in 60 s at 30 dB.
 """
