@@ -271,4 +271,29 @@ class RadiusEstimation:
         told: Array,
     ) -> None: ...
 
+class ScaleEstimation:
+    def __init__(
+        self,
+        forgetting: float,
+        patience: float,
+        spread: float,
+        least: float,
+        most: float,
+        scale_held: bool,
+        offset_held: bool,
+    ) -> None: ...
+    def places(self) -> dict[str, int]: ...
+    def start(self, state: Array, start: float, offset: float) -> None: ...
+    def step(self, state: Array, w: float, y: float) -> int: ...
+    def run(
+        self,
+        state: Array,
+        w: Array,
+        y: Array,
+        every: int,
+        theta: Array,
+        variance: Array,
+        error: Array,
+    ) -> None: ...
+
 def project_radii(r: Array, most: float) -> None: ...
