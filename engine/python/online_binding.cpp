@@ -365,10 +365,7 @@ void bind_online_estimation(nb::module_ &module) {
         .def("follow", &Radius::follow, nb::arg("state").noconvert(), nb::arg("u").noconvert())
         .def("run", &Radius::run, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
              nb::arg("y").noconvert(), nb::arg("every"), nb::arg("r").noconvert(),
-<<<<<<< HEAD
              nb::arg("error").noconvert(), nb::arg("is_slope"), nb::arg("told").noconvert());
-=======
-             nb::arg("error").noconvert());
     nb::class_<Scale>(module, "ScaleEstimation")
         .def(nb::init<double, double, double, double, double, bool, bool>())
         .def("places", &Scale::places)
@@ -378,7 +375,6 @@ void bind_online_estimation(nb::module_ &module) {
         .def("run", &Scale::run, nb::arg("state").noconvert(), nb::arg("w").noconvert(),
              nb::arg("y").noconvert(), nb::arg("every"), nb::arg("theta").noconvert(),
              nb::arg("variance").noconvert(), nb::arg("error").noconvert());
->>>>>>> wt-adapt
     module.def("project_radii", &project_radii, nb::arg("r").noconvert(), nb::arg("most"));
 }
 

@@ -217,7 +217,9 @@ class AdaptiveInverse(Saved):
         inverse._fallback.restart(inverse._good)  # refuses what cannot be inverted
         inverse._fallback = _estimator_from(settings["fallback"])
         usual = settings["usual"]
-        inverse._usual = math.inf if usual is None else as_not_negative(usual, "usual", "a mean square")
+        inverse._usual = (
+            math.inf if usual is None else as_not_negative(usual, "usual", "a mean square")
+        )
         numbers = np.zeros(7)
         restored_state(numbers, state)
         if (numbers < 0.0).any() or numbers[4] not in (0.0, 1.0):

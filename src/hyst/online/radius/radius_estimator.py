@@ -190,8 +190,8 @@ class RadiusEstimator(Estimator):
             self._p, self.radii, self._p0, memory_of(self.state, self._at, self.radii)
         )
         offset = self.settings["offset"]
-        model = plays if offset == 0.0 else Affine(1.0, offset) @ plays
-        return model.with_description(self.description)
+        whole = plays if offset == 0.0 else Affine(1.0, offset) @ plays
+        return whole.with_description(self.description)
 
     @property
     def covariance(self) -> Array:
@@ -220,8 +220,8 @@ class RadiusEstimator(Estimator):
     def knowledge(self) -> Knowledge:
         """What is known of each radius: nothing by the gradient, bands by least squares."""
         sides = self.state[self._at["side"] : self._at["age"]]
-        measures = self._measures_regimes()
-        reasons = reasons_of(self.names, self._p, sides, self.settings["method"], measures)
+        how = self.settings["method"], self._measures_regimes()
+        reasons = reasons_of(self.names, self._p, sides, *how)
         doubt = () if self.innovation.consistent else (f"bands do not hold: {self.innovation}",)
         return knowledge_from(self.names, self.radii, self.standard_errors, reasons, doubt)
 
@@ -294,12 +294,11 @@ class RadiusEstimator(Estimator):
         Raises
         ------
         InputError
-            If slope and regime are given, or the regime is no whole number from 0 to n.
+            If both are given, or the regime is no whole number from 0 to n.
         """
         u, y = sample(u, y)
         y -= self.settings["offset"]
-        told = one_told(slope, regime, self._p.size)
-        if told is None:
+        if (told := one_told(slope, regime, self._p.size)) is None:
             return self._core.step(self.state, u, y)
         return self._core.step_told(self.state, u, y, *told)
 

@@ -23,9 +23,9 @@ from hyst.studies.s2_adaptive_radii.measured_piezo import constants, refits
 from hyst.studies.s2_adaptive_radii.over_bound import (
     FILTER,
     TIMES,
+    errors_over_bound,
     joint,
     noisy,
-    over_bound,
     paper_law,
     ratios,
 )
@@ -45,7 +45,7 @@ def tables() -> tuple[Table, ...]:
     -------
     tuple of Table
     """
-    bounds = tuple(over_bound(name) for name in INPUTS)
+    bounds = tuple(errors_over_bound(name) for name in INPUTS)
     first = (without_noise(), *bounds, remark_3(), widths(), constants(), refits())
     return (*first, simulated(), errata())
 

@@ -86,7 +86,7 @@ def ratios(name: str) -> dict[str, tuple[float, ...]]:
     return found
 
 
-def over_bound(name: str) -> Table:
+def errors_over_bound(name: str) -> Table:
     """Set the errors of all estimators over the bound side by side.
 
     Parameters

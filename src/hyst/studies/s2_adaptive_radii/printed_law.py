@@ -17,7 +17,7 @@ from hyst.studies.s2_adaptive_radii.paper import DT, GAIN, PLAYS, P, R
 Array = NDArray[np.float64]
 Reading = Literal["last reversal", "estimated plays"]
 
-SECONDS = 200.0
+SECONDS = 100.0
 # What is added to 30 sin x, x = 2 pi t, and the share of the radii the estimate starts from.
 CASES = (
     ("30 sin x + 6 sin 9x", 6.0, 9.0, 0.0),
@@ -186,7 +186,7 @@ def _of(radii: Array) -> tuple[str, ...]:
 def trajectories() -> dict[str, Trajectory]:
     """Give the radii over time for the first case, of the printed law and of hyst's."""
     _, height, factor, share = CASES[0]
-    u = nested(height, factor, 60.0)
+    u = nested(height, factor, 20.0)
     y, regimes, start = PLAYS(u), true_regimes(u, R), share * R
     own = RadiusEstimator(P, start, GAIN, DT).run(Record(u, y, DT), 200, regimes=regimes)
     values = printed_law(u, y, regimes, start, "last reversal", 200)
