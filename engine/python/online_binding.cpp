@@ -10,6 +10,7 @@
 #include "hyst/hyst.h"
 
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <new>
 #include <stdexcept>
@@ -308,10 +309,13 @@ public:
             const std::size_t at = 2 * (k / every);
             theta.data()[at] = values[HYST_SCALE_SCALE];
             theta.data()[at + 1] = values[HYST_SCALE_OFFSET];
+            const double mean = values[HYST_SCALE_MEAN_W];
             variance.data()[at] = values[HYST_SCALE_VARIANCE];
+            // Before there is an error nothing is known of their size.
             variance.data()[at + 1] =
-                values[HYST_SCALE_MEAN_VARIANCE] +
-                values[HYST_SCALE_MEAN_W] * values[HYST_SCALE_MEAN_W] * values[HYST_SCALE_VARIANCE];
+                values[HYST_SCALE_NOISE_SAMPLES] > 0.0
+                    ? values[HYST_SCALE_MEAN_VARIANCE] + mean * mean * values[HYST_SCALE_VARIANCE]
+                    : std::numeric_limits<double>::quiet_NaN();
         }
     }
 

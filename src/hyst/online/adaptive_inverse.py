@@ -112,6 +112,8 @@ class AdaptiveInverse(Saved):
         """How many windows the guard has rejected."""
         self.doubts = 0
         """How many windows in a row the estimate's errors could not be noise."""
+        self.error = 0.0
+        """Measured output less that of the model commands came from, of the last sample used."""
         self.judgement: Judgement | None = None
         """What the last window has told; None before one has ended."""
 
@@ -181,9 +183,9 @@ class AdaptiveInverse(Saved):
         is_used = [each.update(u, y) for each in (self._fallback, self.estimator)]
         if not all(is_used):
             if math.isfinite(u) and not math.isfinite(y):
-                for each in (self._fallback, self.estimator):
-                    each.follow([u])
+                self.follow([u])
             return
+        self.error = self._source().error
         values = (self.estimator.error, self._fallback.error, y)
         self._powers = [power + value**2 for power, value in zip(self._powers, values, strict=True)]
         self._samples += 1
@@ -191,6 +193,22 @@ class AdaptiveInverse(Saved):
             adaptive, good, output = (power / self._samples for power in self._powers)
             self._judge(adaptive, good, _NEGLIGIBLE * output)
             self._powers, self._samples = [0.0, 0.0, 0.0], 0
+
+    def follow(self, u: ArrayLike) -> None:
+        """Let the memories follow inputs whose outputs were not measured; learns nothing.
+
+        Parameters
+        ----------
+        u
+            Shape (N,), what the actuator has passed, finite.
+
+        Raises
+        ------
+        InputError
+            If it is not a finite vector.
+        """
+        for each in (self._fallback, self.estimator):
+            each.follow(u)
 
     def saved(self) -> tuple[dict[str, Any], Array]:
         """Give settings and state, from which ``restore`` rebuilds the inverse."""

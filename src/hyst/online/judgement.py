@@ -46,13 +46,14 @@ class Judgement:
             windows = "window" if self.doubts == 1 else "windows"
             doubt = (
                 f", doubted for {self.doubts} {windows}, since its errors follow each other as "
-                "noise does not,"
+                "noise does not"
             )
         if self.trusted:
             return (
-                f"commands come from the estimate{doubt.rstrip(',')}; {window} it missed the output by "
+                f"commands come from the estimate{doubt}; {window} it missed the output by "
                 f"{self.estimate:.3g} rms, the last good model by {self.good:.3g}"
             )
+        doubt += "," if doubt else ""
         head = (
             f"commands come from the last good model, which missed the output by {self.good:.3g} "
             f"rms {window}"
