@@ -11,6 +11,7 @@ from hyst.online.joint.joint_estimator import JointEstimator
 from hyst.online.joint.parts import units_of_plays
 from hyst.online.knowledge import Knowledge
 from hyst.online.radius.radius_estimator import RadiusEstimator
+from hyst.online.radius.start import radius_estimator_for
 from hyst.online.scale.scale_estimator import ScaleEstimator
 from hyst.online.trajectory import Trajectory
 
@@ -27,6 +28,7 @@ __all__ = [
     "ScaleEstimator",
     "Trajectory",
     "estimator_for",
+    "radius_estimator_for",
     "units_of_plays",
 ]
 
