@@ -259,4 +259,29 @@ class RadiusEstimation:
     def step(self, state: Array, u: float, y: float) -> bool: ...
     def run(self, state: Array, u: Array, y: Array, every: int, r: Array, error: Array) -> None: ...
 
+class ScaleEstimation:
+    def __init__(
+        self,
+        forgetting: float,
+        patience: float,
+        spread: float,
+        least: float,
+        most: float,
+        scale_held: bool,
+        offset_held: bool,
+    ) -> None: ...
+    def places(self) -> dict[str, int]: ...
+    def start(self, state: Array, start: float, offset: float) -> None: ...
+    def step(self, state: Array, w: float, y: float) -> int: ...
+    def run(
+        self,
+        state: Array,
+        w: Array,
+        y: Array,
+        every: int,
+        theta: Array,
+        variance: Array,
+        error: Array,
+    ) -> None: ...
+
 def project_radii(r: Array, most: float) -> None: ...

@@ -1,8 +1,9 @@
-"""Estimation of hysteresis while it runs: radii, all constants, and the inverse with them."""
+"""Estimation of hysteresis while it runs: scale, radii, all constants, and the inverse."""
 
 from __future__ import annotations
 
 from hyst.online.adaptive_inverse import AdaptiveInverse
+from hyst.online.choice import ESTIMATORS, estimator_for
 from hyst.online.estimator import Estimator
 from hyst.online.joint.excitation import Excitation, PlayExcitation
 from hyst.online.joint.innovation import Innovation
@@ -10,9 +11,11 @@ from hyst.online.joint.joint_estimator import JointEstimator
 from hyst.online.joint.parts import units_of_plays
 from hyst.online.knowledge import Knowledge
 from hyst.online.radius_estimator import RadiusEstimator
+from hyst.online.scale.scale_estimator import ScaleEstimator
 from hyst.online.trajectory import Trajectory
 
 __all__ = [
+    "ESTIMATORS",
     "AdaptiveInverse",
     "Estimator",
     "Excitation",
@@ -21,7 +24,9 @@ __all__ = [
     "Knowledge",
     "PlayExcitation",
     "RadiusEstimator",
+    "ScaleEstimator",
     "Trajectory",
+    "estimator_for",
     "units_of_plays",
 ]
 

@@ -23,7 +23,7 @@ class Estimator(Saved):
     """Constants of a model, estimated sample by sample, with which it can be inverted at any time.
 
     ``settings`` are what it was made from, as in its file; ``dt`` is its sample time in seconds.
-    After every sample ``model`` is the estimate with the memory that the input has left, and
+    After every sample ``model`` is the estimate, ``memory`` what the input has left in it, and
     ``command`` its inverse.
     """
 
@@ -53,7 +53,16 @@ class Estimator(Saved):
     @property
     @abstractmethod
     def model(self) -> Operator:
-        """The estimate as a model, with the memory that the input has left."""
+        """The estimate as a model, with the memory that the input has left if it can say it."""
+
+    @property
+    def memory(self) -> Array:
+        """The state from which ``model`` goes on where the input has left it, a copy.
+
+        ``estimator.model.stepper(estimator.memory)`` and ``model.run(u, estimator.memory)`` go on.
+        It is the initial state of ``model`` where the constants of that say it.
+        """
+        return self.model.initial_state()
 
     @property
     @abstractmethod
