@@ -174,7 +174,7 @@ class Tracker:
             high = min(high, max(after, self._last) + beyond)
         models: tuple[Running, Running] = (
             _Resumed(self.model, self._state),
-            _Resumed(self.estimator.model, None),
+            _Resumed(self.estimator.model, self.estimator.memory),
         )
         self._doubt = doubtful_memory(models, before, after, low, high, missing)
         if before is not None:
@@ -213,7 +213,7 @@ class Tracker:
 class _Resumed:
     """A model that starts from another state than its own."""
 
-    def __init__(self, model: Operator, state: Array | None) -> None:
+    def __init__(self, model: Operator, state: Array) -> None:
         self._model, self._state = model, state
 
     def run(self, u: Array, state: Array | None = None) -> tuple[Array, Array]:

@@ -178,8 +178,9 @@ class Watcher:
             named.NOT_DETERMINED: _of_knowledge(knowledge, paused),
             named.MEMORY_UNKNOWN: (
                 float(not tracker.is_memory_known),
-                "the input was unknown for a while; nothing is learnt until a turn is large enough "
-                "to wipe out what came before",
+                "how the input went before is not known, and it has moved too little since then to "
+                "wipe that out; nothing is learnt or judged until it has, at most a stroke of its "
+                "whole range",
             ),
             named.SAMPLE_TIME: (
                 abs(ratio - 1.0) / self.limits.step,
