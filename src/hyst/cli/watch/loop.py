@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import signal
 import sys
 import threading
@@ -101,7 +102,7 @@ class Loop:
             self._watch(stop)
         except BrokenPipeError:
             # Whoever read the lines has gone; what was learnt is kept all the same.
-            sys.stdout = None  # type: ignore[assignment]
+            sys.stdout = open(os.devnull, "w")  # noqa: SIM115
         finally:
             self._source.close()
             if self._log is not None:

@@ -44,11 +44,9 @@ def report_of(windows: Sequence[Window], allowed: float) -> Report:
     allowed
         Error from which on there is an alarm, output units; 0 while it is not known.
     """
-    errors = (_together([getattr(each, name) for each in windows]) for name in _ERRORS)
-    return Report(windows[-1], *errors, allowed or math.nan)
-
-
-_ERRORS = ("error", "model_error")
+    error = _together([each.error for each in windows])
+    model_error = _together([each.model_error for each in windows])
+    return Report(windows[-1], error, model_error, allowed or math.nan)
 
 
 def line_of(report: Report, unit: str) -> str:

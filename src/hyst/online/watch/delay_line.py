@@ -69,6 +69,6 @@ def _later(u: np.ndarray, at: np.ndarray, part: float) -> np.ndarray:
     moved = np.clip(moved, np.minimum(left, right), np.maximum(left, right))
     if part < 0.5:
         is_turn = (right - left) * (after - right) < 0.0
-        return np.where(is_turn, right, moved)
+        return np.asarray(np.where(is_turn, right, moved))
     is_turn = (left - before) * (right - left) < 0.0
-    return np.where(is_turn, left, moved)
+    return np.asarray(np.where(is_turn, left, moved))

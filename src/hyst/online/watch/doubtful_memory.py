@@ -3,24 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
+from hyst.operators import Operator
 
 Array = NDArray[np.float64]
 
 _STEPS = 32
 _LONGEST_WAY = 500
-
-
-class Running(Protocol):
-    """What runs from a state, or from the one it has."""
-
-    def run(self, u: Array, state: Array | None = None) -> tuple[Array, Array]:
-        """Give output and the state after it."""
 
 
 class DoubtfulMemory:
@@ -35,7 +28,7 @@ class DoubtfulMemory:
     Parameters
     ----------
     models
-        With the memory they had before the gap.
+        Each with the state it had before the gap.
     before, after
         The inputs on either side of it; ``before`` is None where nothing was known.
     low, high
@@ -46,7 +39,7 @@ class DoubtfulMemory:
 
     def __init__(
         self,
-        models: Iterable[Running],
+        models: Iterable[tuple[Operator, Array]],
         before: float | None,
         after: float,
         low: float,
@@ -59,7 +52,9 @@ class DoubtfulMemory:
             np.concatenate([np.linspace(first, last, steps), np.linspace(last, after, steps)])
             for first, last in turns
         ]
-        self._models = [(model, [model.run(way)[1] for way in ways]) for model in models]
+        self._models = [
+            (model, [model.run(way, state)[1] for way in ways]) for model, state in models
+        ]
 
     def follow(self, u: Array) -> None:
         """Let both memories of every model pass inputs, shape (N,)."""
@@ -93,14 +88,20 @@ class DoubtfulMemory:
 
 
 def doubtful_memory(
-    models: Iterable[Running],
+    models: Iterable[tuple[Operator, Array]],
     before: float | None,
     after: float,
     low: float,
     high: float,
     samples: int,
 ) -> DoubtfulMemory | None:
-    """Give the doubt that a gap leaves; None where a model cannot be run through it."""
+    """Give the doubt that a gap leaves; None where a model cannot be run through it.
+
+    Parameters
+    ----------
+    models, before, after, low, high, samples
+        As of ``DoubtfulMemory``.
+    """
     try:
         return DoubtfulMemory(models, before, after, low, high, samples)
     except InputError:

@@ -40,10 +40,10 @@ class FlatOutput:
     Examples
     --------
     >>> y = np.array([0.0, 1.0, 2.0, 2.0, 2.0, 2.0, 2.0, 1.0])
-    >>> predicted = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 3.5, 2.5, 1.0])
+    >>> predicted = np.array([0.0, 1.0, 2.0, 6.0, 10.0, 8.0, 4.0, 1.0])
     >>> found = FlatOutput().look(y, predicted, 0.5)
     >>> found.saturated, found.stuck, found.mask.tolist()
-    (4.0, 0.0, [False, False, True, True, True, True, True, False])
+    (2.0, 0.0, [False, False, True, True, True, True, True, False])
     """
 
     def __init__(self) -> None:

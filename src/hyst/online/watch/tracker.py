@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from hyst.errors import InputError
 from hyst.online.estimator import Estimator
-from hyst.online.watch.doubtful_memory import DoubtfulMemory, Running, doubtful_memory
+from hyst.online.watch.doubtful_memory import DoubtfulMemory, doubtful_memory
 from hyst.online.watch.flat_output import FlatOutput
 from hyst.online.watch.sample_clock import Slots
 from hyst.operators import Operator
@@ -172,10 +172,8 @@ class Tracker:
             beyond = max((missing + 1) * self._fastest - abs(after - self._last), 0.0) / 2.0
             low = max(low, min(after, self._last) - beyond)
             high = min(high, max(after, self._last) + beyond)
-        models: tuple[Running, Running] = (
-            _Resumed(self.model, self._state),
-            _Resumed(self.estimator.model, self.estimator.memory),
-        )
+        own = self.estimator
+        models = ((self.model, self._state), (own.model, own.memory))
         self._doubt = doubtful_memory(models, before, after, low, high, missing)
         if before is not None:
             way = np.linspace(before, after, missing + 2)[1:-1]
@@ -208,16 +206,6 @@ class Tracker:
             errors[first:last] = self.estimator.run(record, last - first).error
             self.used += last - first
         return errors
-
-
-class _Resumed:
-    """A model that starts from another state than its own."""
-
-    def __init__(self, model: Operator, state: Array) -> None:
-        self._model, self._state = model, state
-
-    def run(self, u: Array, state: Array | None = None) -> tuple[Array, Array]:
-        return self._model.run(u, self._state if state is None else state)
 
 
 def _range(low: float | None, high: float | None) -> tuple[float, float]:

@@ -155,7 +155,15 @@ class Watcher:
         return [self._judge(waiting)] if waiting.size else []
 
     def silence(self, seconds: float, allowed: float) -> tuple[AlarmEvent, ...]:
-        """Say for how long nothing has come."""
+        """Say for how long nothing has come.
+
+        Parameters
+        ----------
+        seconds
+            Since the last line.
+        allowed
+            Seconds from which on there is an alarm.
+        """
         sentence = f"nothing has come for {seconds:.4g} s"
         return self.alarms.look(self._time, {named.SILENT: (seconds / allowed, sentence)})
 
