@@ -7,7 +7,6 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.errors import InputError
 from hyst.operators import Operator
 
 Array = NDArray[np.float64]
@@ -35,6 +34,11 @@ class DoubtfulMemory:
         Values between which the input stayed.
     samples
         Length of the gap.
+
+    Raises
+    ------
+    InputError
+        If a model overflows on the way.
     """
 
     def __init__(
@@ -46,14 +50,24 @@ class DoubtfulMemory:
         high: float,
         samples: int,
     ) -> None:
-        steps = min(max(samples // 2, 2), _LONGEST_WAY)
         turns = [[high, low], [low, high]] if before is None else [[before, low], [before, high]]
-        ways = [
-            np.concatenate([np.linspace(first, last, steps), np.linspace(last, after, steps)])
-            for first, last in turns
-        ]
+        ways = _ways(turns, after, samples)
         self._models = [
             (model, [model.run(way, state)[1] for way in ways]) for model, state in models
+        ]
+
+    def cross_gap(self, before: float, after: float, low: float, high: float, samples: int) -> None:
+        """Pass another gap, the lower memory to the lowest value and the upper to the highest.
+
+        Parameters
+        ----------
+        before, after, low, high, samples
+            As of the gap that began the doubt.
+        """
+        ways = _ways([[before, low], [before, high]], after, samples)
+        self._models = [
+            (model, [model.run(way, state)[1] for way, state in zip(ways, states, strict=True)])
+            for model, states in self._models
         ]
 
     def follow(self, u: Array) -> None:
@@ -87,22 +101,10 @@ class DoubtfulMemory:
         return True
 
 
-def doubtful_memory(
-    models: Iterable[tuple[Operator, Array]],
-    before: float | None,
-    after: float,
-    low: float,
-    high: float,
-    samples: int,
-) -> DoubtfulMemory | None:
-    """Give the doubt that a gap leaves; None where a model cannot be run through it.
-
-    Parameters
-    ----------
-    models, before, after, low, high, samples
-        As of ``DoubtfulMemory``.
-    """
-    try:
-        return DoubtfulMemory(models, before, after, low, high, samples)
-    except InputError:
-        return None
+def _ways(turns: list[list[float]], after: float, samples: int) -> list[Array]:
+    """Give ways over turning points to the input after a gap, in as many samples as it has."""
+    steps = min(max(samples // 2, 2), _LONGEST_WAY)
+    return [
+        np.concatenate([np.linspace(first, last, steps), np.linspace(last, after, steps)])
+        for first, last in turns
+    ]

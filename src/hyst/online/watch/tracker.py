@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from hyst.errors import InputError
 from hyst.online.estimator import Estimator
-from hyst.online.watch.doubtful_memory import DoubtfulMemory, doubtful_memory
+from hyst.online.watch.doubtful_memory import DoubtfulMemory
 from hyst.online.watch.flat_output import FlatOutput
 from hyst.online.watch.sample_clock import Slots
 from hyst.operators import Operator
@@ -128,27 +128,31 @@ class Tracker:
 
     def _pass(self, found: Followed, first: int, last: int) -> None:
         """Pass samples whose inputs are known, one after the other."""
-        u = found.u[first:last]
-        if self._missing or self._is_unknown_gap:
-            self._cross_gap(float(u[0]))
+        u, y = found.u[first:last], found.y[first:last]
         try:
+            if self._missing or self._is_unknown_gap:
+                self._cross_gap(float(u[0]))
             predicted, self._state = self.model.run(u, self._state)
-        except InputError:
+            self._note(u, predicted)
+            self._leave_flat(found, y, predicted)
+            known = self._clear_doubt(u)
+        except InputError:  # an overflow, after which no memory means anything
             found.refused += u.size
+            self._doubt, self._is_unknown_gap = None, True
             return
-        self._note(u, predicted)
-        y = found.y[first:last]
-        allowed = max(6.0 * self.stated_error, _STANDS_STILL * float(np.ptp(self.output_range)))
-        flat = self._flat.look(y, predicted, allowed)
-        y[flat.mask] = np.nan
-        found.stuck = max(found.stuck, flat.stuck)
-        found.saturated = max(found.saturated, flat.saturated)
-        found.level = flat.level if math.isfinite(flat.level) else found.level
-        known = self._clear_doubt(u)
         if known < u.size:
             rest = slice(first + known, last)
             found.model_error[rest] = y[known:] - predicted[known:]
             found.estimate_error[rest] = self._learn(u[known:], y[known:])
+
+    def _leave_flat(self, found: Followed, y: Array, predicted: Array) -> None:
+        """Take out what stands still while the model moves; changes ``y``."""
+        span = float(np.ptp(self.output_range))
+        flat = self._flat.look(y, predicted, max(6.0 * self.stated_error, _STANDS_STILL * span))
+        y[flat.mask] = np.nan
+        found.stuck = max(found.stuck, flat.stuck)
+        found.saturated = max(found.saturated, flat.saturated)
+        found.level = flat.level if math.isfinite(flat.level) else found.level
 
     def _note(self, u: Array, predicted: Array) -> None:
         self._last = float(u[-1])
@@ -163,18 +167,19 @@ class Tracker:
         low, high = self.input_range
         missing, self._missing = self._missing, 0
         is_unknown, self._is_unknown_gap = self._is_unknown_gap, False
-        before: float | None = self._last
         if math.isnan(low) or low == high:
             return  # nobody knows how far the input goes, so nothing can be said
-        if is_unknown or self._doubt is not None or self._fastest == 0.0:
-            before = None
+        before = None if is_unknown or self._fastest == 0.0 else self._last
+        if before is not None:
+            beyond = max((missing + 1) * self._fastest - abs(after - before), 0.0) / 2.0
+            low = max(low, min(after, before) - beyond)
+            high = min(high, max(after, before) + beyond)
+        if before is not None and self._doubt is not None:
+            self._doubt.cross_gap(before, after, low, high, missing)
         else:
-            beyond = max((missing + 1) * self._fastest - abs(after - self._last), 0.0) / 2.0
-            low = max(low, min(after, self._last) - beyond)
-            high = min(high, max(after, self._last) + beyond)
-        own = self.estimator
-        models = ((self.model, self._state), (own.model, own.memory))
-        self._doubt = doubtful_memory(models, before, after, low, high, missing)
+            own = self.estimator
+            models = ((self.model, self._state), (own.model, own.memory))
+            self._doubt = DoubtfulMemory(models, before, after, low, high, missing)
         if before is not None:
             way = np.linspace(before, after, missing + 2)[1:-1]
             self._state = self.model.run(way, self._state)[1]
