@@ -58,8 +58,8 @@ def _later(u: np.ndarray, at: np.ndarray, part: float) -> np.ndarray:
     before, left, right = u[at - 2], u[at - 1], u[at]
     after = u[np.minimum(at + 1, u.size - 1)]
     s = 1.0 - part
-    before = np.where(np.isfinite(before), before, left)
-    after = np.where(np.isfinite(after), after, right)
+    before = np.where(np.isfinite(before), before, 2.0 * left - right)
+    after = np.where(np.isfinite(after), after, 2.0 * right - left)
     moved = (
         -s * (s - 1.0) * (s - 2.0) / 6.0 * before
         + (s + 1.0) * (s - 1.0) * (s - 2.0) / 2.0 * left

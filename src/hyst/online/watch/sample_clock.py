@@ -33,10 +33,10 @@ Slots = np.ndarray
 # More lost samples in a row are one long gap, of which nothing is known.
 LONGEST_GAP = 1000
 # Stamps this much of a sample late are a lost sample; what they are early or late fades.
-_LATE, _FADES = 0.6, 0.98
+_LATE, _FADES = 0.6, 0.9
 _COARSE = 0.2
 # Where most of so many steps are another one, the rate is another one and nothing was lost.
-_RECENT, _OTHER = 32, 1.25
+_RECENT, _OTHER = 32, 1.05
 
 
 class SampleClock:
@@ -142,10 +142,11 @@ class SampleClock:
         if self._resolution > 0.0 or len(self._recent) < _RECENT:
             return
         middle = sorted(self._recent)[_RECENT // 2]
+        near = [step for step in self._recent if abs(step - middle) < 0.5 * middle]
         self._recent.clear()
-        is_other = not 1.0 / _OTHER < middle / self._dt < _OTHER
-        usual = middle if is_other else self._dt
-        if abs(usual - self._usual) > 0.1 * self._usual:
+        mean = sum(near) / len(near)
+        usual = self._dt if 1.0 / _OTHER < mean / self._dt < _OTHER else mean
+        if usual != self._usual:
             self._late = 0.0
         self._usual = usual
 

@@ -97,7 +97,7 @@ class Tracker:
         self._flat = FlatOutput()
         self._doubt: DoubtfulMemory | None = None
         self._last = math.nan
-        self._fastest = 0.0
+        self._fastest, self._sharpest = 0.0, 0.0
         self._missing, self._is_unknown_gap = 0, not knows_memory
 
     @property
@@ -157,6 +157,7 @@ class Tracker:
     def _note(self, u: Array, predicted: Array) -> None:
         self._last = float(u[-1])
         self._fastest = max(self._fastest, float(np.abs(np.diff(u)).max(initial=0.0)))
+        self._sharpest = max(self._sharpest, float(np.abs(np.diff(u, 2)).max(initial=0.0)))
         for name, signal in (("input_range", u), ("output_range", predicted)):
             low, high = getattr(self, name)
             low, high = np.fmin(low, signal.min()), np.fmax(high, signal.max())
@@ -171,7 +172,7 @@ class Tracker:
             return  # nobody knows how far the input goes, so nothing can be said
         before = None if is_unknown or self._fastest == 0.0 else self._last
         if before is not None:
-            beyond = max((missing + 1) * self._fastest - abs(after - before), 0.0) / 2.0
+            beyond = self._farthest(missing + 1, abs(after - before))
             low = max(low, min(after, before) - beyond)
             high = min(high, max(after, before) + beyond)
         if before is not None and self._doubt is not None:
@@ -185,11 +186,21 @@ class Tracker:
             self._state = self.model.run(way, self._state)[1]
             self.estimator.follow(way)
 
+    def _farthest(self, steps: int, way: float) -> float:
+        """Bound how far the input went beyond the ends of a gap.
+
+        It moved no faster than it ever did, and did not turn more sharply: a parabola over
+        ``steps`` of the sharpest bend leaves its chord by an eighth of that times their square.
+        """
+        by_speed = max(steps * self._fastest - way, 0.0) / 2.0
+        return min(by_speed, self._sharpest * steps**2 / 8.0)
+
     def _clear_doubt(self, u: Array) -> int:
         """Let doubtful memories pass inputs until they are known; give how many that took."""
         passed = 0
         while self._doubt is not None and passed < u.size:
-            piece = u[passed : passed + _PIECE]
+            # A gap in which nothing can have happened costs one sample.
+            piece = u[passed : passed + (_PIECE if passed else 1)]
             passed += piece.size
             self._doubt.follow(piece)
             self.estimator.follow(piece)
