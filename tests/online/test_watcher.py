@@ -351,6 +351,6 @@ def test_a_delay_is_taken_back_wherever_samples_are_cut(delay: float) -> None:
     assert found[0].tobytes() == found[1].tobytes() == found[2].tobytes()
     known = np.isfinite(found[0]["u"])
     assert known.sum() >= 390
-    # Cubic interpolation of 126 samples a period errs by 1e-6, a line by (1/20)^2 / 8; a turn that stays by
-    # up to (1/20)^2 / 2.
+    # Cubic interpolation of 126 samples a period errs by 1e-6, a line by (1/20)^2 / 8; a turn that
+    # stays where it is by up to (1/20)^2 / 2.
     np.testing.assert_allclose(found[0]["u"][known], found[0]["y"][known], atol=1.25e-3)

@@ -71,7 +71,7 @@ Memory = Annotated[
 Spread = Annotated[
     float | None,
     typer.Option(
-        metavar="SHARE", show_default=False, help="How far off the model may be: 0.3 is 30 percent."
+        metavar="SHARE", show_default="0.1", help="How far off the model may be: 0.1 is 10 percent."
     ),
 ]
 Resume = Annotated[

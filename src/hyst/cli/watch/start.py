@@ -25,6 +25,7 @@ from hyst.online.estimator import Estimator
 from hyst.online.watch.limits import Limits
 
 _FORGETS_AFTER, _FORGETS_SAMPLES = 60.0, 10_000
+_SPREAD = 0.1
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,7 @@ def watch_source(
     name = "standard input" if data == "-" else Path(data).name
     rows = GrowingRows(name, columns, wishes.time_unit)
     source = source_of(data)
-    if data != "-" and not Path(data).exists():
+    if wishes.wait > 0.0 and data != "-" and not Path(data).exists():
         note(f"waiting for {data}")
     goes_on = wishes.resume is not None
     loop = Loop(source, Session(plan, rows, note), waiting, files, goes_on, wishes.as_json)
@@ -121,7 +122,8 @@ def _maker(
     def make(dt: float) -> Estimator:
         usual = max(_FORGETS_AFTER, _FORGETS_SAMPLES * dt)
         seconds = usual if wishes.memory is None else wishes.memory
-        return estimator_for(model, dt=dt, memory=seconds, spread=wishes.spread, only=names)
+        spread = _SPREAD if wishes.spread is None else wishes.spread
+        return estimator_for(model, dt=dt, memory=seconds, spread=spread, only=names)
 
     if estimator is None:
         make(1.0 if model.dt is None else model.dt)  # refuses options before anything is waited for

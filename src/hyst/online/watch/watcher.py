@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 _TIMES_STATED = 2.0
 _CALIBRATED_BY = 10
 _FEWEST = 5
+# An estimate is settled after so many windows in a row within the limit; late ones are judged too.
+_SETTLED_AFTER, _LATE = 3, 30
 _SURE = 4.0
 _COUNTED = {
     named.SAMPLES_LOST: "samples lost",
@@ -130,6 +132,7 @@ class Watcher:
         self._waiting = np.zeros(0, dtype=SLOT)
         self._allowed = limits.error or _TIMES_STATED * stated
         self._first_errors: list[float] = []
+        self._settling, self._judged = 0, 0
         self._counts = dict.fromkeys(("samples", "learnt", *_COUNTED), 0)
         self._time = 0.0
         self.alarms = Alarms(RULES)
@@ -247,6 +250,7 @@ class Watcher:
     ) -> dict[str, tuple[float, str]]:
         if not self._allowed:
             return {}
+        self._settle(error)
         said = {}
         for name, value, errors in (
             (named.ESTIMATE_ERROR, error, found.estimate_error),
@@ -256,7 +260,16 @@ class Watcher:
             mean = float(known.mean()) if known.size else math.nan
             sentence = f"{value:.4g} rms (mean {mean:.4g}), allowed are {self._allowed:.4g}"
             said[name] = (value / self._allowed, sentence)
+        if self._settling < _SETTLED_AFTER and self._judged < _LATE:
+            del said[named.ESTIMATE_ERROR]
         return said
+
+    def _settle(self, error: float) -> None:
+        """See whether the estimate has come from its start to where it predicts well."""
+        if math.isnan(error) or self._settling == _SETTLED_AFTER:
+            return
+        self._judged += 1
+        self._settling = self._settling + 1 if error < self._allowed else 0
 
     def _of_counts(self, slots: Slots, found: Followed) -> dict[str, tuple[float, str]]:
         return {
