@@ -10,6 +10,7 @@
 #include "hyst/hyst.h"
 
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <new>
 #include <stdexcept>
@@ -212,15 +213,29 @@ public:
     bool step(State state, double u, double y) const {
         return hyst_radius_step(&config_, checked(state), u, y) != 0;
     }
-    void run(State state, Signal u, Signal y, std::size_t every, Rows r, State error) const {
+    bool step_told(State state, double u, double y, bool is_slope, double told) const {
+        return hyst_radius_step_told(&config_, checked(state), u, y, is_slope, told) != 0;
+    }
+    void follow(State state, Signal u) const {
         double *values = checked(state);
+        for (std::size_t k = 0; k < u.shape(0); ++k) hyst_radius_follow(&config_, values, u.data()[k]);
+    }
+    // told: empty, or a slope or regime for each sample.
+    void run(State state, Signal u, Signal y, std::size_t every, Rows r, State error,
+             bool is_slope, Signal told) const {
+        double *values = checked(state);
+        const std::size_t given = told.shape(0);
+        require(given == 0 || given == u.shape(0), "told and u differ in length");
         const std::size_t samples = u.shape(0);
         require(y.shape(0) == samples && error.shape(0) == samples, "u, y and error differ in length");
         require(every > 0 && r.shape(0) == samples / every && r.shape(1) == p_.size(),
                 "r has the wrong shape");
         nb::gil_scoped_release unlocked;
         for (std::size_t k = 0; k < samples; ++k) {
-            const int used = hyst_radius_step(&config_, values, u.data()[k], y.data()[k]);
+            const double u_k = u.data()[k], y_k = y.data()[k];
+            const int used =
+                given > 0 ? hyst_radius_step_told(&config_, values, u_k, y_k, is_slope, told.data()[k])
+                          : hyst_radius_step(&config_, values, u_k, y_k);
             error.data()[k] = used ? values[HYST_RADIUS_ERROR] : 0.0;
             for (std::size_t i = 0; i < p_.size() && (k + 1) % every == 0; ++i) {
                 r.data()[k / every * p_.size() + i] = values[places_.r + i];
@@ -294,10 +309,13 @@ public:
             const std::size_t at = 2 * (k / every);
             theta.data()[at] = values[HYST_SCALE_SCALE];
             theta.data()[at + 1] = values[HYST_SCALE_OFFSET];
+            const double mean = values[HYST_SCALE_MEAN_W];
             variance.data()[at] = values[HYST_SCALE_VARIANCE];
+            // Before there is an error nothing is known of their size.
             variance.data()[at + 1] =
-                values[HYST_SCALE_MEAN_VARIANCE] +
-                values[HYST_SCALE_MEAN_W] * values[HYST_SCALE_MEAN_W] * values[HYST_SCALE_VARIANCE];
+                values[HYST_SCALE_NOISE_SAMPLES] > 0.0
+                    ? values[HYST_SCALE_MEAN_VARIANCE] + mean * mean * values[HYST_SCALE_VARIANCE]
+                    : std::numeric_limits<double>::quiet_NaN();
         }
     }
 
@@ -346,9 +364,12 @@ void bind_online_estimation(nb::module_ &module) {
         .def("places", &Radius::places)
         .def("start", &Radius::start, nb::arg("state").noconvert(), nb::arg("z0").noconvert())
         .def("step", &Radius::step, nb::arg("state").noconvert(), nb::arg("u"), nb::arg("y"))
+        .def("step_told", &Radius::step_told, nb::arg("state").noconvert(), nb::arg("u"),
+             nb::arg("y"), nb::arg("is_slope"), nb::arg("told"))
+        .def("follow", &Radius::follow, nb::arg("state").noconvert(), nb::arg("u").noconvert())
         .def("run", &Radius::run, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
              nb::arg("y").noconvert(), nb::arg("every"), nb::arg("r").noconvert(),
-             nb::arg("error").noconvert());
+             nb::arg("error").noconvert(), nb::arg("is_slope"), nb::arg("told").noconvert());
     nb::class_<Scale>(module, "ScaleEstimation")
         .def(nb::init<double, double, double, double, double, bool, bool>())
         .def("places", &Scale::places)

@@ -72,7 +72,7 @@ def test_bad_input_is_one_sentence(
     files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert adapt(files, tmp_path / "out", "--resume", str(files[0])) == 2
-    assert "holds no joint estimator" in capsys.readouterr().err
+    assert "holds no estimator" in capsys.readouterr().err
     # An estimator brings its own options, so others would be dropped unsaid.
     assert adapt(files, tmp_path / "out", "--resume", str(files[0]), "--memory", "2") == 2
     assert "leave out --memory" in capsys.readouterr().err

@@ -11,7 +11,7 @@ import typer
 
 import hyst
 from hyst._typed_command import carrying_out
-from hyst.cli.adapt import adapt
+from hyst.cli.adapt.command import adapt
 from hyst.cli.columns import columns
 from hyst.cli.compare import compare
 from hyst.cli.compensate import compensate

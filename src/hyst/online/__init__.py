@@ -10,7 +10,7 @@ from hyst.online.joint.innovation import Innovation
 from hyst.online.joint.joint_estimator import JointEstimator
 from hyst.online.joint.parts import units_of_plays
 from hyst.online.knowledge import Knowledge
-from hyst.online.radius_estimator import RadiusEstimator
+from hyst.online.radius.radius_estimator import RadiusEstimator
 from hyst.online.scale.scale_estimator import ScaleEstimator
 from hyst.online.trajectory import Trajectory
 

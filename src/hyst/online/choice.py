@@ -86,6 +86,8 @@ def estimator_for(
         held = [] if not wanted else _others(wanted, _SCALE, _SCALE)
         return ScaleEstimator(model, dt=dt, memory=memory, held=held, **options)
     held = _held_jointly(model, wanted)
+    if any(each.startswith(("front", "back")) for each in wanted):
+        options.setdefault("estimate_maps", True)
     steps = (1.0 if model.dt is None else model.dt) if dt is None else dt
     return JointEstimator(model, dt=steps, memory=memory, held=held, **options)
 

@@ -88,7 +88,11 @@ class Estimator(Saved):
     def knowledge(self) -> Knowledge:
         """What is known of each parameter: a band, or why it is not determined."""
         innovation = self.innovation
-        doubt = () if innovation.consistent else (f"bands are too narrow: {innovation}",)
+        doubt = (
+            ()
+            if innovation.consistent
+            else (f"{innovation}; the bands are then too narrow, since they take errors for noise",)
+        )
         return knowledge_from(self.names, self.parameters, self.standard_errors, {}, doubt)
 
     @abstractmethod
@@ -98,7 +102,8 @@ class Estimator(Saved):
         Parameters
         ----------
         u, y
-            Input and measured output; one that is not finite is skipped and counted.
+            Input and measured output; one that is not finite is skipped and counted. Where only
+            the output is missing, let the memory ``follow`` the input.
 
         Returns
         -------

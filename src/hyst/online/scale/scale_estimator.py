@@ -208,8 +208,8 @@ class ScaleEstimator(Estimator):
         Parameters
         ----------
         u, y
-            Input and measured output; one that is not finite is skipped and counted. Where the
-            output is missing the memory follows the input nevertheless.
+            Input and measured output; one that is not finite is skipped and counted. Where only
+            the output is missing, let the memory ``follow`` the input.
 
         Returns
         -------
@@ -217,7 +217,7 @@ class ScaleEstimator(Estimator):
             Whether the sample was used.
         """
         u, y = sample(u, y)
-        if not math.isfinite(u):
+        if not (math.isfinite(u) and math.isfinite(y)):
             return self._core.step(self.state, u, y) == 0
         w = self._followed.step(u)
         if math.isnan(w):

@@ -148,8 +148,9 @@ def _sentences(sums: ScaleSums) -> tuple[str, ...]:
         return ()
     return (
         f"errors of {math.sqrt(sums.noise):.4g} rms follow each other over some "
-        f"{sums.wide_samples} samples, so that bands are up to {math.sqrt(widest):.3g} times as "
-        "wide as for noise",
+        f"{sums.wide_samples} samples, since the shape is not the plant's or constants drift "
+        f"faster than the memory forgets; bands are up to {math.sqrt(widest):.3g} times as wide "
+        "as for noise",
     )
 
 
