@@ -28,6 +28,7 @@ from hyst.cli.loop import loop
 from hyst.cli.observer.command import observer
 from hyst.cli.reproduce import reproduce
 from hyst.cli.simulate import simulate
+from hyst.cli.watch.command import watch
 
 app = typer.Typer(
     add_completion=False,
@@ -45,6 +46,7 @@ VERBS = (
     fit,
     compare,
     adapt,
+    watch,
     simulate,
     loop,
     compensate,
