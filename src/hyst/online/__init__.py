@@ -9,6 +9,7 @@ from hyst.online.joint.innovation import Innovation
 from hyst.online.joint.joint_estimator import JointEstimator
 from hyst.online.joint.parts import units_of_plays
 from hyst.online.knowledge import Knowledge
+from hyst.online.model.model_estimator import ModelEstimator
 from hyst.online.radius_estimator import RadiusEstimator
 from hyst.online.trajectory import Trajectory
 
@@ -19,6 +20,7 @@ __all__ = [
     "Innovation",
     "JointEstimator",
     "Knowledge",
+    "ModelEstimator",
     "PlayExcitation",
     "RadiusEstimator",
     "Trajectory",
