@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError, NotInvertibleError
+from hyst.online.model.averaged import Averaged, averaged
 from hyst.online.model.block_fit import Fitted, Task, fitted
 from hyst.online.model.commands import Commands, refusal_of
 from hyst.online.model.model_innovation import ModelInnovation
@@ -72,6 +73,7 @@ class Course:
         self.recent = self.information.copy()
         noise = self.settings["noise"]
         self.variance = 0.0 if noise is None else noise**2
+        self.averaged: Averaged | None = None
         self.regularities = Regularities()
         self.has_left = False
         self.in_block = 0
@@ -179,6 +181,7 @@ class Course:
         return max((_LEAST_NOISE * float(np.sqrt(np.mean(y**2)))) ** 2, 1e-290)
 
     def _fit(self) -> None:
+        self.averaged = None
         task = self.task()
         found = fitted(task, self.theta, self.variance, self.floor(), _PASSES)
         if found is None:
@@ -196,9 +199,25 @@ class Course:
 
     def _accept(self, found: Fitted) -> None:
         self.theta, self.variance = found.theta, float(found.variance)
-        self.information = found.information + self.past.information
-        self.recent = found.information + self.past.recent
         self.counts["refused steps"] += found.refused
+        scale, limits = self.spread[self.free], (self.lower, self.upper)
+        known = self.information if self.information.any() else found.information
+        with np.errstate(all="ignore"):
+            rows = averaged(
+                self.window,
+                self.theta,
+                self.free,
+                scale,
+                known / self.variance + np.eye(scale.size),
+                limits,
+            )
+        information = found.information
+        if rows is not None:
+            weights = rows.weights(self.task().weights, self.variance)
+            information = rows.columns.T @ (rows.columns * weights[:, None])
+        self.information = information + self.past.information
+        self.recent = information + self.past.recent
+        self.averaged = rows
 
     def _search(self, task: Task) -> None:
         """Try an estimate from elsewhere while errors are no noise; ever more seldom."""
@@ -225,10 +244,14 @@ class Course:
         live = self.memory
         with np.errstate(all="ignore"):
             predicted, jacobian = window.drop(self.theta, count)
-            columns = jacobian[:, free] * self.spread[free]
+            columns, middle = jacobian[:, free] * self.spread[free], predicted
+            if self.averaged is not None:
+                rows = self.averaged.first(count)
+                columns, middle = rows.columns, rows.middle
+                weights = rows.weights(weights, max(self.variance, self.floor()))
             information = columns.T @ (columns * weights[:, None])
             error = y - predicted
-            pull = columns.T @ (weights * error)
+            pull = columns.T @ (weights * (y - middle))
         if not (np.isfinite(window.tangents).all() and np.isfinite(window.state).all()):
             window.state, window.tangents = live, np.zeros_like(window.tangents)
             window.count = 0
