@@ -59,7 +59,9 @@ def creeping(rng: np.random.Generator) -> hyst.operators.Operator:
 FAMILIES: dict[str, Callable[[np.random.Generator], hyst.operators.Operator]] = {
     "pi": plays,
     "rdpi": rate_dependent,
-    "ramberg-osgood": lambda rng: hyst.RambergOsgood(*rng.uniform([0.5, 0.3, 0.8], [1.5, 1.0, 1.6])),
+    "ramberg-osgood": lambda rng: hyst.RambergOsgood(
+        *rng.uniform([0.5, 0.3, 0.8], [1.5, 1.0, 1.6])
+    ),
     "mpi": lambda rng: hyst.ModifiedPrandtlIshlinskii(plays(rng), bend(rng)),
     "gpi": lambda rng: hyst.GeneralizedPrandtlIshlinskii(bend(rng), plays(rng)),
     "creep": creeping,
@@ -99,7 +101,11 @@ def bound_of(truth: hyst.operators.Operator, u: Array, free: Array, noise: float
         ends = [truth.with_parameters(theta + sign * step)(u) for sign in (1.0, -1.0)]
         columns.append((ends[0] - ends[1]) / (2.0 * step[place]))
     jacobian = np.stack(columns, axis=1)
-    return np.asarray(noise * np.sqrt(np.diag(np.linalg.pinv(jacobian.T @ jacobian))))
+    shown = np.flatnonzero(jacobian.any(axis=0))
+    seen = jacobian[:, shown]
+    bound = np.full(free.size, np.inf)
+    bound[shown] = noise * np.sqrt(np.diag(np.linalg.pinv(seen.T @ seen)))
+    return bound
 
 
 def one_run(

@@ -19,7 +19,6 @@ from hyst.online.model.window import Window
 Array = NDArray[np.float64]
 
 
-
 @final
 @dataclass(frozen=True, eq=False)
 class Averaged:

@@ -6,13 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.online.knowledge import Knowledge
-from hyst.online.model.block_fit import clip_of, squares_of
 from hyst.online.model.course import Course
+from hyst.online.model.profile import Profile
 
 Array = NDArray[np.float64]
 
 _BAND, _RISE = 2.0, 4.0
-_WIDENINGS = 4
 _LEARNT = 0.5
 # Of the start, where it is asked what samples tell without it.
 _BELIEF = 0.1
@@ -35,11 +34,13 @@ def known_of(course: Course) -> Knowledge:
     determined, reasons = np.ones(count, bool), [""] * count
     innovation = course.innovation()
     covariance = course.free_covariance(course.information)
+    profile = _profile(course)
     recent = course.free_covariance(course.recent, _BELIEF)
     for k, place in enumerate(course.free.tolist()):
-        width = _widths(course, covariance, k)
+        width = _widths(course, profile, covariance, k)
         low[place], high[place] = course.theta[place] - width[0], course.theta[place] + width[1]
-        reason = _missing(course, place, float(np.sqrt(recent[k, k])))
+        error = max(float(np.sqrt(recent[k, k])), max(width) / _BAND)
+        reason = _missing(course, place, error)
         if not reason and not innovation.consistent:
             reason = str(innovation)
         determined[place], reasons[place] = not reason, reason
@@ -72,32 +73,25 @@ def _missing(course: Course, place: int, error: float) -> str:
     )
 
 
-def _widths(course: Course, covariance: Array, k: int) -> tuple[float, float]:
-    """Give how far the band goes down and up: where the squares have risen by four variances."""
+def _widths(course: Course, profile: Profile, covariance: Array, k: int) -> tuple[float, float]:
+    """Give how far the band goes down and up, at least two standard errors."""
     error = float(np.sqrt(covariance[k, k]))
     if not error > 0.0:
         return 0.0, 0.0
-    direction = np.zeros_like(course.theta)
-    direction[course.free] = covariance[k] / error
-    down, up = (_reach(course, sign * direction) * error for sign in (-1.0, 1.0))
-    return down, up
+    scale = profile.scale
+    step = _BAND * covariance[k] / (error * scale)
+    farthest = _BAND * float(course.spread[course.free[k]] / scale[k])
+    down, up = (profile.reach(k, sign * step, farthest) for sign in (-1.0, 1.0))
+    return max(down, _BAND * error), max(up, _BAND * error)
 
 
-def _reach(course: Course, direction: Array) -> float:
-    """Go along a direction, two standard errors or more, until the squares have risen enough."""
+def _profile(course: Course) -> Profile:
+    """Give what counts as likely: four variances of the noise, of all samples as of the window."""
     task = course.task()
-    window, clip = task.window, np.inf
-    squares = []
-    with np.errstate(all="ignore"):
-        for reach in (0.0, *(_BAND * 2.0 ** (i / 2.0) for i in range(_WIDENINGS + 1))):
-            theta = course.theta + reach * direction
-            error = window.y[: window.count] - window.outputs(theta)[0]
-            clip = clip_of(error, task.weights) if reach == 0.0 else clip
-            x, x0 = (each[course.free] / task.scale for each in (theta, course.theta))
-            more = task.past.cost(x, x0) + course.variance * float(
-                np.sum((x - task.start) ** 2) - np.sum((x0 - task.start) ** 2)
-            )
-            squares.append(squares_of(error, task.weights, clip) + more)
-            if reach and not squares[-1] < squares[0] + _RISE * course.variance:
-                return float(reach)
-    return float(_BAND * 2.0 ** (_WIDENINGS / 2.0))
+    here = float(task.weights.sum())
+    all_of_them = here + course.regularities.samples
+    most = _RISE * course.variance * here / max(all_of_them, 1.0)
+    return Profile(
+        task.window, task.weights, course.theta, task.free, task.scale,
+        course.lower, course.upper, most,
+    )  # fmt: skip
