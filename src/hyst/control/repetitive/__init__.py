@@ -1,1 +1,1 @@
-"""References that repeat: a memory of a period in front of the inverse, its design and its proof."""
+"""References that repeat: memory of a period before the inverse, design and proof."""

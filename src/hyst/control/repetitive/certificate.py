@@ -37,10 +37,11 @@ class RepetitiveCertificate:
 
     on the unit circle. Below 1, this is proven, for filters as they run and any period:
 
-    * Inverse and actuator leave one gain in the range, as the exact inverse does with slopes 1 and 1,
-      or a static curve with slopes in it: for every linear plant within Wu the loop is stable, and of
-      a reference and disturbance that repeat, what is left to learn dies out, in l2; from one period
-      to the next by this factor, where periods are long against the plant's own transients.
+    * Inverse and actuator leave one gain in the range, as the exact inverse does with slopes 1
+      and 1, or a static curve with slopes in it: for every linear plant within Wu the loop is
+      stable, and of a reference and disturbance that repeat, what is left to learn dies out, in l2;
+      from one period to the next by this factor, where periods are long against the plant's own
+      transients.
     * Slopes that change in time, as those of plays that move or rest: the changes of all signals
       from sample to sample are bounded in l2 by those of reference and disturbance (circle
       criterion on differences), so that no oscillation keeps itself up. That the error then shrinks
@@ -55,8 +56,8 @@ class RepetitiveCertificate:
     nominal
         ``sup |Q| |1 - L P|`` of the nominal plant and the exact inverse.
     noise_rms
-        Standard deviation of v that white noise of the sensor with standard deviation 1 leaves there,
-        of the nominal plant and for periods that are long against both filters.
+        Standard deviation of v that white noise of the sensor with standard deviation 1 leaves
+        there, of the nominal plant and for periods that are long against both filters.
     filters, plant
         What it is of.
     """

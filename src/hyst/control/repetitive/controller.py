@@ -171,8 +171,8 @@ class RepetitiveController(SavedRepetitive):
         dt
             Sample time, s; that of a sampled plant if left out.
         bandwidth
-            Up to where errors are learned, rad/s. The widest band that is proven to leave 0.9 of the
-            error a period or less, if left out; then an uncertainty must be given.
+            Up to where errors are learned, rad/s. The widest band that is proven to leave 0.9 of
+            the error a period or less, if left out; then an uncertainty must be given.
         uncertainty
             Weight of the multiplicative uncertainty of the plant, a number or a system.
         slopes
@@ -208,7 +208,7 @@ class RepetitiveController(SavedRepetitive):
         True
         """
         samples = as_period(period)
-        linear, first = taken_apart(plant, inverse)
+        linear, first = taken_apart(plant, inverse, dt)
         if dt is None and isinstance(plant, Operator):
             dt = plant.dt
         filters, proof = designed(linear, samples, dt, bandwidth, uncertainty, slopes, delay, gain)
@@ -246,7 +246,7 @@ class RepetitiveController(SavedRepetitive):
         InputError
             If one of them cannot be used.
         """
-        linear, _ = taken_apart(plant, self.inverse)
+        linear, _ = taken_apart(plant, self.inverse, self.dt)
         return certified(self.filters, linear, self.dt, uncertainty, ordered_slopes(slopes), delay)
 
     def initial_state(self) -> Array:
@@ -380,13 +380,11 @@ class RepetitiveController(SavedRepetitive):
 
 def _require_fitting(period: int, Q: Array, L: Array, lead: int) -> None:
     if Q.size == 0 or L.size == 0:
-        raise InputError(
-            "smooth and learn need an entry each; give [1.0] for a filter that is none"
-        )
+        raise InputError("smooth and learn need an entry each; give [1.0] for none")
     if lead >= L.size:
         raise InputError(
-            f"lead is {lead}, and learn has {L.size} entries; begin learn with zeros so that it has "
-            f"{lead + 1}"
+            f"lead is {lead}, and learn has {L.size} entries; begin learn with zeros so that it "
+            f"has {lead + 1}"
         )
     if Q.size - 1 + lead >= period:
         raise InputError(

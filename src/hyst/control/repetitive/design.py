@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.checks.numbers import as_number, as_positive
+from hyst.checks.numbers import as_number, as_positive, as_sample_time
 from hyst.control.plants.identified import identified_plant
 from hyst.control.plants.parts import has_dynamics_behind
 from hyst.control.repetitive.certificate import (
@@ -21,10 +21,11 @@ from hyst.control.repetitive.certificate import (
     refuse_lasting,
     shown_by,
 )
-from hyst.control.repetitive.filters import RepetitiveFilters, inverse_taps, low_pass
+from hyst.control.repetitive.filters import RepetitiveFilters, inverse_taps, low_pass, narrowest
 from hyst.control.sampled.certificate import stable_weight
 from hyst.control.sampled.plant import SampledPlant, sampled_plant
 from hyst.errors import InputError
+from hyst.models import LinearDynamics
 from hyst.operators import Operator
 
 Array = NDArray[np.float64]
@@ -33,6 +34,7 @@ LARGEST_PERIOD = 2**24 - 1  # counted in single precision
 _HALVES = (0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
 _WIDEST, _STEP, _BANDS = 0.45, 0.8, 24  # of pi/dt: the widest band, and how bands go down from it
 _ENOUGH = 0.9  # of contraction, for a band that is chosen: 1 % after 44 periods
+_LONGER = 4  # lengths after which nothing gained means that longer ones gain nothing
 _NEAR = 0.02  # of the least contraction: fewer taps are taken
 _FLOOR = 0.02  # of Q where it stops: the inverse is not left to itself there
 
@@ -82,7 +84,7 @@ def _whole(period: float) -> str:
     return "give a dt of which the period is a multiple"
 
 
-def taken_apart(plant: Any, inverse: Any) -> tuple[Any, Any]:
+def taken_apart(plant: Any, inverse: Any, dt: float | None) -> tuple[Any, Any]:
     """Give plant and inverse; of a model with hysteresis, its own.
 
     Parameters
@@ -91,11 +93,15 @@ def taken_apart(plant: Any, inverse: Any) -> tuple[Any, Any]:
         A model, or a linear system.
     inverse
         As given; None for that of the model.
+    dt
+        Sample time, s; that of the plant if None.
     """
     if not isinstance(plant, Operator):
         return plant, inverse
     if not has_dynamics_behind(plant):
-        return 1.0, plant.inverse() if inverse is None else inverse
+        time = as_sample_time(plant.dt if dt is None else dt)
+        at_once = LinearDynamics(np.zeros((0, 0)), [], [], 1.0, time)
+        return at_once, plant.inverse() if inverse is None else inverse
     found = identified_plant(plant)
     return found.dynamics, found.hysteresis.inverse() if inverse is None else inverse
 
@@ -125,6 +131,8 @@ def designed(
     asked = Asked(sampled, period, wu, ordered_slopes(slopes), share)
     best: tuple[RepetitiveFilters, RepetitiveCertificate] | None = None
     for passed in _bands(bandwidth, sampled.dt):
+        if bandwidth is None and passed * period < 2.0 * math.pi:
+            break  # below the first harmonic there is nothing to learn
         found = _at_band(asked, passed)
         if found is None:
             break
@@ -151,11 +159,16 @@ def _bands(bandwidth: float | None, dt: float) -> Iterator[float]:
 
 def _at_band(asked: Asked, passed: float) -> tuple[RepetitiveFilters, RepetitiveCertificate] | None:
     """Give the best filters that pass up to an angle; None where Q is longer than the period."""
-    smooth = low_pass(passed, min(2.0 * passed, math.pi))
-    plant = asked.plant
-    w = shown_by(plant, stable_weight(asked.uncertainty, "uncertainty"), smooth.size + 129)
+    # An octave to fall in, or more where the filter would be longer than the period.
+    stopped = passed + max(passed, narrowest(asked.period / 2.0))
+    smooth = low_pass(passed, min(stopped, math.pi))
+    plant, weight = asked.plant, stable_weight(asked.uncertainty, "uncertainty")
+    w = shown_by(plant, weight, smooth.size + 2 * _HALVES[-1] + 1)
     angle = w * plant.dt
-    P = plant.system.response(np.exp(1j * angle))[:, 0, 0]
+    bare = RepetitiveFilters(asked.period, smooth, np.ones(1), 0)
+    values = ConditionValues(bare, plant, weight, asked.slopes)
+    Q, doubt = bare.Q(angle), values.doubt(w)
+    P = values.middle * plant.system.response(np.exp(1j * angle))[:, 0, 0]
     late = _lateness(P, angle, passed)
     tried: list[tuple[float, RepetitiveFilters]] = []
     for half in _HALVES:
@@ -163,19 +176,22 @@ def _at_band(asked: Asked, passed: float) -> tuple[RepetitiveFilters, Repetitive
         taps = max(2 * half + 1, lead + 1)  # a memory of errors holds them up to now
         if smooth.size - 1 + lead >= asked.period:
             break
-        filters = RepetitiveFilters(asked.period, smooth, np.ones(taps), lead)
-        weight = stable_weight(asked.uncertainty, "uncertainty")
-        values = ConditionValues(filters, plant, weight, asked.slopes)
-        weights = np.maximum(filters.Q(angle), _FLOOR)
-        taps_of = inverse_taps(angle, values.middle * P, weights, values.doubt(w), lead, taps)
-        filters = RepetitiveFilters(asked.period, smooth, asked.gain * taps_of, lead)
-        values = ConditionValues(filters, plant, weight, asked.slopes)
-        tried.append((float(values.condition(w).max()), filters))
+        learn = asked.gain * inverse_taps(angle, P, np.maximum(Q, _FLOOR), doubt, lead, taps)
+        filters = RepetitiveFilters(asked.period, smooth, learn, lead)
+        L = filters.L(angle)
+        tried.append((float((Q * (np.abs(1.0 - L * P) + np.abs(L) * doubt)).max()), filters))
+        if len(tried) > _LONGER and _least(tried) > _least(tried[:-_LONGER]) - _NEAR:
+            break
     if not tried:
         return None
-    least = min(value for value, _ in tried)
+    # The condition on the grid; the certificate closes in on what is between.
+    least = _least(tried)
     filters = next(each for value, each in tried if value <= least + _NEAR)
     return filters, certified(filters, plant, plant.dt, asked.uncertainty, asked.slopes)
+
+
+def _least(tried: list[tuple[float, RepetitiveFilters]]) -> float:
+    return min(value for value, _ in tried)
 
 
 def _lateness(P: NDArray[np.complex128], angle: Array, passed: float) -> int:

@@ -217,8 +217,8 @@ def _reset(block: Block, name: str) -> dict[str, str]:
         return {"reset_declared": "", "reset_defined": ""}
     signature = f"void {name}_reset({name}_state *state)"
     return {
-        "reset_declared": "\n/* Forgets what was learned of a reference, which is to be another one. "
-        f"The memory of the actuator stays. */\n{signature};\n",
+        "reset_declared": "\n/* Forgets what was learned of a reference, for another one. What is "
+        f"known of the actuator stays. */\n{signature};\n",
         "reset_defined": f"\n{signature}\n{{\n    size_t i;\n"
         f"    for (i = 0; i < {block.forgets}u; ++i) {{\n"
         "        state->memory[i] = HYST_REAL(0.0);\n    }\n}\n",
