@@ -22,8 +22,8 @@ def load(path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    Operator, Scheduled, TrackingController, RepetitiveController, JointEstimator, RadiusEstimator,
-    or AdaptiveInverse
+    Operator, Scheduled, TrackingController, RepetitiveController, or an estimator of hyst.online or
+    its AdaptiveInverse
         Equal to the one saved, every double exact; an estimator goes on with the same bits. What
         its numbers mean is its ``description``.
 
@@ -68,12 +68,11 @@ def _model(data: Any) -> Any:
 
 
 def _estimator(content: dict[str, Any], about: ModelDescription) -> Any:
-    from hyst.online import AdaptiveInverse, JointEstimator, RadiusEstimator
-    from hyst.online.estimator_file import restored
+    # With the package all its kinds are known, and the models that it starts from.
+    from hyst.online.estimator_file import Saved, restored
 
-    classes = (AdaptiveInverse, JointEstimator, RadiusEstimator)
     try:
-        kind = {each.kind: each for each in classes}[content["kind"]]
+        kind = Saved.kinds[content["kind"]]
         return restored(kind, content["settings"], content["state"], about)
     except InputError:
         raise
