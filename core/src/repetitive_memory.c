@@ -6,7 +6,7 @@
 
 #define REPETITIVE_PLACE 0u     /* of this sample in the ring of N + h */
 #define REPETITIVE_OF_ERROR 1u  /* of this sample among the last errors */
-#define REPETITIVE_WHOLE 2u     /* errors in a row that were there, up to taps */
+#define REPETITIVE_WHOLE 2u     /* samples since the start; after a lost one, as of a later start */
 #define REPETITIVE_COMPARED 3u  /* references in a row that were there, up to N */
 #define REPETITIVE_OF_PERIOD 4u /* of this sample in the period */
 #define REPETITIVE_RING 5u
@@ -74,6 +74,23 @@ static hyst_real repetitive_smoothed(const hyst_repetitive_memory *memory, const
     return w;
 }
 
+/* Samples that must have been there before one teaches. */
+static hyst_real repetitive_enough(const hyst_repetitive_memory *memory)
+{
+    return (hyst_real)(memory->wait + memory->lead + 1u);
+}
+
+/* Counts samples; after one that is lost, as many as L sees must come again. */
+static void repetitive_wait(const hyst_repetitive_memory *memory, hyst_real *count, int there)
+{
+    const hyst_real enough = repetitive_enough(memory), again = enough - (hyst_real)memory->taps;
+    if (there == 0) {
+        *count = *count > again ? again : *count;
+    } else if (*count < enough) {
+        *count += HYST_REAL(1.0);
+    }
+}
+
 hyst_real hyst_repetitive_wanted(const hyst_repetitive_memory *memory, hyst_real *state,
                                  hyst_real y_ref, hyst_real y, int *changed)
 {
@@ -90,11 +107,7 @@ hyst_real hyst_repetitive_wanted(const hyst_repetitive_memory *memory, hyst_real
     const int there = hyst_is_finite(e);
     state[REPETITIVE_RING + length + of_error] = there != 0 ? e : HYST_REAL(0.0);
     state[REPETITIVE_RING + place] = hyst_is_finite(w) != 0 ? w : HYST_REAL(0.0);
-    if (there == 0) {
-        state[REPETITIVE_WHOLE] = HYST_REAL(0.0);
-    } else if (state[REPETITIVE_WHOLE] < (hyst_real)memory->taps) {
-        state[REPETITIVE_WHOLE] += HYST_REAL(1.0);
-    }
+    repetitive_wait(memory, state + REPETITIVE_WHOLE, there);
     return there != 0 ? y_ref + w : e - e;
 }
 
@@ -126,7 +139,7 @@ void hyst_repetitive_learn(const hyst_repetitive_memory *memory, hyst_real *stat
     } else {
         held[of_error] = HYST_REAL(0.0);
     }
-    if (state[REPETITIVE_WHOLE] >= (hyst_real)taps) {
+    if (state[REPETITIVE_WHOLE] >= repetitive_enough(memory)) {
         const size_t at = repetitive_onwards(place, length - memory->lead, length);
         const hyst_real past = held[repetitive_onwards(of_error, taps - memory->lead, taps)];
         const hyst_real more = repetitive_lesson(memory, error, of_error), next = ring[at] + more;

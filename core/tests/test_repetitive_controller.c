@@ -4,7 +4,7 @@
 #define N 8u
 
 static const hyst_real smooth[] = {R(0.5), R(0.25)}, learn[] = {R(0.25), R(0.5)};
-static const hyst_repetitive_memory memory = {N, 1, 1, 2, 0, R(0.0), smooth, learn};
+static const hyst_repetitive_memory memory = {N, 1, 1, 2, 3, 0, R(0.0), smooth, learn};
 static const hyst_real p[] = {R(0.5)}, r[] = {R(1.0)}, g[] = {R(-1.0)}, s[] = {R(0.5)};
 static const hyst_pi stage_pi = {1, R(0.5), p, r}, inverse_pi = {1, R(2.0), g, s};
 static const hyst_stage stage_stages[] = {{&hyst_pi_kind, &stage_pi}};

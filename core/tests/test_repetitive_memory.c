@@ -11,7 +11,7 @@ static const hyst_real smooth[] = {R(0.5), R(0.25)}, learn[] = {R(0.125), R(0.25
 
 static hyst_repetitive_memory memory_of(int compares)
 {
-    const hyst_repetitive_memory made = {N, H, LEAD, TAPS, compares, R(0.25), smooth, learn};
+    const hyst_repetitive_memory made = {N, H, LEAD, TAPS, 0u, compares, R(0.25), smooth, learn};
     return made;
 }
 
@@ -58,7 +58,7 @@ static void test_is_its_equations(void)
         hyst_repetitive_learn(&memory, state, R(0.0));
         s[at] = w;
         e[at] = y_ref[k] - y[k];
-        if (k + 1u >= TAPS) {
+        if (k >= LEAD) {
             s[at - LEAD] += R(0.0) + learn[0] * e[at - 2u] + learn[1] * e[at - 1u] + learn[2] * e[at];
         }
     }
@@ -103,6 +103,22 @@ static void test_learns_no_further_into_a_limit(void)
         }
         /* At sample 10: s_4 = -2, and with the error at 5 +-1/2; s_5 = +-1/4, s_3 = 0. */
         CHECK_EQUAL(v, sign > 0 ? R(-0.9375) : R(-1.3125));
+    }
+}
+
+/* Samples at the start teach nothing, and those after them do, the first one too. */
+static void test_waits(void)
+{
+    hyst_repetitive_memory memory = memory_of(0);
+    memory.wait = 2u * N;
+    hyst_real state[5u + N + H + 2u * TAPS] = {0};
+    int changed = 0;
+    for (size_t k = 0; k < 3u * N + 2u; ++k) {
+        const hyst_real v = hyst_repetitive_wanted(&memory, state, R(0.0), -R(1.0), &changed);
+        hyst_repetitive_learn(&memory, state, R(0.0));
+        /* s_12 = 7/8 is the first; Q of s_12 and s_13 gives w_17 = 7/32, then 21/32, then 7/8. */
+        const hyst_real expected = k < 17u ? R(0.0) : (k == 17u ? R(0.21875) : R(0.65625));
+        CHECK_EQUAL(v, k < 19u ? expected : R(0.875));
     }
 }
 
@@ -152,6 +168,7 @@ int main(void)
     test_is_its_equations();
     test_lost_samples();
     test_learns_no_further_into_a_limit();
+    test_waits();
     test_reference_that_changes();
     test_damaged_counts();
     return check_result();

@@ -29,14 +29,14 @@ void demand(bool holds, const char *message) {
 // The core's constants with the memory they live in. The chains are kept alive by Python.
 class Repetitive {
 public:
-    Repetitive(std::size_t period, std::size_t lead, std::vector<double> smooth,
+    Repetitive(std::size_t period, std::size_t lead, std::size_t wait, std::vector<double> smooth,
                std::vector<double> learn, double tolerance, const Chain &inverse)
         : smooth_(std::move(smooth)), learn_(std::move(learn)), inverse_(inverse.view()) {
         demand(!smooth_.empty() && lead < learn_.size() && smooth_.size() - 1 + lead < period,
                "the filters do not fit the period");
         // A tolerance below 0 is none: references are not compared.
-        memory_ = {period,        smooth_.size() - 1, lead,           learn_.size(),
-                   tolerance >= 0.0, tolerance,       smooth_.data(), learn_.data()};
+        memory_ = {period, smooth_.size() - 1, lead, learn_.size(), wait, tolerance >= 0.0,
+                   tolerance, smooth_.data(), learn_.data()};
     }
     Repetitive(const Repetitive &) = delete;
     Repetitive &operator=(const Repetitive &) = delete;
@@ -175,10 +175,10 @@ nb::tuple loop(Matrix step, const Repetitive &block, const Chain &hysteresis,
 
 void bind_repetitive(nb::module_ &module) {
     nb::class_<Repetitive>(module, "RepetitiveController")
-        .def(nb::init<std::size_t, std::size_t, std::vector<double>, std::vector<double>, double,
-                      const Chain &>(),
-             nb::arg("period"), nb::arg("lead"), nb::arg("smooth"), nb::arg("learn"),
-             nb::arg("tolerance"), nb::arg("inverse"), nb::keep_alive<1, 7>())
+        .def(nb::init<std::size_t, std::size_t, std::size_t, std::vector<double>,
+                      std::vector<double>, double, const Chain &>(),
+             nb::arg("period"), nb::arg("lead"), nb::arg("wait"), nb::arg("smooth"),
+             nb::arg("learn"), nb::arg("tolerance"), nb::arg("inverse"), nb::keep_alive<1, 8>())
         .def("limit", &Repetitive::limit, nb::arg("forward"), nb::arg("low"), nb::arg("high"),
              nb::arg("change"), nb::keep_alive<1, 2>())
         .def_prop_ro("memory_length", &Repetitive::memory_length)

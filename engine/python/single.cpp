@@ -140,6 +140,7 @@ private:
         memory_.half = of.choice("half");
         memory_.lead = of.choice("lead");
         memory_.taps = of.choice("taps");
+        memory_.wait = of.choice("wait");
         memory_.compares = static_cast<int>(of.choice("compares"));
         if (learns) {
             memory_.learn = of.table("learn");

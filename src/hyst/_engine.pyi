@@ -140,6 +140,7 @@ class RepetitiveController:
         self,
         period: int,
         lead: int,
+        wait: int,
         smooth: Sequence[float],
         learn: Sequence[float],
         tolerance: float,

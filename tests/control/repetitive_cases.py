@@ -36,7 +36,7 @@ def loop(block: RepetitiveController, b: np.ndarray, a: np.ndarray, r: np.ndarra
         w = Q @ s[k - n - h : k - n + h + 1]
         v[k] = r[k - before] + w
         s[k] += w
-        if k - before + 1 >= taps:
+        if k - before >= block.wait + lead:
             s[k - lead] += block.learn @ e[k - taps + 1 : k + 1]
     return e[before:]
 

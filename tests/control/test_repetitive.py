@@ -187,7 +187,7 @@ def test_files_copies_and_descriptions(tmp_path: Path) -> None:
     [
         ({"period": 12.5}, "2 periods as one, 25 samples"),
         ({"period": 12.123}, "a dt of which the period is a multiple"),
-        ({"period": 1}, "give 2 to 16777215"),
+        ({"period": 1}, "give 2 to 8388608"),
         ({"period": 4}, "need at least 5"),
         ({"period": np.nan}, "period"),
         ({"lead": 4}, "begin learn with zeros"),
@@ -197,6 +197,8 @@ def test_files_copies_and_descriptions(tmp_path: Path) -> None:
         ({"learn": [np.inf]}, "learn"),
         ({"dt": 0.0}, "dt"),
         ({"tolerance": -1.0}, "tolerance"),
+        ({"wait": -1}, "wait"),
+        ({"wait": 0.5}, "wait"),
         ({"inverse": 3.0}, "give an operator or None"),
         ({"inverse": LinearDynamics([[0.5]], [1.0], [1.0], 0.0, 2 * DT)}, "dt"),
         ({"limits": (1.0, -1.0)}, "give the lowest drive first"),

@@ -202,7 +202,8 @@ def test_a_delay_alone_is_undone_by_a_lead() -> None:
     proof = block.certificate(late)
     assert proof.contraction == pytest.approx(0.25, abs=1e-3)
     e = by_period(simulate_closed_loop(wanted(9), DT, plant=late, controller=block).e)
-    np.testing.assert_allclose(e[2:6] / e[1:5], 0.25, atol=0.02)
+    # What is learned of the second period comes in the third, but for its first samples.
+    np.testing.assert_allclose(e[3:7] / e[2:6], 0.25, atol=0.02)
 
 
 def test_a_model_with_hysteresis_is_taken_apart() -> None:

@@ -6,6 +6,7 @@
  * times a gain. Both look ahead, which a memory of a period can: s_k is there from sample k + lead on,
  * and is asked for at k + N - h at the earliest, so that h + lead < N must hold.
  *
+ * The first samples teach nothing: what only a start makes must not be repeated.
  * Where a drive could not do what was wanted, s_k goes on from what it did, and learns nothing that
  * asks for more. Errors of which some are missing teach nothing, but time goes on, so that what is
  * remembered stays in step with the reference.
@@ -25,10 +26,11 @@ extern "C" {
 #endif
 
 typedef struct {
-    size_t period;           /* N >= 1, below 2^24: it is counted in hyst_real */
+    size_t period;           /* N >= 1, at most 2^23: samples are counted in hyst_real */
     size_t half;             /* h, h + lead < N */
     size_t lead;             /* samples that L looks ahead, below taps */
     size_t taps;             /* of L, >= 1 */
+    size_t wait;             /* samples at start that teach nothing */
     int compares;            /* whether a reference that changes is told */
     hyst_real tolerance;     /* the most it may differ from that of a period before, >= 0 */
     const hyst_real *smooth; /* h + 1: Q_0 .. Q_h */

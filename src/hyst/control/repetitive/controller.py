@@ -15,7 +15,7 @@ from hyst.checks.numbers import as_not_negative, as_number, as_sample_time, whol
 from hyst.control.block_constants import two_records
 from hyst.control.drive_limits import Limits, limited_drive, stated, within
 from hyst.control.repetitive.certificate import RepetitiveCertificate, certified, ordered_slopes
-from hyst.control.repetitive.design import as_period, designed, taken_apart
+from hyst.control.repetitive.design import LARGEST_PERIOD, as_period, designed, taken_apart
 from hyst.control.repetitive.filters import RepetitiveFilters
 from hyst.control.repetitive.saved import SavedRepetitive
 from hyst.errors import InputError
@@ -33,16 +33,17 @@ class RepetitiveController(SavedRepetitive):
     ``v_k = y_ref,k + w_k``, ``w_k = sum_j Q_j s_{k-N+j}``, ``s_k = w_k + sum_j L_j e_{k+j}``,
     ``e = y_ref - y``, ``u_k = inverse(v_k)``.
 
-    In the first period the drive is that of the inverse alone. With limits or a rate the drive u_a
-    is the nearest to u that may be, v_a the v that belongs to it; s_k then goes on from v_a, and
-    learns nothing that asks for more. A lost sample teaches nothing, and time goes on.
+    The first period teaches nothing, for what only a start makes must not be repeated; so in the
+    first two the drive is that of the inverse alone. With limits or a rate the drive u_a is the
+    nearest to u that may be, v_a the v that belongs to it; s_k then goes on from v_a, and learns
+    nothing that asks for more. A lost sample teaches nothing, and time goes on.
 
     ``design`` chooses Q and L and proves what they do. It is no operator, for it has two inputs.
 
     Parameters
     ----------
     period
-        N, samples, whole, 2 to 2^24 - 1.
+        N, samples, whole, 2 to 2^23.
     smooth
         ``Q_0 .. Q_h``, shape (h + 1,); Q is symmetric.
     learn
@@ -66,6 +67,8 @@ class RepetitiveController(SavedRepetitive):
         The most a reference may differ from that of a period ago, units of y; where it differs more
         the block forgets what it has learned and tells. Not compared if left out: then call
         ``reset()`` when the reference changes.
+    wait
+        Samples at the start, and after it has forgotten, that teach nothing; a period if left out.
     despite_verdict
         Take also an inverse of a model whose verdict is ``unfit``.
 
@@ -84,8 +87,8 @@ class RepetitiveController(SavedRepetitive):
     Examples
     --------
     >>> block = RepetitiveController(4, [1.0], [0.5], 0, dt=1e-3)
-    >>> block.run([0.0, 1.0] * 4, np.zeros(8))[0].tolist()
-    [0.0, 1.0, 0.0, 1.0, 0.0, 1.5, 0.0, 1.5]
+    >>> block.run([0.0, 1.0] * 6, np.zeros(12))[0].tolist()
+    [0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.5, 0.0, 1.5]
     """
 
     period: int
@@ -99,6 +102,7 @@ class RepetitiveController(SavedRepetitive):
     rate: float | None
     hysteresis: Operator | None
     tolerance: float | None
+    wait: int
     forward: Operator | None
 
     def __init__(
@@ -115,6 +119,7 @@ class RepetitiveController(SavedRepetitive):
         rate: float | None = None,
         hysteresis: Operator | None = None,
         tolerance: float | None = None,
+        wait: int | None = None,
         despite_verdict: bool = False,
     ) -> None:
         time, samples = as_sample_time(dt), as_period(period)
@@ -136,6 +141,7 @@ class RepetitiveController(SavedRepetitive):
             "u0": as_number(u0, "u0"),
             **limited_drive(inverse, limits, rate, hysteresis, None, 0, time),
             "tolerance": None if tolerance is None else as_not_negative(tolerance, "tolerance"),
+            "wait": samples if wait is None else whole_number(wait, "wait", 0, LARGEST_PERIOD),
         }
         values.pop("W")
         for name, value in values.items():
@@ -185,8 +191,8 @@ class RepetitiveController(SavedRepetitive):
         inverse
             Operator from v to u; of a model its own if left out.
         drive
-            ``limits``, ``rate``, ``hysteresis``, ``u0``, ``tolerance`` and ``despite_verdict``, as
-            the class takes them.
+            ``limits``, ``rate``, ``hysteresis``, ``u0``, ``tolerance``, ``wait`` and
+            ``despite_verdict``, as the class takes them.
 
         Returns
         -------
@@ -351,7 +357,9 @@ class RepetitiveController(SavedRepetitive):
         chain = _engine.Chain(() if self.inverse is None else self.inverse.stages())
         filters = self.smooth.tolist(), self.learn.tolist()
         tolerance = -1.0 if self.tolerance is None else self.tolerance
-        block = _engine.RepetitiveController(self.period, self.lead, *filters, tolerance, chain)
+        block = _engine.RepetitiveController(
+            self.period, self.lead, self.wait, *filters, tolerance, chain
+        )
         if self.is_limited:
             forward = _engine.Chain(() if self.forward is None else self.forward.stages())
             block.limit(forward, *stated(self.limits, self.rate, self.dt))

@@ -30,7 +30,7 @@ from hyst.operators import Operator
 
 Array = NDArray[np.float64]
 
-LARGEST_PERIOD = 2**24 - 1  # counted in single precision
+LARGEST_PERIOD = 2**23  # twice as many are counted in single precision
 _HALVES = (0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
 _WIDEST, _STEP, _BANDS = 0.45, 0.8, 24  # of pi/dt: the widest band, and how bands go down from it
 _ENOUGH = 0.9  # of contraction, for a band that is chosen: 1 % after 44 periods

@@ -34,6 +34,7 @@ class SavedRepetitive(Described, ABC):
     rate: float | None
     hysteresis: Operator | None
     tolerance: float | None
+    wait: int
 
     def to_dict(self) -> dict[str, Any]:
         """Give a dictionary of plain numbers, lists and text that ``from_dict`` understands."""
@@ -46,6 +47,8 @@ class SavedRepetitive(Described, ABC):
         for name in ("rate", "tolerance"):
             if getattr(self, name) is not None:
                 data[name] = getattr(self, name)
+        if self.wait != self.period:
+            data["wait"] = self.wait
         for name in ("inverse", "hysteresis"):
             if getattr(self, name) is not None:
                 data[name] = getattr(self, name).to_dict()
@@ -68,7 +71,7 @@ class SavedRepetitive(Described, ABC):
         if not isinstance(data, dict) or data.get("kind") != REPETITIVE_KIND:
             kind = data.get("kind") if isinstance(data, dict) else data
             raise InputError(f"the kind is {kind!r}; give the dictionary of a {REPETITIVE_KIND}")
-        optional = ("u0", "limits", "rate", "tolerance", "inverse", "hysteresis")
+        optional = ("u0", "limits", "rate", "tolerance", "wait", "inverse", "hysteresis")
         given = entries(data, ("dt", "period", "smooth", "learn", "lead"), optional)
         for name in ("inverse", "hysteresis"):
             if name in given:

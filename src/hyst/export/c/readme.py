@@ -135,8 +135,8 @@ error: the controller goes on with what was applied.
 """
 _REPETITIVE = """\
 
-The step must be called at every sample, for what is learned belongs to a place in the period: a lost
-sample teaches nothing, and time goes on. `@{name}_reset` forgets what was learned, for another
+The step must be called at every sample, for what is learned belongs to a place in the period: a
+lost sample teaches nothing, and time goes on. `@{name}_reset` forgets what was learned, for another
 reference; what is known of the actuator's memory stays.
 """
 _CHANGED = """\

@@ -17,7 +17,7 @@ REFERENCE_CHANGED = (
     "all forgotten */\n"
 )
 
-_SIZES = "#period, #half, #lead, #taps, $compares"
+_SIZES = "#period, #half, #lead, #taps, #wait, $compares"
 
 
 @final
@@ -122,6 +122,7 @@ def _part(
         "half": model.smooth.size - 1,
         "lead": model.lead,
         "taps": model.learn.size,
+        "wait": model.wait,
         "compares": int(model.tolerance is not None),
     }
     return CoreStage(
