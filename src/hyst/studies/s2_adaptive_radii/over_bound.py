@@ -21,7 +21,7 @@ LEVELS = (10.0, 20.0)
 RUNS = 6
 # Filter and dead time that did best with the paper's law at 20 dB among 0 to 100 ms.
 FILTER = {"filter_time": 0.05, "dead_time": 0.05}
-ESTIMATORS = ("paper", "paper with the slope before noise", "joint")
+ESTIMATORS = ("paper", "paper told slopes", "joint")
 
 
 def paper_law(options: dict[str, float] | None = None) -> RadiusEstimator:
@@ -107,7 +107,10 @@ def errors_over_bound(name: str) -> Table:
         rows.append((f"largest bound, {decibels:g} dB", *(number(float(v), 3) for v in bound)))
     header = ("", *(f"{t:g} s" for t in TIMES))
     what = "of the radii alone for the paper's law, of all parameters for the joint estimator"
-    title = f"{name}: rms error of the radii over the Cramer-Rao bound ({what}; {RUNS} runs)"
+    told = "told slopes: those before the noise"
+    title = (
+        f"{name}: rms error of the radii over the Cramer-Rao bound ({what}; {told}; {RUNS} runs)"
+    )
     return Table(title, header, tuple(rows))
 
 
