@@ -267,6 +267,18 @@ def test_a_clock_that_goes_back_or_repeats() -> None:
     assert windows[-1].counts["samples"] == bench.t.size
 
 
+@pytest.mark.parametrize("wild", [9e99, 1e15, -1e15])
+def test_a_wild_stamp_is_told_and_costs_a_turn(wild: float) -> None:
+    bench = Bench()
+    t = bench.t.copy()
+    t[9000] = wild
+    windows = bench.windows(t=t)
+    assert windows[-1].counts["clock"] == 2  # there and back
+    assert windows[-1].counts["samples"] == t.size
+    assert windows[-1].counts["learnt"] > t.size - 2000
+    assert set(started(windows)) <= {"clock", "samples lost"}
+
+
 @pytest.mark.parametrize("factor", [0.5, 1.1, 1.5, 3.0])
 def test_another_rate_is_told_and_is_no_loss(factor: float) -> None:
     bench = Bench(10.0)

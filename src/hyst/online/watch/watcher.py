@@ -29,7 +29,7 @@ _COUNTED = {
     named.SAMPLES_LOST: "samples lost",
     named.UNREADABLE: "lines that cannot be read",
     named.NO_NUMBER: "samples without a number that can be a measurement",
-    named.CLOCK: "stamps that repeat or go backwards",
+    named.CLOCK: "stamps that repeat, go backwards or leap",
     named.OVERFLOW: "samples that led to an overflow",
 }
 
