@@ -26,6 +26,21 @@ OutputColumn = Annotated[
     str,
     typer.Option("--output", metavar="COL", show_default=False, help="Column of the output."),
 ]
+InputColumnOrNone = Annotated[
+    str | None,
+    typer.Option(
+        "--input",
+        metavar="COL",
+        show_default=False,
+        help="Column of the applied drive: name or index from 0.",
+    ),
+]
+OutputColumnOrNone = Annotated[
+    str | None,
+    typer.Option(
+        "--output", metavar="COL", show_default=False, help="Column of the measured output."
+    ),
+]
 Rate = Annotated[
     float | None, typer.Option(metavar="HZ", show_default=False, help="Samples per second.")
 ]
@@ -138,6 +153,12 @@ _OF_A_FILE: dict[str, tuple[Any, Any]] = {
     "file_format": (FileFormat, None),
     "max_samples": (MaxSamples, _MOST_SAMPLES),
 }
+# Of repetitions of a motion, of which there are none before the first.
+_OF_REPETITIONS: dict[str, tuple[Any, Any]] = _OF_A_RECORD | {
+    "input_column": (InputColumnOrNone, None),
+    "output_column": (OutputColumnOrNone, None),
+    "table": (OneTable, None),
+}
 _CALLED = {"input_column": "input", "output_column": "output", "file_format": "format"}
 
 Verb = Callable[..., Any]
@@ -146,6 +167,11 @@ Verb = Callable[..., Any]
 def reads_records(verb: Verb) -> Verb:
     """Give a verb the options of reading records; it gets them as ``how``, for ``read_told``."""
     return _with_options(verb, _OF_A_RECORD)
+
+
+def reads_repetitions(verb: Verb) -> Verb:
+    """Give a verb the options of reading records, of which there may be none."""
+    return _with_options(verb, _OF_REPETITIONS)
 
 
 def reads_columns(verb: Verb) -> Verb:

@@ -28,7 +28,7 @@ class Wanted:
 
     Parameters
     ----------
-    input, output, time, rate, time_unit, repair, dead_band, longest_gap
+    input, output, time, rate, time_unit, repair, dead_band, longest_gap, one_way
         As in ``read_record``.
 
     Raises
@@ -45,6 +45,7 @@ class Wanted:
     repair: bool = False
     dead_band: float | None = None
     longest_gap: int = LONGEST_GAP
+    one_way: bool = False
 
     def __post_init__(self) -> None:
         if self.rate is not None and self.time is not None:
@@ -111,7 +112,7 @@ def record_of_table(
         output_unit=table.units[chosen[1]],
         notes=(*notes_about(table, chosen), *told, *left_out, *even.notes),
     )
-    refuse_unusable(table.source, record, wanted.dead_band)
+    refuse_unusable(table.source, record, wanted.dead_band, wanted.one_way)
     return record
 
 
@@ -187,7 +188,9 @@ def _samples(
     return Samples(table, rows, rows.astype(np.float64), period, signals, rate_given=True), told
 
 
-def refuse_unusable(source: str, record: Record, dead_band: float | None) -> None:
+def refuse_unusable(
+    source: str, record: Record, dead_band: float | None, one_way: bool = False
+) -> None:
     """Refuse signals that stand still, and an input without two turns or one whole loop.
 
     Parameters
@@ -196,7 +199,7 @@ def refuse_unusable(source: str, record: Record, dead_band: float | None) -> Non
         Name of the file, for messages.
     record
         What was read.
-    dead_band
+    dead_band, one_way
         As in ``read_record``.
 
     Raises
@@ -214,6 +217,8 @@ def refuse_unusable(source: str, record: Record, dead_band: float | None) -> Non
                 "choose a column that moves"
             )
     u = record.u
+    if one_way:
+        return
     if dead_band is None and reversals(u, float(np.ptp(u) / 4.0)).size >= _FEWEST_REVERSALS:
         return  # no dead band that is proposed is wider
     threshold = suggest_dead_band(u) if dead_band is None else dead_band

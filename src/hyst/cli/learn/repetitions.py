@@ -1,0 +1,170 @@
+"""One record, the repetitions in it: cut out where the command lies, equal drives in one."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+import hyst
+from hyst.cli.learn.measured import Measured
+from hyst.cli.learn.placing import place_of, shift_of, unlike
+
+Array = NDArray[np.float64]
+
+_SAME_DRIVE = 0.005  # of its range, rms: periods nearer than this are one command, repeated
+_ANOTHER = 0.5  # of its range, rms: nothing that was meant to be this command is further off
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredRepetition:
+    """What was measured with one command.
+
+    Parameters
+    ----------
+    name
+        Where it is from.
+    u, y
+        Drive and output, shape (N,) each; where the command was repeated, their means.
+    notes
+        What was done.
+    noise
+        Standard deviation of a sample of ``y``, where periods with the same drive show it.
+    """
+
+    name: str
+    u: Array
+    y: Array
+    notes: tuple[str, ...] = ()
+    noise: float | None = None
+
+
+def repetitions_in(
+    measured: Measured, command: Array, count: int | None, periodic: bool
+) -> list[MeasuredRepetition]:
+    """Give the repetitions that a record holds.
+
+    Parameters
+    ----------
+    measured
+        The record.
+    command
+        The one that was given for the first of them, shape (N,).
+    count
+        How many there are, as the user says; None if it is to be seen from the length.
+    periodic
+        Whether the motion goes on without a pause.
+
+    Raises
+    ------
+    InputError
+        If the record is too short, begins or ends within the motion, or holds another drive.
+    """
+    n, name = command.size, measured.name
+    u, y = measured.record.u, measured.record.y
+    _refuse_short(measured, n, count)
+    found = count or (u.size // n if u.size % n == 0 or periodic else 1)
+    notes = measured.notes
+    if u.size == found * n:
+        u, y, told = _aligned(name, u, y, command, found, periodic)
+    else:
+        u, y, told = _cut_out(name, u, y, command, found)
+    notes += told
+    if unlike(u[:n], command) > _ANOTHER:
+        raise hyst.InputError(
+            f"the drive in {name} is {100.0 * unlike(u[:n], command):.3g} % of its range off the "
+            "command (rms), so it is another motion; give the column of the applied drive as "
+            "--input, in the unit of the model, and the reference that it was made for"
+        )
+    return _grouped(name, u.reshape(found, n), y.reshape(found, n), notes, periodic)
+
+
+def _refuse_short(measured: Measured, n: int, count: int | None) -> None:
+    """Refuse a record without a whole motion, or as many as there should be."""
+    size, dt = measured.record.samples, measured.record.dt
+    least = n * (count or 1)
+    if size >= least:
+        return
+    several = "" if not count or count == 1 else f" {count} times"
+    raise hyst.InputError(
+        f"{measured.name} has {size} samples ({size * dt:.4g} s) and the reference{several} "
+        f"{least} ({least * dt:.4g} s); record the whole motion"
+    )
+
+
+def _aligned(
+    name: str, u: Array, y: Array, command: Array, count: int, periodic: bool
+) -> tuple[Array, Array, tuple[str, ...]]:
+    """Turn a periodic record that began at another place; refuse where samples are lost."""
+    n = command.size
+    shift = shift_of(u[:n], command, periodic)
+    if shift == 0:
+        return u, y, ()
+    late = f"{abs(shift)} samples {'before' if shift > 0 else 'after'} the command does"
+    if not periodic:
+        raise hyst.InputError(
+            f"{name} begins {late}, so an end of the motion is not in it; start the record with "
+            "the motion, or record longer: hyst finds the command in the drive"
+        )
+    said = f"began {late}, and was turned by as much"
+    whole = [np.roll(each.reshape(count, n), -shift, axis=1).ravel() for each in (u, y)]
+    if count > 1:  # a period across the seam would join two that need not be equal
+        start = shift % n
+        whole = [each[start : start + (count - 1) * n] for each in (u, y)]
+        whole = [np.concatenate([each, each[-n:]]) for each in whole]
+    return whole[0], whole[1], (said,)
+
+
+def _cut_out(
+    name: str, u: Array, y: Array, command: Array, count: int
+) -> tuple[Array, Array, tuple[str, ...]]:
+    """Cut the motion out of a longer record, where its drive is the command."""
+    wanted = np.tile(command, count)
+    start = place_of(u, wanted)
+    stop = start + wanted.size
+    said = f"is longer than the motion, which was found at samples {start} to {stop - 1}"
+    return u[start:stop], y[start:stop], (said,)
+
+
+def _grouped(
+    name: str, u: Array, y: Array, notes: tuple[str, ...], periodic: bool
+) -> list[MeasuredRepetition]:
+    """Put periods with the same drive together: they are one command, measured several times."""
+    count = len(u)
+    same = [k > 0 and unlike(u[k], u[k - 1]) < _SAME_DRIVE for k in range(count)]
+    starts = [k for k in range(count) if not same[k]]
+    found = []
+    for start, stop in zip(starts, [*starts[1:], count], strict=True):
+        which = name if count == 1 else f"{name}, {_which(start, stop)}"
+        told = notes if start == 0 else ()
+        # The first period of a drive is on its way to the loop that repeats.
+        first = start + 1 if periodic and stop - start > 1 else start
+        if stop - start > 1:
+            told += (_mean_of(stop - first, first > start),)
+        noise = _noise(y[first:stop])
+        mean_u, mean_y = u[first:stop].mean(axis=0), y[first:stop].mean(axis=0)
+        found.append(MeasuredRepetition(which, mean_u, mean_y, told, noise))
+    return found
+
+
+def _which(start: int, stop: int) -> str:
+    if stop - start == 1:
+        return f"period {start + 1}"
+    return f"periods {start + 1} to {stop}"
+
+
+def _mean_of(kept: int, without_first: bool) -> str:
+    if kept == 1:
+        return "the last of 2 periods with the same drive"
+    return f"the mean of {kept} periods with the same drive{', without the first' * without_first}"
+
+
+def _noise(y: Array) -> float | None:
+    """Give the standard deviation of the mean of periods that differ by noise alone."""
+    kept = len(y)
+    if kept < 2:
+        return None
+    scatter = float(np.sum((y - y.mean(axis=0)) ** 2)) / (y.shape[1] * (kept - 1))
+    return math.sqrt(scatter / kept)
