@@ -37,6 +37,16 @@ def unlike(drive: Array, command: Array) -> float:
     return math.sqrt(float(np.mean((drive - command) ** 2))) / _extent(command)
 
 
+def alike(drive: Array, command: Array) -> float:
+    """Give the correlation of drive and command; 1 for a command at rest, which says nothing."""
+    d, c = drive - drive.mean(), command - command.mean()
+    of_command = float(c @ c)
+    if of_command == 0.0:
+        return 1.0
+    of_drive = float(d @ d)
+    return float(d @ c) / math.sqrt(of_drive * of_command) if of_drive > 0.0 else 0.0
+
+
 def shift_of(drive: Array, command: Array, periodic: bool) -> int:
     """Give by how many samples a drive is later than the command of the same length; 0 if not.
 

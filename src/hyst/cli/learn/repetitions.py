@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 import hyst
 from hyst.cli.learn.measured import Measured
-from hyst.cli.learn.placing import place_of, shift_of, unlike
+from hyst.cli.learn.placing import alike, place_of, shift_of, unlike
 
 Array = NDArray[np.float64]
 
 _SAME_DRIVE = 0.005  # of its range, rms: periods nearer than this are one command, repeated
 _ANOTHER = 0.5  # of its range, rms: nothing that was meant to be this command is further off
+_LEAST_ALIKE = 0.8  # correlation of a drive that was meant to be this command with it
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,22 +64,11 @@ def repetitions_in(
         If the record is too short, begins or ends within the motion, or holds another drive.
     """
     n, name = command.size, measured.name
-    u, y = measured.record.u, measured.record.y
     _refuse_short(measured, n, count)
-    found = count or (u.size // n if u.size % n == 0 or periodic else 1)
-    notes = measured.notes
-    if u.size == found * n:
-        u, y, told = _aligned(name, u, y, command, found, periodic)
-    else:
-        u, y, told = _cut_out(name, u, y, command, found)
-    notes += told
-    if unlike(u[:n], command) > _ANOTHER:
-        raise hyst.InputError(
-            f"the drive in {name} is {100.0 * unlike(u[:n], command):.3g} % of its range off the "
-            "command (rms), so it is another motion; give the column of the applied drive as "
-            "--input, in the unit of the model, and the reference that it was made for"
-        )
-    return _grouped(name, u.reshape(found, n), y.reshape(found, n), notes, periodic)
+    start, found, notes = _where(measured.record.u, command, count, periodic, name)
+    u, y = (_periods(each, start, found, n) for each in (measured.record.u, measured.record.y))
+    _refuse_another_motion(name, u, command)
+    return _grouped(name, u, y, measured.notes + notes, periodic)
 
 
 def _refuse_short(measured: Measured, n: int, count: int | None) -> None:
@@ -94,38 +84,64 @@ def _refuse_short(measured: Measured, n: int, count: int | None) -> None:
     )
 
 
-def _aligned(
-    name: str, u: Array, y: Array, command: Array, count: int, periodic: bool
-) -> tuple[Array, Array, tuple[str, ...]]:
-    """Turn a periodic record that began at another place; refuse where samples are lost."""
+def _where(
+    u: Array, command: Array, count: int | None, periodic: bool, name: str
+) -> tuple[int, int, tuple[str, ...]]:
+    """Give the sample at which the motion begins, how often it is there, and what is to be told."""
     n = command.size
-    shift = shift_of(u[:n], command, periodic)
-    if shift == 0:
-        return u, y, ()
-    late = f"{abs(shift)} samples {'before' if shift > 0 else 'after'} the command does"
-    if not periodic:
+    if periodic:
+        shift = shift_of(u[:n], command, periodic=True)
+        found = count or max((u.size - shift % n) // n, 1)
+        late = f"began {_late(shift)}, and counts from its start"
+        return shift % n, found, (late,) if shift else ()
+    found = count or u.size // n
+    if u.size == found * n:
+        if count is None and found > 1 and not _all_alike(u, command):
+            return _placed(u, command, 1)
+        shift = shift_of(u[:n], command, periodic=False)
+        if shift == 0:
+            return 0, found, ()
         raise hyst.InputError(
-            f"{name} begins {late}, so an end of the motion is not in it; start the record with "
-            "the motion, or record longer: hyst finds the command in the drive"
+            f"{name} begins {_late(shift)}, so an end of the motion is not in it; start the record "
+            "with the motion, or record longer: hyst finds the command in the drive"
         )
-    said = f"began {late}, and was turned by as much"
-    whole = [np.roll(each.reshape(count, n), -shift, axis=1).ravel() for each in (u, y)]
-    if count > 1:  # a period across the seam would join two that need not be equal
-        start = shift % n
-        whole = [each[start : start + (count - 1) * n] for each in (u, y)]
-        whole = [np.concatenate([each, each[-n:]]) for each in whole]
-    return whole[0], whole[1], (said,)
+    return _placed(u, command, count or 1)
 
 
-def _cut_out(
-    name: str, u: Array, y: Array, command: Array, count: int
-) -> tuple[Array, Array, tuple[str, ...]]:
-    """Cut the motion out of a longer record, where its drive is the command."""
-    wanted = np.tile(command, count)
-    start = place_of(u, wanted)
-    stop = start + wanted.size
+def _late(shift: int) -> str:
+    return f"{abs(shift)} samples {'before' if shift > 0 else 'after'} the command does"
+
+
+def _placed(u: Array, command: Array, count: int) -> tuple[int, int, tuple[str, ...]]:
+    """Find the motion in a longer record, where its drive is the command."""
+    start = place_of(u, np.tile(command, count))
+    stop = start + count * command.size
     said = f"is longer than the motion, which was found at samples {start} to {stop - 1}"
-    return u[start:stop], y[start:stop], (said,)
+    return start, count, (said,)
+
+
+def _periods(signal: Array, start: int, count: int, n: int) -> Array:
+    """Give the repetitions, shape (count, N); a single period is closed where it was begun."""
+    if start + count * n > signal.size:
+        return np.roll(signal[: count * n], -start).reshape(count, n)
+    return signal[start : start + count * n].reshape(count, n)
+
+
+def _all_alike(u: Array, command: Array) -> bool:
+    return min(alike(each, command) for each in u.reshape(-1, command.size)) >= _LEAST_ALIKE
+
+
+def _refuse_another_motion(name: str, u: Array, command: Array) -> None:
+    """Refuse a drive that nobody meant to be the command."""
+    for each in u:
+        off = unlike(each, command)
+        if off <= _ANOTHER and alike(each, command) >= _LEAST_ALIKE:
+            continue
+        raise hyst.InputError(
+            f"the drive in {name} is {100.0 * off:.3g} % of its range off the command (rms), so it "
+            "is another motion; give the column of the applied drive as --input, in the unit of "
+            "the model, and the reference that it was made for"
+        )
 
 
 def _grouped(
