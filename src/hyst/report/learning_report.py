@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from hyst.compensation import LearningCompensator
 from hyst.operators import Verdict
-from hyst.report.learning_tables import learning_table
+from hyst.report.learning_tables import learning_notes, learning_table
 from hyst.report.page import Page
 
 
@@ -63,7 +63,7 @@ def learning_page(
     )
     page.heading("Why it may be trusted")
     page.text(learner.contraction.sentence)
-    page.items(notes)
+    page.items([*learning_notes(learner), *notes])
     page.heading("What was read")
     page.items([f"{role}: {file}" for role, file in (about or {}).items()])
     return page.to_html()

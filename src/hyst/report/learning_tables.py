@@ -38,7 +38,6 @@ def learning_table(
         with_unit("largest", f"[{unit}]" if unit else ""),
         "rms [% of range]",
         "over the noise",
-        "note",
     )
     rows = []
     for k, each in enumerate(history):
@@ -51,11 +50,27 @@ def learning_table(
                 number(each.error_largest),
                 number(share, 3),
                 times_the_noise(each.error_rms, each.noise),
-                each.note,
             )
         )
     marked = best_index(learner) if history else None
     return Table("Repetitions", header, tuple(rows), marked)
+
+
+def learning_notes(learner: LearningCompensator) -> tuple[str, ...]:
+    """Say what was seen in the repetitions and done after them, a sentence or two each.
+
+    Parameters
+    ----------
+    learner
+        The compensator.
+
+    Returns
+    -------
+    tuple of str
+        Of those repetitions of which there is something to say.
+    """
+    numbered = enumerate(learner.history, 1)
+    return tuple(f"repetition {k}: {each.note}" for k, each in numbered if each.note)
 
 
 def best_index(learner: LearningCompensator) -> int:
@@ -86,10 +101,10 @@ def noise_of(learner: LearningCompensator) -> float | None:
     float or None
         Standard deviation, output units.
     """
-    noise = learner.history[-1].noise if learner.history else None
-    return noise if noise else None
+    noise = learner.history[-1].noise if learner.history else math.nan
+    return noise if noise > 0.0 and math.isfinite(noise) else None
 
 
-def times_the_noise(rms: float, noise: float | None) -> str:
+def times_the_noise(rms: float, noise: float) -> str:
     """Write how many times the noise an error is; a dash if no noise is known."""
-    return number(rms / noise, 3) if noise else "-"
+    return number(rms / noise, 3) if noise > 0.0 else "-"

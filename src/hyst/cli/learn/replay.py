@@ -40,12 +40,15 @@ class Replayed:
         What was done to the records, and what was seen in their drives.
     expected
         Output to expect of the next command, shape (N,), output units.
+    input_range
+        That the command keeps; None for any.
     """
 
     learner: hyst.compensation.LearningCompensator
     sources: tuple[str, ...]
     notes: tuple[str, ...]
     expected: Array
+    input_range: tuple[float, float] | None
 
     @property
     def stopped(self) -> bool:
@@ -105,6 +108,7 @@ def replay(
         tuple(each.name for each in found),
         tuple(notes),
         _expected(model, learner, wish),
+        wish.input_range,
     )
 
 

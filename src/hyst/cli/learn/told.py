@@ -90,6 +90,8 @@ def tell_learnt(done: Replayed, about: hyst.ModelDescription) -> None:
     learner = done.learner
     print(_sentence(learner.status))
     show_table(hyst.report.learning_table(learner, about.output_unit, done.sources))
+    for sentence in hyst.report.learning_notes(learner):
+        print(f"  {sentence}")
     print(f"\n{_sentence(learner.contraction.sentence)}")
     _tell_command(done, about)
 
@@ -105,7 +107,7 @@ def tell_files(done: Replayed, files: list[Path]) -> None:
 def _tell_command(done: Replayed, about: hyst.ModelDescription) -> None:
     u = done.learner.command
     unit = f" {about.input_unit}" if about.input_unit else ""
-    limits = done.learner.input_range
+    limits = done.input_range
     kept = "no limits" if limits is None else f"limits {limits[0]:.6g} to {limits[1]:.6g}"
     print(f"command from {u.min():.6g} to {u.max():.6g}{unit} ({kept})")
 
