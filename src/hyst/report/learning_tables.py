@@ -49,7 +49,7 @@ def learning_table(
                 number(each.error_rms),
                 number(each.error_largest),
                 number(share, 3),
-                times_the_noise(each.error_rms, each.noise),
+                _times_the_noise(each.error_rms, each.noise),
             )
         )
     marked = best_index(learner) if history else None
@@ -105,6 +105,6 @@ def noise_of(learner: LearningCompensator) -> float | None:
     return noise if noise > 0.0 and math.isfinite(noise) else None
 
 
-def times_the_noise(rms: float, noise: float) -> str:
+def _times_the_noise(rms: float, noise: float) -> str:
     """Write how many times the noise an error is; a dash if no noise is known."""
     return number(rms / noise, 3) if noise > 0.0 else "-"
