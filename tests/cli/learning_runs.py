@@ -16,8 +16,8 @@ Learn = Callable[..., Ended]
 DT = 0.01
 NOISE = 2.5e-3  # um: 0.05 % of the reference's range
 TRUE = Affine(1.0, 2.0) @ hyst.PrandtlIshlinskii(p=[0.5, 0.3], r=[0.4, 1.1], p0=1.0)
-MODEL = Affine(1.0, 2.0) @ hyst.PrandtlIshlinskii(p=[0.4, 0.45], r=[0.5, 1.2], p0=0.9)
-"""What is known of the stage: every slope within 15 %, every radius within 25."""
+MODEL = Affine(1.0, 2.0) @ hyst.PrandtlIshlinskii(p=[0.46, 0.34], r=[0.38, 1.15], p0=0.88)
+"""What is known of the stage: slopes to 15 %, radii to 5."""
 
 N = 700
 TIME = DT * np.arange(N)

@@ -46,7 +46,7 @@ def test_the_first_command_is_the_inverse_of_the_model(learn: Learn, folder: Pat
 def test_three_repetitions_lead_to_the_noise(learn: Learn) -> None:
     files = play_in_turn(learn, 4)
     missed = errors(files)
-    assert missed[0] > 0.04 * np.ptp(Y_REF)  # there was something to learn
+    assert missed[0] > 0.03 * np.ptp(Y_REF)  # there was something to learn
     assert (missed[1:] < missed[0]).all()
     assert missed[3] < 1.5 * NOISE  # what the command was made for
     ended = learn(*files)

@@ -9,7 +9,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_runs import Run, describe, write_csv
-from learning_runs import COLUMNS, MODEL, TIME, Y_REF, Learn, column, play, play_in_turn
+from learning_runs import (
+    COLUMNS,
+    HEADER,
+    MODEL,
+    TIME,
+    TRUE,
+    Y_REF,
+    Learn,
+    column,
+    play,
+    play_in_turn,
+)
 
 import hyst
 from hyst.operators import Verdict
@@ -34,18 +45,24 @@ def test_a_page_and_a_figure_are_drawn(learn: Learn, folder: Path) -> None:
 def test_repetitions_that_get_worse_are_stopped_and_the_best_is_kept(
     learn: Learn, folder: Path
 ) -> None:
-    files = play_in_turn(learn, 2)
-    best = column(files[1], "drive")
-    learn(*files)
-    # The actuator loses most of its stroke: nothing that learning may go on from.
-    broken = hyst.operators.Affine(0.3, 3.0) @ hyst.PrandtlIshlinskii([0.5], [0.4], 1.0)
-    files.append(play("run3.csv", column("command.csv", "command"), 3, broken))
+    """An actuator that answers every change the wrong way round: nothing can be learnt of it."""
+    files = play_in_turn(learn, 1)
+    best, first = column(files[0], "drive"), column(files[0], "position")
+    ended = learn(*files)
+    for k in range(2, 9):
+        assert ended.code == 0, ended
+        u = column("command.csv", "command")
+        y = first - 3.0 * (TRUE(u) - TRUE(best))
+        files.append(write_csv(Path(f"run{k}.csv"), HEADER, TIME, u, y))
+        ended = learn(*files)
+        if ended.code:
+            break
     ended = learn(*files, "--report", "learning.html")
     assert ended.code == 3, ended
     assert "Traceback" not in ended.err
-    assert "diverged" in ended.out
+    assert ended.out.startswith("diverged after")
     np.testing.assert_array_equal(column("command.csv", "command"), best)
-    assert "that of the best repetition" in ended.out
+    assert "the command written is that of the best repetition" in ended.out
     assert 'class="verdict unfit"' in (folder / "learning.html").read_text()
 
 

@@ -74,7 +74,7 @@ def learning_notes(learner: LearningCompensator) -> tuple[str, ...]:
 
 
 def best_index(learner: LearningCompensator) -> int:
-    """Give the index of the best repetition in the history, which is not empty.
+    """Give the index of the best repetition, since the actuator last changed, in the history.
 
     Parameters
     ----------
@@ -85,7 +85,8 @@ def best_index(learner: LearningCompensator) -> int:
     -------
     int
     """
-    return min(range(len(learner.history)), key=lambda k: learner.history[k].error_rms)
+    best = learner.best
+    return 0 if best is None else best.number - 1
 
 
 def noise_of(learner: LearningCompensator) -> float | None:
@@ -101,8 +102,7 @@ def noise_of(learner: LearningCompensator) -> float | None:
     float or None
         Standard deviation, output units.
     """
-    noise = learner.history[-1].noise if learner.history else math.nan
-    return noise if noise > 0.0 and math.isfinite(noise) else None
+    return learner.noise if learner.noise else None
 
 
 def _times_the_noise(rms: float, noise: float) -> str:

@@ -70,6 +70,14 @@ Noise = Annotated[
         help="Standard deviation of the measured output's noise, output units.",
     ),
 ]
+Slopes = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LOW,HIGH",
+        show_default="as measured",
+        help="Least and largest slope of the actuator behind the model's inverse.",
+    ),
+]
 Repetitions = Annotated[
     int | None,
     typer.Option(
@@ -118,7 +126,7 @@ class Wish:
 
     Parameters
     ----------
-    input_range, rate_limit, periodic, noise, history
+    input_range, rate_limit, periodic, noise, history, slopes
         As of ``hyst.compensation.LearningCompensator``.
     repetitions
         In each record; None to see.
@@ -129,6 +137,7 @@ class Wish:
     periodic: bool
     noise: float | None
     history: list[float] | None
+    slopes: tuple[float, float] | None
     repetitions: int | None
 
 
@@ -145,6 +154,7 @@ def learn(
     periodic: Periodic = False,
     noise: Noise = None,
     history: History = None,
+    slopes: Slopes = None,
     repetitions: Repetitions = None,
     reference_rate: ReferenceRate = None,
     reference_table: ReferenceTable = None,
@@ -171,6 +181,7 @@ def learn(
         periodic,
         noise,
         None if history is None else history_of(history),
+        None if slopes is None else _pair(slopes, "slopes", "the least and the largest slope"),
         repetitions,
     )
     names = [each.name for each in files]
@@ -198,15 +209,17 @@ def _range(text: str | None, about: hyst.ModelDescription) -> tuple[float, float
     if text == "none":
         return None
     if text is not None:
-        ends = numbers(text, "input-range")
-        if len(ends) != 2:
-            raise hyst.InputError(
-                f"--input-range is {text!r}; give the lowest and the highest drive, or none"
-            )
-        return ends[0], ends[1]
+        return _pair(text, "input-range", "the lowest and the highest drive, or none")
     if about.input_low is None or about.input_high is None:
         return None
     return about.input_low, about.input_high
+
+
+def _pair(text: str, option: str, meant: str) -> tuple[float, float]:
+    ends = numbers(text, option)
+    if len(ends) != 2:
+        raise hyst.InputError(f"--{option} is {text!r}; give {meant}")
+    return ends[0], ends[1]
 
 
 def _write(

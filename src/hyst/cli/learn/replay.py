@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -96,13 +97,14 @@ def replay(
             notes += [f"{repetition.name}: {text}" for text in repetition.notes]
             u, told = _applied(repetition, learner)
             notes += told
-            learner.update(repetition.y, u)
+            _teach(learner, repetition, u)
             found.append(repetition)
     seen = [each.noise for each in found if each.noise is not None]
     if wish.noise is None and seen:
-        learner = _learner(model, wanted, replace(wish, noise=min(seen)))
+        pooled = math.sqrt(sum(each**2 for each in seen) / len(seen))
+        learner = _learner(model, wanted, replace(wish, noise=pooled))
         for repetition in found:
-            learner.update(repetition.y, _applied(repetition, learner)[0])
+            _teach(learner, repetition, _applied(repetition, learner)[0])
     return Replayed(
         learner,
         tuple(each.name for each in found),
@@ -124,7 +126,19 @@ def _learner(
         periodic=wish.periodic,
         noise=wish.noise,
         history=wish.history,
+        slopes=wish.slopes,
+        despite_verdict=True,  # refused before, unless the user insists
     )
+
+
+def _teach(
+    learner: hyst.compensation.LearningCompensator, repetition: MeasuredRepetition, u: Array
+) -> None:
+    """Give a repetition to the compensator; a refusal names the file."""
+    try:
+        learner.update(repetition.y, u)
+    except hyst.InputError as refusal:
+        raise hyst.InputError(f"{repetition.name}: {refusal}") from refusal
 
 
 def _refuse_other_output(first: MeasuredRepetition, wanted: Reference) -> None:
@@ -168,12 +182,14 @@ def _applied(
 def _expected(
     model: hyst.Operator, learner: hyst.compensation.LearningCompensator, wish: Wish
 ) -> Array:
-    """Give the output to expect: the last one, changed as the model says."""
+    """Give the output to expect: that of the best repetition, changed as the model says."""
     modelled = _answer(model, learner.command, wish)
-    if not learner.history:
-        return modelled
-    last = learner.history[-1]
-    return last.y_measured + modelled - _answer(model, last.command, wish)
+    best = learner.best
+    return (
+        modelled
+        if best is None
+        else best.y_measured + modelled - _answer(model, best.command, wish)
+    )
 
 
 def _answer(model: hyst.Operator, u: Array, wish: Wish) -> Array:

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from hyst.cli.learn.replay import Replayed
 
 
+_MOST_NOTES = 5  # on the console; the page has all
+_NOTHING_LEFT = ("at the noise", "settled")
+
+
 def write_extras(
     done: Replayed,
     about: hyst.ModelDescription,
@@ -80,8 +84,12 @@ def write_extras(
 
 def tell_first(done: Replayed, about: hyst.ModelDescription) -> None:
     """Say what the first command is, and what the model may miss by."""
-    print(_sentence(done.learner.status))
-    print(_sentence(done.learner.contraction.sentence))
+    learner = done.learner
+    print(_sentence(learner.status))
+    if learner.contraction.known:
+        print(_sentence(learner.contraction.sentence))
+    else:
+        print("whether learning contracts is told with the first repetition, or with --slopes.")
     _tell_command(done, about)
 
 
@@ -90,9 +98,10 @@ def tell_learnt(done: Replayed, about: hyst.ModelDescription) -> None:
     learner = done.learner
     print(_sentence(learner.status))
     show_table(hyst.report.learning_table(learner, about.output_unit, done.sources))
-    for sentence in hyst.report.learning_notes(learner):
-        print(f"  {sentence}")
-    print(f"\n{_sentence(learner.contraction.sentence)}")
+    print()
+    for sentence in hyst.report.learning_notes(learner)[-_MOST_NOTES:]:
+        print(_sentence(sentence))
+    print(_sentence(learner.contraction.sentence))
     _tell_command(done, about)
 
 
@@ -120,7 +129,7 @@ def _then(done: Replayed) -> str:
             "next: the command written is that of the best repetition; find out what changed "
             "(the actuator, the zero of the sensor, the trigger) before another one is learnt"
         )
-    if done.learner.state == "at the noise":
+    if done.learner.state in _NOTHING_LEFT:
         return "next: nothing is left to learn; play the command written, and measure now and then"
     return (
         f"next: play the command, record drive and output as repetition {number}, and add its file "
