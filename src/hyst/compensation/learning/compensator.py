@@ -23,6 +23,7 @@ from hyst.compensation.learning.measured_output import (
     stuck_samples,
 )
 from hyst.compensation.learning.measured_slopes import measured_slopes
+from hyst.compensation.learning.mixing import mixed
 from hyst.compensation.learning.noise_floor import noise_between, noise_in
 from hyst.compensation.learning.repetition import Repetition
 from hyst.compensation.learning.trial import Trial
@@ -39,6 +40,7 @@ _AT_THE_NOISE = 1.1
 _NOTHING_LEFT = 0.02
 _MOST_STRIKES = 4
 _LATEST = 0.125
+_MIXED, _FAR = 2, 5.0
 
 
 @final
@@ -255,6 +257,7 @@ class LearningCompensator:
         self._history: list[Repetition] = []
         self._best: Trial | None = None
         self._last: Trial | None = None
+        self._trials: list[Trial] = []
         self._state, self._strikes, self._gain = LEARNING, 0, 1.0
         self._noise = self._given_noise
         self._contraction = self._given or Contraction(math.nan, math.nan, 1.0, "unknown")
@@ -299,8 +302,7 @@ class LearningCompensator:
             return self._learnt.linear.delay, []
         samples = f"{abs(late)} sample{'s' if abs(late) > 1 else ''}"
         if not self._history and 0 < late <= _LATEST * y.size:
-            told = f"the output is late by {samples}, taken for a delay of the plant"
-            return self._learnt.linear.delay + late, [told]
+            return self._learnt.linear.delay + late, []
         way = "late" if late > 0 else "early"
         raise InputError(
             f"the measured output is {way} by {samples} against what was to be expected, so that "
@@ -348,6 +350,7 @@ class LearningCompensator:
             self._past = measured.u
         gain = self._command_from(base or trial, noise, notes)
         self._last = trial
+        self._trials = [*self._trials, trial][-1 - _MIXED :] if not self._stuck.any() else self._trials
         self._history.append(
             Repetition(
                 trial.number,
@@ -366,6 +369,7 @@ class LearningCompensator:
         gain = self._learnt.gain_of(trial.v, trial.y, self._periodic)
         self._learnt = self._learnt.rescaled(gain)
         self._best, self._strikes, self._gain, self._state = None, 0, 1.0, LEARNING
+        self._trials = []
         return f"the plant has changed, its gain {100.0 * (gain - 1.0):+.3g} %; learning goes on"
 
     def _step_back(self) -> str:
@@ -407,6 +411,11 @@ class LearningCompensator:
             self._hold("", notes)
             return 0.0
         gain = self._gain * self._contraction.gain
+        v = base.v
+        far = base.rms > _FAR * noise
+        if far and not self._stuck.any() and self._gain == 1.0:
+            others = [(one.v, one.error) for one in self._trials if one is not base]
+            v, error = mixed(v, error, others[-_MIXED:], noise)
         step = self._learnt.step(error, noise, gain, self._periodic)
         if step.share < _NOTHING_LEFT:
             self._state = SETTLED
@@ -415,7 +424,7 @@ class LearningCompensator:
         self._state = LEARNING
         if self._contraction.gain < 1.0:
             notes.append(f"gain {self._contraction.gain:.3g}, as slopes ask for")
-        self._set(self._along.command(base.v + step.dv, self._past))
+        self._set(self._along.command(v + step.dv, self._past))
         if self._held:
             notes.append(f"{self._held} samples of the next command are held at a limit")
         return gain

@@ -53,7 +53,7 @@ class Learnt:
             To try, samples.
         """
         kept = tuple(each for each in (*self.pairs, *changes))[-_MOST_PAIRS:]
-        used = [whole, *kept]
+        used = [whole, *kept] if len(kept) < 1 else list(kept)
         linear = fit_linear_part(used, noise, delays)
         return Learnt(linear, doubt_of(used, linear, noise), kept)
 
