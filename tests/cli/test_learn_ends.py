@@ -142,6 +142,39 @@ def test_a_reference_that_cannot_be_is_refused(
     assert "other.csv" in refused(*command)
 
 
+def test_a_rate_limit_needs_a_sample_time(
+    run: Run, refused: Callable[..., str], known: Path, folder: Path
+) -> None:
+    write_csv(folder / "other.csv", "position [um]", Y_REF)
+    command = ("learn", known, "other.csv", *COLUMNS, "-o", "command.csv", "--rate-limit", "3")
+    assert "give --reference-rate" in refused(*command)
+    assert run(*command, "--reference-rate", "100").code == 0
+    assert np.abs(np.diff(column("command.csv", "command"))).max() <= 0.03 * (1.0 + 1e-9)
+    np.testing.assert_allclose(column("command.csv", "time"), TIME, rtol=1e-12)
+
+
+def test_a_model_without_a_way_back_is_refused(
+    refused: Callable[..., str], wanted: Path, folder: Path
+) -> None:
+    hyst.Play(0.5).save(folder / "play.json")
+    message = refused("learn", "play.json", wanted, *COLUMNS, "-o", "command.csv")
+    assert "has no linear part (p0 = 0)" in message
+    (folder / "text.json").write_text("no model")
+    assert "text.json" in refused("learn", "text.json", wanted, *COLUMNS, "-o", "command.csv")
+
+
+def test_a_model_over_a_second_signal_is_taken_at_a_value(
+    run: Run, refused: Callable[..., str], wanted: Path
+) -> None:
+    warm = MODEL.with_parameters(1.1 * MODEL.parameters().values)
+    hyst.Scheduled((MODEL, warm), (20.0, 40.0), name="temperature").save("over.json")
+    command = ("learn", "over.json", wanted, *COLUMNS, "-o", "command.csv")
+    assert "over.json" in refused(*command)
+    assert run(*command, "--schedule-value", "20").code == 0
+    # Rounding of a number of 7, a thousand times.
+    assert np.abs(MODEL(column("command.csv", "command")) - Y_REF).max() < 1e-12
+
+
 def test_a_model_in_samples_has_its_sample_time_kept(
     run: Run, refused: Callable[..., str], folder: Path
 ) -> None:

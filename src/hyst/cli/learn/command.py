@@ -25,6 +25,7 @@ from hyst.cli.learn.reference import Reference, read_reference
 from hyst.cli.learn.replay import Replayed, replay
 from hyst.cli.learn.told import tell_files, tell_first, tell_learnt, write_extras
 from hyst.cli.reading_options import reads_repetitions
+from hyst.cli.scheduled import ScheduleValue, loaded
 from hyst.cli.time_column import time_column
 
 ReferenceFile = Annotated[
@@ -162,12 +163,13 @@ def learn(
     report: Report = None,
     figure: Figure = None,
     despite_verdict: DespiteVerdict = False,
+    schedule_value: ScheduleValue = None,
 ) -> int:
     """Give the next command of a motion that repeats, learnt from the measured repetitions."""
     files = list(measured or [])
     read = [model_file, reference, *files]
     _refuse_clashes([out, report, figure], [*read, how["output_file"], _file_of(history)])
-    model = load_operator(model_file)
+    model = _operator(model_file, schedule_value)
     about = model.description
     hyst.operators.verdict.refuse_if_unfit(about.verdict, "no command is made", despite_verdict)
     whose = {"table": reference_table, "format": reference_format}
@@ -175,6 +177,11 @@ def learn(
     unit = wanted.unit or about.output_unit
     records = read_measured(files, how, about, unit, wanted.dt or model.dt)
     wanted = wanted.timed(model, records, how["rate"])
+    if rate_limit is not None and wanted.dt is None:
+        raise hyst.InputError(
+            "--rate-limit needs the sample time, and neither the reference nor the model tells it; "
+            "give --reference-rate"
+        )
     wish = Wish(
         _range(input_range, about),
         rate_limit,
@@ -190,6 +197,15 @@ def learn(
     _write(done, about, wanted, out, (report, figure), read)
     virgin = history is None and not periodic and model.initial_state().size > 0
     return _tell(done, about, [out, report, figure], virgin)
+
+
+def _operator(file: Path, value: float | None) -> hyst.Operator:
+    """Read a model file; a model over a second signal as it is at a value of that."""
+    if value is None:
+        return load_operator(file)
+    found = loaded(file, None, value)
+    assert isinstance(found, hyst.Operator)  # what is asked for at a value
+    return found
 
 
 def _refuse_clashes(outputs: list[Path | None], inputs: list[Path | None]) -> None:
@@ -250,6 +266,6 @@ def _tell(
         tell_learnt(done, about)
     else:
         tell_first(done, about)
-    tell_virgin(virgin)
+        tell_virgin(virgin)
     tell_files(done, [each for each in files if each is not None])
     return UNFIT if about.is_unfit or done.stopped else DONE

@@ -138,7 +138,8 @@ def _teach(
     try:
         learner.update(repetition.y, u)
     except hyst.InputError as refusal:
-        raise hyst.InputError(f"{repetition.name}: {refusal}") from refusal
+        here = str(refusal).replace("reset(forget=True)", "this file as the only one")
+        raise hyst.InputError(f"{repetition.name}: {here}") from refusal
 
 
 def _refuse_other_output(first: MeasuredRepetition, wanted: Reference) -> None:
