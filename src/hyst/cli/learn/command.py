@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -22,7 +21,7 @@ from hyst.cli.console import at_work, note
 from hyst.cli.exit_codes import DONE, UNFIT
 from hyst.cli.learn.measured import read_measured
 from hyst.cli.learn.reference import Reference, read_reference
-from hyst.cli.learn.replay import Replayed, replay
+from hyst.cli.learn.replay import Replayed, Wish, replay
 from hyst.cli.learn.told import tell_files, tell_first, tell_learnt, write_extras
 from hyst.cli.reading_options import reads_repetitions
 from hyst.cli.scheduled import ScheduleValue, loaded
@@ -119,27 +118,6 @@ Report = Annotated[
 Figure = Annotated[
     Path | None, typer.Option(metavar="FILE", show_default=False, help="PNG to write.")
 ]
-
-
-@dataclass(frozen=True)
-class Wish:
-    """What the learning is to keep and to know.
-
-    Parameters
-    ----------
-    input_range, rate_limit, periodic, noise, history, slopes
-        As of ``hyst.compensation.LearningCompensator``.
-    repetitions
-        In each record; None to see.
-    """
-
-    input_range: tuple[float, float] | None
-    rate_limit: float | None
-    periodic: bool
-    noise: float | None
-    history: list[float] | None
-    slopes: tuple[float, float] | None
-    repetitions: int | None
 
 
 @reads_repetitions

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,15 +15,33 @@ from hyst.cli.learn.placing import unlike
 from hyst.cli.learn.reference import Reference
 from hyst.cli.learn.repetitions import MeasuredRepetition, repetitions_in
 
-if TYPE_CHECKING:
-    from hyst.cli.learn.command import Wish
-
 Array = NDArray[np.float64]
 
 _FAR_OUTPUT = 0.5  # of the reference's range, rms: more than any model misses by
 _ROUNDING = 1e-9  # of the command's range, rms: what printed numbers leave
 _READ_BACK = 0.01  # likewise: what reading a drive back may add to it
 _CLEARLY_EARLIER = 0.3  # of its distance to its own command: as near a drive is to the one it is
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What the learning is to keep and to know.
+
+    Parameters
+    ----------
+    input_range, rate_limit, periodic, noise, history, slopes
+        As of ``hyst.compensation.LearningCompensator``.
+    repetitions
+        In each record; None to see.
+    """
+
+    input_range: tuple[float, float] | None
+    rate_limit: float | None
+    periodic: bool
+    noise: float | None
+    history: list[float] | None
+    slopes: tuple[float, float] | None
+    repetitions: int | None
 
 
 @dataclass(frozen=True, eq=False)
