@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import hyst
-from hyst.cli.learn.measured import at_rate_of_reference
+from hyst.cli.learn.measured import Measured, at_rate_of_reference
 from hyst.cli.learn.placing import unlike
 from hyst.cli.learn.reference import Reference
 from hyst.cli.learn.repetitions import MeasuredRepetition, repetitions_in
@@ -102,33 +101,40 @@ def replay(
         If a record does not hold the motion, or its output is not that of the reference.
     """
     measured = [at_rate_of_reference(*each, wanted.dt, wanted.y.size) for each in records]
+    wish = _with_noise(wish, measured, _learner(model, wanted, wish).command)
     learner = _learner(model, wanted, wish)
-    found: list[MeasuredRepetition] = []
+    sources: list[str] = []
     notes: list[str] = []
     for each in measured:
         say(each.name)
         cut = repetitions_in(each, learner.command, wish.repetitions, wish.periodic)
         for repetition in cut:
-            if not found:
+            if not sources:
                 _refuse_other_output(repetition, wanted)
             notes += [f"{repetition.name}: {text}" for text in repetition.notes]
             u, told = _applied(repetition, learner)
             notes += told
             _teach(learner, repetition, u)
-            found.append(repetition)
-    seen = [each.noise for each in found if each.noise is not None]
-    if wish.noise is None and seen:
-        pooled = math.sqrt(sum(each**2 for each in seen) / len(seen))
-        learner = _learner(model, wanted, replace(wish, noise=pooled))
-        for repetition in found:
-            _teach(learner, repetition, _applied(repetition, learner)[0])
+            sources.append(repetition.name)
     return Replayed(
         learner,
-        tuple(each.name for each in found),
+        tuple(sources),
         tuple(notes),
         _expected(model, learner, wish),
         wish.input_range,
     )
+
+
+def _with_noise(wish: Wish, measured: Sequence[Measured], command: Array) -> Wish:
+    """Take the noise from periods of the first record, if they show it and nobody says it.
+
+    Later records are left alone: commands given before them were made without knowing them, and
+    must come out again.
+    """
+    if wish.noise is not None or not measured:
+        return wish
+    first = repetitions_in(measured[0], command, wish.repetitions, wish.periodic)[0]
+    return replace(wish, noise=first.noise)
 
 
 def _learner(
