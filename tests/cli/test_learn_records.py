@@ -9,7 +9,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_runs import Run, write_csv
-from learning_runs import COLUMNS, DT, HEADER, NOISE, TRUE, Y_REF, Learn, N, column, play, rows
+from learning_runs import (
+    COLUMNS,
+    DT,
+    HEADER,
+    NOISE,
+    TIME,
+    TRUE,
+    Y_REF,
+    Learn,
+    N,
+    column,
+    play,
+    rows,
+)
 
 
 @pytest.fixture
@@ -174,6 +187,18 @@ def test_repetitions_may_be_counted(learn: Learn, refuses: Callable[..., str], e
     ended = learn(three, "--repetitions", 3, "--periodic")
     assert "began 60 samples before the command does" in ended.err
     assert "the mean of 2 periods with the same drive, without the first" in ended.err
+
+
+@pytest.mark.parametrize("y_ref", [2.0 + 0.5 * TIME, np.full(N, 3.0)], ids=["ramp", "hold"])
+def test_a_motion_need_not_turn(y_ref: np.ndarray, learn: Learn, folder: Path) -> None:
+    write_csv(folder / "wanted.csv", "t [s],position [um]", TIME, y_ref)
+    missed = []
+    files: list[Path] = []
+    for k in range(3):
+        assert learn(*files).code == 0
+        files.append(play(f"run{k}.csv", column("command.csv", "command"), k))
+        missed.append(np.sqrt(np.mean((column(files[k], "position") - y_ref) ** 2)))
+    assert missed[2] < max(0.1 * missed[0], 1.5 * NOISE)
 
 
 def test_what_is_not_the_motion_is_refused(

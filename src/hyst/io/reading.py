@@ -95,7 +95,7 @@ def read_record(
     max_samples
         Most numbers to read, as of ``read_table``.
     one_way
-        Take an input that does not turn too, as of a ramp whose answer is wanted and no loop.
+        Take an input that does not turn or move too: a ramp or a hold whose answer is wanted.
 
     Returns
     -------

@@ -193,6 +193,8 @@ def refuse_unusable(
 ) -> None:
     """Refuse signals that stand still, and an input without two turns or one whole loop.
 
+    Of an input that may go one way nothing is asked.
+
     Parameters
     ----------
     source
@@ -211,6 +213,8 @@ def refuse_unusable(
         (record.input_name, record.u, "input"),
         (record.output_name, record.y, "output"),
     ):
+        if one_way and role == "input":
+            continue  # it may hold a level, too
         if signal.min() == signal.max():
             raise InputError(
                 f"{source}: the {role} {name!r} is {signal[0]:.6g} throughout; "

@@ -86,10 +86,7 @@ def tell_first(done: Replayed, about: hyst.ModelDescription) -> None:
     """Say what the first command is, and what the model may miss by."""
     learner = done.learner
     print(_sentence(learner.status))
-    if learner.contraction.known:
-        print(_sentence(learner.contraction.sentence))
-    else:
-        print("whether learning contracts is told with the first repetition, or with --slopes.")
+    print(_contraction(learner))
     _tell_command(done, about)
 
 
@@ -101,7 +98,7 @@ def tell_learnt(done: Replayed, about: hyst.ModelDescription) -> None:
     print()
     for sentence in hyst.report.learning_notes(learner)[-_MOST_NOTES:]:
         print(_sentence(sentence))
-    print(_sentence(learner.contraction.sentence))
+    print(_contraction(learner))
     _tell_command(done, about)
 
 
@@ -111,6 +108,16 @@ def tell_files(done: Replayed, files: list[Path]) -> None:
     for folder in folders:
         show_files([each for each in files if each.parent == folder])
     print(_then(done))
+
+
+def _contraction(learner: hyst.compensation.LearningCompensator) -> str:
+    """Say whether learning contracts, in the words of the command line where it is not known."""
+    if learner.contraction.known:
+        return _sentence(learner.contraction.sentence)
+    return (
+        "whether learning contracts is not known before a repetition shows the slopes of the "
+        "actuator behind the model's inverse, or --slopes says them."
+    )
 
 
 def _tell_command(done: Replayed, about: hyst.ModelDescription) -> None:

@@ -13,7 +13,6 @@ Koerner, IEEE Trans. Autom. Control 8 (1963) 56, eq. 7, iterated with R.
 from __future__ import annotations
 
 from dataclasses import dataclass
-
 from itertools import pairwise
 
 import numpy as np
