@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from hyst.checks.arrays import finite_vector
 from hyst.checks.numbers import as_not_negative, as_positive, as_sample_time
 from hyst.compensation.exact import range_of_input
+from hyst.compensation.learning.along_branches import along_branches
 from hyst.compensation.learning.along_the_motion import AlongTheMotion, Made, suited_method
 from hyst.compensation.learning.contraction import Contraction, given_slopes
 from hyst.compensation.learning.learnt import Learnt
@@ -424,10 +425,14 @@ class LearningCompensator:
         self._state = LEARNING
         if self._contraction.gain < 1.0:
             notes.append(f"gain {self._contraction.gain:.3g}, as slopes ask for")
-        self._set(self._along.command(v + step.dv, self._past))
+        self._set(self._along.command(v + self._along_branches(step.dv, base, noise), self._past))
         if self._held:
             notes.append(f"{self._held} samples of the next command are held at a limit")
         return gain
+
+    def _along_branches(self, dv: Array, base: Trial, noise: float) -> Array:
+        expected = self._learnt.output(base.v, self._periodic)
+        return along_branches(dv, base.v, expected, base.y, noise)
 
     def _hold(self, why: str, notes: list[str]) -> None:
         """Keep the best command."""

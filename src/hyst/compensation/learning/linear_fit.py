@@ -29,6 +29,7 @@ _SIZES = ((0, 1), (0, 2), (2, 1), (2, 2), (2, 3), (4, 5))
 PEN = 2.0
 _FEWEST_BINS = 40
 _CLEAR = 3.0
+_TURNED, _RESIZED = 0.8, 0.5
 _BEYOND, _CAUTION, _SEEN = 1.6, 2.0, 0.6
 _ROUNDS = 6
 
@@ -76,12 +77,20 @@ def fit_linear_part(pairs: list[Pair], noise: float, delays: tuple[int, ...]) ->
 
 
 def _is_seen(linear: LinearPart, pairs: list[Pair], noise: float) -> bool:
-    """Tell whether the repetitions show every mode of a linear part where it is."""
-    modes = linear.modes()
-    if not modes.size:
+    """Tell whether repetitions show what a linear part does, and that it is no hysteresis.
+
+    Every mode must be seen where it is, and somewhere the phase must turn, or the size change, by
+    more than a hysteresis does: at low frequency alone, a lag or a delay looks the same.
+    """
+    if linear.b.size == 1 and not linear.order and not linear.delay:
         return True
     frequency, doubt = _own_doubt(pairs, linear, noise)
-    return bool((np.interp(modes, frequency, doubt) < _SEEN).all())
+    modes = linear.modes()
+    if modes.size and not (np.interp(modes, frequency, doubt) < _SEEN).all():
+        return False
+    relative = linear.at(frequency[doubt < _SEEN]) / linear.at([0.0])[0].real
+    turned = np.abs(np.angle(relative)) > _TURNED
+    return bool((turned | (np.abs(np.log(np.abs(relative) + 1e-300)) > _RESIZED)).any())
 
 
 def _fitted(
@@ -139,11 +148,14 @@ def _fitted(
         for k, (_, v, y) in enumerate(spectra):
             own = powers[:, :tail] @ theta[n + m + tail * k : n + m + tail * (k + 1)]
             rests.append(np.abs(y - (above * v + own) / below))
-        response = np.abs(above / below)
-        around = [_smooth(response * np.abs(v), z.size) for _, v, _ in spectra]
+        around = [_smooth(np.abs(above * v), z.size) / np.abs(below) for _, v, _ in spectra]
         missed = _share_missed(rests, around, floor, missed)
         size = [
-            np.sqrt((missed * each) ** 2 + _smooth(rest, z.size) ** 2 + floor**2)
+            np.sqrt(
+                (missed * each) ** 2
+                + (_smooth(np.abs(below) * rest, z.size) / np.abs(below)) ** 2
+                + floor**2
+            )
             for each, rest in zip(around, rests, strict=True)
         ]
     cost = sum(
@@ -205,8 +217,8 @@ def _apart(signal: Array, length: int) -> Array:
 def _shown(spectra: list[tuple[Complex, Complex, Complex]], floor: float) -> NDArray[np.bool_]:
     """Give the frequencies at which a dynamics of the plant could be seen in the noise."""
     used = np.zeros(spectra[0][0].size, dtype=bool)
-    for _, v, _ in spectra:
-        used |= _smooth(np.abs(v), v.size) > 0.5 * floor
+    for _, v, y in spectra:
+        used |= np.maximum(_smooth(np.abs(v), v.size), _smooth(np.abs(y), v.size)) > floor
     used[:_FEWEST_BINS] = True
     return used
 

@@ -28,7 +28,7 @@ _DOUBT = 0.5
 _AT_REST, _BEFORE = 0.1, 20.0
 """By what a plant departs from the model before anything is known: at rest, and in a cycle a sample."""
 
-_PROBE = 0.25
+_PROBE = 0.12
 """Of the correction where little is known: enough to learn there by what it does."""
 
 _SURE = 0.02
