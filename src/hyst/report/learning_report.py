@@ -15,7 +15,7 @@ def learning_page(
     figure: bytes,
     unit: str,
     *,
-    verdict: Verdict,
+    verdict: Verdict | None,
     sources: Sequence[str] = (),
     notes: Sequence[str] = (),
     about: Mapping[str, str] | None = None,
@@ -32,7 +32,7 @@ def learning_page(
     unit
         Of the output.
     verdict
-        How the learning stands, in one word and sentences.
+        Whether what was learnt is to be used, if that is decided.
     sources
         Where each repetition was measured.
     notes
@@ -48,7 +48,10 @@ def learning_page(
         HTML that needs nothing but itself.
     """
     page = Page("Learning from repetition")
-    page.verdict(verdict)
+    if verdict is None:
+        page.banner(learner.status)
+    else:
+        page.verdict(verdict)
     if then:
         page.text(then)
     page.table(learning_table(learner, unit, sources))
@@ -61,7 +64,7 @@ def learning_page(
         "Error against repetition; reference, output, error and command of the first, the best and "
         "the last one. The grey band is twice the noise on either side.",
     )
-    page.heading("Why it may be trusted")
+    page.heading("Does it contract?")
     page.text(learner.contraction.sentence)
     page.items([*learning_notes(learner), *notes])
     page.heading("What was read")

@@ -144,9 +144,11 @@ def _then(done: Replayed) -> str:
     )
 
 
-def _verdict(done: Replayed) -> Verdict:
-    levels: dict[str, Level] = {"at the noise": "good", "diverged": "unfit"}
-    return Verdict(levels.get(done.learner.state, "fair"), (_sentence(done.learner.status),))
+def _verdict(done: Replayed) -> Verdict | None:
+    """Judge what was learnt; nothing is decided while it goes on."""
+    levels: dict[str, Level] = {"at the noise": "good", "settled": "fair", "diverged": "unfit"}
+    level = levels.get(done.learner.state)
+    return None if level is None else Verdict(level, (_sentence(done.learner.status),))
 
 
 def _sentence(text: str) -> str:
