@@ -45,25 +45,41 @@ def test_a_page_and_a_figure_are_drawn(learn: Learn, folder: Path) -> None:
 def test_repetitions_that_get_worse_are_stopped_and_the_best_is_kept(
     learn: Learn, folder: Path
 ) -> None:
-    """An actuator that answers every change the wrong way round: nothing can be learnt of it."""
+    """An output that answers changes of the command by other motions, eight times as large."""
     files = play_in_turn(learn, 1)
     best, first = column(files[0], "drive"), column(files[0], "position")
-    ended = learn(*files)
+    random = np.random.default_rng(1)
+    learn(*files)
     for k in range(2, 9):
-        assert ended.code == 0, ended
         u = column("command.csv", "command")
-        y = first - 3.0 * (TRUE(u) - TRUE(best))
-        files.append(write_csv(Path(f"run{k}.csv"), HEADER, TIME, u, y))
+        size = 8.0 * np.sqrt(2.0 * np.mean((TRUE(u) - TRUE(best)) ** 2))
+        other = size * np.cos(2.0 * np.pi * (0.2 + random.random()) * TIME + 6.3 * random.random())
+        files.append(write_csv(Path(f"run{k}.csv"), HEADER, TIME, u, first + other))
         ended = learn(*files)
         if ended.code:
             break
-    ended = learn(*files, "--report", "learning.html")
     assert ended.code == 3, ended
     assert "Traceback" not in ended.err
     assert ended.out.startswith("diverged after")
     np.testing.assert_array_equal(column("command.csv", "command"), best)
     assert "the command written is that of the best repetition" in ended.out
+    assert learn(*files, "--report", "learning.html").code == 3
     assert 'class="verdict unfit"' in (folder / "learning.html").read_text()
+
+
+def test_a_repetition_far_worse_than_the_best_is_told(learn: Learn) -> None:
+    """A sensor that lost its gain, or another motion: leaving its file out takes it back."""
+    files = play_in_turn(learn, 3)
+    ended = learn(*files)
+    assert ended.err == ""
+    wanted = column("command.csv", "command")
+    broken = hyst.operators.Affine(0.3, 2.0) @ TRUE
+    files.append(play("run4.csv", wanted, 4, broken))
+    ended = learn(*files)
+    assert "note: repetition 4 (run4.csv) missed by " in ended.err
+    assert "leave its file out" in ended.err
+    learn(*files[:3])
+    np.testing.assert_array_equal(column("command.csv", "command"), wanted)
 
 
 def test_the_drive_stays_in_its_range(run: Run, learn: Learn, known: Path) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import hyst
 from hyst._files import replacing
-from hyst.cli.console import show_files, show_table
+from hyst.cli.console import note, show_files, show_table
 from hyst.cli.learn.reference import Reference
 from hyst.operators import Verdict
 from hyst.operators.verdict import Level
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 
 _MOST_NOTES = 5  # on the console; the page has all
+_FAR_WORSE = 5.0  # times the best error: what no repetition of the same misses by
 _NOTHING_LEFT = ("at the noise", "settled")
 
 
@@ -93,6 +94,7 @@ def tell_first(done: Replayed, about: hyst.ModelDescription) -> None:
 def tell_learnt(done: Replayed, about: hyst.ModelDescription) -> None:
     """Say how it stands, and list the repetitions."""
     learner = done.learner
+    _note_far_worse(done)
     print(_sentence(learner.status))
     show_table(hyst.report.learning_table(learner, about.output_unit, done.sources))
     print()
@@ -108,6 +110,22 @@ def tell_files(done: Replayed, files: list[Path]) -> None:
     for folder in folders:
         show_files([each for each in files if each.parent == folder])
     print(_then(done))
+
+
+def _note_far_worse(done: Replayed) -> None:
+    """Say that the last repetition is not like those before, which learning may go on from."""
+    *before, last = done.learner.history
+    if not before:
+        return
+    best = min(before, key=lambda each: each.error_rms)
+    if last.error_rms <= _FAR_WORSE * max(best.error_rms, last.noise):
+        return
+    note(
+        f"repetition {last.number} ({done.sources[-1]}) missed by "
+        f"{last.error_rms / best.error_rms:.3g} times as much as repetition {best.number}; if "
+        "something other than the actuator has changed (the sensor, the trigger, the file), leave "
+        "its file out and measure anew"
+    )
 
 
 def _contraction(learner: hyst.compensation.LearningCompensator) -> str:
