@@ -39,9 +39,10 @@ LEARNING, AT_THE_NOISE, SETTLED, DIVERGED = "learning", "at the noise", "settled
 
 _AT_THE_NOISE = 1.1
 _NOTHING_LEFT = 0.02
-_MOST_STRIKES = 4
+_MOST_STRIKES, _BETTER, _HALVED = 4, 0.98, 0.5
 _LATEST = 0.125
-_MIXED, _FAR = 2, 5.0
+_MIXED, _FAR = 2, 20.0
+_BRANCHES = 10.0
 
 
 @final
@@ -260,6 +261,7 @@ class LearningCompensator:
         self._last: Trial | None = None
         self._trials: list[Trial] = []
         self._state, self._strikes, self._gain = LEARNING, 0, 1.0
+        self._unlike = False
         self._noise = self._given_noise
         self._contraction = self._given or Contraction(math.nan, math.nan, 1.0, "unknown")
         self._past = self._before
@@ -331,21 +333,24 @@ class LearningCompensator:
     def _next(self, trial: Trial, measured: Measured, late: int, notes: list[str]) -> None:
         """Decide what the next command is made from, and make it."""
         noise = self._noise or 0.0
-        how = "better"
+        how, expected = "better", self._expected(trial.v)
         if self._best is not None:
-            how = trial.against(self._best, self._expected(trial.v), noise)
+            how = trial.against(self._best, expected, noise)
+        if how == "unlike" and self._unlike and trial.rms < self._history[0].error_rms:
+            how = "changed"
+        self._unlike = how == "unlike"
         if how == "changed":
-            notes.append(self._take_change(trial))
-        elif how == "worse":
-            notes.append(self._step_back())
-        else:
+            notes.append(self._take_change(trial, expected))
+        elif how in ("worse", "unlike"):
+            notes.append(self._step_back(how))
+        elif self._best is None or trial.rms < _BETTER * self._best.rms:
             self._gain = min(1.0, 1.5 * self._gain)
             self._strikes = 0
-        if not self._stuck.any():
+        if not self._stuck.any() and how != "unlike":
             self._teach(trial, late, noise, how)
         if how in ("better", "changed"):
             self._best = trial
-        base = self._best if how == "worse" or self._best is None else trial
+        base = self._best if how in ("worse", "unlike") else trial
         self._contract(trial, noise)
         if self._periodic:
             self._past = measured.u
@@ -365,20 +370,27 @@ class LearningCompensator:
             )
         )
 
-    def _take_change(self, trial: Trial) -> str:
+    def _take_change(self, trial: Trial, expected: Array) -> str:
         """Take it that the plant has changed: what was best is no more."""
-        gain = self._learnt.gain_of(trial.v, trial.y, self._periodic)
+        gain = min(max(trial.gain_over(expected)[0], 0.5), 2.0)
         self._learnt = self._learnt.rescaled(gain)
         self._best, self._strikes, self._gain, self._state = None, 0, 1.0, LEARNING
         self._trials = []
-        return f"the plant has changed, its gain {100.0 * (gain - 1.0):+.3g} %; learning goes on"
+        return f"the plant has changed, its gain by {100.0 * (gain - 1.0):+.3g} %; learning goes on"
 
-    def _step_back(self) -> str:
-        self._strikes += 1
-        self._gain *= 0.5
+    def _step_back(self, how: str) -> str:
+        """Go back to the best command; give up after some times."""
         assert self._best is not None
+        self._strikes += 1
         if self._strikes >= _MOST_STRIKES:
-            self._state = DIVERGED
+            halved = self._best.rms < _HALVED * self._history[0].error_rms
+            self._state = SETTLED if halved and how == "worse" else DIVERGED
+        if how == "unlike":
+            return (
+                f"unlike anything that the command explains; the one of repetition "
+                f"{self._best.number} is sent again"
+            )
+        self._gain *= 0.5
         return f"worse than repetition {self._best.number}; back to it with half of the gain"
 
     def _teach(self, trial: Trial, late: int, noise: float, how: str) -> None:
@@ -403,8 +415,11 @@ class LearningCompensator:
 
     def _command_from(self, base: Trial, noise: float, notes: list[str]) -> float:
         """Set the next command; the share of the correction that it makes."""
-        if self._state == DIVERGED:
-            self._hold("diverged: the best command is kept", notes)
+        if self._state == DIVERGED or self._strikes >= _MOST_STRIKES:
+            self._hold("the best command is kept", notes)
+            return 0.0
+        if self._unlike:
+            self._hold("", notes)
             return 0.0
         error = np.where(self._stuck, 0.0, base.error)
         if base.rms <= _AT_THE_NOISE * noise:
@@ -431,6 +446,8 @@ class LearningCompensator:
         return gain
 
     def _along_branches(self, dv: Array, base: Trial, noise: float) -> Array:
+        if base.rms < _BRANCHES * noise or self._learnt.linear.order:
+            return dv
         expected = self._learnt.output(base.v, self._periodic)
         return along_branches(dv, base.v, expected, base.y, noise)
 
