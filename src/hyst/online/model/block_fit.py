@@ -75,6 +75,8 @@ class Fitted:
         Of the noise.
     information
         Shape (f, f), of the window, output units squared.
+    columns
+        Shape (N, f), derivative of the output by x.
     squares
         Of the window, large errors counted less.
     refused
@@ -84,6 +86,7 @@ class Fitted:
     theta: Array
     variance: Array | float
     information: Array
+    columns: Array
     squares: float
     refused: int
 
@@ -149,7 +152,7 @@ def fitted(task: Task, theta: Array, variance: float, floor: float, passes: int)
         theta, gained = found
         if gained < _ENOUGH * variance:
             break
-    return Fitted(theta, variance, information, squares, refused)
+    return Fitted(theta, variance, information, columns, squares, refused)
 
 
 def _variance(

@@ -78,7 +78,12 @@ class Past:
         if lost <= 0.0 or not x.size:
             return self
         base = self.information + floor * np.eye(x.size)
-        gain, directions = eigh(arriving, base)
+        try:
+            gain, directions = eigh(arriving, base)
+        except (np.linalg.LinAlgError, ValueError):
+            kept = 1.0 - lost
+            information, pull = kept * self.information, kept * self.pull(x)
+            return Past(information, pull + information @ x, kept * self.recent)
         kept = 1.0 - np.minimum(lost, _FASTER * np.maximum(gain, 0.0))
         back = directions.T @ base
         shrink = (directions * np.sqrt(kept)) @ back
