@@ -210,6 +210,8 @@ class Course:
 
     def _accept(self, found: Fitted) -> None:
         self.theta, self.variance = found.theta, float(found.variance)
+        now = self.theta[self.free] / self.spread[self.free]
+        self.past = self.past.turned(found.before, found.information, self.variance, now)
         self.counts["refused steps"] += found.refused
         scale, limits = self.spread[self.free], (self.lower, self.upper)
         known = self.information if self.information.any() else found.information
@@ -265,8 +267,7 @@ class Course:
             error = y - predicted
             pull = columns.T @ (weights * (y - middle))
         if not (np.isfinite(window.tangents).all() and np.isfinite(window.state).all()):
-            window.state, window.tangents = live, np.zeros_like(window.tangents)
-            window.count = 0
+            window.begin_at(live)
             return
         lost = -math.expm1(-self.fading * count)
         if np.isfinite(information).all() and np.isfinite(pull).all() and free.size:
@@ -350,11 +351,7 @@ class Course:
 
     def goes_on_from(self, other: Course) -> None:
         """Take over the memory of another estimate of the same model."""
-        mine, its = self.window, other.window
-        mine.state, mine.tangents = its.state.copy(), its.tangents.copy()
-        mine.theta_at, mine.count = its.theta_at.copy(), its.count
-        for to, of in ((mine.u, its.u), (mine.y, its.y), (mine.told, its.told)):
-            to[:] = of
+        self.window.go_on_from(other.window)
         self.last_input = other.last_input
         self._only_memory(self.theta)
         self.set_estimate(self.theta)
@@ -365,7 +362,7 @@ class Course:
             self.window.drop(theta, self.window.count)
         window = self.window
         if not (np.isfinite(window.tangents).all() and np.isfinite(window.state).all()):
-            window.state, window.tangents = live, np.zeros_like(window.tangents)
+            window.begin_at(live)
         self.in_block = 0
 
     def _new_spread(self, model: Operator) -> Array:
