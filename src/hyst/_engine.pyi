@@ -258,6 +258,43 @@ class RadiusEstimation:
     def places(self) -> dict[str, int]: ...
     def start(self, state: Array, z0: Array) -> None: ...
     def step(self, state: Array, u: float, y: float) -> bool: ...
-    def run(self, state: Array, u: Array, y: Array, every: int, r: Array, error: Array) -> None: ...
+    def step_told(self, state: Array, u: float, y: float, is_slope: bool, told: float) -> bool: ...
+    def follow(self, state: Array, u: Array) -> None: ...
+    def run(
+        self,
+        state: Array,
+        u: Array,
+        y: Array,
+        every: int,
+        r: Array,
+        error: Array,
+        is_slope: bool,
+        told: Array,
+    ) -> None: ...
+
+class ScaleEstimation:
+    def __init__(
+        self,
+        forgetting: float,
+        patience: float,
+        spread: float,
+        least: float,
+        most: float,
+        scale_held: bool,
+        offset_held: bool,
+    ) -> None: ...
+    def places(self) -> dict[str, int]: ...
+    def start(self, state: Array, start: float, offset: float) -> None: ...
+    def step(self, state: Array, w: float, y: float) -> int: ...
+    def run(
+        self,
+        state: Array,
+        w: Array,
+        y: Array,
+        every: int,
+        theta: Array,
+        variance: Array,
+        error: Array,
+    ) -> None: ...
 
 def project_radii(r: Array, most: float) -> None: ...
