@@ -75,6 +75,10 @@ class Fitted:
         Of the noise.
     information
         Shape (f, f), of the window, output units squared.
+    before
+        Shape (f, f), the same where the steps began.
+    columns
+        Shape (N, f), derivative of the output by x.
     squares
         Of the window, large errors counted less.
     refused
@@ -84,6 +88,8 @@ class Fitted:
     theta: Array
     variance: Array | float
     information: Array
+    before: Array
+    columns: Array
     squares: float
     refused: int
 
@@ -124,6 +130,7 @@ def fitted(task: Task, theta: Array, variance: float, floor: float, passes: int)
         None where an output or a derivative is not finite.
     """
     refused, clip, count = 0, np.inf, float(task.weights.sum())
+    before: Array | None = None
     for pass_ in range(passes + 1):
         with np.errstate(all="ignore"):
             y, jacobian = task.window.sensitivity(theta)
@@ -135,6 +142,7 @@ def fitted(task: Task, theta: Array, variance: float, floor: float, passes: int)
             columns = jacobian[:, task.free] * task.scale
             information = columns.T @ (columns * weights[:, None])
             pull = columns.T @ (weights * error)
+        before = information if before is None else before
         squares = squares_of(error, task.weights, clip)
         if not (np.isfinite(information).all() and np.isfinite(pull).all() and squares < np.inf):
             return None
@@ -149,7 +157,7 @@ def fitted(task: Task, theta: Array, variance: float, floor: float, passes: int)
         theta, gained = found
         if gained < _ENOUGH * variance:
             break
-    return Fitted(theta, variance, information, squares, refused)
+    return Fitted(theta, variance, information, before, columns, squares, refused)
 
 
 def _variance(

@@ -26,6 +26,7 @@ Array = NDArray[np.float64]
 _BEYOND = 1e100
 _PASSES = 4
 _LEAST_NOISE = 1e-10
+_ROUNDING = 1e-14
 # Tried in any case: noise may hide in every sum that a minimum is false.
 _SURE_TRIALS = 8
 _COMMANDS = 200
@@ -67,6 +68,8 @@ class Course:
         """Start from constants, knowing nothing but how far off they may be."""
         self.theta_start = theta.copy()
         self.theta = theta.copy()
+        # Of the start, so that limits do not move with what they limit.
+        self.must = self.model.with_parameters(theta).inequalities()
         self.spread = np.where([name in self.held for name in self.names], 0.0, spread)
         self.free = np.flatnonzero(self.spread > 0.0)
         self.past = Past.none(self.free.size)
@@ -150,7 +153,7 @@ class Course:
         window = self.window
         age = np.arange(window.count - 1.0, -1.0, -1.0)
         weights = window.told[: window.count] * np.exp(-self.fading * age)
-        must = self.model.inequalities()
+        must = self.must
         scale = self.spread[self.free]
         return Task(
             window,
@@ -170,6 +173,10 @@ class Course:
         if not np.isfinite(theta).all():
             return None
         mended = self.model.nearest_parameters(np.clip(theta, self.lower, self.upper))
+        rows = self.must.rows
+        room = rows @ mended - np.minimum(self.must.least, rows @ self.theta)
+        if (room < -_ROUNDING * (np.abs(rows) @ np.abs(mended))).any():
+            return None
         try:
             model = self.model.with_parameters(mended)
             return None if refusal_of(model) else np.array(mended)
@@ -184,7 +191,10 @@ class Course:
     def _fit(self) -> None:
         self.averaged = None
         task = self.task()
-        found = fitted(task, self.theta, self.variance, self.floor(), _PASSES)
+        try:
+            found = fitted(task, self.theta, self.variance, self.floor(), _PASSES)
+        except np.linalg.LinAlgError:
+            found = None
         if found is None:
             newest = slice(max(self.window.count - self.block, 0), self.window.count)
             lost = int(self.window.told[newest].sum())
@@ -200,6 +210,8 @@ class Course:
 
     def _accept(self, found: Fitted) -> None:
         self.theta, self.variance = found.theta, float(found.variance)
+        now = self.theta[self.free] / self.spread[self.free]
+        self.past = self.past.turned(found.before, found.information, self.variance, now)
         self.counts["refused steps"] += found.refused
         scale, limits = self.spread[self.free], (self.lower, self.upper)
         known = self.information if self.information.any() else found.information
@@ -211,6 +223,7 @@ class Course:
                 scale,
                 known / self.variance + np.eye(scale.size),
                 limits,
+                found.columns,
             )
         information = found.information
         if rows is not None:
@@ -227,7 +240,7 @@ class Course:
         self.wait = max(self.wait - 1, 0)
         if self.wait:
             return
-        self.wait = max(self.trials - _SURE_TRIALS, 0) // _SURE_TRIALS
+        self.wait = max(self.trials - _SURE_TRIALS, 0)
         self.trials += 1
         alone = replace(task, past=Past.none(self.free.size))
         rival = better_rival(alone, self.theta, self.trials, self.floor(), self.judge)
@@ -254,8 +267,7 @@ class Course:
             error = y - predicted
             pull = columns.T @ (weights * (y - middle))
         if not (np.isfinite(window.tangents).all() and np.isfinite(window.state).all()):
-            window.state, window.tangents = live, np.zeros_like(window.tangents)
-            window.count = 0
+            window.begin_at(live)
             return
         lost = -math.expm1(-self.fading * count)
         if np.isfinite(information).all() and np.isfinite(pull).all() and free.size:
@@ -324,7 +336,8 @@ class Course:
             return np.zeros((0, 0))
         if not information.any() or not self.variance > 0.0:
             return np.diag(scale**2) / belief
-        inverse = np.linalg.inv(information / self.variance + belief * np.eye(scale.size))
+        values, axes = np.linalg.eigh(information / self.variance)
+        inverse = (axes / (np.maximum(values, 0.0) + belief)) @ axes.T
         return np.asarray(0.5 * (inverse + inverse.T) * np.outer(scale, scale))
 
     def restart(self, theta: Array) -> None:
@@ -338,11 +351,7 @@ class Course:
 
     def goes_on_from(self, other: Course) -> None:
         """Take over the memory of another estimate of the same model."""
-        mine, its = self.window, other.window
-        mine.state, mine.tangents = its.state.copy(), its.tangents.copy()
-        mine.theta_at, mine.count = its.theta_at.copy(), its.count
-        for to, of in ((mine.u, its.u), (mine.y, its.y), (mine.told, its.told)):
-            to[:] = of
+        self.window.go_on_from(other.window)
         self.last_input = other.last_input
         self._only_memory(self.theta)
         self.set_estimate(self.theta)
@@ -353,7 +362,7 @@ class Course:
             self.window.drop(theta, self.window.count)
         window = self.window
         if not (np.isfinite(window.tangents).all() and np.isfinite(window.state).all()):
-            window.state, window.tangents = live, np.zeros_like(window.tangents)
+            window.begin_at(live)
         self.in_block = 0
 
     def _new_spread(self, model: Operator) -> Array:

@@ -102,7 +102,7 @@ class ModelEstimator(Estimator):
         *,
         dt: float | None = None,
         memory: float = math.inf,
-        spread: float = 0.5,
+        spread: float = 1.0,
         spreads: Mapping[str, float] | None = None,
         held: Iterable[str] = (),
         noise: float | None = None,

@@ -47,7 +47,10 @@ def better_rival(
     rival are no noise either, neighbours do not tell anew, and it must halve the squares.
     """
     begin = _drawn(task, theta, trial)
-    found = None if begin is None else fitted(task, begin, 0.0, floor, _PASSES)
+    try:
+        found = None if begin is None else fitted(task, begin, 0.0, floor, _PASSES)
+    except np.linalg.LinAlgError:
+        return None
     if found is None:
         return None
     window = task.window
