@@ -45,6 +45,11 @@ class Asked:
     window: str
 
     @property
+    def of_all_constants(self) -> Mapping[str, bool]:
+        """What only estimators of more than radii are asked, and whether it was."""
+        return {name: typed for name, typed in self.of_a_start.items() if name != "--memory"}
+
+    @property
     def of_a_start(self) -> Mapping[str, bool]:
         """What a start alone is asked, and whether it was."""
         return {
