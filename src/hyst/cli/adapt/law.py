@@ -15,7 +15,6 @@ import hyst
 from hyst.cli.adapt.measured import Measured
 from hyst.cli.console import note
 from hyst.cli.reading_options import Verb, with_options
-from hyst.online.radius.start import variance_for
 
 Array = NDArray[np.float64]
 
@@ -221,7 +220,7 @@ def start_law(
     """Make the estimator of the radii of a model."""
     gain = law.gain
     if gain is None and law.method == "least-squares":
-        gain = variance_for(model, record)
+        gain = hyst.online.radius.start.variance_for(model, record)
     band = hyst.signals.suggest_dead_band(record.u) if dead_band is None else dead_band
     return hyst.online.radius_estimator_for(
         model,

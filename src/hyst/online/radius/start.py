@@ -46,7 +46,8 @@ def radius_estimator_for(
 
     Examples
     --------
-    >>> estimator = radius_estimator_for(PrandtlIshlinskii([0.5], [1.0], 1.0), 0.001)
+    >>> import hyst
+    >>> estimator = radius_estimator_for(hyst.PrandtlIshlinskii([0.5], [1.0], 1.0), 0.001)
     >>> estimator.names, estimator.settings["gain"]
     (('r[1]',), [40.0])
     """
@@ -76,6 +77,18 @@ def variance_for(model: Operator, record: Record) -> float:
 
     The largest radius, or half the range of the input if that is 0, is taken for its standard
     error, and a thousandth of the output's range for the noise's.
+
+    Parameters
+    ----------
+    model
+        Where it starts.
+    record
+        From which it learns.
+
+    Raises
+    ------
+    InputError
+        If the output rests.
     """
     r = take_apart(model).pi.r
     largest = float(r[-1]) if r.size and r[-1] > 0.0 else 0.5 * float(np.ptp(record.u))
