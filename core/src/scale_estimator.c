@@ -253,8 +253,9 @@ hyst_scale_end hyst_scale_step(const hyst_scale *scale, hyst_real *state, hyst_r
         const hyst_real part = ONE - share;
         state[HYST_SCALE_WW] = kept * ww + part * d * d;
         state[HYST_SCALE_WY] = kept * state[HYST_SCALE_WY] + part * d * dy;
+        /* part d dy has the variance part d^2 noise, since that of dy is noise / part. */
         state[HYST_SCALE_WW_SQUARED] =
-            kept * kept * state[HYST_SCALE_WW_SQUARED] + part * part * d * d;
+            kept * kept * state[HYST_SCALE_WW_SQUARED] + part * d * d;
     }
     state[HYST_SCALE_SLOPE_WEIGHT] = kept * state[HYST_SCALE_SLOPE_WEIGHT] + ONE;
     state[HYST_SCALE_WEIGHT] = weight;

@@ -7,8 +7,6 @@ from typing import Annotated
 
 import typer
 
-import hyst
-
 Files = Annotated[
     list[Path],
     typer.Argument(
@@ -51,7 +49,7 @@ Which = Annotated[
     typer.Option(
         "--estimator",
         metavar="NAME",
-        help=f"Which one: auto by the model, or {', '.join(hyst.online.ESTIMATORS)}.",
+        help="Which one: auto by the model, or scale, joint.",  # hyst.online.ESTIMATORS
     ),
 ]
 Guard = Annotated[
