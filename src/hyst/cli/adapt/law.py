@@ -218,14 +218,12 @@ def start_law(
     dead_band: float | None,
 ) -> hyst.online.RadiusEstimator:
     """Make the estimator of the radii of a model."""
-    gain = law.gain
-    if gain is None and law.method == "least-squares":
-        gain = hyst.online.radius.start.variance_for(model, record)
     band = hyst.signals.suggest_dead_band(record.u) if dead_band is None else dead_band
     return hyst.online.radius_estimator_for(
         model,
         record.dt,
-        gain,
+        law.gain,
+        record=record,
         method=law.method,
         memory=math.inf if memory is None else memory,
         filter_time=law.filter_time,
