@@ -284,7 +284,8 @@ def tell_law(estimator: hyst.online.RadiusEstimator) -> None:
     gains = estimator.settings["gain"]
     told = "told" if estimator.knows_regimes else "measured"
     print(f"law: {estimator.settings['method']}, gain {gains[0]:.4g}, regimes {told}")
-    if not estimator.knows_regimes:
+    # Least squares says so for each radius.
+    if not estimator.knows_regimes and estimator.settings["method"] == "gradient":
         note(
             "regimes come from the measured slope, which noise makes wrong; adapt without --law "
             "needs no slope"
