@@ -24,10 +24,12 @@ from hyst.cli.family_options import FamilyCommand
 from hyst.cli.fit import fit
 from hyst.cli.identify import identify
 from hyst.cli.info import info
+from hyst.cli.learn.command import learn
 from hyst.cli.loop import loop
 from hyst.cli.observer.command import observer
 from hyst.cli.reproduce import reproduce
 from hyst.cli.simulate import simulate
+from hyst.cli.watch.command import watch
 
 app = typer.Typer(
     add_completion=False,
@@ -45,9 +47,11 @@ VERBS = (
     fit,
     compare,
     adapt,
+    watch,
     simulate,
     loop,
     compensate,
+    learn,
     observer,
     export,
     info,
