@@ -247,7 +247,10 @@ static int learn(const hyst_radius *radius, const hyst_radius_layout *at, hyst_r
     const size_t n = radius->plays;
     hyst_real *phi = state + at->scratch;
     hyst_real *r = phi + n;
-    if (n == 0u || state[HYST_RADIUS_REGIME] < ZERO) {
+    /* Within the dead band behind the farthest input nobody knows yet whether plays have left their
+     * envelopes. */
+    const hyst_real ahead = (u - state[HYST_RADIUS_EXTREME]) * state[HYST_RADIUS_DIRECTION];
+    if (n == 0u || state[HYST_RADIUS_REGIME] < ZERO || ahead < ZERO) {
         return 0;
     }
     const hyst_real error = regress(radius, at, state, u, y, phi);

@@ -10,7 +10,6 @@ import pytest
 
 import hyst
 from hyst.cli import main
-from hyst.studies import s2_adaptive_radii
 from online.plants import P, R
 
 TRUTH = hyst.Affine(1.0, 2.0) @ hyst.PrandtlIshlinskii(P, R, 0.3)
@@ -77,14 +76,6 @@ def test_bad_input_is_one_sentence(
     assert adapt(files, tmp_path / "out", "--resume", str(files[0]), "--memory", "2") == 2
     assert "leave out --memory" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
-
-
-def test_measured_piezo(measured_data: Path) -> None:
-    table = s2_adaptive_radii._piezo(measured_data / "piezo-dbo" / "Model_Vi_Do.dat")
-    rms = {row[0]: float(row[1]) for row in table.rows}
-    # The paper's claim: four plays of estimated radii do better than more plays of fixed ones.
-    assert rms["all by the joint estimator"] < rms["fixed radii, n = 7"]
-    assert rms["slopes by segmentation, n = 4"] < rms["fixed radii, n = 4"]
 
 
 def test_no_rival_disturbs_the_estimate_on_a_measured_piezo(measured_data: Path) -> None:

@@ -10,7 +10,9 @@ from hyst.online.joint.innovation import Innovation
 from hyst.online.joint.joint_estimator import JointEstimator
 from hyst.online.joint.parts import units_of_plays
 from hyst.online.knowledge import Knowledge
+from hyst.online.model.model_estimator import ModelEstimator
 from hyst.online.radius.radius_estimator import RadiusEstimator
+from hyst.online.radius.start import radius_estimator_for
 from hyst.online.scale.scale_estimator import ScaleEstimator
 from hyst.online.trajectory import Trajectory
 
@@ -22,11 +24,13 @@ __all__ = [
     "Innovation",
     "JointEstimator",
     "Knowledge",
+    "ModelEstimator",
     "PlayExcitation",
     "RadiusEstimator",
     "ScaleEstimator",
     "Trajectory",
     "estimator_for",
+    "radius_estimator_for",
     "units_of_plays",
 ]
 

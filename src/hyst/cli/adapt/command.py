@@ -9,6 +9,15 @@ from typing import Any
 import hyst
 from hyst._files import replacing_files, require_folder
 from hyst.cli.adapt.guard_run import GuardRun, guard_sentences, run_guard, write_guard_run
+from hyst.cli.adapt.law import (
+    Law,
+    asks_law,
+    law_from,
+    model_from_slopes,
+    run_law,
+    start_law,
+    tell_law,
+)
 from hyst.cli.adapt.measured import Measured, read_measured
 from hyst.cli.adapt.options import (
     Commands,
@@ -34,10 +43,12 @@ _ROWS = 2000
 
 
 @reads_records
+@asks_law
 def adapt(
     files: Files,
     folder: Folder,
     how: dict[str, Any],
+    law: dict[str, Any],
     start: Start = 0,
     memory: Memory = None,
     spread: Spread = None,
@@ -51,14 +62,24 @@ def adapt(
 ) -> None:
     """Estimate a model's constants sample by sample along a record; write them over time."""
     require_folder(folder)
-    model_file, data = _model_and_data(files, resume)
     is_guarded = guard or window != "auto" or commands is not None
     asked = Asked(memory, spread, only, estimator, estimate_maps, is_guarded, window)
+    rule = law_from(law, resume is not None, {**asked.of_all_constants, "--guard": is_guarded})
+    model_file, data = _model_and_data(files, resume, rule)
     found = None if resume is None else resumed(resume, model_file, asked)
-    model = load_operator(model_file or data) if found is None else found.model
-    about = model.description
+    model = None if found is None else found.model
+    if model is None and not rule.from_slopes:
+        model = load_operator(model_file or data)
+    about = hyst.operators.ModelDescription() if model is None else model.description
     measured = read_measured(data, how, about, start, commands)
-    follower = started(model, measured.record.dt, asked) if found is None else found.estimator
+    if model is None:
+        model = model_from_slopes(rule, measured.record)
+    if found is not None:
+        follower = found.estimator
+    elif rule.method is not None:
+        follower = start_law(rule, model, measured.record, memory, how["dead_band"])
+    else:
+        follower = started(model, measured.record.dt, asked)
     inverse = None if found is None else found.inverse
     if measured.history.size:
         (follower if inverse is None else inverse).follow(measured.history)
@@ -66,7 +87,8 @@ def adapt(
         inverse = guarded(follower, asked)
     before = follower.parameters.tolist()
     with at_work("estimating") as say:
-        trajectory, run = _followed(follower, inverse, measured)
+        source = data, how, about.delay
+        trajectory, run = _followed(follower, inverse, measured, rule, source)
         _refuse_if_few_used(follower, data)
         say("figure")
         picture = draw(follower, about, trajectory, data)
@@ -82,6 +104,8 @@ def adapt(
             write_guard_run(temporary / names[4], run, measured.record, about)
             inverse.save(temporary / names[5])
     tell(follower, before, about)
+    if isinstance(follower, hyst.online.RadiusEstimator):
+        tell_law(follower)
     if inverse is not None and run is not None:
         for sentence in guard_sentences(run, inverse, measured.record):
             print(sentence)
@@ -92,19 +116,27 @@ def _followed(
     follower: hyst.online.Estimator,
     inverse: hyst.online.AdaptiveInverse | None,
     measured: Measured,
+    rule: Law,
+    source: tuple[Path, dict[str, Any], float],
 ) -> tuple[hyst.online.Trajectory, GuardRun | None]:
     every = max(1, measured.record.samples // _ROWS)
+    if isinstance(follower, hyst.online.RadiusEstimator):
+        return run_law(follower, rule, measured, source, every), None
+    if rule.column is not None:
+        raise hyst.InputError("the estimator needs no slope; leave out --slope and --regime")
     if inverse is None:
         return follower.run(measured.record, every), None
     return run_guard(inverse, measured, every)
 
 
-def _model_and_data(files: list[Path], resume: Path | None) -> tuple[Path | None, Path]:
-    if len(files) == 2:
+def _model_and_data(files: list[Path], resume: Path | None, rule: Law) -> tuple[Path | None, Path]:
+    if len(files) == 2 and not rule.from_slopes:
         return files[0], files[1]
-    if len(files) == 1 and resume is not None:
+    if len(files) == 1 and (resume is not None or rule.from_slopes):
         return None, files[0]
     wanted = "MODEL and DATA" if resume is None else "DATA, or MODEL and DATA,"
+    if rule.from_slopes:
+        wanted = "DATA alone, since weights come from its slopes,"
     names = ", ".join(str(each) for each in files)
     raise hyst.InputError(f"there are {len(files)} files ({names}); give {wanted} here")
 

@@ -12,7 +12,8 @@ Files = Annotated[
     typer.Argument(
         metavar="MODEL DATA",
         show_default=False,
-        help="Model file and measured record; with --resume the record alone.",
+        help="Model file and measured record; with --resume or --law-weights slopes the record "
+        "alone.",
     ),
 ]
 Folder = Annotated[

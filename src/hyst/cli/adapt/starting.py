@@ -45,6 +45,11 @@ class Asked:
     window: str
 
     @property
+    def of_all_constants(self) -> Mapping[str, bool]:
+        """What only estimators of more than radii are asked, and whether it was."""
+        return {name: typed for name, typed in self.of_a_start.items() if name != "--memory"}
+
+    @property
     def of_a_start(self) -> Mapping[str, bool]:
         """What a start alone is asked, and whether it was."""
         return {
@@ -102,7 +107,8 @@ def started(model: hyst.operators.Operator, dt: float, asked: Asked) -> hyst.onl
         memory=math.inf if asked.memory is None else asked.memory,
         spread=_SPREAD if asked.spread is None else asked.spread,
         only=[each.strip() for each in asked.only.split(",")] if asked.only else (),
-        estimator=asked.which,
+        # Maps are what the joint estimator alone knows; it says so of a model without plays.
+        estimator="joint" if asked.estimate_maps else asked.which,
         **options,
     )
 

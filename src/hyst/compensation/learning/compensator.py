@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from hyst.checks.arrays import finite_vector
 from hyst.checks.numbers import as_not_negative, as_positive, as_sample_time
 from hyst.compensation.exact import range_of_input
+from hyst.compensation.learning.along_branches import along_branches
 from hyst.compensation.learning.along_the_motion import AlongTheMotion, Made, suited_method
 from hyst.compensation.learning.contraction import Contraction, given_slopes
 from hyst.compensation.learning.learnt import Learnt
@@ -23,6 +24,7 @@ from hyst.compensation.learning.measured_output import (
     stuck_samples,
 )
 from hyst.compensation.learning.measured_slopes import measured_slopes
+from hyst.compensation.learning.mixing import mixed
 from hyst.compensation.learning.noise_floor import noise_between, noise_in
 from hyst.compensation.learning.repetition import Repetition
 from hyst.compensation.learning.trial import Trial
@@ -37,8 +39,10 @@ LEARNING, AT_THE_NOISE, SETTLED, DIVERGED = "learning", "at the noise", "settled
 
 _AT_THE_NOISE = 1.1
 _NOTHING_LEFT = 0.02
-_MOST_STRIKES = 4
+_MOST_STRIKES, _BETTER, _HALVED = 4, 0.98, 0.5
 _LATEST = 0.125
+_MIXED, _FAR = 2, 20.0
+_BRANCHES = 10.0
 
 
 @final
@@ -255,7 +259,9 @@ class LearningCompensator:
         self._history: list[Repetition] = []
         self._best: Trial | None = None
         self._last: Trial | None = None
+        self._trials: list[Trial] = []
         self._state, self._strikes, self._gain = LEARNING, 0, 1.0
+        self._unlike = False
         self._noise = self._given_noise
         self._contraction = self._given or Contraction(math.nan, math.nan, 1.0, "unknown")
         self._past = self._before
@@ -299,8 +305,7 @@ class LearningCompensator:
             return self._learnt.linear.delay, []
         samples = f"{abs(late)} sample{'s' if abs(late) > 1 else ''}"
         if not self._history and 0 < late <= _LATEST * y.size:
-            told = f"the output is late by {samples}, taken for a delay of the plant"
-            return self._learnt.linear.delay + late, [told]
+            return self._learnt.linear.delay + late, []
         way = "late" if late > 0 else "early"
         raise InputError(
             f"the measured output is {way} by {samples} against what was to be expected, so that "
@@ -328,26 +333,30 @@ class LearningCompensator:
     def _next(self, trial: Trial, measured: Measured, late: int, notes: list[str]) -> None:
         """Decide what the next command is made from, and make it."""
         noise = self._noise or 0.0
-        how = "better"
+        how, expected = "better", self._expected(trial.v)
         if self._best is not None:
-            how = trial.against(self._best, self._expected(trial.v), noise)
+            how = trial.against(self._best, expected, noise)
+        if how == "unlike" and self._unlike and trial.rms < self._history[0].error_rms:
+            how = "changed"
+        self._unlike = how == "unlike"
         if how == "changed":
-            notes.append(self._take_change(trial))
-        elif how == "worse":
-            notes.append(self._step_back())
-        else:
+            notes.append(self._take_change(trial, expected))
+        elif how in ("worse", "unlike"):
+            notes.append(self._step_back(how))
+        elif self._best is None or trial.rms < _BETTER * self._best.rms:
             self._gain = min(1.0, 1.5 * self._gain)
             self._strikes = 0
-        if not self._stuck.any():
+        if not self._stuck.any() and how != "unlike":
             self._teach(trial, late, noise, how)
         if how in ("better", "changed"):
             self._best = trial
-        base = self._best if how == "worse" or self._best is None else trial
+        base = self._best if how in ("worse", "unlike") else trial
         self._contract(trial, noise)
         if self._periodic:
             self._past = measured.u
         gain = self._command_from(base or trial, noise, notes)
         self._last = trial
+        self._trials = [*self._trials, trial][-1 - _MIXED :] if not self._stuck.any() else self._trials
         self._history.append(
             Repetition(
                 trial.number,
@@ -361,19 +370,27 @@ class LearningCompensator:
             )
         )
 
-    def _take_change(self, trial: Trial) -> str:
+    def _take_change(self, trial: Trial, expected: Array) -> str:
         """Take it that the plant has changed: what was best is no more."""
-        gain = self._learnt.gain_of(trial.v, trial.y, self._periodic)
+        gain = min(max(trial.gain_over(expected)[0], 0.5), 2.0)
         self._learnt = self._learnt.rescaled(gain)
         self._best, self._strikes, self._gain, self._state = None, 0, 1.0, LEARNING
-        return f"the plant has changed, its gain {100.0 * (gain - 1.0):+.3g} %; learning goes on"
+        self._trials = []
+        return f"the plant has changed, its gain by {100.0 * (gain - 1.0):+.3g} %; learning goes on"
 
-    def _step_back(self) -> str:
-        self._strikes += 1
-        self._gain *= 0.5
+    def _step_back(self, how: str) -> str:
+        """Go back to the best command; give up after some times."""
         assert self._best is not None
+        self._strikes += 1
         if self._strikes >= _MOST_STRIKES:
-            self._state = DIVERGED
+            halved = self._best.rms < _HALVED * self._history[0].error_rms
+            self._state = SETTLED if halved and how == "worse" else DIVERGED
+        if how == "unlike":
+            return (
+                f"unlike anything that the command explains; the one of repetition "
+                f"{self._best.number} is sent again"
+            )
+        self._gain *= 0.5
         return f"worse than repetition {self._best.number}; back to it with half of the gain"
 
     def _teach(self, trial: Trial, late: int, noise: float, how: str) -> None:
@@ -398,8 +415,11 @@ class LearningCompensator:
 
     def _command_from(self, base: Trial, noise: float, notes: list[str]) -> float:
         """Set the next command; the share of the correction that it makes."""
-        if self._state == DIVERGED:
-            self._hold("diverged: the best command is kept", notes)
+        if self._state == DIVERGED or self._strikes >= _MOST_STRIKES:
+            self._hold("the best command is kept", notes)
+            return 0.0
+        if self._unlike:
+            self._hold("", notes)
             return 0.0
         error = np.where(self._stuck, 0.0, base.error)
         if base.rms <= _AT_THE_NOISE * noise:
@@ -407,6 +427,11 @@ class LearningCompensator:
             self._hold("", notes)
             return 0.0
         gain = self._gain * self._contraction.gain
+        v = base.v
+        far = base.rms > _FAR * noise
+        if far and not self._stuck.any() and self._gain == 1.0:
+            others = [(one.v, one.error) for one in self._trials if one is not base]
+            v, error = mixed(v, error, others[-_MIXED:], noise)
         step = self._learnt.step(error, noise, gain, self._periodic)
         if step.share < _NOTHING_LEFT:
             self._state = SETTLED
@@ -415,10 +440,16 @@ class LearningCompensator:
         self._state = LEARNING
         if self._contraction.gain < 1.0:
             notes.append(f"gain {self._contraction.gain:.3g}, as slopes ask for")
-        self._set(self._along.command(base.v + step.dv, self._past))
+        self._set(self._along.command(v + self._along_branches(step.dv, base, noise), self._past))
         if self._held:
             notes.append(f"{self._held} samples of the next command are held at a limit")
         return gain
+
+    def _along_branches(self, dv: Array, base: Trial, noise: float) -> Array:
+        if base.rms < _BRANCHES * noise or self._learnt.linear.order:
+            return dv
+        expected = self._learnt.output(base.v, self._periodic)
+        return along_branches(dv, base.v, expected, base.y, noise)
 
     def _hold(self, why: str, notes: list[str]) -> None:
         """Keep the best command."""

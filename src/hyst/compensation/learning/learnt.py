@@ -53,7 +53,7 @@ class Learnt:
             To try, samples.
         """
         kept = tuple(each for each in (*self.pairs, *changes))[-_MOST_PAIRS:]
-        used = [whole, *kept]
+        used = [whole, *kept] if len(kept) < 1 else list(kept)
         linear = fit_linear_part(used, noise, delays)
         return Learnt(linear, doubt_of(used, linear, noise), kept)
 
@@ -65,13 +65,6 @@ class Learnt:
     def without_pairs(self) -> Learnt:
         """Give the same for a motion of another length."""
         return replace(self, pairs=())
-
-    def gain_of(self, v: Array, y: Array, periodic: bool) -> float:
-        """Give the gain of y over what the linear part gives, between a fifth and 5."""
-        expected = self.output(v, periodic)
-        own = expected - expected.mean()
-        way = float(own @ own)
-        return min(max(float(own @ (y - y.mean())) / way, 0.2), 5.0) if way > 0.0 else 1.0
 
     def before_it(self, y_ref: Array, periodic: bool) -> Array:
         """Give what to tell the model so that the linear part gives a reference, shape (N,)."""

@@ -13,6 +13,7 @@ Koerner, IEEE Trans. Autom. Control 8 (1963) 56, eq. 7, iterated with R.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +28,9 @@ _SIZES = ((0, 1), (0, 2), (2, 1), (2, 2), (2, 3), (4, 5))
 
 PEN = 2.0
 _FEWEST_BINS = 40
-_BEYOND, _CAUTION = 2.5, 2.0
+_CLEAR = 3.0
+_TURNED, _RESIZED = 0.8, 0.5
+_BEYOND, _CAUTION, _SEEN = 1.6, 2.0, 0.6
 _ROUNDS = 6
 
 _AT_REST = 0.1
@@ -67,9 +70,27 @@ def fit_linear_part(pairs: list[Pair], noise: float, delays: tuple[int, ...]) ->
         for each in (_fitted(pairs, noise, poles, zeros, delay),)
         if each is not None
     ]
-    if not found:
-        return LinearPart.one()
-    return min(found, key=lambda each: each[0])[1]
+    for _, linear in sorted(found, key=lambda each: each[0]):
+        if _is_seen(linear, pairs, noise):
+            return linear
+    return LinearPart.one()
+
+
+def _is_seen(linear: LinearPart, pairs: list[Pair], noise: float) -> bool:
+    """Tell whether repetitions show what a linear part does, and that it is no hysteresis.
+
+    Every mode must be seen where it is, and somewhere the phase must turn, or the size change, by
+    more than a hysteresis does: at low frequency alone, a lag or a delay looks the same.
+    """
+    if linear.b.size == 1 and not linear.order and not linear.delay:
+        return True
+    frequency, doubt = _own_doubt(pairs, linear, noise)
+    modes = linear.modes()
+    if modes.size and not (np.interp(modes, frequency, doubt) < _SEEN).all():
+        return False
+    relative = linear.at(frequency[doubt < _SEEN]) / linear.at([0.0])[0].real
+    turned = np.abs(np.angle(relative)) > _TURNED
+    return bool((turned | (np.abs(np.log(np.abs(relative) + 1e-300)) > _RESIZED)).any())
 
 
 def _fitted(
@@ -77,7 +98,7 @@ def _fitted(
 ) -> tuple[float, LinearPart] | None:
     """Fit one size; its information criterion beside it."""
     spectra = [_spectrum(each, delay) for each in pairs]
-    used = _shown(spectra, noise * np.sqrt(pairs[0].v.size))
+    used = _shown(spectra, _CLEAR * noise * np.sqrt(pairs[0].v.size))
     spectra = [(z[used], v[used], y[used]) for z, v, y in spectra]
     z = spectra[0][0]
     n, m = poles, zeros
@@ -86,7 +107,7 @@ def _fitted(
     if 2 * z.size * len(pairs) < 4 * count:
         return None
     powers = z[:, None] ** np.arange(max(n, m - 1) + 1)
-    floor = noise * np.sqrt(pairs[0].v.size)
+    floor = _CLEAR * noise * np.sqrt(pairs[0].v.size)
     below = np.ones(z.size, dtype=complex)
     around = [_smooth(np.abs(v), z.size) for _, v, _ in spectra]
     missed = _START
@@ -127,10 +148,16 @@ def _fitted(
         for k, (_, v, y) in enumerate(spectra):
             own = powers[:, :tail] @ theta[n + m + tail * k : n + m + tail * (k + 1)]
             rests.append(np.abs(y - (above * v + own) / below))
-        response = np.abs(above / below)
-        around = [_smooth(response * np.abs(v), z.size) for _, v, _ in spectra]
+        around = [_smooth(np.abs(above * v), z.size) / np.abs(below) for _, v, _ in spectra]
         missed = _share_missed(rests, around, floor, missed)
-        size = [np.hypot(missed * each, floor) for each in around]
+        size = [
+            np.sqrt(
+                (missed * each) ** 2
+                + (_smooth(np.abs(below) * rest, z.size) / np.abs(below)) ** 2
+                + floor**2
+            )
+            for each, rest in zip(around, rests, strict=True)
+        ]
     cost = sum(
         float(np.sum(2.0 * np.log(own) + (rest / own) ** 2))
         for rest, own in zip(rests, size, strict=True)
@@ -144,6 +171,17 @@ def _fitted(
 
 
 def doubt_of(pairs: list[Pair], linear: LinearPart, noise: float) -> tuple[Array, Array]:
+    """Give frequencies, in cycles a sample, and how far the linear part may be wrong there.
+
+    Where a mode is seen, its shape is believed around it.
+    """
+    frequency, doubt = _own_doubt(pairs, linear, noise)
+    reach = float(linear.modes().max(initial=0.0)) * _BEYOND
+    fitted = np.where(frequency <= reach, _CAUTION * linear.doubt(frequency), np.inf)
+    return frequency, np.minimum(doubt, fitted)
+
+
+def _own_doubt(pairs: list[Pair], linear: LinearPart, noise: float) -> tuple[Array, Array]:
     """Give frequencies, in cycles a sample, and how far the linear part may be wrong there.
 
     What it leaves of each repetition over what there was to be left, in bands of a third of an
@@ -162,14 +200,11 @@ def doubt_of(pairs: list[Pair], linear: LinearPart, noise: float) -> tuple[Array
         left = np.abs(np.fft.rfft(window * (rest - rest.mean()))) ** 2
         told = np.fft.irfft(linear.at(frequency) * whole, 2 * length)[:length]
         there = np.abs(np.fft.rfft(window * (told - told.mean()))) ** 2
-        for k, (a, b) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+        for k, (a, b) in enumerate(pairwise(edges.tolist())):
             floor = 0.375 * noise**2 * length
             known[k] += max(there[a:b].mean() - floor, 0.0) / max(left[a:b].mean(), floor)
-    middles = np.sqrt(edges[:-1] * (edges[1:] - 0.0)) / length
-    doubt = 1.0 / np.sqrt(np.maximum(known, 1e-12))
-    reach = linear.highest_mode() * _BEYOND
-    fitted = np.where(middles <= reach, _CAUTION * linear.doubt(middles), np.inf)
-    return middles, np.minimum(doubt, fitted)
+    middles = np.sqrt(edges[:-1] * edges[1:]) / length
+    return middles, 1.0 / np.sqrt(np.maximum(known, 1e-12))
 
 
 def _apart(signal: Array, length: int) -> Array:
@@ -182,8 +217,8 @@ def _apart(signal: Array, length: int) -> Array:
 def _shown(spectra: list[tuple[Complex, Complex, Complex]], floor: float) -> NDArray[np.bool_]:
     """Give the frequencies at which a dynamics of the plant could be seen in the noise."""
     used = np.zeros(spectra[0][0].size, dtype=bool)
-    for _, v, _ in spectra:
-        used |= _smooth(np.abs(v), v.size) > 0.5 * floor
+    for _, v, y in spectra:
+        used |= np.maximum(_smooth(np.abs(v), v.size), _smooth(np.abs(y), v.size)) > floor
     used[:_FEWEST_BINS] = True
     return used
 

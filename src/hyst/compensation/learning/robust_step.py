@@ -28,11 +28,14 @@ _DOUBT = 0.5
 _AT_REST, _BEFORE = 0.1, 20.0
 """By what a plant departs from the model before anything is known: at rest, and in a cycle a sample."""
 
+_PROBE = 0.12
+"""Of the correction where little is known: enough to learn there by what it does."""
+
 _SURE = 0.02
 """Nothing is known better."""
 
-_LEAST = 0.05
-"""Of the largest response: dynamics that pass less are not inverted."""
+_LEAST = 0.3
+"""Of the response at rest: dynamics that pass less are not inverted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,9 +88,10 @@ def robust_step(
     own = np.maximum(np.interp(frequency, *doubt), _SURE) ** -2
     prior = (_AT_REST + _BEFORE * frequency) ** -2
     response = (own * response + prior) / (own + prior)
-    passed = passed * np.clip(2.0 - 1.0 / np.sqrt(own + prior) / _DOUBT, 0.0, 1.0)
+    trust = np.clip(2.0 - 1.0 / np.sqrt(own + prior) / _DOUBT, _PROBE, 1.0)
+    passed = passed * trust
     size = np.abs(response)
-    passed = passed * size**2 / (size**2 + (_LEAST * size.max()) ** 2)
+    passed = passed * size**2 / (size**2 + (_LEAST * size[0]) ** 2)
     change = gain * passed * spectrum / np.where(size > 0.0, response, 1.0)
     dv = np.fft.irfft(change, whole.size)[: error.size]
     dy = np.fft.irfft(change * response, whole.size)[: error.size]

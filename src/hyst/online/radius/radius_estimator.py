@@ -160,9 +160,10 @@ class RadiusEstimator(Estimator):
         self.state[first : first + r.size] = r
         self._core.start(self.state, np.array(self.settings["z0"]))
 
-    def _measures_regimes(self) -> bool:
-        """Whether a regime was taken from the measured slope, so that it may be wrong."""
-        return bool(self.state[_TOLD] < self.state[_UPDATES])
+    @property
+    def knows_regimes(self) -> bool:
+        """Whether every regime was told, so that none may be wrong by noise in the slope."""
+        return bool(self.state[_TOLD] == self.state[_UPDATES])
 
     def _memory(self) -> Array:
         return memory_of(self.state, self._at, self.radii)
@@ -190,14 +191,14 @@ class RadiusEstimator(Estimator):
             self._p, self.radii, self._p0, memory_of(self.state, self._at, self.radii)
         )
         offset = self.settings["offset"]
-        model = plays if offset == 0.0 else Affine(1.0, offset) @ plays
-        return model.with_description(self.description)
+        whole = plays if offset == 0.0 else Affine(1.0, offset) @ plays
+        return whole.with_description(self.description)
 
     @property
     def covariance(self) -> Array:
         """Shape (n, n), by ``noise``; NaN by the gradient and where regimes were measured."""
         n = self._p.size
-        if self.settings["method"] == "gradient" or self._measures_regimes():
+        if self.settings["method"] == "gradient" or not self.knows_regimes:
             return np.full((n, n), np.nan)
         d, u = self._at["d"], self._at["u"]
         shape = covariance_of(self.state[d:u], self.state[u : u + n * (n - 1) // 2])
@@ -220,8 +221,8 @@ class RadiusEstimator(Estimator):
     def knowledge(self) -> Knowledge:
         """What is known of each radius: nothing by the gradient, bands by least squares."""
         sides = self.state[self._at["side"] : self._at["age"]]
-        measures = self._measures_regimes()
-        reasons = reasons_of(self.names, self._p, sides, self.settings["method"], measures)
+        how = self.settings["method"], not self.knows_regimes
+        reasons = reasons_of(self.names, self._p, sides, *how)
         doubt = () if self.innovation.consistent else (f"bands do not hold: {self.innovation}",)
         return knowledge_from(self.names, self.radii, self.standard_errors, reasons, doubt)
 
@@ -252,18 +253,13 @@ class RadiusEstimator(Estimator):
         Parameters
         ----------
         patience
-            Seconds after which a play that has not gone to its other envelope counts as frozen.
+            Seconds, above 0, after which a play that has not gone to its other envelope is frozen.
         swing
-            Range of the recent input.
+            Range of the recent input, at least 0.
 
         Returns
         -------
         Excitation
-
-        Raises
-        ------
-        InputError
-            If ``patience`` is not a number above 0, or ``swing`` not one of at least 0.
         """
         patience = as_positive(patience, "patience", "seconds, or infinity", infinite=True)
         swing = as_not_negative(swing, "swing")
@@ -294,12 +290,11 @@ class RadiusEstimator(Estimator):
         Raises
         ------
         InputError
-            If slope and regime are given, or the regime is no whole number from 0 to n.
+            If both are given, or the regime is no whole number from 0 to n.
         """
         u, y = sample(u, y)
         y -= self.settings["offset"]
-        told = one_told(slope, regime, self._p.size)
-        if told is None:
+        if (told := one_told(slope, regime, self._p.size)) is None:
             return self._core.step(self.state, u, y)
         return self._core.step_told(self.state, u, y, *told)
 
@@ -322,22 +317,24 @@ class RadiusEstimator(Estimator):
         slopes, regimes
             Shape (N,), one of them as in ``update``; the slope is measured if left out.
 
-        Returns
-        -------
-        Trajectory
-
         Raises
         ------
         InputError
-            If it is no record or its sample time is another one, ``every`` is not a whole number
-            above 0, or slopes or regimes do not fit.
+            If it is no record of this sample time, or slopes or regimes do not fit it.
         """
         u, y, time = samples_of(record, self.dt, every)
         is_slope, told = told_of(slopes, regimes, u.size, self._p.size) or (False, np.empty(0))
         r, error = np.empty((time.size, self._p.size)), np.empty(u.size)
-        y = y - self.settings["offset"]
-        self._core.run(self.state, u, y, every, r, error, is_slope, told)
-        return Trajectory(time, self.names, r, np.full(r.shape, np.nan), error)
+        y, errors = y - self.settings["offset"], np.full(r.shape, np.nan)
+        # Standard errors are computed between rows; where there are none, in one go.
+        has_errors = self.settings["method"] == "least-squares" and told.size > 0
+        rows = every if has_errors else max(u.size, 1)
+        for k, first in enumerate(range(0, u.size, rows)):
+            part, kept = slice(first, first + rows), slice(k, k + 1) if has_errors else slice(None)
+            now = (u[part], y[part], every, r[kept], error[part], is_slope, told[part])
+            self._core.run(self.state, *now)
+            errors[kept] = self.standard_errors if has_errors else np.nan
+        return Trajectory(time, self.names, r, errors, error)
 
     def follow(self, u: ArrayLike) -> None:
         """Let the memory follow inputs ``u``, shape (N,), whose outputs were not measured."""
