@@ -22,7 +22,7 @@ def load(path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    Operator, Scheduled, TrackingController, JointEstimator, RadiusEstimator or AdaptiveInverse
+    Operator, Scheduled, TrackingController, or an estimator of hyst.online or its AdaptiveInverse
         Equal to the one saved, every double exact; an estimator goes on with the same bits. What
         its numbers mean is its ``description``.
 
@@ -66,12 +66,11 @@ def _model(data: Any) -> Any:
 
 
 def _estimator(content: dict[str, Any], about: ModelDescription) -> Any:
-    from hyst.online import AdaptiveInverse, JointEstimator, RadiusEstimator
-    from hyst.online.estimator_file import restored
+    # With the package all its kinds are known, and the models that it starts from.
+    from hyst.online.estimator_file import Saved, restored
 
-    classes = (AdaptiveInverse, JointEstimator, RadiusEstimator)
     try:
-        kind = {each.kind: each for each in classes}[content["kind"]]
+        kind = Saved.kinds[content["kind"]]
         return restored(kind, content["settings"], content["state"], about)
     except InputError:
         raise

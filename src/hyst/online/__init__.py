@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from hyst.online.joint.adaptive_inverse import AdaptiveInverse
+from hyst.online.adaptive_inverse import AdaptiveInverse
+from hyst.online.estimator import Estimator
 from hyst.online.joint.excitation import Excitation, PlayExcitation
 from hyst.online.joint.innovation import Innovation
 from hyst.online.joint.joint_estimator import JointEstimator
 from hyst.online.joint.parts import units_of_plays
+from hyst.online.knowledge import Knowledge
 from hyst.online.radius_estimator import RadiusEstimator
 from hyst.online.trajectory import Trajectory
 
 __all__ = [
     "AdaptiveInverse",
+    "Estimator",
     "Excitation",
     "Innovation",
     "JointEstimator",
+    "Knowledge",
     "PlayExcitation",
     "RadiusEstimator",
     "Trajectory",

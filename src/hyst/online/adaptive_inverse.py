@@ -18,7 +18,6 @@ from hyst.operators.verdict import refuse_if_unfit
 
 Array = NDArray[np.float64]
 
-_BOUNDS = ("least_slope", "most_slope", "most_radius")
 # Share of the mean square of the output below which errors are not worth a judgement.
 _NEGLIGIBLE = 1e-6
 
@@ -89,9 +88,7 @@ class AdaptiveInverse(Saved):
         if self._margin <= 1.0:
             raise InputError(f"margin is {margin!r}; give a ratio above 1")
         self._good = estimator.model
-        held = ("p0", "p", "r", "offset", "front", "back")
-        bounds = {name: estimator.settings[name] for name in _BOUNDS}
-        self._fallback = JointEstimator(self._good, dt=estimator.dt, held=held, **bounds)
+        self._fallback = estimator.frozen()
         self._powers = [0.0, 0.0, 0.0]
         self._samples = 0
         self._usual = math.inf
