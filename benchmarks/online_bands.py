@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 
 DT, SECONDS = 1e-3, 20.0
 RUNS = 200
+import os; REFINE=os.environ.get('REFINE','1')=='1'
 DRIVES = ("sine", "staircase", "fast")
 DETERMINED = 1e-7
 
@@ -96,10 +97,11 @@ def run(drive: str, decibels: float, seed: int) -> Outcome:
     begin = time.process_time()
     estimator.run(hyst.Record(task.u, y + noise, DT), every=y.size)
     spent = time.process_time() - begin
+    if REFINE: estimator.refine()
     right = right_of(task.truth)
     bound = sigma * bound_of(task.truth, task.u)
     low, high, determined, known = told(estimator)
-    inside = (low <= right) & (right <= high) | ~determined
+    inside = (low <= right) & (right <= high)
     error = estimator.parameters - right
     return Outcome(inside, known, error / bound, determined & np.isfinite(bound), 1e9 * spent / y.size)
 
@@ -107,7 +109,7 @@ def run(drive: str, decibels: float, seed: int) -> Outcome:
 def told(estimator: JointEstimator) -> tuple[Array, Array, NDArray[np.bool_], bool]:
     knowledge = getattr(estimator, "knowledge", None)
     if knowledge is not None:
-        return knowledge.low, knowledge.high, knowledge.determined, knowledge.known
+        return knowledge.low, knowledge.high, knowledge.determined, not knowledge.doubts
     theta, half = estimator.parameters, 2.0 * estimator.standard_errors
     known = estimator.innovation.consistent and estimator.excitation.persistent
     return theta - half, theta + half, np.ones(theta.size, dtype=bool), known

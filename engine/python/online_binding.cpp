@@ -2,6 +2,8 @@
 // Python owns; what is checked here is only that nothing is written outside an array.
 #include "online_binding.hpp"
 
+#include "folded.hpp"
+
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
@@ -9,6 +11,7 @@
 
 #include "hyst/hyst.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <new>
@@ -100,9 +103,38 @@ public:
         hyst_joint_start(&config_, values, noise);
         hyst_search_start(&search_, values);
     }
-    int step(State state, double u, double y) const {
-        return hyst_search_step(&search_, checked(state), u, y);
+    int step(State state, double u, double y) {
+        const int end = hyst_search_step(&search_, checked(state), u, y);
+        if (end == HYST_JOINT_UPDATED) folded_.take(u, y);
+        return end;
     }
+    // What is kept of the samples themselves, which the core does not need.
+    void set_folding(double quantum, double coarsest, std::size_t most) {
+        folded_ = Folded(quantum, coarsest, most);
+    }
+    // A row for each input with its memory: count, mean y, squares about the means, turns and input.
+    std::vector<std::vector<double>> folded() const {
+        std::vector<std::vector<double>> rows;
+        for (const FoldedRow &each : folded_.all()) {
+            rows.push_back({each.count, each.y, each.uu, each.uy, each.yy});
+            rows.back().insert(rows.back().end(), each.way.begin(), each.way.begin() + each.size);
+        }
+        return rows;
+    }
+    std::vector<double> folding() const { return folded_.place(); }
+    void fold_again(const std::vector<double> &place, const std::vector<std::vector<double>> &rows) {
+        std::vector<FoldedRow> found;
+        require(place.size() >= 5, "the place has at least five numbers");
+        for (const std::vector<double> &each : rows) {
+            require(each.size() >= 6 && each.size() <= 6 + most_turns, "a row has 6 to 13 numbers");
+            FoldedRow row{each[0], each[1], each[2], each[3], each[4], each.size() - 5};
+            std::copy(each.begin() + 5, each.end(), row.way.begin());
+            found.push_back(row);
+        }
+        folded_.restore(place, std::move(found));
+    }
+    void turn_page() { folded_.turn_page(); }
+    void unfold() { folded_.clear(); }
     // All that the core is told, by the names of its structures; exports write it down.
     std::map<std::string, std::vector<double>> constants() const {
         return {{"plays", {static_cast<double>(config_.plays)}},
@@ -128,16 +160,24 @@ public:
         double *values = checked(state);
         hyst_joint_set_memory(&config_, &places_, values, values[HYST_JOINT_INPUT]);
     }
+    // The estimate has been replaced from outside.
+    void replaced(State state) const {
+        double *values = checked(state);
+        hyst_joint_set_memory(&config_, &places_, values, values[HYST_JOINT_INPUT]);
+        values[all_.scalars + HYST_SEARCH_SEEN] = 0.0;
+        values[all_.scalars + HYST_SEARCH_BLOCKS] = -1.0;
+    }
     // An input whose output was not measured.
-    void follow(State state, double u) const {
+    void follow(State state, double u) {
         hyst_search_follow(&search_, checked(state), u);
+        folded_.follow(u);
     }
     double command(State state, double y_ref) const {
         return hyst_joint_command(&config_, checked(state), y_ref);
     }
     // A row of theta and of its variances after every `every` samples; all prediction errors.
     void run(State state, Signal u, Signal y, std::size_t every, Rows theta, Rows variance,
-             State error) const {
+             State error) {
         double *values = checked(state);
         const std::size_t samples = u.shape(0);
         require(y.shape(0) == samples && error.shape(0) == samples, "u, y and error differ in length");
@@ -148,6 +188,7 @@ public:
         for (std::size_t k = 0; k < samples; ++k) {
             const int end = hyst_search_step(&search_, values, u.data()[k], y.data()[k]);
             error.data()[k] = end == HYST_JOINT_UPDATED ? values[HYST_JOINT_ERROR] : 0.0;
+            if (end == HYST_JOINT_UPDATED) folded_.take(u.data()[k], y.data()[k]);
             if ((k + 1) % every == 0) store(values, k / every, theta, variance);
         }
     }
@@ -170,6 +211,7 @@ private:
     std::vector<double> cell_radius_, cell_start_, cell_limit_;
     hyst_search search_;
     hyst_search_layout all_;
+    Folded folded_{1e-12, 1.0, 2048};
 };
 
 class Radius {
@@ -257,11 +299,18 @@ void bind_online_estimation(nb::module_ &module) {
         .def("set_bounds", &Joint::set_bounds)
         .def("set_memory", &Joint::set_memory)
         .def("set_search", &Joint::set_search)
+        .def("set_folding", &Joint::set_folding)
+        .def("folded", &Joint::folded)
+        .def("folding", &Joint::folding)
+        .def("fold_again", &Joint::fold_again)
+        .def("turn_page", &Joint::turn_page)
+        .def("unfold", &Joint::unfold)
         .def("places", &Joint::places)
         .def("start", &Joint::start, nb::arg("state").noconvert(), nb::arg("noise"))
         .def("step", &Joint::step, nb::arg("state").noconvert(), nb::arg("u"), nb::arg("y"))
         .def("follow", &Joint::follow, nb::arg("state").noconvert(), nb::arg("u"))
         .def("remember", &Joint::remember, nb::arg("state").noconvert())
+        .def("replaced", &Joint::replaced, nb::arg("state").noconvert())
         .def("constants", &Joint::constants)
         .def("correlation", &Joint::correlation, nb::arg("state").noconvert())
         .def("command", &Joint::command, nb::arg("state").noconvert(), nb::arg("y_ref"))

@@ -1,0 +1,146 @@
+"""The best estimate of all that was measured, what else fits as well, and whether anything fits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import chi2, norm
+
+from hyst.online.joint.bands.intervals import RISE
+from hyst.online.joint.bands.refit import Minimum, Problem, minimum_from
+from hyst.online.joint.bands.samples import FoldedSamples
+from hyst.online.joint.bands.starts import starts_on_grid
+from hyst.online.joint.parts import Parts
+
+Array = NDArray[np.float64]
+
+CHANCE = 1e-3
+"""Of doubting errors that are noise."""
+
+_BINS = 32
+_FEWEST = 20
+_MOST_MINIMA = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What least squares over folded samples found.
+
+    Parameters
+    ----------
+    problem
+        What was fitted.
+    minima
+        The best one first, then others that the data do not tell from it.
+    misfit
+        Chance that errors of noise lie as far from it as these.
+    """
+
+    problem: Problem
+    minima: tuple[Minimum, ...]
+    misfit: float
+
+
+def found_in(
+    parts: Parts,
+    samples: FoldedSamples,
+    theta: Array,
+    limit: Array,
+    bounds: tuple[float, float, float],
+    floor: float,
+) -> Found | None:
+    """Fit a model to folded samples.
+
+    Parameters
+    ----------
+    parts
+        The model.
+    samples
+        Folded.
+    theta
+        Shape (m,), the running estimate.
+    limit
+        Shape (m,), variances of the start; 0 holds a parameter.
+    bounds
+        Least and most cumulative weight, most radius.
+    floor
+        Least variance of the noise.
+
+    Returns
+    -------
+    Found or None
+        None where there are too few samples.
+    """
+    total, m = float(samples.count.sum()), int((limit > 0.0).sum())
+    if total < _FEWEST + 2 * m or samples.y.size < 2:
+        return None
+    first = Problem(parts, samples, 1.0, limit, bounds)
+    starts = [theta, *starts_on_grid(first, theta)]
+    minima = sorted((minimum_from(first, each) for each in starts), key=lambda each: each.chi_square)
+    left = minima[0].chi_square / max(samples.y.size - m, 1)
+    noise = samples.noise if np.isfinite(samples.noise) else left
+    noise = max(noise, floor)
+    problem = Problem(parts, samples, noise, limit, bounds)
+    kept: list[Minimum] = []
+    for each in minima:
+        # Again, now that a squared error of one is known to be much or little.
+        again = minimum_from(problem, each.theta)
+        if all(_apart(problem, again, other) for other in kept):
+            kept.append(again)
+    kept.sort(key=lambda each: each.chi_square)
+    best = kept[0].chi_square
+    near = tuple(each for each in kept if each.chi_square <= best + RISE)[:_MOST_MINIMA]
+    return Found(problem, near, misfit_of(problem, near[0]))
+
+
+def _apart(problem: Problem, one: Minimum, other: Minimum) -> bool:
+    way = one.theta - other.theta
+    return bool(way @ (one.information + other.information) @ way > 0.2)
+
+
+def misfit_of(problem: Problem, minimum: Minimum) -> float:
+    """Give the chance that noise leaves sums of errors as large.
+
+    Errors are summed over stretches of the input, rising and falling apart: noise cancels in these
+    sums, a wrong model does not. Besides, over all rows, each of which is a mean.
+
+    Parameters
+    ----------
+    problem, minimum
+        What was fitted, and where.
+
+    Returns
+    -------
+    float
+        Between 0 and 1.
+    """
+    samples = problem.samples
+    error, _ = problem.residual(minimum.theta)
+    m = int(problem.free.sum())
+    chances = []
+    if samples.y.size > m + 1 and np.isfinite(samples.noise):
+        chances.append(_chance(minimum.chi_square, samples.y.size - m, samples.freedom))
+    u = samples.way[-1]
+    rising = samples.way[-1] > samples.way[-2] if samples.way.shape[0] > 1 else u > np.median(u)
+    edges = np.quantile(u, np.linspace(0.0, 1.0, _BINS + 1)[1:-1])
+    bins = np.searchsorted(edges, u) + _BINS * rising
+    root = np.sqrt(samples.count)
+    sums = np.bincount(bins, error * root, 2 * _BINS)
+    counts = np.bincount(bins, samples.count, 2 * _BINS)
+    used = counts > 0
+    if int(used.sum()) > m:
+        square = float((sums[used] ** 2 / counts[used]).sum())
+        # The fit has taken at most as many as there are parameters.
+        chances.append(_chance(square, int(used.sum()) - m // 2, samples.freedom))
+    return min([1.0, *(len(chances) * each for each in chances)])
+
+
+def _chance(square: float, freedom: float, of_noise: float) -> float:
+    if not np.isfinite(of_noise) or of_noise <= 0.0:
+        return float(chi2.sf(square, freedom))
+    # The noise is itself known from so many samples only.
+    spread = np.sqrt(2.0 * freedom + 2.0 * freedom**2 / of_noise)
+    wide = float(norm.sf((square - freedom) / spread))
+    return max(float(chi2.sf(square, freedom)), wide)
