@@ -257,7 +257,7 @@ class JointEstimator(Estimator):
         found = self._found()
         if found is None:
             return False
-        best = found.minima[0]
+        best = found.nearest_to(self._theta_at_start)
         error, _ = found.problem.residual(self.parameters)
         if not float(error @ error) > best.chi_square + 1.0:
             return False

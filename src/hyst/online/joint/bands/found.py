@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2, norm
 
-from hyst.online.joint.bands.intervals import RISE
+from hyst.online.joint.bands.intervals import RISE, covariance_of_minimum
 from hyst.online.joint.bands.refit import Minimum, Problem, minimum_from
 from hyst.online.joint.bands.samples import FoldedSamples
-from hyst.online.joint.bands.starts import starts_on_grid
+from hyst.online.joint.bands.starts import grid_of, relocations, scattered, starts_on_grid
 from hyst.online.joint.parts import Parts
 
 Array = NDArray[np.float64]
@@ -21,7 +21,9 @@ CHANCE = 1e-3
 
 _BINS = 32
 _FEWEST = 20
-_MOST_MINIMA = 3
+_MOST_MINIMA = 60
+_ROUNDS = 3
+_SCATTERED, _FEW_ROWS = 48, 300
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +43,16 @@ class Found:
     problem: Problem
     minima: tuple[Minimum, ...]
     misfit: float
+
+    def nearest_to(self, start: Array) -> Minimum:
+        """Give the minimum nearest to ``start`` of those that the data do not tell apart."""
+        free = self.problem.free
+        spread = np.sqrt(self.problem.limit[free])
+
+        def distance(minimum: Minimum) -> float:
+            return float(np.linalg.norm((minimum.theta - start)[free] / spread))
+
+        return min(self.minima, key=distance)
 
 
 def found_in(
@@ -77,25 +89,51 @@ def found_in(
     if total < _FEWEST + 2 * m or samples.y.size < 2:
         return None
     first = Problem(parts, samples, 1.0, limit, bounds)
-    starts = [theta, *starts_on_grid(first, theta)]
-    minima = sorted((minimum_from(first, each) for each in starts), key=lambda each: each.chi_square)
-    left = minima[0].chi_square / max(samples.y.size - m, 1)
+    left = minimum_from(first, theta).chi_square / max(samples.y.size - m, 1)
     noise = samples.noise if np.isfinite(samples.noise) else left
-    noise = max(noise, floor)
-    problem = Problem(parts, samples, noise, limit, bounds)
-    kept: list[Minimum] = []
-    for each in minima:
-        # Again, now that a squared error of one is known to be much or little.
-        again = minimum_from(problem, each.theta)
-        if all(_apart(problem, again, other) for other in kept):
-            kept.append(again)
-    kept.sort(key=lambda each: each.chi_square)
+    problem = Problem(parts, samples, max(noise, floor), limit, bounds)
+    kept = _minima(problem, theta)
+    if not np.isfinite(samples.noise):
+        noise = kept[0].chi_square * problem.noise / max(samples.y.size - m, 1)
+        problem = Problem(parts, samples, max(noise, floor), limit, bounds)
+        kept = [minimum_from(problem, each.theta) for each in kept]
     best = kept[0].chi_square
     near = tuple(each for each in kept if each.chi_square <= best + RISE)[:_MOST_MINIMA]
     return Found(problem, near, misfit_of(problem, near[0]))
 
 
-def _apart(problem: Problem, one: Minimum, other: Minimum) -> bool:
+def _minima(problem: Problem, theta: Array) -> list[Minimum]:
+    """Give the different minima that the starts lead to, the best one first."""
+    grid = grid_of(problem)
+    starts = [theta] if grid is None else [theta, *starts_on_grid(problem, grid, theta)]
+    kept: list[Minimum] = []
+    _keep(problem, kept, starts)
+    for _ in range(_ROUNDS if grid is not None else 0):
+        before = kept[0].chi_square
+        _keep(problem, kept, relocations(problem, grid, kept[0].theta))
+        if kept[0].chi_square > before - 1.0:
+            break
+    if grid is not None and _is_flat(problem, kept[0]):
+        count = _SCATTERED if problem.samples.y.size <= _FEW_ROWS else _SCATTERED // 3
+        _keep(problem, kept, scattered(problem, grid, kept[0].theta, count))
+    return kept
+
+
+def _is_flat(problem: Problem, minimum: Minimum) -> bool:
+    """Whether something is not determined by the samples near a minimum."""
+    variance = np.diag(covariance_of_minimum(problem, minimum))[problem.free]
+    return bool((variance > 0.25 * problem.limit[problem.free]).any())
+
+
+def _keep(problem: Problem, kept: list[Minimum], starts: list[Array]) -> None:
+    for start in starts:
+        found = minimum_from(problem, start)
+        if all(_apart(found, other) for other in kept):
+            kept.append(found)
+    kept.sort(key=lambda each: each.chi_square)
+
+
+def _apart(one: Minimum, other: Minimum) -> bool:
     way = one.theta - other.theta
     return bool(way @ (one.information + other.information) @ way > 0.2)
 

@@ -95,14 +95,14 @@ def _profile(
     most: float,
 ) -> float:
     """Step outwards until least squares with the parameter held exceed ``most``."""
-    inside, step = 0.0, deviation
+    inside, step = 0.0, min(deviation, 0.25 * _size(problem, minimum, place))
     theta, square_inside = minimum.theta, minimum.chi_square
     outside, square_outside = np.inf, np.inf
     for _ in range(_STEPS):
         if np.isfinite(outside):
             break
         ahead = inside + step
-        found = _held(problem, theta, place, float(minimum.theta[place]) + side * ahead)
+        found = _held(problem, theta, place, float(minimum.theta[place]) + side * ahead, most, along)
         if found is None:
             return _limit_of(problem, minimum, place, side)
         if found.chi_square <= most:
@@ -121,7 +121,7 @@ def _profile(
         wanted = np.sqrt(max(most - minimum.chi_square, 0.0))
         share = np.clip((wanted - low) / max(high - low, 1e-300), 0.2, 0.8)
         ahead = inside + float(share) * (outside - inside)
-        found = _held(problem, theta, place, float(minimum.theta[place]) + side * ahead)
+        found = _held(problem, theta, place, float(minimum.theta[place]) + side * ahead, most, along)
         if found is not None and found.chi_square <= most:
             inside, theta, square_inside = ahead, found.theta, found.chi_square
         else:
@@ -132,16 +132,36 @@ def _profile(
     return float(minimum.theta[place]) + side * outside
 
 
-def _held(problem: Problem, theta: Array, place: int, value: float) -> Minimum | None:
+def _held(
+    problem: Problem, theta: Array, place: int, value: float, most: float, along: Array
+) -> Minimum | None:
     n = problem.parts.pi.p.size
     least, most, most_radius = problem.bounds
     if n < place <= 2 * n and not 0.0 <= value <= min(most_radius, 0.5 * problem.samples.swing):
         return None
     if place == 0 and not least <= value <= most:
         return None
-    start = theta.copy()
-    start[place] = value
-    return minimum_from(problem, start, fixed=place)
+    # Along the valley as it is at the minimum, or the others stay where they are.
+    valley = theta + (value - theta[place]) / along[place] * along
+    valley[place] = value
+    found = minimum_from(problem, valley, place, most - 1.0)
+    if found.chi_square <= most:
+        return found
+    alone = theta.copy()
+    alone[place] = value
+    other = minimum_from(problem, alone, place, most - 1.0)
+    return other if other.chi_square < found.chi_square else found
+
+
+def _size(problem: Problem, minimum: Minimum, place: int) -> float:
+    n = problem.parts.pi.p.size
+    if n < place <= 2 * n:
+        return 0.5 * problem.samples.swing / n
+    return float(np.sqrt(problem.limit[place])) if place > 2 * n else _weights_size(minimum, n)
+
+
+def _weights_size(minimum: Minimum, n: int) -> float:
+    return float(np.abs(minimum.theta[: n + 1]).sum()) / (n + 1)
 
 
 def _limit_of(problem: Problem, minimum: Minimum, place: int, side: float) -> float:

@@ -48,24 +48,27 @@ def knowledge_of(names: tuple[str, ...], theta: Array, found: Found | None) -> K
 
 
 def _of_one(found: Found, j: int) -> tuple[float, float, bool, str]:
-    problem, best = found.problem, found.minima[0].chi_square
-    lows, highs, known = [], [], True
-    for minimum in found.minima:
-        covariance = covariance_of_minimum(problem, minimum)
-        low, high, quadratic = interval_of(problem, minimum, covariance, j, best)
-        lows.append(low)
-        highs.append(high)
-        deviation = float(np.sqrt(covariance[j, j]))
-        is_own = deviation < _KNOWN_SHARE * float(np.sqrt(problem.limit[j]))
-        known = known and is_own and (quadratic or high - low < 6.0 * deviation)
-    low, high = min(lows), max(highs)
-    if known and len(found.minima) == 1:
+    problem, best = found.problem, found.minima[0]
+    covariance = covariance_of_minimum(problem, best)
+    low, high, quadratic = interval_of(problem, best, covariance, j, best.chi_square)
+    several = False
+    values = [each.theta[j] for each in found.minima]
+    lowest, highest = min(values), max(values)
+    for other in found.minima[1:]:
+        # Profiles of each would be too slow; those of the outermost do.
+        is_outermost = other.theta[j] in (lowest, highest)
+        if is_outermost and not low <= other.theta[j] <= high:
+            more = interval_of(
+                problem, other, covariance_of_minimum(problem, other), j, best.chi_square
+            )
+            several = several or more[0] > high or more[1] < low
+            low, high = min(low, more[0]), max(high, more[1])
+    deviation = float(np.sqrt(covariance[j, j]))
+    is_own = deviation < _KNOWN_SHARE * float(np.sqrt(problem.limit[j]))
+    if is_own and not several and (quadratic or high - low < 6.0 * deviation):
         return low, high, True, ""
-    several = len(found.minima) > 1 and (min(highs) < max(lows))
     if several:
         return low, high, False, "several sets of plays fit the samples alike"
-    if known:
-        return low, high, True, ""
     if np.isfinite(low) and np.isfinite(high):
         return low, high, False, f"the samples leave it between {low:.4g} and {high:.4g}"
     return low, high, False, "the samples do not tell it from the others"

@@ -97,7 +97,9 @@ class Minimum:
     information: Array
 
 
-def minimum_from(problem: Problem, theta: Array, fixed: int | None = None) -> Minimum:
+def minimum_from(
+    problem: Problem, theta: Array, fixed: int | None = None, enough: float = -np.inf
+) -> Minimum:
     """Go down from ``theta``, which the model must admit.
 
     Parameters
@@ -108,6 +110,8 @@ def minimum_from(problem: Problem, theta: Array, fixed: int | None = None) -> Mi
         Shape (m,).
     fixed
         A parameter that is held, as profiles need it.
+    enough
+        A chi-square below which it need not go on.
 
     Returns
     -------
@@ -136,6 +140,6 @@ def minimum_from(problem: Problem, theta: Array, fixed: int | None = None) -> Mi
                 damping = max(damping / 10.0, 1e-9)
                 break
             damping *= 5.0
-        if gained < _LEAST_GAIN:
+        if gained < _LEAST_GAIN or square <= enough:
             break
     return Minimum(theta, square, jacobian @ jacobian.T)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,9 +14,44 @@ Array = NDArray[np.float64]
 
 _GRID = 64
 _SWEEPS = 6
+_RELOCATED = 8
+# Of the chi-square, before weights and radii have followed.
+_MOST_LOSS = 400.0
 
 
-def starts_on_grid(problem: Problem, theta: Array) -> list[Array]:
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Normal equations of plays on a grid of radii, in units of the noise.
+
+    Parameters
+    ----------
+    radius
+        Shape (K,).
+    columns
+        Shape (K + 2, R): the input, 1, and the plays.
+    target
+        Shape (R,), outputs.
+    """
+
+    radius: Array
+    columns: Array
+    target: Array
+
+
+def grid_of(problem: Problem) -> Grid | None:
+    """Give the grid for a problem, None where something of the plays is held or there is a map."""
+    parts, samples = problem.parts, problem.samples
+    n = parts.pi.p.size
+    has_maps = parts.front is not None or parts.back is not None
+    if has_maps or n == 0 or not problem.free[: 2 * n + 1].all():
+        return None
+    radius = 0.5 * samples.swing * (np.arange(_GRID) + 0.5) / _GRID
+    weight = np.sqrt(samples.count / problem.noise)
+    columns = np.vstack([samples.way[-1], np.ones(samples.y.size), _plays(problem, radius)])
+    return Grid(radius, columns * weight, weight * samples.y)
+
+
+def starts_on_grid(problem: Problem, grid: Grid, theta: Array) -> list[Array]:
     """Give parameters whose radii are the best on a grid that exchanges of one radius find.
 
     The output is linear in the weights of plays of given radii, so each set of radii has its one
@@ -22,42 +59,103 @@ def starts_on_grid(problem: Problem, theta: Array) -> list[Array]:
 
     Parameters
     ----------
-    problem
-        Without maps.
+    problem, grid
+        What is fitted.
     theta
         Shape (m,), the estimate.
 
     Returns
     -------
     list of numpy.ndarray
-        Shape (m,) each; empty where something of the plays is held or there is a map.
+        Shape (m,) each.
     """
     n = problem.parts.pi.p.size
-    has_maps = problem.parts.front is not None or problem.parts.back is not None
-    if has_maps or n == 0 or not problem.free[: 2 * n + 1].all():
-        return []
-    samples = problem.samples
-    half = 0.5 * samples.swing
-    grid = half * (np.arange(_GRID) + 0.5) / _GRID
-    z0 = np.interp(grid, problem.parts.pi.r, problem.parts.pi.z0)
-    z = plays_after(samples.way, grid, z0).z
-    columns = np.vstack([samples.way[-1], np.ones(samples.y.size), z])
-    weight = np.sqrt(samples.count / problem.noise)
-    columns *= weight
-    gram, target = columns @ columns.T, columns @ (weight * samples.y)
-    own = np.clip(np.searchsorted(grid, theta[n + 1 : 2 * n + 1]), 0, _GRID - 1)
-    last = max(float(theta[2 * n]), float(grid[0]))
-    spread = np.clip(np.searchsorted(grid, last * (np.arange(n) + 1.0) / n), 0, _GRID - 1)
-    found = []
+    gram, target = grid.columns @ grid.columns.T, grid.columns @ grid.target
+    own = np.clip(np.searchsorted(grid.radius, theta[n + 1 : 2 * n + 1]), 0, _GRID - 1)
+    last = max(float(theta[2 * n]), float(grid.radius[0]))
+    even = last * (np.arange(n) + 1.0) / n
+    spread = np.clip(np.searchsorted(grid.radius, even), 0, _GRID - 1)
+    found: list[Array] = []
     for first in (own, spread, _greedy(gram, target, n)):
-        radii = _exchanged(gram, target, _apart(first))
-        weights = _weights(gram, target, radii)
-        start = theta.copy()
-        start[0], start[2 * n + 1] = weights[0], weights[1] if problem.free[2 * n + 1] else 0.0
-        start[1 : n + 1], start[n + 1 : 2 * n + 1] = weights[2:], grid[radii]
+        places = _exchanged(gram, target, _apart(first))
+        base = np.concatenate([[0, 1], places + 2])
+        weights = _solved(gram[np.ix_(base, base)], target[base])
+        start = _with(theta, n, weights, grid.radius[places])
         if not any(np.array_equal(start, each) for each in found):
             found.append(start)
     return found
+
+
+def relocations(problem: Problem, grid: Grid, theta: Array) -> list[Array]:
+    """Give parameters that differ from a minimum by one play, which is elsewhere nearly as good.
+
+    Parameters
+    ----------
+    problem, grid
+        What is fitted.
+    theta
+        Shape (m,), the minimum.
+
+    Returns
+    -------
+    list of numpy.ndarray
+        Shape (m,) each, those first that lose least.
+    """
+    n = problem.parts.pi.p.size
+    r = theta[n + 1 : 2 * n + 1]
+    samples = problem.samples
+    own = _plays(problem, r) * np.sqrt(samples.count / problem.noise)
+    columns = np.vstack([grid.columns, own])
+    gram, target = columns @ columns.T, columns @ grid.target
+    found: list[tuple[float, Array]] = []
+    for i in range(n):
+        others = np.delete(np.arange(n), i) + _GRID
+        gains = _gains(gram, target, others)
+        at_home = max(float(gains[_GRID + i]), 0.0)
+        inner = gains[:_GRID]
+        padded = np.concatenate([[-1.0], inner, [-1.0]])
+        peaks = np.flatnonzero((inner >= padded[:-2]) & (inner >= padded[2:]) & (inner > 0.0))
+        for place in peaks:
+            if abs(grid.radius[place] - r[i]) > grid.radius[0] * 2.0:
+                base = np.concatenate([[0, 1], others + 2, [place + 2]])
+                weights = _solved(gram[np.ix_(base, base)], target[base])
+                radii = np.append(np.delete(r, i), grid.radius[place])
+                order = np.argsort(radii)
+                weights[2:] = weights[2:][order]
+                found.append((at_home - float(inner[place]), _with(theta, n, weights, radii[order])))
+    found.sort(key=lambda each: each[0])
+    return [start for loss, start in found[:_RELOCATED] if loss < _MOST_LOSS]
+
+
+def scattered(problem: Problem, grid: Grid, theta: Array, count: int) -> list[Array]:
+    """Give parameters of ``count`` random sets of radii, with the weights that fit best."""
+    n = problem.parts.pi.p.size
+    rng = np.random.default_rng(0)
+    last = max(float(theta[2 * n]), float(grid.radius[0]))
+    root = np.sqrt(problem.samples.count / problem.noise)
+    found = []
+    for _ in range(count):
+        radii = np.sort(rng.uniform(0.0, min(1.3 * last, float(grid.radius[-1])), n))
+        columns = np.vstack([grid.columns[:2], _plays(problem, radii) * root])
+        weights = _solved(columns @ columns.T, columns @ grid.target)
+        found.append(_with(theta, n, weights, radii))
+    return found
+
+
+def _plays(problem: Problem, radius: Array) -> Array:
+    pi = problem.parts.pi
+    return plays_after(problem.samples.way, radius, np.interp(radius, pi.r, pi.z0)).z
+
+
+def _with(theta: Array, n: int, weights: Array, radii: Array) -> Array:
+    start = theta.copy()
+    start[0], start[2 * n + 1] = weights[0], weights[1]
+    start[1 : n + 1], start[n + 1 : 2 * n + 1] = weights[2:], radii
+    return start
+
+
+def _solved(gram: Array, target: Array) -> Array:
+    return np.asarray(np.linalg.solve(gram + 1e-10 * np.diag(np.diag(gram)), target))
 
 
 def _apart(places: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -105,9 +203,3 @@ def _exchanged(gram: Array, target: Array, places: NDArray[np.intp]) -> NDArray[
         if np.array_equal(np.sort(kept), before):
             break
     return np.sort(kept)
-
-
-def _weights(gram: Array, target: Array, places: NDArray[np.intp]) -> Array:
-    base = np.concatenate([[0, 1], places + 2])
-    inner = gram[np.ix_(base, base)]
-    return np.asarray(np.linalg.solve(inner + 1e-10 * np.diag(np.diag(inner)), target[base]))
