@@ -119,11 +119,12 @@ void hyst_joint_follow(const hyst_joint *joint, const hyst_joint_layout *at, hys
 
 /* Gradient of w, before the back map; returns w and adds to *doubt what the linear model leaves. */
 static hyst_real predict_plays(const hyst_joint *joint, const hyst_joint_layout *at,
-                               const hyst_real *state, const hyst_real *theta, hyst_real u,
-                               const hyst_real *variance, hyst_real *doubt, hyst_real *psi)
+                               hyst_real *state, hyst_real u, hyst_real v,
+                               const hyst_real *variance, hyst_real *doubt)
 {
     const size_t n = joint->plays;
-    const hyst_real v = front_at(joint, theta, u);
+    const hyst_real *theta = state + at->theta;
+    hyst_real *psi = state + at->psi;
     hyst_real *by_front = psi + 2u + 2u * n;
     hyst_real w = theta[0] * v;
     psi[0] = v;
@@ -139,8 +140,7 @@ static hyst_real predict_plays(const hyst_joint *joint, const hyst_joint_layout 
         const hyst_real far = state[at->far + i];
         regime is = {state[at->z + i], ZERO, ZERO, ZERO, ZERO};
         if (side > ZERO || side < ZERO) {
-            const hyst_real width =
-                of_r > ZERO ? hyst_power(HYST_REAL(12.0) * of_r, HYST_REAL(0.5)) : ZERO;
+            const hyst_real width = hyst_power(HYST_REAL(12.0) * of_r, HYST_REAL(0.5));
             is = regime_of(front_at(joint, theta, home), front_at(joint, theta, far), side, r,
                            width);
         }
@@ -156,15 +156,17 @@ static hyst_real predict_plays(const hyst_joint *joint, const hyst_joint_layout 
     return w;
 }
 
-hyst_real hyst_joint_predict_with(const hyst_joint *joint, const hyst_joint_layout *at,
-                                  const hyst_real *state, const hyst_real *theta, hyst_real u,
-                                  const hyst_real *variance, hyst_real *doubt, hyst_real *psi)
+hyst_real hyst_joint_predict(const hyst_joint *joint, const hyst_joint_layout *at,
+                             hyst_real *state, hyst_real u, const hyst_real *variance,
+                             hyst_real *doubt)
 {
     const size_t n = joint->plays;
     const size_t before_back = 2u + 2u * n + joint->front.count;
-    const hyst_real *back = theta + before_back;
+    const hyst_real *back = state + at->theta + before_back;
+    hyst_real *psi = state + at->psi;
+    const hyst_real v = front_at(joint, state + at->theta, u);
     *doubt = ZERO;
-    const hyst_real w = predict_plays(joint, at, state, theta, u, variance, doubt, psi);
+    const hyst_real w = predict_plays(joint, at, state, u, v, variance, doubt);
     const hyst_real slope = hyst_joint_map_slope(&joint->back, back, w);
     for (size_t j = 0; j < before_back; ++j) {
         psi[j] *= slope;
@@ -174,15 +176,7 @@ hyst_real hyst_joint_predict_with(const hyst_joint *joint, const hyst_joint_layo
     for (size_t j = 0; j < joint->back.count; ++j) {
         psi[before_back + j] = hyst_joint_term(w, joint->back.threshold[j]);
     }
-    return hyst_joint_map_at(&joint->back, back, w) + theta[1u + 2u * n];
-}
-
-hyst_real hyst_joint_predict(const hyst_joint *joint, const hyst_joint_layout *at,
-                             hyst_real *state, hyst_real u, const hyst_real *variance,
-                             hyst_real *doubt)
-{
-    return hyst_joint_predict_with(joint, at, state, state + at->theta, u, variance, doubt,
-                                   state + at->psi);
+    return hyst_joint_map_at(&joint->back, back, w) + state[at->theta + 1u + 2u * n];
 }
 
 void hyst_joint_set_memory(const hyst_joint *joint, const hyst_joint_layout *at,

@@ -45,11 +45,7 @@ hyst_search_layout hyst_search_places(const hyst_search *search)
     at.point_radius = at.point_weight + cells;
     at.point_cost = at.point_radius + cells;
     at.scratch = at.point_cost + cells;
-    at.point = at.scratch + 3u * count;
-    at.information = at.point + at.joint.m;
-    at.score = at.information + at.joint.m + hyst_ud_length(at.joint.m);
-    at.block_scratch = at.score + at.joint.m;
-    at.length = at.block_scratch + 4u * at.joint.m + hyst_ud_length(at.joint.m);
+    at.length = at.scratch + 3u * count;
     return at;
 }
 
@@ -75,7 +71,6 @@ void hyst_search_start(const hyst_search *search, hyst_real *state)
     if (search->cells > 0u) {
         hyst_cells_start(search, &at, state);
     }
-    hyst_blocks_start(search, &at, state);
 }
 
 /* Follows the input from turn to turn; 1 where it has turned. */
@@ -249,7 +244,6 @@ static void replace(const hyst_search_layout *at, hyst_real *state)
     state[at->scalars + HYST_SEARCH_REPLACEMENTS] += ONE;
     state[at->scalars + HYST_SEARCH_ERROR] = rival[HYST_JOINT_ERROR];
     state[at->scalars + HYST_SEARCH_SEEN] = ZERO; /* errors so far were not its own */
-    state[at->scalars + HYST_SEARCH_BLOCKS] = HYST_REAL(-1.0);
 }
 
 static hyst_real square_over(hyst_real error, hyst_real noise)
@@ -340,7 +334,7 @@ hyst_joint_end hyst_search_step(const hyst_search *search, hyst_real *state, hys
     if (end == HYST_JOINT_UPDATED) {
         watch_errors(search, &at, state);
     }
-    if (end == HYST_JOINT_WAS_SKIPPED) {
+    if (search->cells == 0u || end == HYST_JOINT_WAS_SKIPPED) {
         return end;
     }
     const hyst_real v = front_at(search, &at, state, u);
@@ -348,12 +342,8 @@ hyst_joint_end hyst_search_step(const hyst_search *search, hyst_real *state, hys
         enter(scalar, GATHERING);
         return end;
     }
-    const int turned = turns(search, &at, state, u, v);
-    (void)hyst_blocks_step(search, &at, state, u, y, turned);
-    if (search->cells == 0u) {
-        return end;
-    }
     hyst_cells_follow(search, &at, state, v);
+    const int turned = turns(search, &at, state, u, v);
     if ((u < before || u > before) && scalar[HYST_SEARCH_GROWTH] < MOST_GROWTH) {
         scalar[HYST_SEARCH_GROWTH] *= ONE + HYST_REAL(0.5) * search->joint->forgetting;
     }

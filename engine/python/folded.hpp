@@ -3,8 +3,8 @@
 // What plays remember of an input is the sequence of those turns that later ones have not wiped out,
 // each smaller than the one before. Samples whose input and turns agree to a quantum share a row of
 // means. The quantum starts so small that equal inputs alone agree, and doubles while there are too
-// many rows; an input that never repeats fills them, and then the oldest are given up. Memory is
-// bounded: 2 x most rows.
+// many rows; an input that never repeats fills them, and then the oldest are given up. So memory is
+// bounded: two pages of rows.
 #ifndef HYST_ENGINE_PYTHON_FOLDED_HPP
 #define HYST_ENGINE_PYTHON_FOLDED_HPP
 
@@ -33,9 +33,10 @@ struct FoldedRow {
 
 class Folded {
 public:
-    // quantum: smallest difference that tells inputs apart; coarsest: where rows are given up.
-    Folded(double quantum, double coarsest, std::size_t most)
-        : finest_(quantum), quantum_(quantum), coarsest_(coarsest), most_(most) {}
+    // quantum: smallest difference that tells inputs apart; coarsest: where rows are given up;
+    // page: samples after which a new page begins and the one before the last is given up.
+    Folded(double quantum, double coarsest, double most, double page)
+        : finest_(quantum), quantum_(quantum), coarsest_(coarsest), most_(most), page_(page) {}
 
     // An input whose output was not measured.
     void follow(double u) {
@@ -59,52 +60,53 @@ public:
         row.count = 1.0;
         row.y = y;
         add(row, rows_);
-        ++samples_;
-        if (rows_.size() > most_) coarsen();
+        if (++on_page_ >= page_) turn_page();
+        if (static_cast<double>(rows_.size()) > most_) coarsen();
     }
 
-    // Only what comes from now on, and what came since the last call of this.
-    void turn_page() {
-        before_ = std::move(rows_);
-        rows_.clear();
-    }
+    // Gives the rows up; the memory of the input stays.
     void clear() {
         rows_.clear();
         before_.clear();
         quantum_ = finest_;
-        samples_ = 0;
+        on_page_ = 0.0;
     }
 
-    std::vector<FoldedRow> all() const {
-        std::unordered_map<std::uint64_t, FoldedRow> joined = before_;
-        for (const auto &each : rows_) add(each.second, joined);
+    // Rows of the present page and of the one before.
+    std::vector<FoldedRow> page(bool before) const {
         std::vector<FoldedRow> found;
-        found.reserve(joined.size());
-        for (const auto &each : joined) found.push_back(each.second);
+        for (const auto &each : before ? before_ : rows_) found.push_back(each.second);
         return found;
     }
-    std::size_t samples() const { return samples_; }
 
-    // What goes on from here, for a file: turns, last input, direction, counts, quantum.
+    // Where it stands, for a file.
     std::vector<double> place() const {
-        std::vector<double> is = {last_, side_, turned_, quantum_, static_cast<double>(samples_)};
+        std::vector<double> is = {last_, side_, turned_, quantum_, on_page_};
         is.insert(is.end(), turns_.begin(), turns_.end());
         return is;
     }
-    void restore(const std::vector<double> &place, const std::vector<FoldedRow> &rows) {
+    void restore(const std::vector<double> &place, const std::vector<FoldedRow> &rows,
+                 const std::vector<FoldedRow> &before) {
         last_ = place.at(0);
         side_ = place.at(1);
         turned_ = place.at(2);
         quantum_ = place.at(3);
-        samples_ = static_cast<std::size_t>(place.at(4));
+        on_page_ = place.at(4);
         turns_.assign(place.begin() + 5, place.end());
         rows_.clear();
         before_.clear();
         for (const FoldedRow &each : rows) add(each, rows_);
+        for (const FoldedRow &each : before) add(each, before_);
     }
 
 private:
     using Rows = std::unordered_map<std::uint64_t, FoldedRow>;
+
+    void turn_page() {
+        before_ = std::move(rows_);
+        rows_.clear();
+        on_page_ = 0.0;
+    }
 
     void move(double u) {
         const double side = u > last_ ? 1.0 : -1.0;
@@ -162,7 +164,7 @@ private:
             turn_page();
             return;
         }
-        while (rows_.size() > most_ / 2 && quantum_ * 2.0 <= coarsest_) {
+        while (static_cast<double>(rows_.size()) > 0.5 * most_ && quantum_ * 2.0 <= coarsest_) {
             quantum_ *= 2.0;
             rows_ = again(rows_);
         }
@@ -174,8 +176,7 @@ private:
         return found;
     }
 
-    double finest_, quantum_, coarsest_;
-    std::size_t most_, samples_ = 0;
+    double finest_, quantum_, coarsest_, most_, page_, on_page_ = 0.0;
     std::vector<double> turns_;
     double last_ = 0.0, side_ = 0.0, turned_ = 0.0;
     Rows rows_, before_;

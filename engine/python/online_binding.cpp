@@ -109,31 +109,25 @@ public:
         return end;
     }
     // What is kept of the samples themselves, which the core does not need.
-    void set_folding(double quantum, double coarsest, std::size_t most) {
-        folded_ = Folded(quantum, coarsest, most);
+    void set_folding(double quantum, double coarsest, double most, double page) {
+        folded_ = Folded(quantum, coarsest, most, page);
     }
-    // A row for each input with its memory: count, mean y, squares about the means, turns and input.
-    std::vector<std::vector<double>> folded() const {
+    // A row for each input with its memory: count, mean y, squares about the means, turns and input;
+    // of the present page, and of the one before.
+    std::vector<std::vector<double>> folded(bool before) const {
         std::vector<std::vector<double>> rows;
-        for (const FoldedRow &each : folded_.all()) {
+        for (const FoldedRow &each : folded_.page(before)) {
             rows.push_back({each.count, each.y, each.uu, each.uy, each.yy});
             rows.back().insert(rows.back().end(), each.way.begin(), each.way.begin() + each.size);
         }
         return rows;
     }
     std::vector<double> folding() const { return folded_.place(); }
-    void fold_again(const std::vector<double> &place, const std::vector<std::vector<double>> &rows) {
-        std::vector<FoldedRow> found;
-        require(place.size() >= 5, "the place has at least five numbers");
-        for (const std::vector<double> &each : rows) {
-            require(each.size() >= 6 && each.size() <= 6 + most_turns, "a row has 6 to 13 numbers");
-            FoldedRow row{each[0], each[1], each[2], each[3], each[4], each.size() - 5};
-            std::copy(each.begin() + 5, each.end(), row.way.begin());
-            found.push_back(row);
-        }
-        folded_.restore(place, std::move(found));
+    void fold_again(const std::vector<double> &place, const std::vector<std::vector<double>> &rows,
+                    const std::vector<std::vector<double>> &before) {
+        require(place.size() >= 5 && place[3] > 0.0, "the place has at least five numbers");
+        folded_.restore(place, rows_of(rows), rows_of(before));
     }
-    void turn_page() { folded_.turn_page(); }
     void unfold() { folded_.clear(); }
     // All that the core is told, by the names of its structures; exports write it down.
     std::map<std::string, std::vector<double>> constants() const {
@@ -165,7 +159,6 @@ public:
         double *values = checked(state);
         hyst_joint_set_memory(&config_, &places_, values, values[HYST_JOINT_INPUT]);
         values[all_.scalars + HYST_SEARCH_SEEN] = 0.0;
-        values[all_.scalars + HYST_SEARCH_BLOCKS] = -1.0;
     }
     // An input whose output was not measured.
     void follow(State state, double u) {
@@ -198,6 +191,16 @@ private:
         require(state.shape(0) == all_.length, "state has the wrong length");
         return state.data();
     }
+    static std::vector<FoldedRow> rows_of(const std::vector<std::vector<double>> &rows) {
+        std::vector<FoldedRow> found;
+        for (const std::vector<double> &each : rows) {
+            require(each.size() >= 6 && each.size() <= 6 + most_turns, "a row has 6 to 13 numbers");
+            FoldedRow row{each[0], each[1], each[2], each[3], each[4], each.size() - 5};
+            std::copy(each.begin() + 5, each.end(), row.way.begin());
+            found.push_back(row);
+        }
+        return found;
+    }
     void store(const double *state, std::size_t row, const Rows &theta, const Rows &variance) const {
         const std::size_t m = places_.m;
         for (std::size_t j = 0; j < m; ++j) theta.data()[row * m + j] = state[places_.theta + j];
@@ -211,7 +214,7 @@ private:
     std::vector<double> cell_radius_, cell_start_, cell_limit_;
     hyst_search search_;
     hyst_search_layout all_;
-    Folded folded_{1e-12, 1.0, 2048};
+    Folded folded_{1e-12, 1.0, 2048.0, 1e300};
 };
 
 class Radius {
@@ -303,7 +306,6 @@ void bind_online_estimation(nb::module_ &module) {
         .def("folded", &Joint::folded)
         .def("folding", &Joint::folding)
         .def("fold_again", &Joint::fold_again)
-        .def("turn_page", &Joint::turn_page)
         .def("unfold", &Joint::unfold)
         .def("places", &Joint::places)
         .def("start", &Joint::start, nb::arg("state").noconvert(), nb::arg("noise"))

@@ -24,11 +24,6 @@ hyst_real hyst_joint_predict(const hyst_joint *joint, const hyst_joint_layout *a
                              hyst_real *state, hyst_real u, const hyst_real *variance,
                              hyst_real *doubt);
 
-/* The same with other parameters, near enough that turns of the input lead plays the same ways. */
-hyst_real hyst_joint_predict_with(const hyst_joint *joint, const hyst_joint_layout *at,
-                                  const hyst_real *state, const hyst_real *theta, hyst_real u,
-                                  const hyst_real *variance, hyst_real *doubt, hyst_real *psi);
-
 /* The memory that goes with the parameters, one that an input could have left. */
 void hyst_joint_set_memory(const hyst_joint *joint, const hyst_joint_layout *at, hyst_real *state,
                            hyst_real u);
@@ -58,12 +53,6 @@ void hyst_cells_forget(const hyst_search *search, const hyst_search_layout *at, 
 void hyst_cells_begin_merging(const hyst_search *search, const hyst_search_layout *at,
                               hyst_real *state);
 void hyst_cells_merge(const hyst_search_layout *at, hyst_real *state);
-
-/* Blocks of samples, at one point each (joint_blocks.c): started, one sample, which ends a block
- * where the input has turned; 1 where the estimate was replaced. */
-void hyst_blocks_start(const hyst_search *search, const hyst_search_layout *at, hyst_real *state);
-int hyst_blocks_step(const hyst_search *search, const hyst_search_layout *at, hyst_real *state,
-                     hyst_real u, hyst_real y, int turned);
 
 #ifdef HYST_EXTERN_C
 }

@@ -63,14 +63,6 @@ enum {
     HYST_SEARCH_RIVAL_SQUARE, /* sum of e_rival^2, and of the product with the one before */
     HYST_SEARCH_RIVAL_PRODUCT,
     HYST_SEARCH_RIVAL_ERROR, /* of the last sample */
-    HYST_SEARCH_BLOCK_TURNS,  /* turns of the present block */
-    HYST_SEARCH_BLOCK_SAMPLES, /* its samples */
-    HYST_SEARCH_BLOCK_GAIN, /* sum of e^2 - e_point^2 over its noise, and of its square */
-    HYST_SEARCH_BLOCK_GAIN_SQUARED,
-    HYST_SEARCH_BLOCK_SQUARE, /* sum of e_point^2 of the block */
-    HYST_SEARCH_BLOCKS, /* in the information, each counted as far as it is not forgotten */
-    HYST_SEARCH_FREEDOM, /* samples less parameters in the variance of the errors */
-    HYST_SEARCH_POINT_NOISE, /* that variance */
     HYST_SEARCH_SCALARS
 };
 
@@ -79,9 +71,7 @@ typedef struct {
     size_t scalars, rival;   /* the rival has the layout of the estimate, from `rival` on */
     size_t weight, d, u, z;  /* of the cells: p0, weights, offset; their covariance; memory */
     size_t point_weight, point_radius, point_cost; /* of what is merged */
-    size_t scratch;
-    size_t point, information, score; /* of the blocks */
-    size_t block_scratch, length;
+    size_t scratch, length;
 } hyst_search_layout;
 
 hyst_search_layout hyst_search_places(const hyst_search *search);

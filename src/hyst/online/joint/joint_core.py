@@ -20,7 +20,8 @@ _LINEAR_TERMS = ("front[1]", "back[1]")
 _NOISE_SAMPLES = 150.0
 _LEAST_SHARE = 1e-14
 # Over the largest radius of the start: what tells inputs apart, and what is too coarse to fold.
-_FINEST, _COARSEST, _MOST_ROWS = 2.0**-30, 2.0**-5, 2048
+_FINEST, _COARSEST, _MOST_ROWS = 2.0**-30, 2.0**-5, 2048.0
+_FOR_EVER = 1e300
 
 
 def prior_of(parts: Parts, theta: Array, settings: dict[str, Any]) -> Array:
@@ -100,7 +101,8 @@ def new_core(
         cells.hand_to(core)
     n = parts.pi.p.size
     radius = max(float(parts.pi.r[-1]) if n else 1.0, 1e-300)
-    core.set_folding(_FINEST * radius, _COARSEST * radius, _MOST_ROWS)
+    page = _FOR_EVER if memory is None else memory / dt
+    core.set_folding(_FINEST * radius, _COARSEST * radius, _MOST_ROWS, page)
     return core
 
 

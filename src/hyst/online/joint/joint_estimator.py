@@ -24,7 +24,7 @@ from hyst.online.estimator_file import check_saved, restored_state
 from hyst.online.joint.bands.found import Found, found_in
 from hyst.online.joint.bands.intervals import covariance_of_minimum
 from hyst.online.joint.bands.known import knowledge_of
-from hyst.online.joint.bands.samples import folded_samples
+from hyst.online.joint.bands.samples import fold_again, folded_in, folded_samples
 from hyst.online.joint.excitation import Excitation, watch
 from hyst.online.joint.innovation import Innovation
 from hyst.online.joint.joint_core import GROUPS, least_noise, new_core, prior_of, search_cells
@@ -367,6 +367,7 @@ class JointEstimator(Estimator):
         for first, last in (_KEPT, (at["side"], at["psi"]), cells):
             self.state[first:last] = kept[first:last]
         self.core.remember(self.state)
+        self.core.unfold()
 
     def frozen(self) -> JointEstimator:
         """Give an estimator that starts from this estimate and its memory and learns nothing."""
@@ -384,23 +385,28 @@ class JointEstimator(Estimator):
         ):
             scratch = state[first:last]
             scratch[~np.isfinite(scratch)] = 0.0
-        return {**self.settings, "start": self._theta_at_start.tolist()}, state
+        start, rows = self._theta_at_start.tolist(), folded_in(self.core)
+        return {**self.settings, "start": start, "folded": rows}, state
 
     @classmethod
     def restore(cls, settings: dict[str, Any], state: ArrayLike) -> JointEstimator:
         """Rebuild it from what ``saved`` gave, or the same read from a file."""
         given = dict(settings)
         model, start = operator_from_dict(given.pop("model")), given.pop("start", None)
+        rows = given.pop("folded", None)
         estimator = cls(model, memory=memory_from(given), **given)
         if start is not None:
             theta = finite_vector(start, "start")
             estimator._theta_at_start = checked_start(estimator._parts, theta, estimator.settings)
         restored_state(estimator.state, state)
         check_saved(estimator._parts, estimator.settings, estimator.state, estimator._at)
+        # Files of earlier versions have none; it then knows only what comes from here on.
+        if rows is not None:
+            fold_again(estimator.core, rows)
         return estimator
 
     def _found(self) -> Found | None:
-        samples = folded_samples(self.core.folded())
+        samples = folded_samples([*self.core.folded(False), *self.core.folded(True)])
         bounds = tuple(self.settings[each] for each in ("least_slope", "most_slope", "most_radius"))
         limit = np.array(self.core.constants()["limit"])
         floor = least_noise(self.settings)

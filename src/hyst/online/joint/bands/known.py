@@ -12,7 +12,6 @@ from hyst.online.knowledge import Knowledge
 Array = NDArray[np.float64]
 
 _NEGLIGIBLE = 1e-4
-_KNOWN_SHARE = 0.5
 _TOO_FEW = "the input has turned too seldom, or too few samples came since"
 
 
@@ -64,7 +63,8 @@ def _of_one(found: Found, j: int) -> tuple[float, float, bool, str]:
             several = several or more[0] > high or more[1] < low
             low, high = min(low, more[0]), max(high, more[1])
     deviation = float(np.sqrt(covariance[j, j]))
-    is_own = deviation < _KNOWN_SHARE * float(np.sqrt(problem.limit[j]))
+    # Data that tell less than the start was believed to do not determine it.
+    is_own = deviation < float(np.sqrt(problem.limit[j]))
     if is_own and not several and (quadratic or high - low < 6.0 * deviation):
         return low, high, True, ""
     if several:

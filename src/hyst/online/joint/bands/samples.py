@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from hyst import _engine
+from hyst.errors import InputError
 
 Array = NDArray[np.float64]
 
@@ -75,3 +79,37 @@ def folded_samples(rows: Sequence[Sequence[float]]) -> FoldedSamples:
     square = float(np.maximum(yy - explained, 0.0)[count - 1.0 > (uu > 0.0)].sum())
     noise = square / freedom if freedom >= _ENOUGH_TO_TELL_NOISE else float("nan")
     return FoldedSamples(count, y, np.ascontiguousarray(table[:, _MOMENTS:].T), noise, freedom)
+
+
+def folded_in(core: _engine.JointEstimation) -> dict[str, Any]:
+    """Give what an engine has folded, as a file keeps it."""
+    return {"place": core.folding(), "rows": core.folded(False), "before": core.folded(True)}
+
+
+def fold_again(core: _engine.JointEstimation, kept: dict[str, Any]) -> None:
+    """Hand an engine what ``folded_in`` gave.
+
+    Parameters
+    ----------
+    core
+        The engine.
+    kept
+        From a file.
+
+    Raises
+    ------
+    InputError
+        If it is nothing that an engine gives.
+    """
+    try:
+        numbers = [kept["place"], *kept["rows"], *kept["before"]]
+        if not all(np.isfinite(np.asarray(each, dtype=np.float64)).all() for each in numbers):
+            raise ValueError
+        if any(not each[0] > 0.0 for each in numbers[1:]):
+            raise ValueError
+        core.fold_again(kept["place"], kept["rows"], kept["before"])
+    except (KeyError, TypeError, ValueError, IndexError):
+        raise InputError(
+            "the saved samples of the estimator are no rows of counts, outputs and turns; save it "
+            "again"
+        ) from None

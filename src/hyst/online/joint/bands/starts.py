@@ -154,8 +154,13 @@ def _with(theta: Array, n: int, weights: Array, radii: Array) -> Array:
     return start
 
 
+def _regular(gram: Array) -> Array:
+    own = np.diag(gram)
+    return np.asarray(gram + np.diag(1e-10 * own + 1e-12 * own.max() + 1e-300))
+
+
 def _solved(gram: Array, target: Array) -> Array:
-    return np.asarray(np.linalg.solve(gram + 1e-10 * np.diag(np.diag(gram)), target))
+    return np.asarray(np.linalg.solve(_regular(gram), target))
 
 
 def _apart(places: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -171,9 +176,8 @@ def _gains(gram: Array, target: Array, kept: NDArray[np.intp]) -> Array:
     """Give what the squares lose by one more column beside those kept, for every one on the grid."""
     base = np.concatenate([[0, 1], kept + 2])
     inner = gram[np.ix_(base, base)]
-    inner = inner + 1e-10 * np.diag(np.diag(inner))
     cross = gram[base]
-    solved = np.linalg.solve(inner, np.column_stack([cross, target[base]]))
+    solved = np.linalg.solve(_regular(inner), np.column_stack([cross, target[base]]))
     left = np.diag(gram) - (cross * solved[:, :-1]).sum(axis=0)
     slope = target - cross.T @ solved[:, -1]
     usable = left > 1e-8 * np.diag(gram)
