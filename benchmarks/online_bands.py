@@ -31,7 +31,6 @@ Array = NDArray[np.float64]
 
 DT, SECONDS = 1e-3, 20.0
 RUNS = 200
-import os; REFINE=os.environ.get('REFINE','1')=='1'
 DRIVES = ("sine", "staircase", "fast")
 DETERMINED = 1e-7
 
@@ -99,22 +98,14 @@ def run(drive: str, decibels: float, seed: int) -> Outcome:
     begin = time.process_time()
     estimator.run(hyst.Record(task.u, y + noise, DT), every=y.size)
     spent = time.process_time() - begin
-    if REFINE: estimator.refine()
+    estimator.refine()
     right = right_of(task.truth)
     bound = sigma * bound_of(task.truth, task.u)
-    low, high, determined, known = told(estimator)
-    inside = (low <= right) & (right <= high)
+    told = estimator.knowledge
+    inside = (told.low <= right) & (right <= told.high)
+    known = not told.doubts
     ratio = np.abs(estimator.parameters - right) / bound
-    return Outcome(inside, known, ratio, determined, np.isfinite(bound), 1e9 * spent / y.size)
-
-
-def told(estimator: JointEstimator) -> tuple[Array, Array, NDArray[np.bool_], bool]:
-    knowledge = getattr(estimator, "knowledge", None)
-    if knowledge is not None:
-        return knowledge.low, knowledge.high, knowledge.determined, not knowledge.doubts
-    theta, half = estimator.parameters, 2.0 * estimator.standard_errors
-    known = estimator.innovation.consistent and estimator.excitation.persistent
-    return theta - half, theta + half, np.ones(theta.size, dtype=bool), known
+    return Outcome(inside, known, ratio, told.determined, np.isfinite(bound), 1e9 * spent / y.size)
 
 
 def line_of(drive: str, decibels: float, outcomes: list[Outcome]) -> str:

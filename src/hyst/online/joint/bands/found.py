@@ -105,15 +105,17 @@ def found_in(
 def _minima(problem: Problem, theta: Array) -> list[Minimum]:
     """Give the different minima that the starts lead to, the best one first."""
     grid = grid_of(problem)
-    starts = [theta] if grid is None else [theta, *starts_on_grid(problem, grid, theta)]
     kept: list[Minimum] = []
-    _keep(problem, kept, starts)
-    for _ in range(_ROUNDS if grid is not None else 0):
+    if grid is None:
+        _keep(problem, kept, [theta])
+        return kept
+    _keep(problem, kept, [theta, *starts_on_grid(problem, grid, theta)])
+    for _ in range(_ROUNDS):
         before = kept[0].chi_square
         _keep(problem, kept, relocations(problem, grid, kept[0].theta))
         if kept[0].chi_square > before - 1.0:
             break
-    if grid is not None and _is_flat(problem, kept[0]):
+    if _is_flat(problem, kept[0]):
         count = _SCATTERED if problem.samples.y.size <= _FEW_ROWS else _SCATTERED // 3
         _keep(problem, kept, scattered(problem, grid, kept[0].theta, count))
     return kept

@@ -42,7 +42,6 @@ def covariance_of_minimum(problem: Problem, minimum: Minimum, spreads: float = 5
     return found
 
 
-
 def interval_of(
     problem: Problem, minimum: Minimum, covariance: Array, place: int, best: float
 ) -> tuple[float, float, bool]:
@@ -95,6 +94,7 @@ def _profile(
     most: float,
 ) -> float:
     """Step outwards until least squares with the parameter held exceed ``most``."""
+    value = float(minimum.theta[place])
     inside, step = 0.0, min(deviation, 0.25 * _size(problem, minimum, place))
     theta, square_inside = minimum.theta, minimum.chi_square
     outside, square_outside = np.inf, np.inf
@@ -102,7 +102,9 @@ def _profile(
         if np.isfinite(outside):
             break
         ahead = inside + step
-        found = _held(problem, theta, place, float(minimum.theta[place]) + side * ahead, most, along)
+        found = _held(
+            problem, theta, place, float(minimum.theta[place]) + side * ahead, most, along
+        )
         if found is None:
             return _limit_of(problem, minimum, place, side)
         if found.chi_square <= most:
@@ -121,7 +123,9 @@ def _profile(
         wanted = np.sqrt(max(most - minimum.chi_square, 0.0))
         share = np.clip((wanted - low) / max(high - low, 1e-300), 0.2, 0.8)
         ahead = inside + float(share) * (outside - inside)
-        found = _held(problem, theta, place, float(minimum.theta[place]) + side * ahead, most, along)
+        found = _held(
+            problem, theta, place, float(minimum.theta[place]) + side * ahead, most, along
+        )
         if found is not None and found.chi_square <= most:
             inside, theta, square_inside = ahead, found.theta, found.chi_square
         else:
@@ -129,7 +133,7 @@ def _profile(
             square_outside = np.inf if found is None else found.chi_square
             if found is None:
                 break
-    return float(minimum.theta[place]) + side * outside
+    return value + side * outside
 
 
 def _held(

@@ -34,10 +34,8 @@ def knowledge_of(names: tuple[str, ...], theta: Array, found: Found | None) -> K
     m = theta.size
     if found is None:
         nothing = np.full(m, np.inf)
-        reasons = (_TOO_FEW,) * m
-        return Knowledge(
-            names, -nothing, nothing, np.zeros(m, dtype=bool), reasons, (), (_TOO_FEW,)
-        )
+        none = np.zeros(m, dtype=bool)
+        return Knowledge(names, -nothing, nothing, none, (_TOO_FEW,) * m, (), (_TOO_FEW,))
     low, high, determined = theta.copy(), theta.copy(), np.ones(m, dtype=bool)
     reasons = [""] * m
     for j in np.flatnonzero(found.problem.free):

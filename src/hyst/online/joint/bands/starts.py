@@ -122,7 +122,9 @@ def relocations(problem: Problem, grid: Grid, theta: Array) -> list[Array]:
                 radii = np.append(np.delete(r, i), grid.radius[place])
                 order = np.argsort(radii)
                 weights[2:] = weights[2:][order]
-                found.append((at_home - float(inner[place]), _with(theta, n, weights, radii[order])))
+                found.append(
+                    (at_home - float(inner[place]), _with(theta, n, weights, radii[order]))
+                )
     found.sort(key=lambda each: each[0])
     return [start for loss, start in found[:_RELOCATED] if loss < _MOST_LOSS]
 
@@ -167,8 +169,8 @@ def _apart(places: NDArray[np.intp]) -> NDArray[np.intp]:
     """Move places that coincide to the next free ones."""
     taken: list[int] = []
     for each in places.tolist():
-        nearest = sorted(range(_GRID), key=lambda k, at=each: abs(k - at))
-        taken.append(next(k for k in nearest if k not in taken))
+        free = np.setdiff1d(np.arange(_GRID), taken)
+        taken.append(int(free[np.argmin(np.abs(free - each))]))
     return np.sort(np.array(taken))
 
 
