@@ -167,7 +167,7 @@ def test_a_million_random_steps_leave_ordered_finite_radii() -> None:
         estimator = RadiusEstimator(P, R, 10.0, DT, method=method, memory=2.0, most_radius=50.0)  # type: ignore[arg-type]
         core, at = estimator._core, estimator._at
         r, error = np.empty((u.size, 5)), np.empty(u.size)
-        core.run(estimator.state, u, y, 1, r, error)
+        core.run(estimator.state, u, y, 1, r, error, False, np.empty(0))
         assert (np.diff(r, axis=1, prepend=0.0, append=50.0) >= 0.0).all()
         assert np.isfinite(error).all()
         assert np.isfinite(estimator.state[: at["length"] - 30]).all()

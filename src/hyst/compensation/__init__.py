@@ -7,6 +7,9 @@ from hyst.compensation.error_of_inverse.inverse_reduction import reduce_inverse
 from hyst.compensation.error_of_inverse.inverse_slopes import slope_range
 from hyst.compensation.expectation import ModelError
 from hyst.compensation.invert import METHODS, invert_trajectory
+from hyst.compensation.learning.compensator import LearningCompensator
+from hyst.compensation.learning.contraction import Contraction
+from hyst.compensation.learning.repetition import Repetition
 from hyst.compensation.loop_check.loops import LoopsBehind
 from hyst.compensation.loop_check.loops_behind import loops_behind
 from hyst.compensation.result import Compensation, error_parts
@@ -15,9 +18,12 @@ from hyst.compensation.suited_methods import methods_for
 __all__ = [
     "METHODS",
     "Compensation",
+    "Contraction",
     "ErrorBound",
+    "LearningCompensator",
     "LoopsBehind",
     "ModelError",
+    "Repetition",
     "error_bound",
     "error_parts",
     "invert_trajectory",

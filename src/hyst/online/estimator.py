@@ -23,7 +23,7 @@ class Estimator(Saved):
     """Constants of a model, estimated sample by sample, with which it can be inverted at any time.
 
     ``settings`` are what it was made from, as in its file; ``dt`` is its sample time in seconds.
-    After every sample ``model`` is the estimate with the memory that the input has left, and
+    After every sample ``model`` is the estimate, ``memory`` what the input has left in it, and
     ``command`` its inverse.
     """
 
@@ -53,7 +53,16 @@ class Estimator(Saved):
     @property
     @abstractmethod
     def model(self) -> Operator:
-        """The estimate as a model, with the memory that the input has left."""
+        """The estimate as a model, with the memory that the input has left if it can say it."""
+
+    @property
+    def memory(self) -> Array:
+        """The state from which ``model`` goes on where the input has left it, a copy.
+
+        ``estimator.model.stepper(estimator.memory)`` and ``model.run(u, estimator.memory)`` go on.
+        It is the initial state of ``model`` where the constants of that say it.
+        """
+        return self.model.initial_state()
 
     @property
     @abstractmethod
@@ -79,7 +88,11 @@ class Estimator(Saved):
     def knowledge(self) -> Knowledge:
         """What is known of each parameter: a band, or why it is not determined."""
         innovation = self.innovation
-        doubt = () if innovation.consistent else (f"bands are too narrow: {innovation}",)
+        doubt = (
+            ()
+            if innovation.consistent
+            else (f"{innovation}; the bands are then too narrow, since they take errors for noise",)
+        )
         return knowledge_from(self.names, self.parameters, self.standard_errors, {}, doubt)
 
     @abstractmethod
@@ -89,7 +102,8 @@ class Estimator(Saved):
         Parameters
         ----------
         u, y
-            Input and measured output; one that is not finite is skipped and counted.
+            Input and measured output; one that is not finite is skipped and counted. Where only
+            the output is missing, let the memory ``follow`` the input.
 
         Returns
         -------

@@ -1,0 +1,1 @@
+"""Learning from repetition: the command of a repeated motion from what it has led to."""

@@ -1,0 +1,86 @@
+"""A repetition as learning sees it, and how it compares with the best one."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+Comparison = Literal["better", "alike", "worse", "changed"]
+
+_WORSE = 1.15
+"""Times the best error: from here on a repetition is worse, if noise does not explain it."""
+
+_ABOVE_NOISE = 1.4
+"""Times the noise: below, errors are not told apart."""
+
+_UNEXPLAINED = 10.0
+"""Times the change of what the model was told: a plant that changes its output by more has changed
+itself. No mode of ordinary damping passes that much over a whole motion."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """What the model gives for an applied input, what came of it, and what was missed.
+
+    Parameters
+    ----------
+    number
+        Of the repetition.
+    u, v, y, error
+        Shape (N,).
+    """
+
+    number: int
+    u: Array
+    v: Array
+    y: Array
+    error: Array
+
+    @property
+    def rms(self) -> float:
+        """Of the error."""
+        return math.sqrt(float(np.mean(self.error**2)))
+
+    @property
+    def largest(self) -> float:
+        """Of the error."""
+        return float(np.abs(self.error).max())
+
+    def against(self, best: Trial, expected: Array, noise: float) -> Comparison:
+        """Compare with the best repetition.
+
+        Parameters
+        ----------
+        best
+            The best one so far.
+        expected
+            What that and the change of the command lead to expect, shape (N,).
+        noise
+            Rms of what does not repeat.
+        """
+        if self.rms < best.rms:
+            return "better"
+        if self.rms < max(_WORSE * best.rms, _ABOVE_NOISE * noise):
+            return "alike"
+        surprise = math.sqrt(float(np.mean((self.y - expected) ** 2)))
+        moved = math.sqrt(float(np.mean((self.v - best.v) ** 2)))
+        return "changed" if surprise > _UNEXPLAINED * moved + 2.0 * noise else "worse"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give plain numbers."""
+        return {
+            "number": self.number,
+            **{name: getattr(self, name).tolist() for name in ("u", "v", "y", "error")},
+        }
+
+    @classmethod
+    def from_dict(cls, data: dict[str, Any]) -> Trial:
+        """Rebuild it from ``to_dict()``."""
+        arrays = (np.array(data[name], dtype=float) for name in ("u", "v", "y", "error"))
+        return cls(int(data["number"]), *arrays)
