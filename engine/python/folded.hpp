@@ -21,6 +21,8 @@ namespace hyst {
 
 // Turns that are kept; inner ones are dropped, which only ripple deeper than that shows.
 inline constexpr std::size_t most_turns = 7;
+// A page that never ends, and the samples of the first one.
+inline constexpr double for_ever = 1e300, first_page = 1000.0;
 
 struct FoldedRow {
     double count = 0.0, y = 0.0;
@@ -34,7 +36,8 @@ struct FoldedRow {
 class Folded {
 public:
     // quantum: smallest difference that tells inputs apart; coarsest: where rows are given up;
-    // page: samples after which a new page begins and the one before the last is given up.
+    // page: samples after which a new page begins and the one before the last is given up; where
+    // nothing is given up, the last page joins the one before once it has as many samples.
     Folded(double quantum, double coarsest, double most, double page)
         : finest_(quantum), quantum_(quantum), coarsest_(coarsest), most_(most), page_(page) {}
 
@@ -60,7 +63,12 @@ public:
         row.count = 1.0;
         row.y = y;
         add(row, rows_);
-        if (++on_page_ >= page_) turn_page();
+        on_page_ += 1.0;
+        if (on_page_ >= page_) {
+            turn_page();
+        } else if (page_ >= for_ever && on_page_ >= before_samples_ && on_page_ >= first_page) {
+            join();
+        }
         if (static_cast<double>(rows_.size()) > most_) coarsen();
     }
 
@@ -69,7 +77,7 @@ public:
         rows_.clear();
         before_.clear();
         quantum_ = finest_;
-        on_page_ = 0.0;
+        on_page_ = before_samples_ = 0.0;
     }
 
     // Rows of the present page and of the one before.
@@ -79,9 +87,18 @@ public:
         return found;
     }
 
+    // Of both, as one.
+    std::vector<FoldedRow> both() const {
+        Rows joined = before_;
+        for (const auto &each : rows_) add(each.second, joined);
+        std::vector<FoldedRow> found;
+        for (const auto &each : joined) found.push_back(each.second);
+        return found;
+    }
+
     // Where it stands, for a file.
     std::vector<double> place() const {
-        std::vector<double> is = {last_, side_, turned_, quantum_, on_page_};
+        std::vector<double> is = {last_, side_, turned_, quantum_, on_page_, before_samples_};
         is.insert(is.end(), turns_.begin(), turns_.end());
         return is;
     }
@@ -92,7 +109,8 @@ public:
         turned_ = place.at(2);
         quantum_ = place.at(3);
         on_page_ = place.at(4);
-        turns_.assign(place.begin() + 5, place.end());
+        before_samples_ = place.at(5);
+        turns_.assign(place.begin() + 6, place.end());
         rows_.clear();
         before_.clear();
         for (const FoldedRow &each : rows) add(each, rows_);
@@ -105,7 +123,15 @@ private:
     void turn_page() {
         before_ = std::move(rows_);
         rows_.clear();
+        before_samples_ = on_page_;
         on_page_ = 0.0;
+    }
+    void join() {
+        for (const auto &each : rows_) add(each.second, before_);
+        rows_.clear();
+        before_samples_ += on_page_;
+        on_page_ = 0.0;
+        if (static_cast<double>(before_.size()) > most_) coarsen();
     }
 
     void move(double u) {
@@ -161,14 +187,15 @@ private:
 
     void coarsen() {
         if (quantum_ * 2.0 > coarsest_) {
+            if (static_cast<double>(before_.size()) > most_) before_.clear();
             turn_page();
             return;
         }
-        while (static_cast<double>(rows_.size()) > 0.5 * most_ && quantum_ * 2.0 <= coarsest_) {
+        while (static_cast<double>(std::max(rows_.size(), before_.size())) > 0.5 * most_ && quantum_ * 2.0 <= coarsest_) {
             quantum_ *= 2.0;
             rows_ = again(rows_);
+            before_ = again(before_);
         }
-        before_ = again(before_);
     }
     Rows again(const Rows &rows) const {
         Rows found;
@@ -176,7 +203,7 @@ private:
         return found;
     }
 
-    double finest_, quantum_, coarsest_, most_, page_, on_page_ = 0.0;
+    double finest_, quantum_, coarsest_, most_, page_, on_page_ = 0.0, before_samples_ = 0.0;
     std::vector<double> turns_;
     double last_ = 0.0, side_ = 0.0, turned_ = 0.0;
     Rows rows_, before_;

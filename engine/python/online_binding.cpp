@@ -114,10 +114,10 @@ public:
         folded_ = Folded(quantum, coarsest, most, page);
     }
     // A row for each input with its memory: count, mean y, squares about the means, turns and input;
-    // of the present page, and of the one before.
-    std::vector<std::vector<double>> folded(bool before) const {
+    // of the present page (0), of the one before (1), or of both as one (2).
+    std::vector<std::vector<double>> folded(int which) const {
         std::vector<std::vector<double>> rows;
-        for (const FoldedRow &each : folded_.page(before)) {
+        for (const FoldedRow &each : which == 2 ? folded_.both() : folded_.page(which == 1)) {
             rows.push_back({each.count, each.y, each.uu, each.uy, each.yy});
             rows.back().insert(rows.back().end(), each.way.begin(), each.way.begin() + each.size);
         }
@@ -126,7 +126,7 @@ public:
     std::vector<double> folding() const { return folded_.place(); }
     void fold_again(const std::vector<double> &place, const std::vector<std::vector<double>> &rows,
                     const std::vector<std::vector<double>> &before) {
-        require(place.size() >= 5 && place[3] > 0.0, "the place has at least five numbers");
+        require(place.size() >= 6 && place[3] > 0.0, "the place has at least six numbers");
         folded_.restore(place, rows_of(rows), rows_of(before));
     }
     void unfold() { folded_.clear(); }

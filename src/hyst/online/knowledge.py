@@ -34,7 +34,7 @@ class Knowledge:
     sentences
         What there is to say about the estimate as a whole.
     doubts
-        Why the bands cannot be believed; empty if they can.
+        Those of the sentences that say why the bands cannot be believed; empty if they can.
 
     Examples
     --------
@@ -64,7 +64,7 @@ class Knowledge:
             )
             if not is_known
         ]
-        said = [*self.doubts, *unknown, *self.sentences]
+        said = [*unknown, *self.sentences]
         return "; ".join(said) if said else "every parameter is determined"
 
 

@@ -406,11 +406,12 @@ class JointEstimator(Estimator):
         return estimator
 
     def _found(self) -> Found | None:
-        samples = folded_samples([*self.core.folded(False), *self.core.folded(True)])
+        samples = folded_samples(self.core.folded(2))
+        pages = tuple(folded_samples(self.core.folded(page)) for page in (0, 1))
         bounds = tuple(self.settings[each] for each in ("least_slope", "most_slope", "most_radius"))
         limit = np.array(self.core.constants()["limit"])
         floor = least_noise(self.settings)
-        return found_in(self._parts, samples, self.parameters, limit, bounds, floor)
+        return found_in(self._parts, samples, pages, self.parameters, limit, bounds, floor)
 
     def _plays_input(self, u: Any) -> Any:
         before = self._parts.before

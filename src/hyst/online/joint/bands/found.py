@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,7 @@ _BINS = 32
 _FEWEST = 20
 _MOST_MINIMA = 60
 _ROUNDS = 3
+_HOPELESS = 200.0
 _SCATTERED, _FEW_ROWS = 48, 300
 
 
@@ -58,6 +59,7 @@ class Found:
 def found_in(
     parts: Parts,
     samples: FoldedSamples,
+    pages: tuple[FoldedSamples, ...],
     theta: Array,
     limit: Array,
     bounds: tuple[float, float, float],
@@ -71,6 +73,8 @@ def found_in(
         The model.
     samples
         Folded.
+    pages
+        The same in parts, younger and older, which a plant that has changed answers differently.
     theta
         Shape (m,), the running estimate.
     limit
@@ -90,16 +94,24 @@ def found_in(
         return None
     first = Problem(parts, samples, 1.0, limit, bounds)
     left = minimum_from(first, theta).chi_square / max(samples.y.size - m, 1)
-    noise = samples.noise if np.isfinite(samples.noise) else left
+    within = _noise_within(pages)
+    noise = within if np.isfinite(within) else left
     problem = Problem(parts, samples, max(noise, floor), limit, bounds)
     kept = _minima(problem, theta)
-    if not np.isfinite(samples.noise):
+    if not np.isfinite(within):
         noise = kept[0].chi_square * problem.noise / max(samples.y.size - m, 1)
         problem = Problem(parts, samples, max(noise, floor), limit, bounds)
         kept = [minimum_from(problem, each.theta) for each in kept]
     best = kept[0].chi_square
     near = tuple(each for each in kept if each.chi_square <= best + RISE)[:_MOST_MINIMA]
-    return Found(problem, near, misfit_of(problem, near[0]))
+    return Found(problem, near, misfit_of(problem, near[0], pages))
+
+
+def _noise_within(pages: tuple[FoldedSamples, ...]) -> float:
+    """Give the variance within rows, NaN where there are too few samples."""
+    told = [each for each in pages if np.isfinite(each.noise)]
+    freedom = sum(each.freedom for each in told)
+    return sum(each.freedom * each.noise for each in told) / freedom if told else float("nan")
 
 
 def _minima(problem: Problem, theta: Array) -> list[Minimum]:
@@ -129,10 +141,11 @@ def _is_flat(problem: Problem, minimum: Minimum) -> bool:
 
 def _keep(problem: Problem, kept: list[Minimum], starts: list[Array]) -> None:
     for start in starts:
-        found = minimum_from(problem, start)
+        hopeless = kept[0].chi_square + _HOPELESS if kept else np.inf
+        found = minimum_from(problem, start, hopeless=hopeless)
         if all(_apart(found, other) for other in kept):
             kept.append(found)
-    kept.sort(key=lambda each: each.chi_square)
+            kept.sort(key=lambda each: each.chi_square)
 
 
 def _apart(one: Minimum, other: Minimum) -> bool:
@@ -140,45 +153,52 @@ def _apart(one: Minimum, other: Minimum) -> bool:
     return bool(way @ (one.information + other.information) @ way > 0.2)
 
 
-def misfit_of(problem: Problem, minimum: Minimum) -> float:
+def misfit_of(problem: Problem, minimum: Minimum, pages: tuple[FoldedSamples, ...]) -> float:
     """Give the chance that noise leaves sums of errors as large.
 
-    Errors are summed over stretches of the input, rising and falling apart: noise cancels in these
-    sums, a wrong model does not. Besides, over all rows, each of which is a mean.
+    Errors are summed over stretches of the input, rising and falling, older and younger ones apart:
+    noise cancels in these sums, a wrong model does not. Besides, over all rows, each a mean.
 
     Parameters
     ----------
     problem, minimum
         What was fitted, and where.
+    pages
+        The samples in parts.
 
     Returns
     -------
     float
         Between 0 and 1.
     """
-    samples = problem.samples
-    error, _ = problem.residual(minimum.theta)
     m = int(problem.free.sum())
+    freedom = sum(each.freedom for each in pages if np.isfinite(each.noise))
     chances = []
-    if samples.y.size > m + 1 and np.isfinite(samples.noise):
-        chances.append(_chance(minimum.chi_square, samples.y.size - m, samples.freedom))
-    u = samples.way[-1]
-    rising = samples.way[-1] > samples.way[-2] if samples.way.shape[0] > 1 else u > np.median(u)
-    edges = np.quantile(u, np.linspace(0.0, 1.0, _BINS + 1)[1:-1])
-    bins = np.searchsorted(edges, u) + _BINS * rising
-    root = np.sqrt(samples.count)
-    sums = np.bincount(bins, error * root, 2 * _BINS)
-    counts = np.bincount(bins, samples.count, 2 * _BINS)
-    used = counts > 0
-    if int(used.sum()) > m:
-        square = float((sums[used] ** 2 / counts[used]).sum())
+    rows = problem.samples.y.size - m
+    if rows > 1 and freedom > 0.0:
+        chances.append(_chance(minimum.chi_square, rows, freedom))
+    sums = [_stretches(problem, minimum, each) for each in pages if each.y.size]
+    found = np.concatenate(sums) if sums else np.zeros(0)
+    if found.size > m:
         # The fit has taken at most as many as there are parameters.
-        chances.append(_chance(square, int(used.sum()) - m // 2, samples.freedom))
+        chances.append(_chance(float(found @ found), found.size - m // 2, freedom))
     return min([1.0, *(len(chances) * each for each in chances)])
 
 
+def _stretches(problem: Problem, minimum: Minimum, page: FoldedSamples) -> Array:
+    """Give sums of errors over stretches of the input, over the deviations noise gives them."""
+    error, _ = replace(problem, samples=page).residual(minimum.theta)
+    u = page.way[-1]
+    rising = u > page.way[-2] if page.way.shape[0] > 1 else u > np.median(u)
+    edges = np.quantile(u, np.linspace(0.0, 1.0, _BINS + 1)[1:-1])
+    bins = np.searchsorted(edges, u) + _BINS * rising
+    sums = np.bincount(bins, error * np.sqrt(page.count), 2 * _BINS)
+    counts = np.bincount(bins, page.count, 2 * _BINS)
+    return np.asarray(sums[counts > 0] / np.sqrt(counts[counts > 0]))
+
+
 def _chance(square: float, freedom: float, of_noise: float) -> float:
-    if not np.isfinite(of_noise) or of_noise <= 0.0:
+    if of_noise <= 0.0:
         return float(chi2.sf(square, freedom))
     # The noise is itself known from so many samples only.
     spread = np.sqrt(2.0 * freedom + 2.0 * freedom**2 / of_noise)

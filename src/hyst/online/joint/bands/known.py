@@ -35,13 +35,14 @@ def knowledge_of(names: tuple[str, ...], theta: Array, found: Found | None) -> K
     if found is None:
         nothing = np.full(m, np.inf)
         none = np.zeros(m, dtype=bool)
-        return Knowledge(names, -nothing, nothing, none, (_TOO_FEW,) * m, (), (_TOO_FEW,))
+        return Knowledge(names, -nothing, nothing, none, (_TOO_FEW,) * m, (_TOO_FEW,), (_TOO_FEW,))
     low, high, determined = theta.copy(), theta.copy(), np.ones(m, dtype=bool)
     reasons = [""] * m
     for j in np.flatnonzero(found.problem.free):
         low[j], high[j], determined[j], reasons[j] = _of_one(found, int(j))
-    sentences = tuple(_about_estimate(names, theta, low, high, found))
-    return Knowledge(names, low, high, determined, tuple(reasons), sentences, _doubts(found))
+    doubts = _doubts(found)
+    sentences = (*doubts, *_about_estimate(names, theta, low, high, found))
+    return Knowledge(names, low, high, determined, tuple(reasons), sentences, doubts)
 
 
 def _of_one(found: Found, j: int) -> tuple[float, float, bool, str]:

@@ -53,10 +53,13 @@ def plays_after(way: Array, r: Array, z0: Array) -> Plays:
     """
     z = np.repeat(z0[:, np.newaxis], way.shape[1], axis=1)
     by_r, source = np.zeros_like(z), np.full(z.shape, -1)
+    radius = r[:, np.newaxis]
     for place, u in enumerate(way):
-        for side, edge in ((-1.0, u - r[:, np.newaxis]), (1.0, u + r[:, np.newaxis])):
-            moved = (z - edge) * side > 0.0
-            z[moved], by_r[moved], source[moved] = edge[moved], side, place
+        led = np.minimum(np.maximum(z, u - radius), u + radius)
+        moved = led != z
+        np.copyto(by_r, np.sign(z - led), where=moved)
+        np.copyto(source, place, where=moved)
+        z = led
     return Plays(z, by_r, source)
 
 

@@ -1,4 +1,4 @@
-"""Least squares over folded samples: Levenberg and Marquardt among the models that have an inverse."""
+"""Least squares over folded samples, among models that have an inverse: Levenberg, Marquardt."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hyst.online.joint.parts import Parts
 
 Array = NDArray[np.float64]
 
-_STEPS = 60
+_STEPS, _FEW_STEPS = 60, 6
 _LEAST_GAIN = 1e-3
 
 
@@ -47,7 +47,7 @@ class Problem:
         return np.asarray(self.limit > 0.0)
 
     def residual(self, theta: Array) -> tuple[Array, Array]:
-        """Give errors over their deviation, shape (R,), and derivatives of the output so, (m, R)."""
+        """Give errors over their deviation, shape (R,), and their slopes, shape (m, R)."""
         y, jacobian = predicted(self.parts, theta, self.samples.way)
         weight = np.sqrt(self.samples.count / self.noise)
         return weight * (self.samples.y - y), weight * jacobian
@@ -98,7 +98,11 @@ class Minimum:
 
 
 def minimum_from(
-    problem: Problem, theta: Array, fixed: int | None = None, enough: float = -np.inf
+    problem: Problem,
+    theta: Array,
+    fixed: int | None = None,
+    enough: float = -np.inf,
+    hopeless: float = np.inf,
 ) -> Minimum:
     """Go down from ``theta``, which the model must admit.
 
@@ -112,6 +116,8 @@ def minimum_from(
         A parameter that is held, as profiles need it.
     enough
         A chi-square below which it need not go on.
+    hopeless
+        A chi-square above which it gives up after a few steps.
 
     Returns
     -------
@@ -123,7 +129,7 @@ def minimum_from(
     theta = problem.admissible(theta, fixed)
     error, jacobian = problem.residual(theta)
     square, damping = float(error @ error), 1e-4
-    for _ in range(_STEPS):
+    for taken in range(_STEPS):
         own = jacobian[free]
         information, slope = own @ own.T, own @ error
         scale = np.diag(information) + 1e-12 * (1.0 + float(np.diag(information).max(initial=0.0)))
@@ -140,6 +146,7 @@ def minimum_from(
                 damping = max(damping / 10.0, 1e-9)
                 break
             damping *= 5.0
-        if gained < _LEAST_GAIN or square <= enough:
+        is_hopeless = taken >= _FEW_STEPS and square > hopeless
+        if gained < _LEAST_GAIN or square <= enough or is_hopeless:
             break
     return Minimum(theta, square, jacobian @ jacobian.T)

@@ -83,7 +83,7 @@ def folded_samples(rows: Sequence[Sequence[float]]) -> FoldedSamples:
 
 def folded_in(core: _engine.JointEstimation) -> dict[str, Any]:
     """Give what an engine has folded, as a file keeps it."""
-    return {"place": core.folding(), "rows": core.folded(False), "before": core.folded(True)}
+    return {"place": core.folding(), "rows": core.folded(0), "before": core.folded(1)}
 
 
 def fold_again(core: _engine.JointEstimation, kept: dict[str, Any]) -> None:

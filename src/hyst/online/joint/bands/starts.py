@@ -175,7 +175,7 @@ def _apart(places: NDArray[np.intp]) -> NDArray[np.intp]:
 
 
 def _gains(gram: Array, target: Array, kept: NDArray[np.intp]) -> Array:
-    """Give what the squares lose by one more column beside those kept, for every one on the grid."""
+    """Give what the squares lose by one more column beside those kept, for each on the grid."""
     base = np.concatenate([[0, 1], kept + 2])
     inner = gram[np.ix_(base, base)]
     cross = gram[base]
