@@ -138,6 +138,38 @@ class TrackingStepper:
     def clear_fault(self) -> None: ...
     def __call__(self, y_ref: float, y: float) -> float: ...
 
+class RepetitiveController:
+    def __init__(
+        self,
+        period: int,
+        lead: int,
+        wait: int,
+        smooth: Sequence[float],
+        learn: Sequence[float],
+        tolerance: float,
+        inverse: Chain,
+    ) -> None: ...
+    @property
+    def memory_length(self) -> int: ...
+    @property
+    def state_length(self) -> int: ...
+    def limit(self, forward: Chain, low: float, high: float, change: float) -> None: ...
+    def run(self, state: Array, y_ref: Array, y: Array, u: Array, v: Array) -> int: ...
+
+class RepetitiveStepper:
+    def __init__(self, controller: RepetitiveController, state: Array) -> None: ...
+    @property
+    def state(self) -> Array: ...
+    @property
+    def fault(self) -> bool: ...
+    @property
+    def limited(self) -> bool: ...
+    @property
+    def changed(self) -> bool: ...
+    def clear_fault(self) -> None: ...
+    def reset(self) -> None: ...
+    def __call__(self, y_ref: float, y: float) -> float: ...
+
 def run_continuous_loop(
     step: Array,
     delayed: bool,
@@ -152,6 +184,16 @@ def run_continuous_loop(
 def run_sampled_loop(
     step: Array,
     controller: TrackingController,
+    hysteresis: Chain,
+    controller_state: Array,
+    hysteresis_state: Array,
+    inputs: Array,
+    outputs: Array,
+    limit: float,
+) -> tuple[str, int, bool]: ...
+def run_repetitive_loop(
+    step: Array,
+    controller: RepetitiveController,
     hysteresis: Chain,
     controller_state: Array,
     hysteresis_state: Array,

@@ -107,7 +107,8 @@ def started(model: hyst.operators.Operator, dt: float, asked: Asked) -> hyst.onl
         memory=math.inf if asked.memory is None else asked.memory,
         spread=_SPREAD if asked.spread is None else asked.spread,
         only=[each.strip() for each in asked.only.split(",")] if asked.only else (),
-        estimator=asked.which,
+        # Maps are what the joint estimator alone knows; it says so of a model without plays.
+        estimator="joint" if asked.estimate_maps else asked.which,
         **options,
     )
 
