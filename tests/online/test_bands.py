@@ -84,8 +84,8 @@ def test_truths_lie_in_their_bands(name: str, decibels: float) -> None:
     # draw in ten thousand of twelve has a smaller share than this, where the truth is 0.92.
     least = float(binom.ppf(1e-4, 12, 0.92)) / 12.0
     assert np.mean(np.concatenate(inside)) >= least
-    # Of six runs, each the rms of one to eight errors over their bound, with a median of 0.9 and one
-    # in twenty above 4 (benchmarks/online_bands.py).
+    # Of six runs, each the rms of one to eight errors over their bound, with a median of 0.9 and
+    # one in twenty above 4 (benchmarks/online_bands.py).
     assert np.median(ratios) < 2.0
     assert (np.array(ratios) > 4.0).sum() <= 1
 

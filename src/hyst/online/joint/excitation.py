@@ -70,7 +70,11 @@ class Excitation:
             if play.frozen
         ]
         head = f"input spans {self.swing:.4g} of the {self.swing_needed:.4g} needed"
-        return "; ".join([head, *frozen]) if frozen else f"{head}; every play goes from envelope to envelope"
+        return (
+            "; ".join([head, *frozen])
+            if frozen
+            else f"{head}; every play goes from envelope to envelope"
+        )
 
 
 def watch(p0: float, p: Array, r: Array, age: Array, patience: float, swing: float) -> Excitation:
