@@ -130,7 +130,7 @@ def fitted(task: Task, theta: Array, variance: float, floor: float, passes: int)
         None where an output or a derivative is not finite.
     """
     refused, clip, count = 0, np.inf, float(task.weights.sum())
-    before: Array | None = None
+    before = np.zeros((task.start.size, task.start.size))
     for pass_ in range(passes + 1):
         with np.errstate(all="ignore"):
             y, jacobian = task.window.sensitivity(theta)
@@ -142,7 +142,7 @@ def fitted(task: Task, theta: Array, variance: float, floor: float, passes: int)
             columns = jacobian[:, task.free] * task.scale
             information = columns.T @ (columns * weights[:, None])
             pull = columns.T @ (weights * error)
-        before = information if before is None else before
+        before = before if pass_ else information
         squares = squares_of(error, task.weights, clip)
         if not (np.isfinite(information).all() and np.isfinite(pull).all() and squares < np.inf):
             return None

@@ -29,7 +29,7 @@ _LEAST_NOISE = 1e-10
 _ROUNDING = 1e-14
 # Tried in any case: noise may hide in every sum that a minimum is false.
 _SURE_TRIALS = 8
-_COMMANDS = 200
+_COMMANDS = 500
 
 
 @final
@@ -103,11 +103,9 @@ class Course:
     def take(self, u: float, y: float, counted: bool = True) -> bool:
         """Take in a sample; tells whether it was learnt from."""
         told = math.isfinite(y)
-        if not math.isfinite(u):
-            self.counts["skipped"] += counted
-            if self.model.dt is None or self.window.count == 0:
-                return False
-            u, told, counted = self.last_input, False, False
+        if not math.isfinite(u) or (counted and not told):
+            self.counts["skipped"] += 1
+            return False
         if max(abs(u), abs(y) if told else 0.0) > _BEYOND:
             self.counts["refused"] += counted
             return False
@@ -118,7 +116,7 @@ class Course:
             return False
         if told:
             self.error = y - predicted
-        self.counts["used" if told else "skipped"] += counted
+        self.counts["used"] += counted
         self.last_input = u
         self.window.add(u, y if told else 0.0, float(told))
         self.in_block += 1
@@ -369,22 +367,19 @@ class Course:
         self.is_begun = False
         return spreads_of(model, self.settings["spread"], self.settings["spreads"], (0.0, 0.0))
 
-    def error_of(self, commands: Commands) -> float:
+    def error_of_commands(self) -> float:
         """Give the root mean square of what commands for the last predicted outputs would miss."""
         window = self.window
         y, _ = window.outputs(self.theta)
         first = max(window.count - _COMMANDS, 0)
-        begin = window.memory_for(self.theta)
-        state = self.model.run(window.u[:first], begin)[1] if first else begin
         if first == window.count:
             return 0.0
-        step, trial = self.model.stepper(state), self.model.stepper(state)
-        missed = []
-        for u, wanted in zip(
-            window.u[first : window.count].tolist(), y[first:].tolist(), strict=True
-        ):
-            here = np.array(step.state)
-            trial.state[:] = here
-            missed.append(trial(commands.input_for(wanted, here, u)) - wanted)
-            step(u)
+        begin = window.memory_for(self.theta)
+        state = self.model.run(window.u[:first], begin)[1] if first else begin
+        step, commands = self.model.stepper(state), Commands(self.model, state)
+        near, missed = float(window.u[first]), []
+        for wanted in y[first:].tolist():
+            near = commands.input_for(wanted, np.array(step.state), near)
+            missed.append(step(near) - wanted)
+            commands.passed(near, np.array(step.state))
         return float(np.sqrt(np.mean(np.square(missed))))
