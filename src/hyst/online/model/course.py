@@ -17,7 +17,7 @@ from hyst.online.model.model_innovation import ModelInnovation
 from hyst.online.model.past import Past
 from hyst.online.model.prior import spreads_of, tied_scales
 from hyst.online.model.regularities import LEAST_SAMPLES, Regularities
-from hyst.online.model.rivals import better_rival
+from hyst.online.model.rivals import rival_of
 from hyst.online.model.window import Window
 from hyst.operators import Operator
 
@@ -29,6 +29,8 @@ _LEAST_NOISE = 1e-10
 _ROUNDING = 1e-14
 # Tried in any case: noise may hide in every sum that a minimum is false.
 _SURE_TRIALS = 8
+RIVALS = 8
+"""How many of the last estimates from elsewhere are remembered; each may be as likely."""
 _COMMANDS = 500
 
 
@@ -78,6 +80,7 @@ class Course:
         noise = self.settings["noise"]
         self.variance = 0.0 if noise is None else noise**2
         self.averaged: Averaged | None = None
+        self.rivals = np.tile(theta, (RIVALS, 1))
         self.regularities = Regularities()
         self.has_left = False
         self.in_block = 0
@@ -207,29 +210,30 @@ class Course:
             self._search(task)
 
     def _accept(self, found: Fitted) -> None:
-        self.theta, self.variance = found.theta, float(found.variance)
-        now = self.theta[self.free] / self.spread[self.free]
-        self.past = self.past.turned(found.before, found.information, self.variance, now)
+        before, self.theta = self.theta, found.theta
+        self.variance = float(found.variance)
         self.counts["refused steps"] += found.refused
-        scale, limits = self.spread[self.free], (self.lower, self.upper)
         known = self.information if self.information.any() else found.information
-        with np.errstate(all="ignore"):
-            rows = averaged(
-                self.window,
-                self.theta,
-                self.free,
-                scale,
-                known / self.variance + np.eye(scale.size),
-                limits,
-                found.columns,
-            )
-        information = found.information
-        if rows is not None:
-            weights = rows.weights(self.task().weights, self.variance)
-            information = rows.columns.T @ (rows.columns * weights[:, None])
+        self.averaged, information = self._seen_from(found.theta, known, found.columns)
+        if self.past.information.any():
+            _, old = self._seen_from(before, known, found.columns_before)
+            now = self.theta[self.free] / self.spread[self.free]
+            self.past = self.past.turned(old, information, self.variance, now)
         self.information = information + self.past.information
         self.recent = information + self.past.recent
-        self.averaged = rows
+
+    def _seen_from(
+        self, theta: Array, known: Array, columns: Array
+    ) -> tuple[Averaged | None, Array]:
+        """Give averaged derivatives of the window, if finite, and its information from there."""
+        scale, limits = self.spread[self.free], (self.lower, self.upper)
+        precision = known / self.variance + np.eye(scale.size)
+        weights = self.task().weights
+        with np.errstate(all="ignore"):
+            rows = averaged(self.window, theta, self.free, scale, precision, limits, columns)
+        if rows is not None:
+            columns, weights = rows.columns, rows.weights(weights, self.variance)
+        return rows, columns.T @ (columns * weights[:, None])
 
     def _search(self, task: Task) -> None:
         """Try an estimate from elsewhere, some in any case; while errors are no noise, for ever."""
@@ -241,8 +245,12 @@ class Course:
         self.wait = max(self.trials - _SURE_TRIALS, 0)
         self.trials += 1
         alone = replace(task, past=Past.none(self.free.size))
-        rival = better_rival(alone, self.theta, self.trials, self.floor(), self.judge)
-        if rival is not None:
+        found = rival_of(alone, self.theta, self.trials, self.floor(), self.judge)
+        if found is None:
+            return
+        rival, is_better = found
+        self.rivals[(self.trials - 1) % RIVALS] = self.theta if is_better else rival.theta
+        if is_better:
             self.replacements += 1
             self.past = alone.past
             self._accept(rival)
