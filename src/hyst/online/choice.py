@@ -12,10 +12,11 @@ from hyst.online.estimator import Estimator
 from hyst.online.joint.joint_core import GROUPS
 from hyst.online.joint.joint_estimator import JointEstimator
 from hyst.online.joint.parts import take_apart
+from hyst.online.model.model_estimator import ModelEstimator
 from hyst.online.scale.scale_estimator import ScaleEstimator
 from hyst.operators import Operator
 
-ESTIMATORS = ("scale", "joint")
+ESTIMATORS = ("scale", "joint", "model")
 """Names of the estimators, the cheapest first."""
 
 _SCALE = ("scale", "offset")
@@ -34,7 +35,8 @@ def estimator_for(
     """Make the estimator that suits a model and what is to be estimated.
 
     Scale and offset are estimated of any model; all constants where an estimator knows them: the
-    joint one those of plays and maps.
+    joint one those of plays and maps, that of any model (``"model"``, or constants of it in
+    ``only``) those of other families, and the thresholds of maps.
 
     Parameters
     ----------
@@ -50,8 +52,8 @@ def estimator_for(
         What to estimate, by name, everything else being held: ``"scale"`` and ``"offset"``, or
         parameters and groups of an estimator of all constants. Everything if left out.
     estimator
-        One of ``ESTIMATORS``, or ``"auto"``: that of all constants where there is one for the
-        model, unless ``only`` names a scale.
+        One of ``ESTIMATORS``, or ``"auto"``: the joint one where the model is one of plays, unless
+        ``only`` names a scale; else that of scale and offset, unless ``only`` names constants.
     options
         More options of that estimator.
 
@@ -85,6 +87,10 @@ def estimator_for(
     if name == "scale":
         held = [] if not wanted else _others(wanted, _SCALE, _SCALE)
         return ScaleEstimator(model, dt=dt, memory=memory, held=held, **options)
+    if name == "model":
+        names = model.parameters().names
+        held = _others(wanted, names, names) if wanted else []
+        return ModelEstimator(model, dt=dt, memory=memory, held=held, **options)
     held = _held_jointly(model, wanted)
     if any(each.startswith(("front", "back")) for each in wanted):
         options.setdefault("estimate_maps", True)
@@ -99,7 +105,8 @@ def _chosen(model: Operator, wanted: list[str]) -> str:
     try:
         take_apart(model)
     except InputError:
-        return "scale"
+        names = model.parameters().names
+        return "model" if wanted and set(wanted) <= set(names) else "scale"
     return "joint"
 
 
