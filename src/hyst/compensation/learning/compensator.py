@@ -403,7 +403,7 @@ class LearningCompensator:
         own = self._learnt.linear.delay
         delays = {0} if late == own == 0 else {late - 1, late, late + 1, own}
         allowed = tuple(sorted(each for each in delays if each >= 0))
-        self._learnt = self._learnt.taught(whole, changes, noise, allowed)
+        self._learnt = self._learnt.taught(whole, changes, noise, allowed, self._strikes > 1)
 
     def _contract(self, trial: Trial, noise: float) -> None:
         if self._given is not None:

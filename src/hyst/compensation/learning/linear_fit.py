@@ -52,7 +52,15 @@ class Pair:
     y: Array
 
 
-def fit_linear_part(pairs: list[Pair], noise: float, delays: tuple[int, ...]) -> LinearPart:
+def gain_over(pairs: list[Pair], noise: float) -> tuple[float, float]:
+    """Give the criterion of a gain alone, and the gain."""
+    found = _fitted(pairs, noise, 0, 1, 0)
+    return (np.inf, 1.0) if found is None else (found[0], float(found[1].b[0]))
+
+
+def fit_linear_part(
+    pairs: list[Pair], noise: float, delays: tuple[int, ...]
+) -> tuple[float, LinearPart]:
     """Find the linear part that explains repetitions, of the size that they pay for.
 
     Parameters
@@ -71,10 +79,10 @@ def fit_linear_part(pairs: list[Pair], noise: float, delays: tuple[int, ...]) ->
         for each in (_fitted(pairs, noise, poles, zeros, delay),)
         if each is not None
     ]
-    for _, linear in sorted(found, key=lambda each: each[0]):
+    for score, linear in sorted(found, key=lambda each: each[0]):
         if _is_seen(linear, pairs, noise):
-            return linear
-    return LinearPart.one()
+            return score, linear
+    return np.inf, LinearPart.one()
 
 
 def _is_seen(linear: LinearPart, pairs: list[Pair], noise: float) -> bool:
