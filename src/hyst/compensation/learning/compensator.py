@@ -356,7 +356,9 @@ class LearningCompensator:
             self._past = measured.u
         gain = self._command_from(base or trial, noise, notes)
         self._last = trial
-        self._trials = [*self._trials, trial][-1 - _MIXED :] if not self._stuck.any() else self._trials
+        self._trials = (
+            [*self._trials, trial][-1 - _MIXED :] if not self._stuck.any() else self._trials
+        )
         self._history.append(
             Repetition(
                 trial.number,

@@ -42,7 +42,11 @@ class Learnt:
     pairs: tuple[Pair, ...] = ()
 
     def taught(
-        self, whole: Pair, changes: Sequence[Pair], noise: float, delays: tuple[int, ...],
+        self,
+        whole: Pair,
+        changes: Sequence[Pair],
+        noise: float,
+        delays: tuple[int, ...],
         doubted: bool = False,
     ) -> Learnt:
         """Give what is known with one more repetition.
