@@ -7,7 +7,9 @@ Prints, for one machine and one run,
 - root mean square errors of 50 runs of 100 s at 10, 20 and 30 dB over the Cramer-Rao bound, from
   radii and weights all too small or all too large, and at 10 and 20 dB each in its own direction,
 - the same of 40 runs of 30 s at 20 to 60 dB, with the search and without,
-- the same for the paper's law on sine and staircase, over the bound of the radii alone,
+- the same for the paper's law on sine and staircase, over the bound of the radii alone, with
+  regimes from the noisy output and from the slope of the output before the noise,
+- the share of radii within two standard errors of least squares whose regimes were told,
 - the tracking error of the adaptive inverse over that of a frozen one, while a weight and a radius
   drift by 30 % in 60 s at 30 dB.
 """
@@ -21,7 +23,9 @@ from numpy.typing import NDArray
 
 import hyst
 from hyst.online import AdaptiveInverse, JointEstimator, RadiusEstimator
-from hyst.studies.s2_adaptive_radii import FILTER, GAIN, INPUTS
+from hyst.studies.s2_adaptive_radii.over_bound import FILTER, slopes_of
+from hyst.studies.s2_adaptive_radii.paper import GAIN, INPUTS
+from hyst.studies.s2_adaptive_radii.printed_law import true_regimes
 
 Array = NDArray[np.float64]
 
@@ -138,17 +142,42 @@ def paper_law_over_bound() -> None:
         normal = np.sqrt(np.diag(np.linalg.inv(radii.T @ radii)))
         for decibels in (10.0, 20.0):
             sigma = float(np.std(y)) * 10.0 ** (-decibels / 20.0)
-            errors = []
-            for seed in range(RUNS):
+            for how, slopes in (("measured", None), ("before the noise", slopes_of(u, y))):
+                ratios = law_over_bound(u, y, sigma, slopes) / (sigma * normal)
+                each = ", ".join(f"r[{i}] {ratio:.3g}" for i, ratio in enumerate(ratios, start=1))
+                print(
+                    f"paper's law, {name}, {decibels:g} dB, slope {how}, {RUNS} runs: rms error "
+                    f"over bound {np.sqrt(np.mean(ratios**2)):.3g} ({each})"
+                )
+
+
+def law_over_bound(u: Array, y: Array, sigma: float, slopes: Array | None) -> Array:
+    """Root mean square errors of the radii after the whole record."""
+    errors = []
+    for seed in range(RUNS):
+        noise = sigma * np.random.default_rng(seed).standard_normal(u.size)
+        options = FILTER if slopes is None else {}
+        law = RadiusEstimator(P, np.zeros(5), GAIN, DT, **options)  # type: ignore[arg-type]
+        law.run(hyst.Record(u, y + noise, DT), every=u.size, slopes=slopes)
+        errors.append(law.radii - R)
+    return np.asarray(np.sqrt(np.mean(np.square(errors), axis=0)))
+
+
+def bands_of_told_regimes() -> None:
+    for name, give in INPUTS.items():
+        u = give(20.0)
+        y, regimes = TRUTH(u), true_regimes(u, R)
+        for decibels in (10.0, 20.0, 40.0):
+            sigma = float(np.std(y)) * 10.0 ** (-decibels / 20.0)
+            inside = []
+            for seed in range(40):
                 noise = sigma * np.random.default_rng(seed).standard_normal(u.size)
-                law = RadiusEstimator(P, np.zeros(5), GAIN, DT, **FILTER)  # type: ignore[arg-type]
-                law.run(hyst.Record(u, y + noise, DT), every=u.size)
-                errors.append((law.radii - R) / (sigma * normal))
-            ratios = np.sqrt(np.mean(np.square(errors), axis=0))
-            each = ", ".join(f"r[{i}] {ratio:.3g}" for i, ratio in enumerate(ratios, start=1))
+                law = RadiusEstimator(P, 0.5 * R, 100.0 / sigma**2, DT, method="least-squares")
+                law.run(hyst.Record(u, y + noise, DT), every=u.size, regimes=regimes)
+                inside += (np.abs(law.radii - R) <= 2.0 * law.standard_errors).tolist()
             print(
-                f"paper's law, {name}, {decibels:g} dB, {RUNS} runs: rms error over bound "
-                f"{np.sqrt(np.mean(ratios**2)):.3g} ({each})"
+                f"least squares, told regimes, {name}, {decibels:g} dB, 20 s, 40 runs: "
+                f"{np.mean(inside):.3f} of the radii within two standard errors"
             )
 
 
@@ -182,6 +211,7 @@ def main() -> None:
     over_bound()
     starts_in_noise()
     paper_law_over_bound()
+    bands_of_told_regimes()
     drift()
 
 

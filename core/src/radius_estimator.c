@@ -7,6 +7,8 @@
 
 #define ZERO HYST_REAL(0.0)
 #define ONE HYST_REAL(1.0)
+/* As many of the last errors are averaged. */
+#define ERRORS HYST_REAL(150.0)
 
 hyst_radius_layout hyst_radius_places(const hyst_radius *radius)
 {
@@ -86,8 +88,8 @@ static void follow_input(const hyst_radius *radius, const hyst_radius_layout *at
     }
 }
 
-/* The regime of the slope model that is nearest to the measured slope. */
-static void find_regime(const hyst_radius *radius, hyst_real *state, hyst_real u, hyst_real y)
+/* The regression of y on u since the last reversal; 1 if it gives a slope. */
+static int filter_slope(const hyst_radius *radius, hyst_real *state, hyst_real u, hyst_real y)
 {
     const hyst_real du = u - state[HYST_RADIUS_MEAN_U];
     const hyst_real dy = y - state[HYST_RADIUS_MEAN_Y];
@@ -99,10 +101,15 @@ static void find_regime(const hyst_radius *radius, hyst_real *state, hyst_real u
     state[HYST_RADIUS_SINCE] += ONE;
     if (radius->plays == 0u || !(state[HYST_RADIUS_UU] > ZERO) ||
         state[HYST_RADIUS_SINCE] <= radius->dead_time) {
-        state[HYST_RADIUS_REGIME] = -ONE;
-        return;
+        return 0;
     }
-    const hyst_real slope = state[HYST_RADIUS_UY] / state[HYST_RADIUS_UU];
+    state[HYST_RADIUS_SLOPE] = state[HYST_RADIUS_UY] / state[HYST_RADIUS_UU];
+    return 1;
+}
+
+/* The regime of the slope of the model that is nearest to the slope, or -1. */
+static hyst_real regime_of_slope(const hyst_radius *radius, hyst_real slope)
+{
     hyst_real sum = radius->p0;
     size_t regime = 0;
     size_t i = 0;
@@ -115,13 +122,24 @@ static void find_regime(const hyst_radius *radius, hyst_real *state, hyst_real u
     const hyst_real gap = off > ZERO ? (i < radius->plays ? radius->p[i] : radius->p[i - 1u])
                                      : (regime > 0u ? radius->p[regime - 1u] : radius->p[0]);
     const hyst_real most = HYST_REAL(0.5) * radius->tolerance * gap;
-    state[HYST_RADIUS_SLOPE] = slope;
-    if (off <= most && -off <= most) {
-        state[HYST_RADIUS_REGIME] = (hyst_real)regime;
-        if ((hyst_real)regime > state[HYST_RADIUS_MOST]) {
-            state[HYST_RADIUS_MOST] = (hyst_real)regime;
-        }
-    } else {
+    return off <= most && -off <= most ? (hyst_real)regime : -ONE;
+}
+
+static void enter_regime(hyst_real *state, hyst_real regime)
+{
+    state[HYST_RADIUS_REGIME] = regime;
+    if (regime > state[HYST_RADIUS_MOST]) {
+        state[HYST_RADIUS_MOST] = regime;
+    }
+}
+
+/* A regime from outside is the truth at once, also at rest and before there is a slope; but before
+ * the first reversal that counts nobody knows which envelope is meant. */
+static void take_regime(const hyst_radius *radius, hyst_real *state, hyst_real regime)
+{
+    const int goes = state[HYST_RADIUS_DIRECTION] > ZERO || state[HYST_RADIUS_DIRECTION] < ZERO;
+    enter_regime(state, goes ? regime : -ONE);
+    if (state[HYST_RADIUS_SINCE] <= radius->dead_time) {
         state[HYST_RADIUS_REGIME] = -ONE;
     }
 }
@@ -168,39 +186,80 @@ static void least_squares(const hyst_radius *radius, const hyst_radius_layout *a
     }
 }
 
-int hyst_radius_step(const hyst_radius *radius, hyst_real *state, hyst_real u, hyst_real y)
+/* The first input: plays that it is farther from than their radii go with it (S2 eq. 1). */
+static void begin_input(const hyst_radius *radius, const hyst_radius_layout *at, hyst_real *state,
+                        hyst_real u)
 {
-    const hyst_radius_layout at = hyst_radius_places(radius);
-    const size_t n = radius->plays;
-    hyst_real *phi = state + at.scratch;
-    hyst_real *r = phi + n;
+    state[HYST_RADIUS_INPUT] = state[HYST_RADIUS_EXTREME] = u;
+    for (size_t i = 0; i < radius->plays; ++i) {
+        const hyst_real way = u - state[at->home + i];
+        if (way > state[at->r + i] || -way > state[at->r + i]) {
+            state[at->home + i] = u;
+            state[at->side + i] = way > ZERO ? -ONE : ONE;
+        }
+    }
+}
+
+/* Outputs before this one were not measured, so the slope begins here; it can do so for good once the
+ * output at the farthest input is known. */
+static void begin_slope(hyst_real *state, hyst_real u, hyst_real y)
+{
+    state[HYST_RADIUS_MEAN_U] = u;
+    state[HYST_RADIUS_MEAN_Y] = y;
+    state[HYST_RADIUS_UU] = state[HYST_RADIUS_UY] = ZERO;
+    state[HYST_RADIUS_REGIME] = -ONE;
+    if (!(u < state[HYST_RADIUS_EXTREME] || u > state[HYST_RADIUS_EXTREME])) {
+        state[HYST_RADIUS_OUTPUT] = y;
+        state[HYST_RADIUS_STARTED] = ONE;
+    }
+}
+
+/* Follows the input; 1 if it moved, 0 if not, -1 if the sample teaches nothing. */
+static int advance(const hyst_radius *radius, const hyst_radius_layout *at, hyst_real *state,
+                   hyst_real u, hyst_real y)
+{
     /* Squares of what is taken in are summed over many samples, so absurd sizes are refused here. */
     if (!hyst_is_finite(HYST_REAL(1e10) * (u * u + y * y))) {
         state[HYST_RADIUS_SKIPPED] += ONE;
-        return 0;
+        return -1;
     }
     if (!(state[HYST_RADIUS_STARTED] > ZERO)) {
         state[HYST_RADIUS_STARTED] = ONE;
-        state[HYST_RADIUS_INPUT] = state[HYST_RADIUS_EXTREME] = u;
+        begin_input(radius, at, state, u);
         state[HYST_RADIUS_OUTPUT] = y;
-        return 0;
+        return -1;
     }
-    /* While the input rests the regime is what it was. */
-    if (u < state[HYST_RADIUS_INPUT] || u > state[HYST_RADIUS_INPUT]) {
-        follow_input(radius, &at, state, u, y);
-        find_regime(radius, state, u, y);
+    const int moves = u < state[HYST_RADIUS_INPUT] || u > state[HYST_RADIUS_INPUT];
+    if (moves) {
+        follow_input(radius, at, state, u, y);
     }
     state[HYST_RADIUS_INPUT] = u;
-    if (n == 0u || state[HYST_RADIUS_REGIME] < ZERO) {
+    if (state[HYST_RADIUS_STARTED] > ONE) {
+        begin_slope(state, u, y);
+        return -1;
+    }
+    return moves;
+}
+
+static int learn(const hyst_radius *radius, const hyst_radius_layout *at, hyst_real *state,
+                 hyst_real u, hyst_real y)
+{
+    const size_t n = radius->plays;
+    hyst_real *phi = state + at->scratch;
+    hyst_real *r = phi + n;
+    /* Within the dead band behind the farthest input nobody knows yet whether plays have left their
+     * envelopes. */
+    const hyst_real ahead = (u - state[HYST_RADIUS_EXTREME]) * state[HYST_RADIUS_DIRECTION];
+    if (n == 0u || state[HYST_RADIUS_REGIME] < ZERO || ahead < ZERO) {
         return 0;
     }
-    const hyst_real error = regress(radius, &at, state, u, y, phi);
+    const hyst_real error = regress(radius, at, state, u, y, phi);
     if (radius->least_squares) {
-        least_squares(radius, &at, state, phi, error, r);
+        least_squares(radius, at, state, phi, error, r);
     } else {
-        descend(radius, &at, state, phi, error, r);
+        descend(radius, at, state, phi, error, r);
     }
-    hyst_real sum = error;
+    hyst_real sum = error * error;
     for (size_t i = 0; i < n; ++i) {
         sum += r[i];
     }
@@ -211,14 +270,91 @@ int hyst_radius_step(const hyst_radius *radius, hyst_real *state, hyst_real u, h
     /* Least squares goes on from where it was: its estimate of each radius takes the others' into
      * account, which a projection of some of them would undo. The gradient is projected itself. */
     for (size_t i = 0; i < n; ++i) {
-        state[at.free + i] = state[at.r + i] = r[i];
+        state[at->free + i] = state[at->r + i] = r[i];
     }
-    hyst_isotonic_weighted(n, state + at.r, radius->least_squares ? NULL : radius->gain, ZERO,
+    hyst_isotonic_weighted(n, state + at->r, radius->least_squares ? NULL : radius->gain, ZERO,
                            radius->most_radius);
     for (size_t i = 0; i < n && !radius->least_squares; ++i) {
-        state[at.free + i] = state[at.r + i];
+        state[at->free + i] = state[at->r + i];
     }
-    state[HYST_RADIUS_ERROR] = error;
     state[HYST_RADIUS_UPDATES] += ONE;
+    const hyst_real share = state[HYST_RADIUS_UPDATES] < ERRORS ? ONE / state[HYST_RADIUS_UPDATES]
+                                                                : ONE / ERRORS;
+    state[HYST_RADIUS_SQUARES] += share * (error * error - state[HYST_RADIUS_SQUARES]);
+    state[HYST_RADIUS_PRODUCTS] +=
+        share * (error * state[HYST_RADIUS_ERROR] - state[HYST_RADIUS_PRODUCTS]);
+    state[HYST_RADIUS_ERROR] = error;
     return 1;
+}
+
+int hyst_radius_step(const hyst_radius *radius, hyst_real *state, hyst_real u, hyst_real y)
+{
+    const hyst_radius_layout at = hyst_radius_places(radius);
+    const int moves = advance(radius, &at, state, u, y);
+    if (moves < 0) {
+        return 0;
+    }
+    /* While the input rests the regime is what it was. */
+    if (moves) {
+        const int has_slope = filter_slope(radius, state, u, y);
+        enter_regime(state, has_slope ? regime_of_slope(radius, state[HYST_RADIUS_SLOPE]) : -ONE);
+    }
+    return learn(radius, &at, state, u, y);
+}
+
+int hyst_radius_step_told(const hyst_radius *radius, hyst_real *state, hyst_real u, hyst_real y,
+                          int is_slope, hyst_real told)
+{
+    const hyst_radius_layout at = hyst_radius_places(radius);
+    const int moves = advance(radius, &at, state, u, y);
+    if (moves < 0) {
+        return 0;
+    }
+    if (moves) {
+        (void)filter_slope(radius, state, u, y);
+    }
+    if (hyst_is_finite(told)) {
+        if (is_slope) {
+            state[HYST_RADIUS_SLOPE] = told;
+            told = radius->plays > 0u ? regime_of_slope(radius, told) : -ONE;
+        } else {
+            told = told >= ZERO && told <= (hyst_real)radius->plays ? told : -ONE;
+        }
+        take_regime(radius, state, told);
+    } else if (moves) {
+        state[HYST_RADIUS_REGIME] = -ONE;
+    }
+    const int used = learn(radius, &at, state, u, y);
+    state[HYST_RADIUS_TOLD] += used ? ONE : ZERO;
+    return used;
+}
+
+void hyst_radius_follow(const hyst_radius *radius, hyst_real *state, hyst_real u)
+{
+    const hyst_radius_layout at = hyst_radius_places(radius);
+    if (!hyst_is_finite(HYST_REAL(1e10) * (u * u))) {
+        state[HYST_RADIUS_SKIPPED] += ONE;
+        return;
+    }
+    if (!(state[HYST_RADIUS_STARTED] > ZERO)) {
+        begin_input(radius, &at, state, u);
+    }
+    state[HYST_RADIUS_STARTED] = HYST_REAL(2.0);
+    state[HYST_RADIUS_REGIME] = -ONE;
+    if (!(u < state[HYST_RADIUS_INPUT] || u > state[HYST_RADIUS_INPUT])) {
+        return;
+    }
+    follow_input(radius, &at, state, u, ZERO);
+    state[HYST_RADIUS_INPUT] = u;
+    const hyst_real s = state[HYST_RADIUS_DIRECTION];
+    for (size_t i = 0; i < radius->plays; ++i) {
+        const hyst_real r = state[at.r + i];
+        const hyst_real way = s * (u - state[at.home + i]) - s * state[at.side + i] * r;
+        if (way < r || !(s > ZERO || s < ZERO)) {
+            break;
+        }
+        if ((hyst_real)(i + 1u) > state[HYST_RADIUS_MOST]) {
+            state[HYST_RADIUS_MOST] = (hyst_real)(i + 1u);
+        }
+    }
 }

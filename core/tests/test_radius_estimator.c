@@ -99,8 +99,68 @@ static void no_plays_are_no_trouble(void)
     CHECK(hyst_radius_step(&radius, state, R(0.5), R(0.5)) == 0);
 }
 
+/* The plant of the first test with an output that noise has moved, so that the measured slope would be
+ * wrong at every sample; the regimes of the plant are told.
+ *   u  y    regime    z of the estimate  e      r
+ *   0  0    (first sample)
+ *   4  2    envelope  4 - 3 = 1          1      2.75    (measured slope 0.5: between two)
+ *   6  6    envelope  6 - 2.75           2.75   2.0625  (2)
+ *   5  6    interior  6 - 2.0625         2.0625 1.546875 (0)
+ *   5  5    at rest, unknown: as it was, z = 6 - 1.546875, e = .546875, r = 1.41015625
+ *   4  9    unknown: not used */
+static void a_regime_from_outside_takes_the_place_of_the_slope(void)
+{
+    const hyst_real u[] = {R(0.0), R(4.0), R(6.0), R(5.0), R(5.0), R(4.0)};
+    const hyst_real y[] = {R(0.0), R(2.0), R(6.0), R(6.0), R(5.0), R(9.0)};
+    const hyst_real told[] = {R(0.0), R(1.0), R(1.0), R(0.0), (hyst_real)NAN, (hyst_real)NAN};
+    const hyst_real r[] = {R(3.0), R(2.75), R(2.0625), R(1.546875), R(1.41015625), R(1.41015625)};
+    for (int is_slope = 0; is_slope < 2; ++is_slope) {
+        const hyst_radius radius = one_play(0);
+        const hyst_radius_layout at = hyst_radius_places(&radius);
+        hyst_real state[64] = {R(0.0)};
+        const hyst_real z0[] = {R(0.0)};
+        state[at.r] = R(3.0);
+        hyst_radius_start(&radius, state, z0);
+        for (size_t k = 0; k < COUNT(u); ++k) {
+            /* The slope of the plant is as many units as plays are on their envelopes. */
+            const int used = hyst_radius_step_told(&radius, state, u[k], y[k], is_slope, told[k]);
+            CHECK(used == (k > 0 && k < 5));
+            CHECK_EQUAL(state[at.r], r[k]);
+        }
+        /* More plays than there are, and fewer than none, are no regime. */
+        CHECK(hyst_radius_step_told(&radius, state, R(2.0), R(3.0), 0, R(2.0)) == 0);
+        CHECK(hyst_radius_step_told(&radius, state, R(1.0), R(2.0), 0, R(-1.0)) == 0);
+    }
+}
+
+/* Up to 6 and back to 5 unmeasured, with a radius of 1: on the envelope, then inside with u_m = 6 and
+ * z = 5. The first output only begins the slope; the next are 0 apart, so the play is inside. */
+static void inputs_without_outputs_are_followed(void)
+{
+    const hyst_radius radius = one_play(0);
+    const hyst_radius_layout at = hyst_radius_places(&radius);
+    hyst_real state[64] = {R(0.0)};
+    const hyst_real z0[] = {R(0.0)};
+    state[at.r] = R(1.0);
+    hyst_radius_start(&radius, state, z0);
+    hyst_radius_follow(&radius, state, R(0.0));
+    hyst_radius_follow(&radius, state, R(6.0));
+    hyst_radius_follow(&radius, state, R(5.0));
+    hyst_radius_follow(&radius, state, (hyst_real)NAN);
+    CHECK_EQUAL(state[HYST_RADIUS_SKIPPED], R(1.0));
+    CHECK_EQUAL(state[at.home], R(6.0));
+    CHECK_EQUAL(state[at.side], R(-1.0));
+    CHECK(hyst_radius_step(&radius, state, R(4.5), R(5.0)) == 0);
+    CHECK(hyst_radius_step(&radius, state, R(4.25), R(5.0)) == 1);
+    CHECK_EQUAL(state[HYST_RADIUS_ERROR], R(0.0));
+    CHECK(hyst_radius_step(&radius, state, R(4.125), R(5.0)) == 1);
+    CHECK_EQUAL(state[at.r], R(1.0));
+}
+
 int main(void)
 {
+    a_regime_from_outside_takes_the_place_of_the_slope();
+    inputs_without_outputs_are_followed();
     no_plays_are_no_trouble();
     gradient_follows_hand_calculation();
     least_squares_follows_hand_calculation();

@@ -26,7 +26,8 @@
     HYST_PASS(name)                                                                            \
     HYST_WIDER(name)                                                                           \
     namespace name {                                                                           \
-    void run_columns(const Said &said, const double *state, const Columns &columns, Pass run); \
+    void run_columns(const Said &said, const Remembered &memory, const double *start,          \
+                     const Columns &columns, Pass run);                                        \
     }
 
 namespace hyst {
@@ -39,7 +40,7 @@ namespace {
 
 struct Width {
     std::size_t tangents;
-    void (*run_columns)(const Said &, const double *, const Columns &, Pass);
+    void (*run_columns)(const Said &, const Remembered &, const double *, const Columns &, Pass);
     Pass avx512, avx2, baseline;
 
     Pass in_use() const {
@@ -102,15 +103,18 @@ double core_fallen(double n, double ratio, double tilt, double from, double way)
     return hyst_bouc_wen_fallen(n, ratio, tilt, from, way);
 }
 
-void kernel_jacobian(const Said &said, const double *state, const Tangents &t) {
+void kernel_jacobian(const Said &said, const Remembered &memory, std::size_t length,
+                     const Tangents &t) {
     const std::size_t columns = t.incoming + said.constants.size();
     std::vector<double> y(t.samples);
+    // Every group of columns starts from here, while the memory goes on.
+    const std::vector<double> start(memory.state, memory.state + length);
     std::size_t first = 0;
     do {
         const Width &width = width_for(columns - first);
         const std::size_t count = std::min(width.tangents, columns - first);
         const Columns at{t.signal, y.data(), t.rows, t.samples, t.stride, t.incoming, first, count};
-        width.run_columns(said, state, at, width.in_use());
+        width.run_columns(said, memory, start.data(), at, width.in_use());
         first += count;
     } while (first < columns);
     std::copy(y.begin(), y.end(), t.signal);

@@ -34,6 +34,15 @@ struct Columns {
 // Runs a stage over a record: the place of its kind, its structure, its state.
 using Pass = void (*)(std::size_t kind, const void *model, void *state, const Columns &columns);
 
-void kernel_jacobian(const Said &said, const double *state, const Tangents &tangents);
+// The memory of a stage with its derivatives by the columns of the record, a row of `stride` numbers
+// for each entry. Without tangents it depends on none, and is left as it is.
+struct Remembered {
+    double *state;
+    double *tangents;
+    std::size_t stride;
+};
+
+void kernel_jacobian(const Said &said, const Remembered &memory, std::size_t length,
+                     const Tangents &tangents);
 
 }  // namespace hyst

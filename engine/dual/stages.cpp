@@ -21,8 +21,9 @@ static Given given_of(const Said &said)
     return given;
 }
 
-// Runs columns `at` of the Jacobian of the stage that is said.
-void run_columns(const Said &said, const double *state, const Columns &at, Pass run) {
+// Runs columns `at` of the Jacobian of the stage that is said, from the memory `start`.
+void run_columns(const Said &said, const Remembered &memory, const double *start, const Columns &at,
+                 Pass run) {
     Given given = given_of(said);
     for (std::size_t c = 0; c < at.count; ++c) {
         if (at.first + c < at.incoming) continue;
@@ -33,10 +34,18 @@ void run_columns(const Said &said, const double *state, const Columns &at, Pass 
     const Kind &kind = *kind_named(said.kind);
     const void *model = build(kind, given, made);
     const std::size_t length = kind.core->length(model);
-    std::vector<hyst_real> memory(state, state + length);
+    std::vector<hyst_real> state(start, start + length);
+    const auto own = [&](std::size_t i) { return memory.tangents + i * memory.stride + at.first; };
+    for (std::size_t i = 0; memory.tangents != nullptr && i < length; ++i) {
+        load(state[i].d, own(i), at.count);
+    }
     std::size_t place = 0;
     while (core_kinds[place] != kind.core) ++place;
-    run(place, model, memory.data(), at);
+    run(place, model, state.data(), at);
+    for (std::size_t i = 0; memory.tangents != nullptr && i < length; ++i) {
+        store(own(i), state[i].d, at.count);
+        memory.state[i] = state[i].v;
+    }
 }
 
 }  // namespace HYST_KINDS

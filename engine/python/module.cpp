@@ -20,6 +20,7 @@
 #include "online_binding.hpp"
 #include "../parallel.hpp"
 #include "rate_dependent_binding.hpp"
+#include "repetitive_binding.hpp"
 #include "../simd/kernels.hpp"
 #include "stepper.hpp"
 
@@ -153,6 +154,19 @@ void jacobian(const hyst::Chain &chain, Vector state, Signal u, Matrix result,
     hyst::jacobian(chain, state.data(), u.data(), u.shape(0), way, result.data());
 }
 
+void carry_jacobian(const hyst::Chain &chain, Vector state, Matrix memory, Vector signal,
+                    Matrix result) {
+    const std::size_t columns = chain.parameter_count();
+    require(state.shape(0) == chain.state_length(), "state has the wrong length");
+    require(memory.shape(0) == state.shape(0) && memory.shape(1) == columns,
+            "the derivatives of the state have the wrong shape");
+    require(result.shape(0) == signal.shape(0) && result.shape(1) == columns,
+            "the Jacobian has the wrong shape");
+    const nb::gil_scoped_release released;
+    hyst::carry_jacobian(chain, state.data(), memory.data(), signal.data(), signal.shape(0),
+                         result.data());
+}
+
 // Plays whose thresholds are given for every sample: row k of r.
 void run_with_thresholds(double p0, const std::vector<double> &p, Rows r, Vector z, Signal u,
                          Vector y) {
@@ -214,7 +228,10 @@ NB_MODULE(_engine, module) {
              nb::arg("u").noconvert(), nb::arg("target").noconvert(),
              nb::arg("gradient").noconvert(), nb::arg("engine") = "auto", nb::arg("threads") = 1)
         .def("jacobian", &jacobian, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
-             nb::arg("result").noconvert(), nb::arg("derivative") = "auto");
+             nb::arg("result").noconvert(), nb::arg("derivative") = "auto")
+        .def("carry_jacobian", &carry_jacobian, nb::arg("state").noconvert(),
+             nb::arg("memory").noconvert(), nb::arg("signal").noconvert(),
+             nb::arg("result").noconvert());
     module.def("play_gram", &gram, nb::arg("r"), nb::arg("z").noconvert(),
                nb::arg("u").noconvert(), nb::arg("y").noconvert(), nb::arg("edges"),
                nb::arg("result").noconvert());
@@ -232,6 +249,7 @@ NB_MODULE(_engine, module) {
     module.def("use_instruction_set", &use_instruction_set, nb::arg("name"));
     module.def("stepper", &stepper, nb::arg("chain"), nb::arg("state"), nb::arg("y_safe"));
     hyst::bind_closed_loop(module);
+    hyst::bind_repetitive(module);
     hyst::bind_moving(module);
     hyst::bind_online_estimation(module);
     hyst::bind_rate_dependent_inversion(module);

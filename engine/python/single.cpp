@@ -64,11 +64,15 @@ public:
             } else if (name == "anti_windup") {
                 controls_.push_back(rounded(each));
                 limited_.w = controls_.back().table("w");
+            } else if (name == "repetitive_memory" || name == "repetitive_learning") {
+                controls_.push_back(rounded(each));
+                remember(controls_.back(), name == "repetitive_learning");
             } else {
                 add_stage(hyst::kinds::known_kind(name), rounded(each));
             }
         }
         for (const hyst_stage &each : stages_) length += hyst_stage_state_length(&each);
+        if (is_repetitive_) length += hyst_repetitive_memory_length(&memory_);
         if (length != state_.size()) throw std::invalid_argument("start has the wrong length");
         controller_.inverse = {stages_.size(), stages_.data()};
         if (is_limited_) limit(forward);
@@ -83,13 +87,22 @@ public:
     }
     double step_controller(double y_ref, double y) {
         if (!has_two_inputs_) throw std::invalid_argument("this block takes u");
+        const float reference = static_cast<float>(y_ref), output = static_cast<float>(y);
+        if (is_repetitive_ && is_limited_) {
+            return hyst_limited_repetitive_step(&memory_, &limited_.inverse, state_.data(),
+                                                before_.data(), &limited_guard_, reference, output,
+                                                &v_, &changed_);
+        }
+        if (is_repetitive_) {
+            return hyst_repetitive_step(&memory_, &controller_.inverse, state_.data(), &guard_,
+                                        reference, output, &v_, &changed_);
+        }
         if (is_limited_) {
             return hyst_limited_tracking_step(&limited_, state_.data(), before_.data(),
-                                              &limited_guard_, static_cast<float>(y_ref),
-                                              static_cast<float>(y), &v_, &excess_);
+                                              &limited_guard_, reference, output, &v_, &excess_);
         }
         return hyst_guarded_tracking_step(&controller_, state_.data(), &guard_,
-                                          static_cast<float>(y_ref), static_cast<float>(y));
+                                          reference, output);
     }
     std::vector<double> state() const { return {state_.begin(), state_.end()}; }
     bool fault() const { return guard_.fault != 0 || limited_guard_.guard.fault != 0; }
@@ -121,6 +134,23 @@ private:
         has_two_inputs_ = true;
     }
 
+    // The memory of a period comes in two parts, each with the filter that it needs.
+    void remember(const hyst::kinds::Constants &of, bool learns) {
+        memory_.period = of.choice("period");
+        memory_.half = of.choice("half");
+        memory_.lead = of.choice("lead");
+        memory_.taps = of.choice("taps");
+        memory_.wait = of.choice("wait");
+        memory_.compares = static_cast<int>(of.choice("compares"));
+        if (learns) {
+            memory_.learn = of.table("learn");
+        } else {
+            memory_.tolerance = of.number("tolerance");
+            memory_.smooth = of.table("smooth");
+        }
+        has_two_inputs_ = is_repetitive_ = true;
+    }
+
     // The last stages before one that says how many are inside it are those.
     void add_stage(const hyst::kinds::Kind &kind, hyst::kinds::Constants constants) {
         const std::size_t inside = constants.has_choice("inside") ? constants.choice("inside") : 0;
@@ -143,7 +173,9 @@ private:
     hyst_tracking_controller controller_{};
     hyst_guard guard_{};
     bool has_two_inputs_ = false;
-    bool is_limited_ = false;
+    bool is_limited_ = false, is_repetitive_ = false;
+    hyst_repetitive_memory memory_{};
+    int changed_ = 0;
     hyst_limited_tracking limited_{};
     hyst_limited_guard limited_guard_{};
     std::vector<float> before_;

@@ -9,7 +9,7 @@ from hyst.errors import InputError
 from hyst.operators.description import ModelDescription
 from hyst.operators.model_file import ESTIMATOR, read_file
 
-_TWO_INPUTS = "tracking-controller"
+_TWO_INPUTS = ("tracking-controller", "repetitive-controller")
 
 
 def load(path: str | os.PathLike[str]) -> Any:
@@ -22,7 +22,8 @@ def load(path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    Operator, Scheduled, TrackingController, JointEstimator, RadiusEstimator or AdaptiveInverse
+    Operator, Scheduled, TrackingController, RepetitiveController, or an estimator of hyst.online or
+    its AdaptiveInverse
         Equal to the one saved, every double exact; an estimator goes on with the same bits. What
         its numbers mean is its ``description``.
 
@@ -53,10 +54,11 @@ def load(path: str | os.PathLike[str]) -> Any:
 
 
 def _model(data: Any) -> Any:
-    if isinstance(data, dict) and data.get("kind") == _TWO_INPUTS:
-        from hyst.control import TrackingController
+    if isinstance(data, dict) and data.get("kind") in _TWO_INPUTS:
+        from hyst.control import RepetitiveController, TrackingController
 
-        return TrackingController.from_dict(data)
+        is_tracking = data["kind"] == _TWO_INPUTS[0]
+        return (TrackingController if is_tracking else RepetitiveController).from_dict(data)
     import hyst.models  # from here on its classes are known
     from hyst.operators import operator_from_dict
 
@@ -66,12 +68,11 @@ def _model(data: Any) -> Any:
 
 
 def _estimator(content: dict[str, Any], about: ModelDescription) -> Any:
-    from hyst.online import AdaptiveInverse, JointEstimator, RadiusEstimator
-    from hyst.online.estimator_file import restored
+    # With the package all its kinds are known, and the models that it starts from.
+    from hyst.online.estimator_file import Saved, restored
 
-    classes = (AdaptiveInverse, JointEstimator, RadiusEstimator)
     try:
-        kind = {each.kind: each for each in classes}[content["kind"]]
+        kind = Saved.kinds[content["kind"]]
         return restored(kind, content["settings"], content["state"], about)
     except InputError:
         raise

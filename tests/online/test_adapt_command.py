@@ -10,7 +10,6 @@ import pytest
 
 import hyst
 from hyst.cli import main
-from hyst.studies import s2_adaptive_radii
 from online.plants import P, R
 
 TRUTH = hyst.Affine(1.0, 2.0) @ hyst.PrandtlIshlinskii(P, R, 0.3)
@@ -72,19 +71,11 @@ def test_bad_input_is_one_sentence(
     files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert adapt(files, tmp_path / "out", "--resume", str(files[0])) == 2
-    assert "holds no joint estimator" in capsys.readouterr().err
+    assert "holds no estimator" in capsys.readouterr().err
     # An estimator brings its own options, so others would be dropped unsaid.
     assert adapt(files, tmp_path / "out", "--resume", str(files[0]), "--memory", "2") == 2
     assert "leave out --memory" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
-
-
-def test_measured_piezo(measured_data: Path) -> None:
-    table = s2_adaptive_radii._piezo(measured_data / "piezo-dbo" / "Model_Vi_Do.dat")
-    rms = {row[0]: float(row[1]) for row in table.rows}
-    # The paper's claim: four plays of estimated radii do better than more plays of fixed ones.
-    assert rms["all by the joint estimator"] < rms["fixed radii, n = 7"]
-    assert rms["slopes by segmentation, n = 4"] < rms["fixed radii, n = 4"]
 
 
 def test_no_rival_disturbs_the_estimate_on_a_measured_piezo(measured_data: Path) -> None:

@@ -164,7 +164,7 @@ def test_an_estimate_in_doubt_does_not_become_the_last_good_model() -> None:
 def test_arguments_that_make_no_sense(options: dict[str, Any], message: str) -> None:
     with pytest.raises(hyst.InputError, match=message):
         AdaptiveInverse(JointEstimator(hyst.PrandtlIshlinskii(P, R, P0)), **options)
-    with pytest.raises(hyst.InputError, match="give a JointEstimator"):
+    with pytest.raises(hyst.InputError, match="give a JointEstimator, a ScaleEstimator"):
         AdaptiveInverse(5, window=1.0)  # type: ignore[arg-type]
 
 

@@ -9,7 +9,7 @@ from hyst.compensation import error_bound
 from hyst.control import closed_loop_poles, compare_inverses
 from hyst.operators import Affine
 from hyst.report.table import Table
-from hyst.studies import keys
+from hyst.studies import keys, study
 from hyst.studies import s1_robust_tracking as s1
 
 
@@ -41,6 +41,8 @@ def column(table: Table, index: int) -> dict[str, float]:
 
 def test_it_is_one_of_the_studies() -> None:
     assert "s1" in keys()
+    # Every key leads to a module that is a study, whatever else is named after a source.
+    assert all(study(key).title for key in keys())
 
 
 def test_inverse_constants() -> None:

@@ -15,7 +15,8 @@
  * the factor `memory` per sample; memory 0 gives the plain difference of two samples. A reversal
  * counts once u has gone back by more than dead_band. Nothing is estimated during the first
  * dead_time samples after one, nor while the slope is farther from every slope of the model than
- * `tolerance` of the way to half the distance between two.
+ * `tolerance` of the way to half the distance between two. Noise makes that regime wrong; whoever
+ * knows the slope or the regime better tells it (hyst_radius_step_told).
  *
  * Operations of one step: gradient 20 n + 40 of + - * and compare, 2 divisions, and the projection;
  * least squares 3.5 n^2 + 15 n more. */
@@ -50,7 +51,10 @@ enum {
     HYST_RADIUS_REGIME,  /* plays on their envelopes, or -1 if the slope fits no regime */
     HYST_RADIUS_UPDATES, /* samples used */
     HYST_RADIUS_SKIPPED, /* samples not finite, too large to be squared, or leading to an overflow */
-    HYST_RADIUS_STARTED,
+    HYST_RADIUS_SQUARES, /* means of the last 150 squared errors, and of their products with the */
+    HYST_RADIUS_PRODUCTS, /* error before each */
+    HYST_RADIUS_TOLD,    /* samples used whose regime came from outside */
+    HYST_RADIUS_STARTED, /* 0: no sample yet, 1: yes, 2: but the last output is not known */
     HYST_RADIUS_INPUT,     /* last input */
     HYST_RADIUS_DIRECTION, /* s */
     HYST_RADIUS_EXTREME,   /* farthest input since the last reversal, and the output there */
@@ -80,6 +84,16 @@ void hyst_radius_start(const hyst_radius *radius, hyst_real *state, const hyst_r
 
 /* One sample; 1 if it was used, 0 if it was not. */
 int hyst_radius_step(const hyst_radius *radius, hyst_real *state, hyst_real u, hyst_real y);
+
+/* One sample whose regime does not come from the measured slope. Where is_slope it comes from the
+ * slope `told` by somebody who measures it better, else `told` is the number of plays on their
+ * envelopes itself, 0 to plays. NaN: unknown, then the sample is used only if the input rests. The
+ * slope filter goes on, so that told and measured samples may follow each other. */
+int hyst_radius_step_told(const hyst_radius *radius, hyst_real *state, hyst_real u, hyst_real y,
+                          int is_slope, hyst_real told);
+
+/* An input whose output was not measured: plays follow it with the radii they have. */
+void hyst_radius_follow(const hyst_radius *radius, hyst_real *state, hyst_real u);
 
 #ifdef HYST_EXTERN_C
 }

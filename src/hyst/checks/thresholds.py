@@ -71,3 +71,33 @@ def as_weights_and_thresholds(p: ArrayLike, r: ArrayLike) -> tuple[Array, Array]
             f"p has {weights.size} entries but r has {thresholds.size}; give one p for each r"
         )
     return weights, thresholds
+
+
+def require_memory(z0: NDArray[np.float64], r: NDArray[np.float64]) -> None:
+    """Refuse play outputs that no input leaves.
+
+    Parameters
+    ----------
+    z0, r
+        Shape (n,), play outputs and thresholds.
+
+    Raises
+    ------
+    InputError
+        If they are not as many, or neighbours are further apart than their thresholds.
+
+    Examples
+    --------
+    >>> require_memory(np.array([0.0, 0.5]), np.array([1.0, 2.0]))
+    """
+    if z0.size != r.size:
+        raise InputError(f"z0 has {z0.size} entries; give one for each of {r.size} plays")
+    # What rounding may add to a memory that an earlier run has left.
+    slack = 1e-12 * (np.abs(z0).max(initial=0.0) + np.abs(r).max(initial=0.0))
+    apart = np.flatnonzero(np.abs(np.diff(z0)) > np.diff(r) + slack)
+    if apart.size:
+        i = int(apart[0])
+        raise InputError(
+            f"z0[{i}] and z0[{i + 1}] differ by {abs(z0[i + 1] - z0[i]):.6g}, their thresholds by "
+            f"{r[i + 1] - r[i]:.6g} only; no input leaves such a memory"
+        )

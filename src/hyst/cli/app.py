@@ -11,7 +11,7 @@ import typer
 
 import hyst
 from hyst._typed_command import carrying_out
-from hyst.cli.adapt import adapt
+from hyst.cli.adapt.command import adapt
 from hyst.cli.columns import columns
 from hyst.cli.compare import compare
 from hyst.cli.compensate import compensate
@@ -24,10 +24,12 @@ from hyst.cli.family_options import FamilyCommand
 from hyst.cli.fit import fit
 from hyst.cli.identify import identify
 from hyst.cli.info import info
+from hyst.cli.learn.command import learn
 from hyst.cli.loop import loop
 from hyst.cli.observer.command import observer
 from hyst.cli.reproduce import reproduce
 from hyst.cli.simulate import simulate
+from hyst.cli.watch.command import watch
 
 app = typer.Typer(
     add_completion=False,
@@ -45,9 +47,11 @@ VERBS = (
     fit,
     compare,
     adapt,
+    watch,
     simulate,
     loop,
     compensate,
+    learn,
     observer,
     export,
     info,

@@ -13,19 +13,15 @@ import typer
 import hyst
 from hyst.cli.console import note
 
-InputColumn = Annotated[
-    str,
-    typer.Option(
-        "--input",
-        metavar="COL",
-        show_default=False,
-        help="Column of the input: name or index from 0.",
-    ),
-]
-OutputColumn = Annotated[
-    str,
-    typer.Option("--output", metavar="COL", show_default=False, help="Column of the output."),
-]
+_INPUT = typer.Option(
+    "--input",
+    metavar="COL",
+    show_default=False,
+    help="Column of the input: name or index from 0.",
+)
+_OUTPUT = typer.Option("--output", metavar="COL", show_default=False, help="Column of the output.")
+InputColumn = Annotated[str, _INPUT]
+OutputColumn = Annotated[str, _OUTPUT]
 Rate = Annotated[
     float | None, typer.Option(metavar="HZ", show_default=False, help="Samples per second.")
 ]
@@ -138,6 +134,7 @@ _OF_A_FILE: dict[str, tuple[Any, Any]] = {
     "file_format": (FileFormat, None),
     "max_samples": (MaxSamples, _MOST_SAMPLES),
 }
+# Of repetitions of a motion, of which there are none before the first.
 _CALLED = {"input_column": "input", "output_column": "output", "file_format": "format"}
 
 Verb = Callable[..., Any]
@@ -145,26 +142,45 @@ Verb = Callable[..., Any]
 
 def reads_records(verb: Verb) -> Verb:
     """Give a verb the options of reading records; it gets them as ``how``, for ``read_told``."""
-    return _with_options(verb, _OF_A_RECORD)
+    return with_options(verb, _OF_A_RECORD)
+
+
+def may_read_records(verb: Verb) -> Verb:
+    """Give a verb the same options where files may be left out, and so their columns too."""
+    columns = {
+        "input_column": (Annotated[str | None, _INPUT], None),
+        "output_column": (Annotated[str | None, _OUTPUT], None),
+    }
+    return with_options(verb, _OF_A_RECORD | columns)
 
 
 def reads_columns(verb: Verb) -> Verb:
     """Give a verb the options of reading single columns, as ``how`` for ``hyst.io.read_column``."""
-    return _with_options(verb, _OF_A_FILE)
+    return with_options(verb, _OF_A_FILE)
 
 
-def _with_options(verb: Verb, options: dict[str, tuple[Any, Any]]) -> Verb:
-    """Put options in the place of the parameter ``how`` of a verb."""
+def with_options(verb: Verb, options: dict[str, tuple[Any, Any]], parameter: str = _HOW) -> Verb:
+    """Put options in the place of a parameter of a verb, which gets them as a dictionary.
+
+    Parameters
+    ----------
+    verb
+        To be told.
+    options
+        Annotation and default by name.
+    parameter
+        Whose place they take.
+    """
     hints = get_type_hints(verb, include_extras=True)
 
     @functools.wraps(verb)
     def told(**values: Any) -> Any:
-        how = {_CALLED.get(name, name): values.pop(name) for name in options}
-        return verb(**values, how=how)
+        taken = {_CALLED.get(name, name): values.pop(name) for name in options}
+        return verb(**values, **{parameter: taken})
 
     parameters = []
     for name, each in inspect.signature(verb).parameters.items():
-        if name == _HOW:
+        if name == parameter:
             parameters += [_option(*option) for option in options.items()]
         else:
             parameters.append(each.replace(annotation=hints[name], kind=each.KEYWORD_ONLY))

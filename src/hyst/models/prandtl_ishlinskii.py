@@ -15,6 +15,7 @@ from hyst.checks.thresholds import as_weights_and_thresholds
 from hyst.errors import InputError, NotInvertibleError
 from hyst.operators.base import Operator
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
+from hyst.operators.inequalities import Inequalities, of_plays
 from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
 from hyst.operators.portrait import Portrait
 from hyst.operators.registry import entries, register
@@ -146,6 +147,10 @@ class PrandtlIshlinskii(Operator):
     def parameters(self) -> Parameters:
         """Give p0, the weights, then the thresholds."""
         return parameters_of_plays(self.p0, self.p, self.r)
+
+    def inequalities(self) -> Inequalities:
+        """Give radii that do not fall and cumulative weights above 0."""
+        return of_plays(self.p0, self.p)
 
     def nearest_parameters(self, theta: Array) -> Array:
         """Give the vector with radii that do not fall."""

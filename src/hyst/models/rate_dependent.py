@@ -11,13 +11,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.arrays import as_constants, one_record, refuse_overflow
 from hyst.checks.numbers import as_number, as_sample_time
-from hyst.checks.thresholds import as_weights_and_thresholds
-from hyst.errors import InputError, NotInvertibleError
+from hyst.checks.thresholds import as_weights_and_thresholds, require_memory
+from hyst.errors import NotInvertibleError
 from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii
 from hyst.models.rate_curve import RateCurve
 from hyst.models.rate_preview import MOST_PLANNED, RateDependentPreview
 from hyst.operators.base import Operator
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
+from hyst.operators.inequalities import Inequalities, of_bounds, of_plays, side_by_side
 from hyst.operators.parameters import Parameters, as_parameter_vector, parameters_of_plays
 from hyst.operators.portrait import Portrait
 from hyst.operators.registry import delayed, entries, register
@@ -96,7 +97,7 @@ class RateDependentPrandtlIshlinskii(Operator):
         weights, thresholds = as_weights_and_thresholds(p, r)
         curve = beta if isinstance(beta, RateCurve) else RateCurve(beta)
         memory = as_constants(np.zeros(weights.size) if z0 is None else z0, "z0")
-        _require_memory(memory, thresholds)
+        require_memory(memory, thresholds)
         object.__setattr__(self, "p", weights)
         object.__setattr__(self, "r", thresholds)
         object.__setattr__(self, "beta", curve.beta)
@@ -276,6 +277,14 @@ class RateDependentPrandtlIshlinskii(Operator):
             weights, thresholds, self.rate_curve.scaled(self.p0), self.dt, float(g0), memory
         )
 
+    def causal_inverse(self, state: Array) -> tuple[Operator, Array]:
+        """Give the explicit inverse and its memory: that of the distances, and the last output."""
+        inverse, n = self.explicit_inverse(), self.p.size
+        z, slopes = state[:n], cumulative(self.p0, self.p)[1:]
+        beyond = np.cumsum((self.p * z)[::-1])[::-1] - self.p * z
+        last = self.p0 * state[n] + float(self.p @ z)
+        return inverse, np.concatenate([slopes * z + beyond, [last, state[n + 1]]])
+
     def parameters(self) -> Parameters:
         """Give p0, the weights, the thresholds, then beta and what else the rate curve has."""
         plays = parameters_of_plays(self.p0, self.p, self.r)
@@ -286,6 +295,12 @@ class RateDependentPrandtlIshlinskii(Operator):
             lower=np.concatenate([plays.lower, rate.lower]),
             upper=np.concatenate([plays.upper, rate.upper]),
         )
+
+    def inequalities(self) -> Inequalities:
+        """Give radii that do not fall, cumulative weights above 0, and the rate curve's bounds."""
+        rate = self.rate_curve.parameters()
+        plays = of_plays(self.p0, self.p)
+        return side_by_side([plays, of_bounds(rate)])
 
     def nearest_parameters(self, theta: Array) -> Array:
         """Give the vector with radii that do not fall."""
@@ -375,18 +390,4 @@ class RateDependentPrandtlIshlinskii(Operator):
                 choices={"plays": self.p.size, "powers": curve.powers.size},
                 dt=self.dt,
             ),
-        )
-
-
-def _require_memory(z0: Array, r: Array) -> None:
-    if z0.size != r.size:
-        raise InputError(f"z0 has {z0.size} entries; give one for each of {r.size} plays")
-    # What rounding may add to a memory that an earlier run has left.
-    slack = 1e-12 * (np.abs(z0).max(initial=0.0) + np.abs(r).max(initial=0.0))
-    apart = np.flatnonzero(np.abs(np.diff(z0)) > np.diff(r) + slack)
-    if apart.size:
-        i = int(apart[0])
-        raise InputError(
-            f"z0[{i}] and z0[{i + 1}] differ by {abs(z0[i + 1] - z0[i]):.6g}, their thresholds by "
-            f"{r[i + 1] - r[i]:.6g} only; no input leaves such a memory"
         )

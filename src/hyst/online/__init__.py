@@ -1,23 +1,36 @@
-"""Estimation of hysteresis while it runs: radii, all constants, and the inverse with them."""
+"""Estimation of hysteresis while it runs: scale, radii, all constants, and the inverse."""
 
 from __future__ import annotations
 
-from hyst.online.joint.adaptive_inverse import AdaptiveInverse
+from hyst.online.adaptive_inverse import AdaptiveInverse
+from hyst.online.choice import ESTIMATORS, estimator_for
+from hyst.online.estimator import Estimator
 from hyst.online.joint.excitation import Excitation, PlayExcitation
 from hyst.online.joint.innovation import Innovation
 from hyst.online.joint.joint_estimator import JointEstimator
 from hyst.online.joint.parts import units_of_plays
-from hyst.online.radius_estimator import RadiusEstimator
+from hyst.online.knowledge import Knowledge
+from hyst.online.model.model_estimator import ModelEstimator
+from hyst.online.radius.radius_estimator import RadiusEstimator
+from hyst.online.radius.start import radius_estimator_for
+from hyst.online.scale.scale_estimator import ScaleEstimator
 from hyst.online.trajectory import Trajectory
 
 __all__ = [
+    "ESTIMATORS",
     "AdaptiveInverse",
+    "Estimator",
     "Excitation",
     "Innovation",
     "JointEstimator",
+    "Knowledge",
+    "ModelEstimator",
     "PlayExcitation",
     "RadiusEstimator",
+    "ScaleEstimator",
     "Trajectory",
+    "estimator_for",
+    "radius_estimator_for",
     "units_of_plays",
 ]
 

@@ -40,7 +40,7 @@ def sample(u: float, y: float) -> tuple[float, float]:
         raise InputError(f"the sample is u = {u!r}, y = {y!r}; give two numbers") from None
 
 
-def names_of(held: Iterable[str], known: Iterable[str]) -> list[str]:
+def names_of(held: Iterable[str], known: Iterable[str], option: str = "held") -> list[str]:
     """Read names of parameters.
 
     Parameters
@@ -49,6 +49,8 @@ def names_of(held: Iterable[str], known: Iterable[str]) -> list[str]:
         Names; one name may come without a list.
     known
         Those there are.
+    option
+        What messages call the list.
 
     Returns
     -------
@@ -68,11 +70,11 @@ def names_of(held: Iterable[str], known: Iterable[str]) -> list[str]:
     try:
         names = [held] if isinstance(held, str) else list(held)
     except TypeError:
-        raise InputError(f"held is {held!r}; give a list of names of parameters") from None
+        raise InputError(f"{option} is {held!r}; give a list of names of parameters") from None
     there = list(known)
     for name in names:
         if name not in there:
-            raise InputError(f"held names {name!r}; there are {', '.join(there)}")
+            raise InputError(f"{option} names {name!r}; there are {', '.join(there)}")
     return sorted(names)
 
 

@@ -25,11 +25,18 @@ _ROUNDING = 1e-9
 class Saved(ABC):
     """An estimator that can be saved, copied and sent to another process as it is.
 
-    ``description`` says what the numbers of its model mean.
+    ``description`` says what the numbers of its model mean; ``kind`` is its name in files, by which
+    ``kinds`` finds it again.
     """
 
     kind: ClassVar[str]
     description: ModelDescription
+    kinds: ClassVar[dict[str, type[Saved]]] = {}
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        if "kind" in cls.__dict__:
+            Saved.kinds[cls.kind] = cls
 
     @abstractmethod
     def saved(self) -> tuple[dict[str, Any], Array]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hyst.errors import InputError, NotInvertibleError
 from hyst.operators.base import Operator
+from hyst.operators.inequalities import Inequalities, side_by_side
 from hyst.operators.parameters import Parameters, as_parameter_vector
 from hyst.operators.registry import delayed, entries, operator_from_dict, register
 from hyst.operators.stage import Stage
@@ -140,6 +141,10 @@ class Chained(Operator):
         pieces = np.split(theta, np.cumsum(counts)[:-1])
         pairs = zip(self.parts, pieces, strict=True)
         return np.concatenate([stage.nearest_parameters(piece) for stage, piece in pairs])
+
+    def inequalities(self) -> Inequalities:
+        """Give those of the stages, side by side."""
+        return side_by_side([stage.inequalities() for stage in self.parts])
 
     def with_parameters(self, theta: Sequence[float] | Array) -> Operator:
         """Give the same composition with other constants."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
+from hyst.operators.inequalities import Inequalities, of_bounds
 from hyst.operators.parameters import Parameters
 
 Array = NDArray[np.float64]
@@ -55,6 +56,18 @@ class Constants(ABC):
             ``theta`` itself where the order of the constants is free.
         """
         return theta
+
+    def inequalities(self) -> Inequalities:
+        """Give linear inequalities that hold where constants near these can be inverted.
+
+        What else must hold, ``inverse()`` refuses.
+
+        Returns
+        -------
+        Inequalities
+            The bounds of ``parameters()``, unless the operator knows better.
+        """
+        return of_bounds(self.parameters())
 
     def parameter_scales(self, input_scale: float, output_scale: float) -> Array:
         """Give the factors of the parameters in units in which signals have larger numbers.

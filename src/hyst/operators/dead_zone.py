@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, final
@@ -13,6 +14,7 @@ from hyst.checks.arrays import as_constants, refuse_overflow
 from hyst.errors import InputError, NotInvertibleError
 from hyst.operators.base import Operator
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
+from hyst.operators.inequalities import MARGIN, Inequalities, stacked, within
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.portrait import MAP, Portrait
 from hyst.operators.registry import entries, register
@@ -184,6 +186,29 @@ class DeadZone(Operator):
             lower=np.concatenate([-free, np.select([rho > 0, rho < 0], [tiny, -free], 0.0)]),
             upper=np.concatenate([free, np.select([rho > 0, rho < 0], [free, -tiny], 0.0)]),
         )
+
+    def inequalities(self) -> Inequalities:
+        """Give slopes of the sign of the linear part, and thresholds that keep their order."""
+        count, rho = self.weights.size, self.thresholds
+        sign = math.copysign(1.0, self._linear_part())
+        middle = np.where(rho == 0.0, sign, 0.0)
+        slopes, gaps = [middle], []
+        for side in (1.0, -1.0):
+            slope, last = middle, np.zeros(count)
+            for place in np.unique(side * rho[side * rho > 0.0]).tolist():
+                here = side * rho == place
+                slope = slope + sign * here
+                slopes.append(slope)
+                first = side * np.eye(count)[int(np.argmax(here))]
+                gaps.append(first - last)
+                last = first
+        weights, size = (float(np.abs(each).sum()) for each in (self.weights, rho))
+        pieces = np.hstack([np.array(slopes), np.zeros((len(slopes), count))])
+        apart = np.zeros((len(gaps), 2 * count))
+        if gaps:
+            apart[:, count:] = gaps
+        far = Inequalities(apart, np.full(len(gaps), MARGIN * size))
+        return stacked(within(pieces, weights), far)
 
     def with_parameters(self, theta: Sequence[float] | Array) -> DeadZone:
         """Give a map with other weights and thresholds."""

@@ -5,7 +5,10 @@ from __future__ import annotations
 import functools
 from abc import abstractmethod
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, final
+from typing import TYPE_CHECKING, Any, ClassVar, final
+
+import numpy as np
+from numpy.typing import NDArray
 
 from hyst.checks.numbers import whole_number
 from hyst.errors import NotInvertibleError
@@ -15,12 +18,16 @@ from hyst.operators.registry import delayed
 if TYPE_CHECKING:
     from hyst.operators.base import Operator
 
+Array = NDArray[np.float64]
+
 MOST_PREVIEW = 1000
 """Samples of the reference an inverse may know beyond the present one."""
 
 
 class Inverses(Described):
     """What may have an inverse; classes say by ``exact_inverse`` whether they have one."""
+
+    kind: ClassVar[str]
 
     def __init_subclass__(cls) -> None:
         # An inverse means what its operator means, the signals changed; no class has to say so.
@@ -101,6 +108,29 @@ class Inverses(Described):
         """
         self.exact_inverse()
         return 0, 0
+
+    def causal_inverse(self, state: Array) -> tuple[Operator, Array]:
+        """Give an inverse that answers at once, where there is no exact one, and its memory.
+
+        Parameters
+        ----------
+        state
+            Memory of the operator, as ``run`` gave it.
+
+        Returns
+        -------
+        inverse : Operator
+            Not exact.
+        memory : numpy.ndarray
+            That of the inverse, for an operator with this memory.
+
+        Raises
+        ------
+        NotInvertibleError
+            If there is none.
+        """
+        self.exact_inverse()
+        raise NotInvertibleError(f"a {self.kind} has an exact inverse and needs no other")
 
     @final
     def is_invertible(self) -> bool:

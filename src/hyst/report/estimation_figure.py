@@ -63,11 +63,22 @@ def _groups(trajectory: Trajectory) -> dict[str, list[str]]:
     radii = [name for name in names if name.startswith("r[")]
     weights = [name for name in names if name == "p0" or name.startswith("p[")]
     offset = [name for name in names if name == "offset"]
+    scale = [name for name in names if name == "scale"]
     moving = {name: bool(trajectory.standard_errors[:, i].any()) for i, name in enumerate(names)}
     # Maps are held unless asked for, and what is held says nothing.
-    maps = [name for name in names if name not in (*radii, *weights, *offset) and moving[name]]
-    # An offset of hundreds of units would flatten the maps' weights, which are about 1.
-    return {"radii": radii, "weights": weights, "offset": offset, "weights of maps": maps}
+    maps = [name for name in names if name.startswith(("front", "back")) and moving[name]]
+    grouped = {
+        "scale": scale,
+        "radii": radii,
+        "weights": weights,
+        "offset": offset,
+        "weights of maps": maps,
+    }
+    # An offset of hundreds of units would flatten the maps' weights, which are about 1. Of other
+    # constants each may have another size.
+    known = {name for each in grouped.values() for name in each}
+    others = [name for name in names if moving[name] and name not in known]
+    return grouped | {name: [name] for name in others if not name.startswith(("front", "back"))}
 
 
 def _with_unit(what: str, input_unit: str, output_unit: str) -> str:
@@ -76,7 +87,9 @@ def _with_unit(what: str, input_unit: str, output_unit: str) -> str:
         return with_unit("radius", input_unit)
     if what == "weights":
         return with_unit("weight", ratio_unit(output_unit, input_unit))
-    return with_unit("offset", output_unit) if what == "offset" else "weight"
+    if what == "offset":
+        return with_unit("offset", output_unit)
+    return "weight" if what == "weights of maps" else what
 
 
 def _draw(axes: Axes, trajectory: Trajectory, names: list[str], truth: Mapping[str, float]) -> None:
@@ -86,7 +99,7 @@ def _draw(axes: Axes, trajectory: Trajectory, names: list[str], truth: Mapping[s
         value, error = trajectory.values[:, place], trajectory.standard_errors[:, place]
         if name in truth:
             axes.axhline(truth[name], color=FAINT, linewidth=1.0, zorder=1)
-        if np.isfinite(error).all():
+        if np.isfinite(error).any():
             low, high = value - 2.0 * error, value + 2.0 * error
             axes.fill_between(trajectory.time, low, high, color=colour, alpha=0.15, linewidth=0.0)
         axes.plot(trajectory.time, value, color=colour, label=name)

@@ -1,7 +1,8 @@
 """Studies: one module a paper, its figures and tables, printed numbers beside computed ones.
 
 A module is named ``s`` and the number of its source, then what it is about. It has ``TITLE``,
-``tables()`` and ``figures()``.
+``tables()`` and ``figures()``, and may have ``on_record(record, validation, delay)``: what of the
+paper can be told of a record of one's own. A part of a study is in its package or named otherwise.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from hyst.errors import InputError
 
 if TYPE_CHECKING:
     from hyst.report import Table
+    from hyst.signals import Record
 
 __all__ = ["Study", "keys", "study"]
 
@@ -37,12 +39,16 @@ class Study:
         Computes the tables.
     figures
         Draws the figures: PNG by file name.
+    on_record
+        Computes tables of a record, of a second one for validation or None, and of the output's lag
+        in samples or None; if the study can.
     """
 
     key: str
     title: str
     tables: Callable[[], tuple[Table, ...]]
     figures: Callable[[], dict[str, bytes]]
+    on_record: Callable[[Record, Record | None, float | None], tuple[Table, ...]] | None = None
 
 
 def keys() -> tuple[str, ...]:
@@ -86,7 +92,8 @@ def study(key: str) -> Study:
     if key not in modules:
         raise InputError(f"there is no study {key!r}; choose one of {', '.join(keys())}, or all")
     module = importlib.import_module(f"{__name__}.{modules[key]}")
-    return Study(key, module.TITLE, module.tables, module.figures)
+    told = getattr(module, "on_record", None)
+    return Study(key, module.TITLE, module.tables, module.figures, told)
 
 
 def _modules() -> dict[str, str]:

@@ -30,7 +30,7 @@ from hyst.models import GeneralizedPrandtlIshlinskii, PrandtlIshlinskii
 from hyst.operators import Affine, DeadZone, Operator
 from hyst.report.robust_tracking_figures import draw_all
 from hyst.report.table import Table
-from hyst.studies.s1_what_runs import beyond_the_paper
+from hyst.studies.what_runs_of_s1 import beyond_the_paper
 
 Array = NDArray[np.float64]
 TITLE = "El-Shaer, Al Janaideh, Krejčí and Tomizuka: disturbance observers for inexact inverses"

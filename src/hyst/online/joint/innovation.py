@@ -37,8 +37,8 @@ class Innovation:
     rms: float
     correlation: float
     loop_height: float
-    rivals: int
-    replacements: int
+    rivals: int = 0
+    replacements: int = 0
 
     @property
     def consistent(self) -> bool:

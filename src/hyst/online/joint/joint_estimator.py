@@ -19,7 +19,8 @@ from hyst.online.checks import (
     sample,
     samples_of,
 )
-from hyst.online.estimator_file import Saved, check_saved, restored_state
+from hyst.online.estimator import Estimator
+from hyst.online.estimator_file import check_saved, restored_state
 from hyst.online.joint.excitation import Excitation, watch
 from hyst.online.joint.innovation import Innovation
 from hyst.online.joint.joint_core import GROUPS, new_core, prior_of, search_cells
@@ -39,10 +40,11 @@ _ERROR, _VARIANCE, _NOISE, _UPDATES, _SKIPPED, _REFUSED = 0, 1, 2, 5, 6, 7
 _RANGES, _KEPT = slice(8, 12), (3, 13)
 # And from the place "scalars" on, as joint_search.h has them.
 _TRIALS, _REPLACEMENTS, _SQUARE = 5, 6, 15
+_BOUNDS = ("least_slope", "most_slope", "most_radius")
 
 
 @final
-class JointEstimator(Saved):
+class JointEstimator(Estimator):
     """Estimate a Prandtl-Ishlinskii model sample by sample: recursive prediction error method.
 
     With theta the parameters, ``e = y - model(u)`` and ``psi = dy/dtheta`` along the estimate's own
@@ -177,11 +179,6 @@ class JointEstimator(Saved):
         """Covariance of the estimate, shape (m, m)."""
         d, u = self._at["d"], self._at["u"]
         return covariance_of(self.state[d:u], self.state[u : self._at["z"]])
-
-    @property
-    def standard_errors(self) -> Array:
-        """Standard errors of the estimate, shape (m,); 0 for what is held."""
-        return np.sqrt(np.diag(self.covariance))
 
     @property
     def model(self) -> Operator:
@@ -331,6 +328,11 @@ class JointEstimator(Saved):
         for first, last in (_KEPT, (at["side"], at["psi"]), cells):
             self.state[first:last] = kept[first:last]
         self.core.remember(self.state)
+
+    def frozen(self) -> JointEstimator:
+        """Give an estimator that starts from this estimate and its memory and learns nothing."""
+        bounds = {name: self.settings[name] for name in _BOUNDS}
+        return JointEstimator(self.model, dt=self.dt, held=GROUPS, **bounds)
 
     def saved(self) -> tuple[dict[str, Any], Array]:
         """Give settings and state, from which ``restore`` rebuilds the estimator."""

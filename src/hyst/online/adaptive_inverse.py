@@ -8,24 +8,28 @@ from typing import Any, ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hyst.checks.numbers import as_positive
+from hyst.checks.numbers import as_not_negative, as_positive
 from hyst.errors import InputError
+from hyst.online.checks import sample
+from hyst.online.estimator import Estimator
 from hyst.online.estimator_file import Saved, restored_state
-from hyst.online.joint.joint_estimator import JointEstimator
+from hyst.online.guard_window import GuardWindow
+from hyst.online.judgement import Judgement, judged
 from hyst.operators import ModelDescription, Operator
 from hyst.operators.registry import operator_from_dict
 from hyst.operators.verdict import refuse_if_unfit
 
 Array = NDArray[np.float64]
 
-_BOUNDS = ("least_slope", "most_slope", "most_radius")
 # Share of the mean square of the output below which errors are not worth a judgement.
 _NEGLIGIBLE = 1e-6
+# Files of before there were several kinds have this one.
+_FIRST_KIND = "joint"
 
 
 @final
 class AdaptiveInverse(Saved):
-    """Compensate with the inverse of the running estimate.
+    """Compensate with the inverse of the running estimate, whichever estimator it is of.
 
     ``command(y_ref)`` solves ``model(u) = y_ref`` with the parameters and the memory the estimator
     has at that moment. So the memory of the inverse always belongs to its parameters, and a command
@@ -43,7 +47,9 @@ class AdaptiveInverse(Saved):
     estimator
         Started from a model that may serve as the first good one.
     window
-        Seconds over which errors are compared, at least a period of what is tracked.
+        Seconds over which errors are compared, at least a period of what is tracked. Left out: the
+        period of the motion, as its turns tell it, or as many of them as have 50 samples; 10,000
+        samples if it has not turned twice by then. ``status`` tells which.
     margin
         Ratio of the mean square errors at which the guard falls back, above 1.
     despite_verdict
@@ -52,12 +58,15 @@ class AdaptiveInverse(Saved):
     Raises
     ------
     InputError
-        If a number is out of range, ``estimator`` is no joint estimator, or started from a model
-        whose verdict is ``unfit``.
+        If a number is out of range, ``estimator`` is no estimator of a whole model, or started from
+        a model whose verdict is ``unfit``.
+    NotInvertibleError
+        If the model has no exact inverse that answers at once.
 
     Examples
     --------
     >>> from hyst.models import PrandtlIshlinskii
+    >>> from hyst.online import JointEstimator
     >>> plant = PrandtlIshlinskii(p=[0.5], r=[1.0], p0=1.0).stepper()
     >>> inverse = AdaptiveInverse(JointEstimator(PrandtlIshlinskii([0.7], [1.4], 0.8)), window=400)
     >>> for k in range(2000):
@@ -73,34 +82,40 @@ class AdaptiveInverse(Saved):
 
     def __init__(
         self,
-        estimator: JointEstimator,
-        window: float,
+        estimator: Estimator,
+        window: float | None = None,
         margin: float = 4.0,
         *,
         despite_verdict: bool = False,
     ) -> None:
-        if not isinstance(estimator, JointEstimator):
-            raise InputError(f"estimator is a {type(estimator).__name__}; give a JointEstimator")
+        if not isinstance(estimator, Estimator):
+            raise InputError(
+                f"estimator is a {type(estimator).__name__}; give a JointEstimator, a "
+                "ScaleEstimator or another hyst.online.Estimator"
+            )
         refuse_if_unfit(estimator.description.verdict, "no command is given", despite_verdict)
         self.estimator = estimator
-        self._seconds = as_positive(window, "window", "seconds")
-        self._window = self._seconds / estimator.dt
+        self._window = GuardWindow(window, estimator.dt)
         self._margin = as_positive(margin, "margin", "a ratio above 1")
         if self._margin <= 1.0:
             raise InputError(f"margin is {margin!r}; give a ratio above 1")
+        estimator.command(0.0)  # refuses what has no inverse before anything rests on it
         self._good = estimator.model
-        held = ("p0", "p", "r", "offset", "front", "back")
-        bounds = {name: estimator.settings[name] for name in _BOUNDS}
-        self._fallback = JointEstimator(self._good, dt=estimator.dt, held=held, **bounds)
+        self._fallback = estimator.frozen()
         self._powers = [0.0, 0.0, 0.0]
         self._samples = 0
         self._usual = math.inf
+        self._y_ref: float | None = None
         self.trusts_estimate = True
         """Whether commands come from the estimate, or from the last good model."""
         self.fallbacks = 0
         """How many windows the guard has rejected."""
         self.doubts = 0
         """How many windows in a row the estimate's errors could not be noise."""
+        self.error = 0.0
+        """Measured output less that of the model commands came from, of the last sample used."""
+        self.judgement: Judgement | None = None
+        """What the last window has told; None before one has ended."""
 
     @property
     def description(self) -> ModelDescription:
@@ -113,7 +128,7 @@ class AdaptiveInverse(Saved):
 
     @property
     def model(self) -> Operator:
-        """The model commands come from, with its memory."""
+        """The model commands come from, with its memory if its constants can say it."""
         return self._source().model.with_description(self.description)
 
     @property
@@ -122,11 +137,20 @@ class AdaptiveInverse(Saved):
         return self._good.with_description(self.description)
 
     @property
+    def window(self) -> float | None:
+        """Seconds over which errors are compared; None while no period has been seen."""
+        return self._window.seconds
+
+    @property
     def status(self) -> str:
-        """Where commands come from, and what there is to doubt, in a sentence."""
-        source = "the estimate" if self.trusts_estimate else "the last good model"
-        doubt = f", doubted for {self.doubts} windows" if self.doubts else ""
-        return f"commands come from {source}{doubt}; {self.estimator.innovation}"
+        """Where commands come from, why, and what there is to doubt, in a sentence.
+
+        All its numbers are those of the last window that has ended.
+        """
+        if self.judgement is None:
+            source = "the estimate" if self.trusts_estimate else "the last good model"
+            return f"commands come from {source}; nothing is judged yet; {self._window}"
+        return f"{self.judgement}; {self._window}"
 
     def command(self, y_ref: float) -> float:
         """Give the input for a wanted output.
@@ -134,13 +158,16 @@ class AdaptiveInverse(Saved):
         Parameters
         ----------
         y_ref
-            Wanted output.
+            Wanted output; NaN gives NaN, as may one that no input gives.
 
         Returns
         -------
         float
         """
-        return self._source().command(y_ref)
+        u = self._source().command(y_ref)
+        if math.isfinite(y_ref):
+            self._y_ref = float(y_ref)
+        return u
 
     def update(self, u: float, y: float) -> None:
         """Learn from the input that was applied and the output that was measured.
@@ -148,27 +175,52 @@ class AdaptiveInverse(Saved):
         Parameters
         ----------
         u, y
-            The sample; one that is not finite is skipped.
+            The sample; one that is not finite is skipped, but the memory follows the input.
         """
-        if not (self._fallback.update(u, y) and self.estimator.update(u, y)):
+        u, y = sample(u, y)
+        self._window.watch.see(u if self._y_ref is None else self._y_ref)
+        # Both of them whatever the other says, or their memories would no longer be of one input.
+        is_used = [each.update(u, y) for each in (self._fallback, self.estimator)]
+        if not all(is_used):
+            if math.isfinite(u) and not math.isfinite(y):
+                self.follow([u])
             return
+        self.error = self._source().error
         values = (self.estimator.error, self._fallback.error, y)
         self._powers = [power + value**2 for power, value in zip(self._powers, values, strict=True)]
         self._samples += 1
-        if self._samples >= self._window:
+        if self._samples >= self._window.samples:
             adaptive, good, output = (power / self._samples for power in self._powers)
             self._judge(adaptive, good, _NEGLIGIBLE * output)
             self._powers, self._samples = [0.0, 0.0, 0.0], 0
+
+    def follow(self, u: ArrayLike) -> None:
+        """Let the memories follow inputs whose outputs were not measured; learns nothing.
+
+        Parameters
+        ----------
+        u
+            Shape (N,), what the actuator has passed, finite.
+
+        Raises
+        ------
+        InputError
+            If it is not a finite vector.
+        """
+        for each in (self._fallback, self.estimator):
+            each.follow(u)
 
     def saved(self) -> tuple[dict[str, Any], Array]:
         """Give settings and state, from which ``restore`` rebuilds the inverse."""
         parts = {}
         for name, each in (("estimator", self.estimator), ("fallback", self._fallback)):
             settings, state = each.saved()
-            parts[name] = {"settings": settings, "state": state.tolist()}
+            parts[name] = {"kind": each.kind, "settings": settings, "state": state.tolist()}
         usual = None if math.isinf(self._usual) else self._usual
-        settings = {"window": self._seconds, "margin": self._margin, "usual": usual}
-        settings |= {"good": self._good.to_dict(), **parts}
+        judgement = None if self.judgement is None else self.judgement.to_dict()
+        settings = {"window": self._window.given, "margin": self._margin, "usual": usual}
+        settings |= {"good": self._good.to_dict(), "motion": self._window.saved(), **parts}
+        settings |= {"judgement": judgement, "y_ref": self._y_ref}
         counts = [self._samples, float(self.trusts_estimate), self.fallbacks, self.doubts]
         return settings, np.array([*self._powers, *counts])
 
@@ -176,14 +228,16 @@ class AdaptiveInverse(Saved):
     def restore(cls, settings: dict[str, Any], state: ArrayLike) -> AdaptiveInverse:
         """Rebuild it from what ``saved`` gave, or the same read from a file."""
         inverse = cls(
-            JointEstimator.restore(**settings["estimator"]), settings["window"], settings["margin"]
+            _estimator_from(settings["estimator"]), settings["window"], settings["margin"]
         )
-        inverse._fallback = JointEstimator.restore(**settings["fallback"])
+        inverse._fallback = _estimator_from(settings["fallback"])
         inverse._good = operator_from_dict(settings["good"])
         inverse._fallback.restart(inverse._good)  # refuses what cannot be inverted
-        inverse._fallback = JointEstimator.restore(**settings["fallback"])
+        inverse._fallback = _estimator_from(settings["fallback"])
         usual = settings["usual"]
-        inverse._usual = math.inf if usual is None else as_positive(usual, "usual", "a mean square")
+        inverse._usual = (
+            math.inf if usual is None else as_not_negative(usual, "usual", "a mean square")
+        )
         numbers = np.zeros(7)
         restored_state(numbers, state)
         if (numbers < 0.0).any() or numbers[4] not in (0.0, 1.0):
@@ -193,9 +247,17 @@ class AdaptiveInverse(Saved):
             int(each) for each in numbers[3:]
         )
         inverse.trusts_estimate = bool(trusts)
+        # Files of before have none of these: their guard judges anew from its next window on.
+        inverse._y_ref = settings.get("y_ref")
+        if settings.get("motion") is not None:
+            inverse._window.restored(settings["motion"])
+        if settings.get("judgement") is not None:
+            inverse.judgement = Judgement.from_dict(settings["judgement"])
+            if inverse.judgement.trusted != inverse.trusts_estimate:
+                raise InputError("the saved judgement contradicts the guard; save it again")
         return inverse
 
-    def _source(self) -> JointEstimator:
+    def _source(self) -> Estimator:
         return self.estimator if self.trusts_estimate else self._fallback
 
     def _judge(self, adaptive: float, good: float, negligible: float) -> None:
@@ -204,7 +266,9 @@ class AdaptiveInverse(Saved):
         is_unusual = adaptive > self._margin * (self._usual + negligible)
         is_doubtful = not self.estimator.innovation.consistent
         self.doubts = self.doubts + 1 if is_doubtful else 0
-        if is_worse or (is_unusual and adaptive > good / self._margin):
+        usual, seconds = self._usual, self._samples * self.estimator.dt
+        is_rejected = is_worse or (is_unusual and adaptive > good / self._margin)
+        if is_rejected:
             self.trusts_estimate = False
             self.fallbacks += 1
             self.estimator.restart(self._good)
@@ -214,3 +278,13 @@ class AdaptiveInverse(Saved):
             if not is_doubtful or adaptive < max(good / self._margin, negligible):
                 self._good = self.estimator.model
                 self._fallback.restart(self._good)
+        outcome = self.trusts_estimate, is_rejected
+        self.judgement = judged(seconds, (adaptive, good), usual, outcome, self.doubts)
+
+
+def _estimator_from(saved: dict[str, Any]) -> Estimator:
+    kind = Saved.kinds[saved.get("kind", _FIRST_KIND)]
+    estimator = kind.restore(saved["settings"], saved["state"])
+    if not isinstance(estimator, Estimator):
+        raise InputError(f"the saved guard has the estimator {kind.kind!r}; save the inverse again")
+    return estimator

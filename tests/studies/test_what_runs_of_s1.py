@@ -7,7 +7,7 @@ import pytest
 import scipy.signal
 
 from hyst.studies import s1_robust_tracking as s1
-from hyst.studies.s1_what_runs import beyond_the_paper
+from hyst.studies.what_runs_of_s1 import beyond_the_paper
 
 
 def test_the_example_as_it_runs_and_what_else_there_is() -> None:

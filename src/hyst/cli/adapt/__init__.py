@@ -1,0 +1,1 @@
+"""hyst adapt: constants followed along a record, by the estimator that suits the model."""

@@ -1,0 +1,103 @@
+"""What hyst adapt tells of an estimate: a table of what is known, and sentences of what is not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import hyst
+from hyst.cli.console import note, show_table
+
+
+def draw(
+    estimator: hyst.online.Estimator,
+    about: hyst.operators.ModelDescription,
+    trajectory: hyst.online.Trajectory,
+    data: Path,
+) -> bytes:
+    """Draw the estimates over time."""
+    units = about.input_unit, about.output_unit
+    if isinstance(estimator, hyst.online.JointEstimator):
+        units = hyst.online.units_of_plays(estimator.model, *units)
+    heading = f"Estimates along {data.name}, bands of two standard errors"
+    return hyst.report.draw_estimates({"": trajectory}, {}, heading, units)
+
+
+def write_parameters(path: Path, trajectory: hyst.online.Trajectory) -> None:
+    """Write the estimates over time with their standard errors."""
+    columns = [trajectory.time]
+    headers = ["time [s]"]
+    for index, name in enumerate(trajectory.names):
+        columns += [trajectory.values[:, index], trajectory.standard_errors[:, index]]
+        headers += [name, f"{name} standard error"]
+    hyst.io.write_columns(path, headers, columns)
+
+
+def tell(
+    estimator: hyst.online.Estimator,
+    before: list[float],
+    about: hyst.operators.ModelDescription,
+) -> None:
+    """Print the estimate: constants with what is known of each, noise, and what there is to doubt.
+
+    Parameters
+    ----------
+    estimator
+        At the end.
+    before
+        Its parameters at the start.
+    about
+        Of the model it started from.
+    """
+    knowledge = estimator.knowledge
+    show_table(_table(estimator, knowledge, before))
+    if any(name.startswith(("front", "back")) for name in estimator.names):
+        print("front, back: weights of the maps before and after the plays")
+    counts = estimator.counts
+    print(
+        f"\nnoise of the output: {hyst.report.number(estimator.noise)}; {counts['used']} samples "
+        "used"
+    )
+    if counts["skipped"] or counts["refused"]:
+        note(f"{counts['skipped']} samples were not finite, {counts['refused']} led to an overflow")
+    if isinstance(estimator, hyst.online.JointEstimator):
+        print(f"excitation: {estimator.excitation}")
+    _tell_doubts(estimator, knowledge)
+    if about.verdict is not None and about.is_unfit:
+        note(
+            "the model it started from is unfit, and the estimate has its shape: "
+            f"{about.verdict.sentences[0]}"
+        )
+
+
+def _table(
+    estimator: hyst.online.Estimator, knowledge: hyst.online.Knowledge, before: list[float]
+) -> hyst.report.Table:
+    number = hyst.report.number
+    rows = []
+    for index, name in enumerate(estimator.names):
+        low, high = float(knowledge.low[index]), float(knowledge.high[index])
+        known = f"{number(low)} to {number(high)}"
+        if not knowledge.determined[index]:
+            known = "not determined"
+        elif low == high:
+            known = "held"
+        value = float(estimator.parameters[index])
+        rows.append((name, number(before[index]), number(value), known))
+    header = ("constant", "before", "after", "known within")
+    return hyst.report.Table("Estimates, and bands of two standard errors", header, tuple(rows))
+
+
+def _tell_doubts(estimator: hyst.online.Estimator, knowledge: hyst.online.Knowledge) -> None:
+    told = zip(knowledge.names, knowledge.determined, knowledge.reasons, strict=True)
+    for name, is_determined, reason in told:
+        if not is_determined:
+            note(f"{name} is not determined: {reason}")
+    for sentence in knowledge.sentences:
+        note(sentence)
+    innovation = estimator.innovation
+    if innovation.consistent:
+        print(f"innovation: {innovation}")
+    elif not any(str(innovation) in sentence for sentence in knowledge.sentences):
+        note(f"innovation: {innovation}")
+    if innovation.replacements:
+        print(f"search: another start did better, {innovation.replacements} of {innovation.rivals}")

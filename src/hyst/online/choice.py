@@ -1,0 +1,120 @@
+"""Which estimator follows a model: the one place where its family or kind decides."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+from hyst.errors import InputError
+from hyst.online.checks import names_of
+from hyst.online.estimator import Estimator
+from hyst.online.joint.joint_core import GROUPS
+from hyst.online.joint.joint_estimator import JointEstimator
+from hyst.online.joint.parts import take_apart
+from hyst.online.scale.scale_estimator import ScaleEstimator
+from hyst.operators import Operator
+
+ESTIMATORS = ("scale", "joint")
+"""Names of the estimators, the cheapest first."""
+
+_SCALE = ("scale", "offset")
+
+
+def estimator_for(
+    model: Operator,
+    *,
+    dt: float | None = None,
+    memory: float = math.inf,
+    spread: float | None = None,
+    only: Iterable[str] = (),
+    estimator: str = "auto",
+    **options: Any,
+) -> Estimator:
+    """Make the estimator that suits a model and what is to be estimated.
+
+    Scale and offset are estimated of any model; all constants where an estimator knows them: the
+    joint one those of plays and maps.
+
+    Parameters
+    ----------
+    model
+        Where to start.
+    dt
+        Sample time, seconds; the model's own or 1 if left out.
+    memory
+        Seconds over which the past is forgotten.
+    spread
+        How far off the start is believed to be, a share; each estimator's own if left out.
+    only
+        What to estimate, by name, everything else being held: ``"scale"`` and ``"offset"``, or
+        parameters and groups of an estimator of all constants. Everything if left out.
+    estimator
+        One of ``ESTIMATORS``, or ``"auto"``: that of all constants where there is one for the
+        model, unless ``only`` names a scale.
+    options
+        More options of that estimator.
+
+    Returns
+    -------
+    Estimator
+
+    Raises
+    ------
+    InputError
+        If the estimator cannot follow the model, or a name is unknown.
+    NotInvertibleError
+        If one of all constants cannot start from the model, which has no inverse.
+
+    Examples
+    --------
+    >>> import hyst
+    >>> plays = hyst.PrandtlIshlinskii([0.5], [1.0], 1.0)
+    >>> estimator_for(plays).names, estimator_for(plays, only="scale").settings["held"]
+    (('p0', 'p[1]', 'r[1]', 'offset'), ['offset'])
+    >>> estimator_for(hyst.models.BoucWen(0.6, 0.35, 0.12, 0.06)).names
+    ('scale', 'offset')
+    """
+    wanted = [only] if isinstance(only, str) else list(only)
+    name = _chosen(model, wanted) if estimator == "auto" else estimator
+    if name not in ESTIMATORS:
+        known = ", ".join(("auto", *ESTIMATORS))
+        raise InputError(f"there is no estimator {name!r}; choose one of {known}")
+    if spread is not None:
+        options |= _spreads(name, spread)
+    if name == "scale":
+        held = [] if not wanted else _others(wanted, _SCALE, _SCALE)
+        return ScaleEstimator(model, dt=dt, memory=memory, held=held, **options)
+    held = _held_jointly(model, wanted)
+    if any(each.startswith(("front", "back")) for each in wanted):
+        options.setdefault("estimate_maps", True)
+    steps = (1.0 if model.dt is None else model.dt) if dt is None else dt
+    return JointEstimator(model, dt=steps, memory=memory, held=held, **options)
+
+
+def _chosen(model: Operator, wanted: list[str]) -> str:
+    """Give the name of the estimator; a family with one of its own is asked here."""
+    if "scale" in wanted or wanted == ["offset"]:
+        return "scale"
+    try:
+        take_apart(model)
+    except InputError:
+        return "scale"
+    return "joint"
+
+
+def _spreads(name: str, spread: float) -> dict[str, float]:
+    if name == "joint":
+        return {"radius_spread": spread, "weight_spread": spread}
+    return {"spread": spread}
+
+
+def _held_jointly(model: Operator, wanted: list[str]) -> list[str]:
+    names = take_apart(model).names()
+    return _others(wanted, names, (*names, *GROUPS)) if wanted else []
+
+
+def _others(wanted: list[str], names: tuple[str, ...], known: tuple[str, ...]) -> list[str]:
+    """Give the names that are neither wanted nor of a wanted group."""
+    chosen = names_of(wanted, known, "only")
+    return [each for each in names if each not in chosen and each.partition("[")[0] not in chosen]

@@ -1,0 +1,106 @@
+"""What an estimate knows: a band for each parameter, or why it is not determined."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_BAND = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class Knowledge:
+    """What an estimate knows about each of its m parameters.
+
+    Parameters
+    ----------
+    names
+        Of the parameters.
+    low, high
+        Shape (m,): the truth is stated to lie between them, two standard errors to either side
+        where nothing better is known; equal where a parameter is held. Where a parameter is not
+        determined they are no statement.
+    determined
+        Shape (m,): whether the samples determine the parameter.
+    reasons
+        One for each parameter: why it is not determined, or what its band rests on; empty where
+        there is nothing to add.
+    sentences
+        What there is to say about the estimate as a whole.
+
+    Examples
+    --------
+    >>> told = knowledge_from(("gain", "offset"), [2.0, 0.0], [0.1, np.inf], {"offset": "no data"})
+    >>> told.known, float(told.low[0]), str(told)
+    (False, 1.8, 'offset is not determined: no data')
+    """
+
+    names: tuple[str, ...]
+    low: Array
+    high: Array
+    determined: NDArray[np.bool_]
+    reasons: tuple[str, ...]
+    sentences: tuple[str, ...] = ()
+
+    @property
+    def known(self) -> bool:
+        """Whether every parameter is determined."""
+        return bool(self.determined.all())
+
+    def __str__(self) -> str:
+        unknown = [
+            f"{name} is not determined: {reason}"
+            for name, is_known, reason in zip(
+                self.names, self.determined, self.reasons, strict=True
+            )
+            if not is_known
+        ]
+        said = [*unknown, *self.sentences]
+        return "; ".join(said) if said else "every parameter is determined"
+
+
+def knowledge_from(
+    names: tuple[str, ...],
+    values: Array | list[float],
+    standard_errors: Array | list[float],
+    reasons: Mapping[str, str],
+    sentences: tuple[str, ...] = (),
+) -> Knowledge:
+    """Give bands of two standard errors.
+
+    Parameters
+    ----------
+    names
+        Of the m parameters.
+    values, standard_errors
+        Shape (m,).
+    reasons
+        Why parameters are not determined, by name; those that are not named here are, if their
+        standard error is finite.
+    sentences
+        What there is to say besides.
+
+    Returns
+    -------
+    Knowledge
+    """
+    value, error = np.asarray(values, float), np.asarray(standard_errors, float)
+    is_finite = np.isfinite(error)
+    width = np.where(is_finite, _BAND * error, np.inf)
+    why = tuple(
+        reasons.get(name, "" if finite else "its standard error is not known")
+        for name, finite in zip(names, is_finite, strict=True)
+    )
+    return Knowledge(
+        names=names,
+        low=value - width,
+        high=value + width,
+        determined=is_finite & np.array([name not in reasons for name in names], dtype=bool),
+        reasons=why,
+        sentences=sentences,
+    )

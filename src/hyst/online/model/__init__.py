@@ -1,0 +1,1 @@
+"""Estimation of all constants of any model from derivatives of its kernel."""

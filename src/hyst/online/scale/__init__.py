@@ -1,0 +1,1 @@
+"""Scale and offset of any model's output, estimated while the system runs."""

@@ -1,0 +1,1 @@
+"""Watching an actuator: samples as they come, gaps and all, through an estimator into alarms."""
