@@ -115,7 +115,13 @@ class Learnt:
 
     @classmethod
     def from_dict(cls, data: dict[str, Any]) -> Learnt:
-        """Rebuild it from ``to_dict()``."""
+        """Rebuild it from ``to_dict()``.
+
+        Parameters
+        ----------
+        data
+            What it gave.
+        """
         frequency, size = (np.array(each, dtype=np.float64) for each in data["doubt"])
         pairs = tuple(
             Pair(np.array(v, dtype=float), np.array(y, dtype=float)) for v, y in data["pairs"]
@@ -126,4 +132,4 @@ class Learnt:
 def _led_back(own: Array) -> Array:
     """Hold the last level, and lead it back to the first."""
     fade = 0.5 + 0.5 * np.cos(np.pi * (np.arange(own.size) + 1.0) / (own.size + 1.0))
-    return own[-1] * fade
+    return np.asarray(own[-1] * fade)

@@ -26,9 +26,10 @@ _DOUBT = 0.5
 """Relative standard error of the linear part at which half of the gain is left."""
 
 _AT_REST, _BEFORE = 0.1, 20.0
-"""By what a plant departs from the model before anything is known: at rest, and in a cycle a sample."""
+"""By what a plant departs from the model before anything is known: at rest, and more of it in a
+cycle a sample."""
 
-_PROBE = 0.12
+_PROBE = 0.06
 """Of the correction where little is known: enough to learn there by what it does."""
 
 _TELLING = 25.0
@@ -126,4 +127,4 @@ def _mean_around(power: Array, half: int) -> Array:
     total = np.concatenate([[0.0], np.cumsum(power)])
     at = np.arange(power.size)
     first, last = np.maximum(at - half, 0), np.minimum(at + half + 1, power.size)
-    return (total[last] - total[first]) / (last - first)
+    return np.asarray((total[last] - total[first]) / (last - first))
