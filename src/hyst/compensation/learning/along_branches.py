@@ -82,7 +82,7 @@ def _slopes(x: Array, y: Array, noise: float) -> Array:
 
     def mean(signal: Array) -> Array:
         total = np.concatenate([[0.0], np.cumsum(signal)])
-        return (total[beyond] - total[first]) / count
+        return np.asarray((total[beyond] - total[first]) / count)
 
     own, out = x - x.mean(), y - y.mean()
     both = mean(own * out) - mean(own) * mean(out)

@@ -80,7 +80,7 @@ class LinearPart:
     def modes(self) -> Array:
         """Give the frequencies of pairs of poles, cycles a sample."""
         poles = np.roots(np.concatenate([[1.0], self.a]))
-        return np.abs(np.angle(poles[poles.imag > _TURNING])) / (2.0 * np.pi)
+        return np.asarray(np.abs(np.angle(poles[poles.imag > _TURNING])) / (2.0 * np.pi))
 
     def settling(self, share: float = 1e-3) -> int:
         """Give after how many samples less than a share of a pulse rings on."""
@@ -103,7 +103,13 @@ class LinearPart:
 
     @classmethod
     def from_dict(cls, data: dict[str, Any]) -> LinearPart:
-        """Rebuild it from ``to_dict()``."""
+        """Rebuild it from ``to_dict()``.
+
+        Parameters
+        ----------
+        data
+            What it gave.
+        """
         b, a = np.array(data["b"], dtype=float), np.array(data["a"], dtype=float)
         size = b.size + a.size
         covariance = np.array(data["covariance"], dtype=float).reshape(size, size)

@@ -14,6 +14,10 @@ from hyst.signals import Record
 Array = NDArray[np.float64]
 
 _SAME_TIME = 1e-6
+
+_LATEST = 0.125
+"""Of a record: a plant that is later than this is not believed."""
+
 _STUCK = 8
 """Samples on end at the extreme reading, from which on a sensor is held to be at its end."""
 
@@ -161,6 +165,40 @@ def shift_between(expected: Array, y: Array, most: int, noise: float) -> int:
     near = [best + k for k in (-1, 0, 1) if abs(best + k) <= most]
     best = min(near, key=lambda lag: _left(expected, y, lag))
     return best if best and _left(expected, y, best) < _SHIFT_GAIN * now else 0
+
+
+def delay_or_refusal(expected: Array, y: Array, noise: float, has_history: bool) -> int:
+    """Give the delay to learn from a first repetition, or refuse one that is shifted.
+
+    Parameters
+    ----------
+    expected, y
+        Shape (N,).
+    noise
+        Rms of what does not repeat.
+    has_history
+        Whether there were repetitions before, whose delay is known.
+
+    Returns
+    -------
+    int
+        Samples.
+
+    Raises
+    ------
+    InputError
+        If the record is shifted.
+    """
+    late = shift_between(expected, y, y.size // 4, noise)
+    if late == 0 or (not has_history and 0 < late <= _LATEST * y.size):
+        return late
+    samples = f"{abs(late)} sample{'s' if abs(late) > 1 else ''}"
+    way = "late" if late > 0 else "early"
+    raise InputError(
+        f"the measured output is {way} by {samples} against what was to be expected, so that "
+        "nothing was learnt; start recording with the first sample of the command, or, if the "
+        "plant itself has become so, begin anew with reset(forget=True)"
+    )
 
 
 def _left(expected: Array, y: Array, lag: int) -> float:

@@ -102,6 +102,12 @@ class Trial:
 
     @classmethod
     def from_dict(cls, data: dict[str, Any]) -> Trial:
-        """Rebuild it from ``to_dict()``."""
+        """Rebuild it from ``to_dict()``.
+
+        Parameters
+        ----------
+        data
+            What it gave.
+        """
         arrays = (np.array(data[name], dtype=float) for name in ("u", "v", "y", "error"))
         return cls(int(data["number"]), *arrays)
