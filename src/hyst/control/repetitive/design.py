@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -34,6 +34,7 @@ LARGEST_PERIOD = 2**23  # twice as many are counted in single precision
 _HALVES = (0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
 _WIDEST, _STEP, _BANDS = 0.45, 0.8, 24  # of pi/dt: the widest band, and how bands go down from it
 _ENOUGH = 0.9  # of contraction, for a band that is chosen: 1 % after 44 periods
+_SCALES = np.linspace(0.7, 1.7, 51)
 _LONGER = 4  # lengths after which nothing gained means that longer ones gain nothing
 _NEAR = 0.02  # of the least contraction: fewer taps are taken
 _FLOOR = 0.02  # of Q where it stops: the inverse is not left to itself there
@@ -176,7 +177,7 @@ def _at_band(asked: Asked, passed: float) -> tuple[RepetitiveFilters, Repetitive
         taps = max(2 * half + 1, lead + 1)  # a memory of errors holds them up to now
         if smooth.size - 1 + lead >= asked.period:
             break
-        learn = asked.gain * inverse_taps(angle, P, np.maximum(Q, _FLOOR), doubt, lead, taps)
+        learn = inverse_taps(angle, P, np.maximum(Q, _FLOOR), doubt, lead, taps)
         filters = RepetitiveFilters(asked.period, smooth, learn, lead)
         L = filters.L(angle)
         tried.append((float((Q * (np.abs(1.0 - L * P) + np.abs(L) * doubt)).max()), filters))
@@ -187,6 +188,11 @@ def _at_band(asked: Asked, passed: float) -> tuple[RepetitiveFilters, Repetitive
     # The condition on the grid; the certificate closes in on what is between.
     least = _least(tried)
     filters = next(each for value, each in tried if value <= least + _NEAR)
+    L = filters.L(angle)
+    # Least squares fear doubt more than its worst case needs: all of L is scaled for that.
+    left = [(Q * (np.abs(1.0 - k * L * P) + k * np.abs(L) * doubt)).max() for k in _SCALES]
+    scale = asked.gain * _SCALES[int(np.argmin(left))]
+    filters = replace(filters, learn=scale * filters.learn)
     return filters, certified(filters, plant, plant.dt, asked.uncertainty, asked.slopes)
 
 
