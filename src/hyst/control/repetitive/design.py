@@ -41,7 +41,7 @@ _FLOOR = 0.02  # of Q where it stops: the inverse is not left to itself there
 
 
 @dataclass(frozen=True)
-class Asked:
+class _Asked:
     """What a design is given, checked."""
 
     plant: SampledPlant
@@ -96,6 +96,11 @@ def taken_apart(plant: Any, inverse: Any, dt: float | None) -> tuple[Any, Any]:
         As given; None for that of the model.
     dt
         Sample time, s; that of the plant if None.
+
+    Raises
+    ------
+    NotInvertibleError
+        If the hysteresis of the model has no exact inverse.
     """
     if not isinstance(plant, Operator):
         return plant, inverse
@@ -117,7 +122,18 @@ def designed(
     delay: float,
     gain: float,
 ) -> tuple[RepetitiveFilters, RepetitiveCertificate]:
-    """Choose filters; the arguments are those of ``RepetitiveController.design``."""
+    """Choose filters, and prove what they do.
+
+    Parameters
+    ----------
+    plant, period, dt, bandwidth, uncertainty, slopes, delay, gain
+        As ``RepetitiveController.design`` takes them; the period checked.
+
+    Raises
+    ------
+    InputError
+        As there.
+    """
     if uncertainty is None and bandwidth is None:
         raise InputError(
             "neither uncertainty nor bandwidth is given, so nothing says up to where the plant is "
@@ -129,7 +145,7 @@ def designed(
     sampled = sampled_plant(plant, dt, delay)
     refuse_lasting(sampled)
     wu = 0.0 if uncertainty is None else uncertainty
-    asked = Asked(sampled, period, wu, ordered_slopes(slopes), share)
+    asked = _Asked(sampled, period, wu, ordered_slopes(slopes), share)
     best: tuple[RepetitiveFilters, RepetitiveCertificate] | None = None
     for passed in _bands(bandwidth, sampled.dt):
         if bandwidth is None and passed * period < 2.0 * math.pi:
@@ -158,7 +174,9 @@ def _bands(bandwidth: float | None, dt: float) -> Iterator[float]:
     yield passed
 
 
-def _at_band(asked: Asked, passed: float) -> tuple[RepetitiveFilters, RepetitiveCertificate] | None:
+def _at_band(
+    asked: _Asked, passed: float
+) -> tuple[RepetitiveFilters, RepetitiveCertificate] | None:
     """Give the best filters that pass up to an angle; None where Q is longer than the period."""
     # An octave to fall in, or more where the filter would be longer than the period.
     stopped = passed + max(passed, narrowest(asked.period / 2.0))
@@ -213,7 +231,7 @@ def _lateness(P: NDArray[np.complex128], angle: Array, passed: float) -> int:
 
 def _proven(
     best: tuple[RepetitiveFilters, RepetitiveCertificate] | None,
-    asked: Asked,
+    asked: _Asked,
     bandwidth: float | None,
 ) -> tuple[RepetitiveFilters, RepetitiveCertificate]:
     if best is None:
