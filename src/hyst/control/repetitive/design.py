@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +29,7 @@ from hyst.models import LinearDynamics
 from hyst.operators import Operator
 
 Array = NDArray[np.float64]
+Found: TypeAlias = tuple[RepetitiveFilters, RepetitiveCertificate]
 
 LARGEST_PERIOD = 2**23  # twice as many are counted in single precision
 _HALVES = (0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
@@ -121,7 +122,7 @@ def designed(
     slopes: Any,
     delay: float,
     gain: float,
-) -> tuple[RepetitiveFilters, RepetitiveCertificate]:
+) -> Found:
     """Choose filters, and prove what they do.
 
     Parameters
@@ -146,7 +147,7 @@ def designed(
     refuse_lasting(sampled)
     wu = 0.0 if uncertainty is None else uncertainty
     asked = _Asked(sampled, period, wu, ordered_slopes(slopes), share)
-    best: tuple[RepetitiveFilters, RepetitiveCertificate] | None = None
+    best: Found | None = None
     for passed in _bands(bandwidth, sampled.dt):
         if bandwidth is None and passed * period < 2.0 * math.pi:
             break  # below the first harmonic there is nothing to learn
@@ -174,9 +175,7 @@ def _bands(bandwidth: float | None, dt: float) -> Iterator[float]:
     yield passed
 
 
-def _at_band(
-    asked: _Asked, passed: float
-) -> tuple[RepetitiveFilters, RepetitiveCertificate] | None:
+def _at_band(asked: _Asked, passed: float) -> Found | None:
     """Give the best filters that pass up to an angle; None where Q is longer than the period."""
     # An octave to fall in, or more where the filter would be longer than the period.
     stopped = passed + max(passed, narrowest(asked.period / 2.0))
@@ -230,10 +229,10 @@ def _lateness(P: NDArray[np.complex128], angle: Array, passed: float) -> int:
 
 
 def _proven(
-    best: tuple[RepetitiveFilters, RepetitiveCertificate] | None,
+    best: Found | None,
     asked: _Asked,
     bandwidth: float | None,
-) -> tuple[RepetitiveFilters, RepetitiveCertificate]:
+) -> Found:
     if best is None:
         raise InputError(
             f"the period of {asked.period} samples is shorter than the filter that such a band "
