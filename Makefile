@@ -33,8 +33,8 @@ export MKL_NUM_THREADS := 1
 export CC CXX
 
 .DEFAULT_GOAL := help
-.PHONY: help venv install demo test core-test fuzz soak embedded embedded-table misra lint types bench \
-	clean distclean
+.PHONY: help venv install demo test core-test fuzz soak embedded embedded-table misra lint types \
+	bench clean distclean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)

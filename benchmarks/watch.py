@@ -228,5 +228,3 @@ def _resident(process: int) -> float:
     except OSError:
         return float("nan")
     return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
-
-

@@ -38,7 +38,7 @@ def test_writes_parameters_over_time_with_bands(
     assert adapt(files, folder) == 0
     shown = capsys.readouterr().out
     assert "r[5]" in shown
-    assert "every radius is excited" in shown
+    assert "every play goes from envelope to envelope" in shown
     header, *rows = (folder / "parameters.csv").read_text().splitlines()
     assert header.startswith("time [s],p0,p0 standard error")
     assert len(rows) == 2000

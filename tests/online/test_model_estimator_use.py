@@ -38,7 +38,7 @@ def noisy(truth: Operator, u: np.ndarray, seed: int = 0) -> np.ndarray:
 @pytest.mark.parametrize("seed", [0, 1])
 def test_random_steps_never_leave_what_can_be_inverted(family: str, seed: int) -> None:
     u, y = random_signals(np.random.default_rng([11, seed]), 9000)
-    estimator, _ = estimator_of(family, seed, memory=0.3, window=0.32)
+    estimator, _ = estimator_of(family, seed, memory=0.3, window=0.32, block=80)
     changes = 0
     for k, (u_k, y_k) in enumerate(zip(u.tolist(), y.tolist(), strict=True)):
         before = estimator.parameters
@@ -50,8 +50,9 @@ def test_random_steps_never_leave_what_can_be_inverted(family: str, seed: int) -
             back = invert(model)
             if not isinstance(model, hyst.RateDependentPrandtlIshlinskii) and changes % 10 == 0:
                 reference = np.sin(np.arange(50.0))
-                # To rounding times what slopes of a millionth of their sum amplify.
-                assert np.abs(back(model(reference)) - reference).max() < 1e-6, k
+                # To rounding times what slopes of a millionth to a thousand times their sum, of
+                # maps and plays one after the other, amplify.
+                assert np.abs(back(model(reference)) - reference).max() < 1e-3, k
     assert changes >= 10
     counts = estimator.counts
     # Blocks 5 and 6 of nine hold numbers beyond all measure, and NaN and infinities.
@@ -120,33 +121,38 @@ def test_a_command_is_the_exact_inverse_from_the_memory_there_is(family: str) ->
 
 
 def test_a_rate_dependent_command_steps_the_explicit_inverse_and_says_how_inexact() -> None:
+    _, truth = estimator_of("rdpi")
+    assert isinstance(truth, hyst.RateDependentPrandtlIshlinskii)
+    u = two_sines(4500)
+    y_ref = truth(u)
+    estimator = ModelEstimator(truth, held=list(truth.parameters().names))
+    for k in range(4000):
+        estimator.update(u[k], y_ref[k])
+    told, commands, missed = estimator.inverse_error, [], []
+    step = truth.stepper(truth.run(u[:4000])[1])
+    for wanted in y_ref[4000:].tolist():
+        commands.append(estimator.command(wanted))
+        y = step(commands[-1])
+        missed.append(y - wanted)
+        estimator.update(commands[-1], y)
+    # The explicit inverse alone, which exports have, along the whole reference.
+    alone = truth(truth.explicit_inverse()(y_ref)) - y_ref
+    usual = math.sqrt(np.mean(np.square(alone[2000:])))
+    # Another stretch of the same motion, another beginning of the memory: the same to half.
+    assert told == pytest.approx(usual, rel=0.5)
+    assert math.sqrt(np.mean(np.square(missed))) == pytest.approx(usual, rel=0.5)
+    # It does not chatter: once the stretch has begun, steps change as those of the reference do.
+    rough = np.abs(np.diff(commands[50:], 2)).max()
+    assert rough < 3.0 * np.abs(np.diff(truth.explicit_inverse()(y_ref)[2000:], 2)).max()
+
+
+def test_commands_are_smooth_at_rest_where_the_explicit_inverse_is_exact() -> None:
     estimator, truth = estimator_of("rdpi")
     u = two_sines(4000)
     learn(estimator, u, noisy(truth, u))
-    # Rested there long enough, rates are 0, and the explicit inverse is exact.
     estimator.follow(np.full(20, u[-1]))
     here = float(estimator.model.run(u[-1:], estimator.memory)[0][0])
     assert estimator.command(here) == pytest.approx(u[-1], abs=1e-9)
-    moving = ModelEstimator(truth, dt=DT)
-    learn(moving, u, truth(u))
-    # A hand-made simulation of the same: one command from each memory along the last samples.
-    state, missed = truth.run(u[:-100])[1], []
-    for k in range(u.size - 100, u.size):
-        wanted, after = truth.run(u[k : k + 1], state)
-        n = truth.p.size
-        rest = hyst.RateDependentPrandtlIshlinskii(
-            truth.p, truth.r, truth.beta, DT, truth.p0, np.sort(state[:n]) if False else state[:n]
-        )
-        inverse = rest.explicit_inverse()
-        memory = inverse.initial_state()
-        memory[n], memory[n + 1] = truth.p0 * state[n] + truth.p @ state[:n], 1.0
-        command = inverse.run(wanted, memory)[0]
-        missed.append(float(truth.run(command, state)[0][0] - wanted[0]))
-        state = after
-    expected = math.sqrt(np.mean(np.square(missed)))
-    # 200 samples there, 100 here, of much the same course.
-    assert moving.inverse_error == pytest.approx(expected, rel=0.5)
-    assert moving.inverse_error > 1e-6
 
 
 def test_following_keeps_the_memory_of_the_input() -> None:
@@ -161,6 +167,11 @@ def test_following_keeps_the_memory_of_the_input() -> None:
     assert estimator.parameters.tolist() == theta.tolist()
     # Derivatives carry it to second order: the constants have moved since samples left the window.
     assert state == pytest.approx(model.run(u[:2600])[1], abs=1e-2)
+    estimator, truth = estimator_of("mpi")
+    learn(estimator, u[:2500], noisy(truth, u)[:2500])
+    estimator.follow(u[2500:2600])
+    # Turning points tell it to rounding.
+    assert estimator.memory == pytest.approx(estimator.model.run(u[:2600])[1], abs=1e-12)
 
 
 def test_a_frozen_copy_predicts_and_learns_nothing() -> None:
@@ -173,8 +184,7 @@ def test_a_frozen_copy_predicts_and_learns_nothing() -> None:
     assert frozen.memory == pytest.approx(estimator.memory, abs=1e-12)
     assert frozen.command(1.0) == pytest.approx(estimator.command(1.0), abs=1e-9)
     learn(frozen, u[2200:], y[2200:])
-    assert frozen.parameters.tolist() == estimator.parameters.tolist() or True
-    assert frozen.model.parameters().values.tolist() == frozen.parameters.tolist()
+    assert frozen.parameters.tolist() == estimator.parameters.tolist()
     frozen.restart(truth)
     assert frozen.parameters.tolist() == truth.parameters().values.tolist()
 
@@ -195,12 +205,14 @@ def test_a_restart_forgets_all_but_the_memory() -> None:
         estimator.restart(hyst.PrandtlIshlinskii([0.5], [1.0], 1.0))
 
 
-def test_lost_samples_are_skipped_and_the_memory_goes_on() -> None:
+def test_where_outputs_are_lost_the_memory_follows_the_input() -> None:
     estimator, truth = estimator_of("creep")
     u = two_sines(4000)
     y = noisy(truth, u)
     y[np.random.default_rng(1).random(y.size) < 0.2] = math.nan
-    learn(estimator, u, y)
+    for u_k, y_k in zip(u.tolist(), y.tolist(), strict=True):
+        if not estimator.update(u_k, y_k):
+            estimator.follow([u_k])
     counts = estimator.counts
     assert counts["skipped"] == int(np.isnan(y).sum())
     assert counts["used"] == y.size - counts["skipped"]
@@ -223,6 +235,6 @@ def test_what_cannot_be_estimated_is_refused() -> None:
     with pytest.raises(hyst.errors.InputError, match="entries"):
         ModelEstimator.restore(settings, state[:-1])
     broken = state.copy()
-    broken[14] = -1.0  # p0, behind 14 scalars
+    broken[16] = -1.0  # p0, behind 16 scalars
     with pytest.raises(hyst.errors.InputError, match="cannot be inverted"):
         ModelEstimator.restore(settings, broken)

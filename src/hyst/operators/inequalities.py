@@ -34,7 +34,7 @@ class Inequalities:
 
 
 def of_bounds(parameters: Parameters) -> Inequalities:
-    """Give the finite bounds of parameters; what is above 0 there stays above a millionth of itself.
+    """Give the finite bounds of parameters; what is above 0 stays above a millionth of itself.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ from hyst.online.model.model_innovation import ModelInnovation
 from hyst.online.model.past import Past
 from hyst.online.model.prior import spreads_of, tied_scales
 from hyst.online.model.regularities import LEAST_SAMPLES, Regularities
-from hyst.online.model.rivals import better_rival
+from hyst.online.model.rivals import rival_of
 from hyst.online.model.window import Window
 from hyst.operators import Operator
 
@@ -29,7 +29,9 @@ _LEAST_NOISE = 1e-10
 _ROUNDING = 1e-14
 # Tried in any case: noise may hide in every sum that a minimum is false.
 _SURE_TRIALS = 8
-_COMMANDS = 200
+RIVALS = 8
+"""How many of the last estimates from elsewhere are remembered; each may be as likely."""
+_COMMANDS = 500
 
 
 @final
@@ -78,6 +80,7 @@ class Course:
         noise = self.settings["noise"]
         self.variance = 0.0 if noise is None else noise**2
         self.averaged: Averaged | None = None
+        self.rivals = np.tile(theta, (RIVALS, 1))
         self.regularities = Regularities()
         self.has_left = False
         self.in_block = 0
@@ -103,11 +106,9 @@ class Course:
     def take(self, u: float, y: float, counted: bool = True) -> bool:
         """Take in a sample; tells whether it was learnt from."""
         told = math.isfinite(y)
-        if not math.isfinite(u):
-            self.counts["skipped"] += counted
-            if self.model.dt is None or self.window.count == 0:
-                return False
-            u, told, counted = self.last_input, False, False
+        if not math.isfinite(u) or (counted and not told):
+            self.counts["skipped"] += 1
+            return False
         if max(abs(u), abs(y) if told else 0.0) > _BEYOND:
             self.counts["refused"] += counted
             return False
@@ -118,7 +119,7 @@ class Course:
             return False
         if told:
             self.error = y - predicted
-        self.counts["used" if told else "skipped"] += counted
+        self.counts["used"] += counted
         self.last_input = u
         self.window.add(u, y if told else 0.0, float(told))
         self.in_block += 1
@@ -209,29 +210,30 @@ class Course:
             self._search(task)
 
     def _accept(self, found: Fitted) -> None:
-        self.theta, self.variance = found.theta, float(found.variance)
-        now = self.theta[self.free] / self.spread[self.free]
-        self.past = self.past.turned(found.before, found.information, self.variance, now)
+        before, self.theta = self.theta, found.theta
+        self.variance = float(found.variance)
         self.counts["refused steps"] += found.refused
-        scale, limits = self.spread[self.free], (self.lower, self.upper)
         known = self.information if self.information.any() else found.information
-        with np.errstate(all="ignore"):
-            rows = averaged(
-                self.window,
-                self.theta,
-                self.free,
-                scale,
-                known / self.variance + np.eye(scale.size),
-                limits,
-                found.columns,
-            )
-        information = found.information
-        if rows is not None:
-            weights = rows.weights(self.task().weights, self.variance)
-            information = rows.columns.T @ (rows.columns * weights[:, None])
+        self.averaged, information = self._seen_from(found.theta, known, found.columns)
+        if self.past.information.any():
+            _, old = self._seen_from(before, known, found.columns_before)
+            now = self.theta[self.free] / self.spread[self.free]
+            self.past = self.past.turned(old, information, self.variance, now)
         self.information = information + self.past.information
         self.recent = information + self.past.recent
-        self.averaged = rows
+
+    def _seen_from(
+        self, theta: Array, known: Array, columns: Array
+    ) -> tuple[Averaged | None, Array]:
+        """Give averaged derivatives of the window, if finite, and its information from there."""
+        scale, limits = self.spread[self.free], (self.lower, self.upper)
+        precision = known / self.variance + np.eye(scale.size)
+        weights = self.task().weights
+        with np.errstate(all="ignore"):
+            rows = averaged(self.window, theta, self.free, scale, precision, limits, columns)
+        if rows is not None:
+            columns, weights = rows.columns, rows.weights(weights, self.variance)
+        return rows, columns.T @ (columns * weights[:, None])
 
     def _search(self, task: Task) -> None:
         """Try an estimate from elsewhere, some in any case; while errors are no noise, for ever."""
@@ -243,8 +245,12 @@ class Course:
         self.wait = max(self.trials - _SURE_TRIALS, 0)
         self.trials += 1
         alone = replace(task, past=Past.none(self.free.size))
-        rival = better_rival(alone, self.theta, self.trials, self.floor(), self.judge)
-        if rival is not None:
+        found = rival_of(alone, self.theta, self.trials, self.floor(), self.judge)
+        if found is None:
+            return
+        rival, is_better = found
+        self.rivals[(self.trials - 1) % RIVALS] = self.theta if is_better else rival.theta
+        if is_better:
             self.replacements += 1
             self.past = alone.past
             self._accept(rival)
@@ -369,22 +375,19 @@ class Course:
         self.is_begun = False
         return spreads_of(model, self.settings["spread"], self.settings["spreads"], (0.0, 0.0))
 
-    def error_of(self, commands: Commands) -> float:
+    def error_of_commands(self) -> float:
         """Give the root mean square of what commands for the last predicted outputs would miss."""
         window = self.window
         y, _ = window.outputs(self.theta)
         first = max(window.count - _COMMANDS, 0)
-        begin = window.memory_for(self.theta)
-        state = self.model.run(window.u[:first], begin)[1] if first else begin
         if first == window.count:
             return 0.0
-        step, trial = self.model.stepper(state), self.model.stepper(state)
-        missed = []
-        for u, wanted in zip(
-            window.u[first : window.count].tolist(), y[first:].tolist(), strict=True
-        ):
-            here = np.array(step.state)
-            trial.state[:] = here
-            missed.append(trial(commands.input_for(wanted, here, u)) - wanted)
-            step(u)
+        begin = window.memory_for(self.theta)
+        state = self.model.run(window.u[:first], begin)[1] if first else begin
+        step, commands = self.model.stepper(state), Commands(self.model, state)
+        near, missed = float(window.u[first]), []
+        for wanted in y[first:].tolist():
+            near = commands.input_for(wanted, np.array(step.state), near)
+            missed.append(step(near) - wanted)
+            commands.passed(near, np.array(step.state))
         return float(np.sqrt(np.mean(np.square(missed))))

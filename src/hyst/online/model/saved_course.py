@@ -31,7 +31,7 @@ def numbers_of(course: Course) -> Array:
     ]  # fmt: skip
     window, count = course.window, course.window.count
     room = course.room - count
-    parts += [window.turns, np.zeros(MOST - window.turns.size)]
+    parts += [course.rivals.ravel(), window.turns, np.zeros(MOST - window.turns.size)]
     for each in (window.u, window.y, window.told):
         parts.append(np.concatenate([each[:count], np.zeros(room)]))
     past = course.past
@@ -94,6 +94,7 @@ def _take(course: Course, numbers: Array) -> None:
     theta, start, course.spread = next_of((m,)), next_of((m,)), next_of((m,))
     window = course.window
     window.state, window.theta_at, memory = next_of((n,)), next_of((m,)), next_of((n,))
+    course.rivals = next_of(course.rivals.shape)
     window.turns = next_of((MOST,))
     window.u, window.y, window.told = (next_of((course.room,)) for _ in range(3))
     told, course.regularities.numbers = next_of((f,)), next_of(course.regularities.numbers.shape)

@@ -19,10 +19,10 @@ Array = NDArray[np.float64]
 class Window:
     """The last samples of a record, along which outputs and derivatives are those of a model.
 
-    The memory before the first sample moves with the constants. Where it is one of return points, it
-    is run through the turning points that are left of the whole past. Elsewhere it is kept with its
-    derivatives by all constants, as the kernel has carried them along the past: of constants theta
-    it is ``state + tangents (theta - theta_at)``, to second order.
+    The memory before the first sample moves with the constants. Where it is one of return points,
+    it is run through the turning points that are left of the whole past. Elsewhere it is kept with
+    its derivatives by all constants, as the kernel has carried them along the past: of constants
+    theta it is ``state + tangents (theta - theta_at)``, to second order.
 
     Parameters
     ----------

@@ -35,7 +35,13 @@ def joint() -> JointEstimator:
 
 
 def slopes_of(u: Array, y: Array) -> Array:
-    """Give dy/du from each sample to the next; NaN at the first and while the input rests."""
+    """Give dy/du from each sample to the next; NaN at the first and while the input rests.
+
+    Parameters
+    ----------
+    u, y
+        Shape (N,), input and output.
+    """
     du, dy = np.diff(u, prepend=u[0]), np.diff(y, prepend=y[0])
     return np.asarray(np.divide(dy, du, out=np.full(u.size, np.nan), where=du != 0.0))
 
@@ -49,7 +55,15 @@ def noisy(name: str, decibels: float) -> tuple[Array, Array, float]:
 
 
 def bounds(u: Array, sigma: float) -> tuple[Array, Array]:
-    """Give Cramer-Rao bounds at TIMES: of the radii alone, and with all parameters together."""
+    """Give Cramer-Rao bounds at TIMES: of the radii alone, and with all parameters together.
+
+    Parameters
+    ----------
+    u
+        Shape (N,), input.
+    sigma
+        Standard deviation of the noise.
+    """
     jacobian = np.column_stack([PLAYS.jacobian(u), np.ones(u.size)])
     alone, together = [], []
     for t in TIMES:
