@@ -87,11 +87,6 @@ class Learnt:
         """Give the same for a motion of another length."""
         return replace(self, pairs=())
 
-    def before_it(self, y_ref: Array, periodic: bool) -> Array:
-        """Give what to tell the model so that the linear part gives a reference, shape (N,)."""
-        missed = y_ref - self.output(y_ref, periodic)
-        return np.asarray(y_ref + self.step(missed, 0.0, 1.0, periodic).dv)
-
     def step(self, error: Array, noise: float, gain: float, periodic: bool) -> Step:
         """Give the change that an error asks for."""
         return robust_step(error, self.linear, self.doubt, noise, gain, periodic)

@@ -45,6 +45,9 @@ _TURNED, _RESIZED = 0.8, 0.5
 _BEYOND, _CAUTION = 1.6, 2.0
 """Times its frequency: how far a mode's shape is believed; and times its standard error."""
 
+_SURE = 0.06
+"""No response is known better."""
+
 _ROUNDS = 6
 _TINY, _SINGULAR = 1e-150, 1e-12
 
@@ -245,7 +248,14 @@ def doubt_of(pairs: list[Pair], linear: LinearPart, noise: float) -> tuple[Array
     frequency, doubt = _own_doubt(pairs, linear, noise)
     reach = float(linear.modes().max(initial=0.0)) * _BEYOND
     fitted = np.where(frequency <= reach, _CAUTION * linear.doubt(frequency), np.inf)
-    return frequency, np.minimum(doubt, fitted)
+    both = np.minimum(doubt, fitted)
+    return frequency, both if linear.order else _beyond(frequency, both)
+
+
+def _beyond(frequency: Array, doubt: Array) -> Array:
+    """Extend a doubt to higher frequencies: a mode that is not known departs as their square."""
+    least = np.minimum.accumulate(np.maximum(doubt, _SURE) / frequency**2)
+    return np.minimum(doubt, least * frequency**2)
 
 
 def _own_doubt(pairs: list[Pair], linear: LinearPart, noise: float) -> tuple[Array, Array]:

@@ -75,7 +75,7 @@ class LinearPart:
             [-powers[:, 1 : n + 1] / below[:, None], powers[:, :m] / above[:, None]], axis=1
         )
         variance = np.einsum("ki,ij,kj->k", relative, self.covariance, relative.conj()).real
-        return np.sqrt(np.maximum(variance, 0.0))
+        return np.asarray(np.sqrt(np.maximum(variance, 0.0)))
 
     def modes(self) -> Array:
         """Give the frequencies of pairs of poles, cycles a sample."""

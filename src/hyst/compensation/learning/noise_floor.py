@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_QUARTER, _PARTS = 0.25, 4
+_QUARTER, _PARTS = 0.25, 2
 
 
 def noise_in(error: Array) -> float:

@@ -25,7 +25,7 @@ from hyst.compensation.learning.trial import Trial
 
 Array = NDArray[np.float64]
 
-_AT_THE_NOISE = 1.1
+_AT_THE_NOISE, _NEAR, _PATIENCE = 1.1, 1.6, 2
 _NOTHING_LEFT = 0.02
 _MOST_STRIKES, _BETTER, _HALVED = 4, 0.98, 0.5
 _MIXED, _FAR = 2, 20.0
@@ -62,8 +62,7 @@ class RepeatedMotion(ABC):
         self._noise = self._given_noise
         self._contraction = self._given or Contraction(math.nan, math.nan, 1.0, "unknown")
         self._past = self._before
-        v = self._learnt.before_it(y_ref, self._periodic)
-        self._set(self._along.command(v, self._past))
+        self._set(self._along.command(y_ref, self._past))
 
     def _set(self, made: Made) -> None:
         self._command, self._held = made.u, made.held
@@ -200,7 +199,7 @@ class RepeatedMotion(ABC):
             self._hold("", notes)
             return 0.0
         error = np.where(self._stuck, 0.0, base.error)
-        if base.rms <= _AT_THE_NOISE * noise:
+        if base.rms <= _AT_THE_NOISE * noise or self._has_stalled(base, noise):
             self._state = AT_THE_NOISE
             self._hold("", notes)
             return 0.0
@@ -222,6 +221,12 @@ class RepeatedMotion(ABC):
         if self._held:
             notes.append(f"{self._held} samples of the next command are held at a limit")
         return gain
+
+    def _has_stalled(self, base: Trial, noise: float) -> bool:
+        """Tell whether near the noise nothing has become better for two repetitions."""
+        assert self._best is not None
+        waited = len(self._history) + 1 - self._best.number
+        return waited >= _PATIENCE and base.rms < _NEAR * noise
 
     def _along_branches(self, dv: Array, base: Trial, noise: float) -> Array:
         if base.rms < _BRANCHES * noise or self._learnt.linear.order:
