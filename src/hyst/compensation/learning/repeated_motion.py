@@ -29,7 +29,7 @@ _AT_THE_NOISE, _NEAR, _PATIENCE = 1.1, 1.6, 2
 _NOTHING_LEFT = 0.02
 _MOST_STRIKES, _BETTER, _HALVED = 4, 0.98, 0.5
 _MIXED, _FAR = 2, 20.0
-_BRANCHES = 10.0
+_BRANCHES, _FORESEEN = 10.0, 0.05
 SAVED_AS_THEY_ARE = ("noise", "held", "state", "strikes", "gain", "unlike")
 
 
@@ -221,6 +221,13 @@ class RepeatedMotion(ABC):
         if self._held:
             notes.append(f"{self._held} samples of the next command are held at a limit")
         return gain
+
+    def _is_foreseen(self, v: Array) -> bool:
+        """Tell whether a command is so near to a measured one that a shift can be told."""
+        if self._best is None:
+            return not self._history
+        moved = float(np.sqrt(np.mean((v - self._best.v) ** 2)))
+        return moved < _FORESEEN * float(np.std(v))
 
     def _has_stalled(self, base: Trial, noise: float) -> bool:
         """Tell whether near the noise nothing has become better for two repetitions."""
