@@ -19,7 +19,7 @@
 
 namespace hyst {
 
-// Turns that are kept; inner ones are dropped, which only ripple deeper than that shows.
+// Turns that are kept; what a deeper nest of them loses is the smallest difference in it.
 inline constexpr std::size_t most_turns = 7;
 // A page that never ends, and the samples of the first one.
 inline constexpr double for_ever = 1e300, first_page = 1000.0;
@@ -141,6 +141,7 @@ private:
             if (side_ != 0.0) {
                 turns_.push_back(last_);
                 turned_ += 1.0;
+                if (turns_.size() > most_turns) drop_least();
             }
             side_ = side;
         }
@@ -153,6 +154,18 @@ private:
             }
         }
         last_ = u;
+    }
+
+    // Takes the turn that a later one comes nearest to as passed by that one, as exactly equal ones are:
+    // peaks of a sampled sine differ by next to nothing, and would pile up.
+    void drop_least() {
+        std::size_t least = 0;
+        for (std::size_t k = 1; k + 2 < turns_.size(); ++k) {
+            const double apart = std::fabs(turns_[k] - turns_[k + 2]);
+            if (apart < std::fabs(turns_[least] - turns_[least + 2])) least = k;
+        }
+        const auto first = turns_.begin() + static_cast<std::ptrdiff_t>(least);
+        turns_.erase(first, first + 2);
     }
 
     std::uint64_t key(const FoldedRow &row) const {

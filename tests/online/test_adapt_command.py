@@ -146,7 +146,7 @@ def test_it_says_when_what_is_left_is_no_noise(
     assert adapt((tmp_path / "model.json", tmp_path / "data.csv"), tmp_path / "out") == 0
     told = " ".join(capsys.readouterr().err.split())
     assert "model or estimate are wrong" in told
-    assert "too narrow" in told
+    assert "the plant is no such model, or has changed, and the bands are too narrow" in told
 
 
 def test_a_record_of_which_little_can_be_used_is_refused(

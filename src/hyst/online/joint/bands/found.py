@@ -102,9 +102,18 @@ def found_in(
         noise = kept[0].chi_square * problem.noise / max(samples.y.size - m, 1)
         problem = Problem(parts, samples, max(noise, floor), limit, bounds)
         kept = [minimum_from(problem, each.theta) for each in kept]
-    best = kept[0].chi_square
-    near = tuple(each for each in kept if each.chi_square <= best + RISE)[:_MOST_MINIMA]
-    return Found(problem, near, misfit_of(problem, near[0], pages))
+    misfit = misfit_of(problem, kept[0], pages)
+    excess = kept[0].chi_square / max(samples.y.size - m, 1)
+    if misfit < CHANCE and excess > 1.0:
+        # What is no noise is at least counted like it.
+        problem = replace(problem, noise=problem.noise * excess)
+        kept = [
+            Minimum(each.theta, each.chi_square / excess, each.information / excess)
+            for each in kept
+        ]
+    most = kept[0].chi_square + RISE
+    near = tuple(each for each in kept if each.chi_square <= most)[:_MOST_MINIMA]
+    return Found(problem, near, misfit)
 
 
 def _noise_within(pages: tuple[FoldedSamples, ...]) -> float:

@@ -37,7 +37,8 @@ def covariance_of_minimum(problem: Problem, minimum: Minimum, spreads: float = 5
     own = minimum.information[np.ix_(free, free)] * np.outer(scale, scale)
     found = np.zeros_like(minimum.information)
     # In units of the spreads of the start, which are far wider than what data determine.
-    inverse = np.linalg.inv(own + np.eye(own.shape[0]) / spreads**2)
+    size, directions = np.linalg.eigh(own)
+    inverse = directions / (np.maximum(size, 0.0) + spreads**-2) @ directions.T
     found[np.ix_(free, free)] = inverse * np.outer(scale, scale)
     return found
 
