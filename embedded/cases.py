@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from embedded.rounding_bound import NoBoundError, controller_bound, single_precision_bound
 from hyst import ModifiedPrandtlIshlinskii, Operator, PrandtlIshlinskii, Preisach
-from hyst.control import TrackingController
+from hyst.control import RepetitiveController, TrackingController
 from hyst.export.c.block import Block, block_of, stepper_of
 from hyst.export.c.estimator import estimator_block
 from hyst.export.c.numbers import Precision
@@ -29,7 +29,7 @@ class Case:
     """A model and the record it is given, shape (N, inputs); some samples are not finite."""
 
     name: str
-    model: Operator | TrackingController | JointEstimator
+    model: Operator | TrackingController | RepetitiveController | JointEstimator
     inputs: Array
 
     @property
@@ -62,6 +62,8 @@ class Case:
         """Give the bound of single precision's error."""
         if isinstance(self.model, JointEstimator):
             raise NoBoundError("an estimate feeds on its own rounding")
+        if isinstance(self.model, RepetitiveController):
+            raise NoBoundError("what is learned feeds on its own rounding")
         finite = self.inputs[np.isfinite(self.inputs).all(axis=1)]
         if isinstance(self.model, TrackingController):
             return controller_bound(self.model, finite)
@@ -120,6 +122,14 @@ def controller(
     )
 
 
+def repetitive(inverse: Operator, limits: tuple[float, float] | None) -> RepetitiveController:
+    """Give a controller for a period of 100 samples in front of a mode at 100 Hz, at 1 kHz."""
+    mode = ([4e5], [1.0, 40.0, 4e5])
+    return RepetitiveController.design(
+        mode, 100, dt=1e-3, bandwidth=600.0, delay=1e-3, inverse=inverse, limits=limits
+    )
+
+
 def estimator() -> tuple[JointEstimator, Array]:
     """Give an estimator of 5 plays that starts off the truth, and u, y and y_ref for it."""
     p, r = np.array([0.4, 0.3, 0.25, 0.2, 0.15]), np.array([0.5, 1.0, 1.5, 2.5, 3.5])
@@ -143,4 +153,7 @@ def cases() -> Iterator[Case]:
     yield Case("controller, observer and inverse mpi", controller(ten_plays()), both)
     limited = controller(ten_plays(), (-20.0, 30.0), 2e4)
     yield Case("controller, observer and inverse mpi, limited", limited, both)
+    yield Case("repetitive, 100 samples, inverse mpi", repetitive(ten_plays(), None), both)
+    limited = repetitive(ten_plays(), (-4.0, 5.0))
+    yield Case("repetitive, 100 samples, inverse mpi, limited", limited, both)
     yield Case("joint estimator of 5 plays", *estimator())

@@ -20,6 +20,7 @@
 #include "online_binding.hpp"
 #include "../parallel.hpp"
 #include "rate_dependent_binding.hpp"
+#include "repetitive_binding.hpp"
 #include "../simd/kernels.hpp"
 #include "stepper.hpp"
 
@@ -248,6 +249,7 @@ NB_MODULE(_engine, module) {
     module.def("use_instruction_set", &use_instruction_set, nb::arg("name"));
     module.def("stepper", &stepper, nb::arg("chain"), nb::arg("state"), nb::arg("y_safe"));
     hyst::bind_closed_loop(module);
+    hyst::bind_repetitive(module);
     hyst::bind_moving(module);
     hyst::bind_online_estimation(module);
     hyst::bind_rate_dependent_inversion(module);

@@ -2,6 +2,8 @@
 // Python owns; what is checked here is only that nothing is written outside an array.
 #include "online_binding.hpp"
 
+#include "folded.hpp"
+
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
@@ -9,6 +11,7 @@
 
 #include "hyst/hyst.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <map>
@@ -101,9 +104,32 @@ public:
         hyst_joint_start(&config_, values, noise);
         hyst_search_start(&search_, values);
     }
-    int step(State state, double u, double y) const {
-        return hyst_search_step(&search_, checked(state), u, y);
+    int step(State state, double u, double y) {
+        const int end = hyst_search_step(&search_, checked(state), u, y);
+        if (end == HYST_JOINT_UPDATED) folded_.take(u, y);
+        return end;
     }
+    // What is kept of the samples themselves, which the core does not need.
+    void set_folding(double quantum, double coarsest, double most, double page) {
+        folded_ = Folded(quantum, coarsest, most, page);
+    }
+    // A row for each input with its memory: count, mean y, squares about the means, turns and input;
+    // of the present page (0), of the one before (1), or of both as one (2).
+    std::vector<std::vector<double>> folded(int which) const {
+        std::vector<std::vector<double>> rows;
+        for (const FoldedRow &each : which == 2 ? folded_.both() : folded_.page(which == 1)) {
+            rows.push_back({each.count, each.y, each.uu, each.uy, each.yy});
+            rows.back().insert(rows.back().end(), each.way.begin(), each.way.begin() + each.size);
+        }
+        return rows;
+    }
+    std::vector<double> folding() const { return folded_.place(); }
+    void fold_again(const std::vector<double> &place, const std::vector<std::vector<double>> &rows,
+                    const std::vector<std::vector<double>> &before) {
+        require(place.size() >= 6 && place[3] > 0.0, "the place has at least six numbers");
+        folded_.restore(place, rows_of(rows), rows_of(before));
+    }
+    void unfold() { folded_.clear(); }
     // All that the core is told, by the names of its structures; exports write it down.
     std::map<std::string, std::vector<double>> constants() const {
         return {{"plays", {static_cast<double>(config_.plays)}},
@@ -129,16 +155,23 @@ public:
         double *values = checked(state);
         hyst_joint_set_memory(&config_, &places_, values, values[HYST_JOINT_INPUT]);
     }
+    // The estimate has been replaced from outside.
+    void replaced(State state) const {
+        double *values = checked(state);
+        hyst_joint_set_memory(&config_, &places_, values, values[HYST_JOINT_INPUT]);
+        values[all_.scalars + HYST_SEARCH_SEEN] = 0.0;
+    }
     // An input whose output was not measured.
-    void follow(State state, double u) const {
+    void follow(State state, double u) {
         hyst_search_follow(&search_, checked(state), u);
+        folded_.follow(u);
     }
     double command(State state, double y_ref) const {
         return hyst_joint_command(&config_, checked(state), y_ref);
     }
     // A row of theta and of its variances after every `every` samples; all prediction errors.
     void run(State state, Signal u, Signal y, std::size_t every, Rows theta, Rows variance,
-             State error) const {
+             State error) {
         double *values = checked(state);
         const std::size_t samples = u.shape(0);
         require(y.shape(0) == samples && error.shape(0) == samples, "u, y and error differ in length");
@@ -149,6 +182,7 @@ public:
         for (std::size_t k = 0; k < samples; ++k) {
             const int end = hyst_search_step(&search_, values, u.data()[k], y.data()[k]);
             error.data()[k] = end == HYST_JOINT_UPDATED ? values[HYST_JOINT_ERROR] : 0.0;
+            if (end == HYST_JOINT_UPDATED) folded_.take(u.data()[k], y.data()[k]);
             if ((k + 1) % every == 0) store(values, k / every, theta, variance);
         }
     }
@@ -157,6 +191,16 @@ private:
     double *checked(const State &state) const {
         require(state.shape(0) == all_.length, "state has the wrong length");
         return state.data();
+    }
+    static std::vector<FoldedRow> rows_of(const std::vector<std::vector<double>> &rows) {
+        std::vector<FoldedRow> found;
+        for (const std::vector<double> &each : rows) {
+            require(each.size() >= 6 && each.size() <= 6 + most_turns, "a row has 6 to 13 numbers");
+            FoldedRow row{each[0], each[1], each[2], each[3], each[4], each.size() - 5};
+            std::copy(each.begin() + 5, each.end(), row.way.begin());
+            found.push_back(row);
+        }
+        return found;
     }
     void store(const double *state, std::size_t row, const Rows &theta, const Rows &variance) const {
         const std::size_t m = places_.m;
@@ -171,6 +215,7 @@ private:
     std::vector<double> cell_radius_, cell_start_, cell_limit_;
     hyst_search search_;
     hyst_search_layout all_;
+    Folded folded_{1e-12, 1.0, 2048.0, 1e300};
 };
 
 class Radius {
@@ -261,6 +306,11 @@ public:
           bool scale_held, bool offset_held)
         : config_{forgetting, patience, spread, least, most, scale_held, offset_held} {}
 
+    // In the order of the core's structure; exports write them down.
+    std::vector<double> constants() const {
+        return {config_.forgetting, config_.patience, config_.spread, config_.least, config_.most};
+    }
+
     std::map<std::string, std::size_t> places() const {
         return {{"start", HYST_SCALE_START},
                 {"start_offset", HYST_SCALE_START_OFFSET},
@@ -346,11 +396,17 @@ void bind_online_estimation(nb::module_ &module) {
         .def("set_bounds", &Joint::set_bounds)
         .def("set_memory", &Joint::set_memory)
         .def("set_search", &Joint::set_search)
+        .def("set_folding", &Joint::set_folding)
+        .def("folded", &Joint::folded)
+        .def("folding", &Joint::folding)
+        .def("fold_again", &Joint::fold_again)
+        .def("unfold", &Joint::unfold)
         .def("places", &Joint::places)
         .def("start", &Joint::start, nb::arg("state").noconvert(), nb::arg("noise"))
         .def("step", &Joint::step, nb::arg("state").noconvert(), nb::arg("u"), nb::arg("y"))
         .def("follow", &Joint::follow, nb::arg("state").noconvert(), nb::arg("u"))
         .def("remember", &Joint::remember, nb::arg("state").noconvert())
+        .def("replaced", &Joint::replaced, nb::arg("state").noconvert())
         .def("constants", &Joint::constants)
         .def("correlation", &Joint::correlation, nb::arg("state").noconvert())
         .def("command", &Joint::command, nb::arg("state").noconvert(), nb::arg("y_ref"))
@@ -373,6 +429,7 @@ void bind_online_estimation(nb::module_ &module) {
     nb::class_<Scale>(module, "ScaleEstimation")
         .def(nb::init<double, double, double, double, double, bool, bool>())
         .def("places", &Scale::places)
+        .def("constants", &Scale::constants)
         .def("start", &Scale::start, nb::arg("state").noconvert(), nb::arg("start"),
              nb::arg("offset"))
         .def("step", &Scale::step, nb::arg("state").noconvert(), nb::arg("w"), nb::arg("y"))

@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <deque>
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -64,11 +65,15 @@ public:
             } else if (name == "anti_windup") {
                 controls_.push_back(rounded(each));
                 limited_.w = controls_.back().table("w");
+            } else if (name == "repetitive_memory" || name == "repetitive_learning") {
+                controls_.push_back(rounded(each));
+                remember(controls_.back(), name == "repetitive_learning");
             } else {
                 add_stage(hyst::kinds::known_kind(name), rounded(each));
             }
         }
         for (const hyst_stage &each : stages_) length += hyst_stage_state_length(&each);
+        if (is_repetitive_) length += hyst_repetitive_memory_length(&memory_);
         if (length != state_.size()) throw std::invalid_argument("start has the wrong length");
         controller_.inverse = {stages_.size(), stages_.data()};
         if (is_limited_) limit(forward);
@@ -81,15 +86,33 @@ public:
         return hyst_guarded_step(&controller_.inverse, state_.data(), &guard_,
                                  static_cast<float>(u));
     }
+    // The next output, of which nothing is remembered; NaN if there is none.
+    double peek(double u) const {
+        std::vector<float> memory = state_;
+        hyst_guard guard = guard_;
+        guard.fault = 0;
+        const double y = hyst_guarded_step(&controller_.inverse, memory.data(), &guard,
+                                           static_cast<float>(u));
+        return guard.fault != 0 ? std::numeric_limits<double>::quiet_NaN() : y;
+    }
     double step_controller(double y_ref, double y) {
         if (!has_two_inputs_) throw std::invalid_argument("this block takes u");
+        const float reference = static_cast<float>(y_ref), output = static_cast<float>(y);
+        if (is_repetitive_ && is_limited_) {
+            return hyst_limited_repetitive_step(&memory_, &limited_.inverse, state_.data(),
+                                                before_.data(), &limited_guard_, reference, output,
+                                                &v_, &changed_);
+        }
+        if (is_repetitive_) {
+            return hyst_repetitive_step(&memory_, &controller_.inverse, state_.data(), &guard_,
+                                        reference, output, &v_, &changed_);
+        }
         if (is_limited_) {
             return hyst_limited_tracking_step(&limited_, state_.data(), before_.data(),
-                                              &limited_guard_, static_cast<float>(y_ref),
-                                              static_cast<float>(y), &v_, &excess_);
+                                              &limited_guard_, reference, output, &v_, &excess_);
         }
         return hyst_guarded_tracking_step(&controller_, state_.data(), &guard_,
-                                          static_cast<float>(y_ref), static_cast<float>(y));
+                                          reference, output);
     }
     std::vector<double> state() const { return {state_.begin(), state_.end()}; }
     bool fault() const { return guard_.fault != 0 || limited_guard_.guard.fault != 0; }
@@ -121,6 +144,23 @@ private:
         has_two_inputs_ = true;
     }
 
+    // The memory of a period comes in two parts, each with the filter that it needs.
+    void remember(const hyst::kinds::Constants &of, bool learns) {
+        memory_.period = of.choice("period");
+        memory_.half = of.choice("half");
+        memory_.lead = of.choice("lead");
+        memory_.taps = of.choice("taps");
+        memory_.wait = of.choice("wait");
+        memory_.compares = static_cast<int>(of.choice("compares"));
+        if (learns) {
+            memory_.learn = of.table("learn");
+        } else {
+            memory_.tolerance = of.number("tolerance");
+            memory_.smooth = of.table("smooth");
+        }
+        has_two_inputs_ = is_repetitive_ = true;
+    }
+
     // The last stages before one that says how many are inside it are those.
     void add_stage(const hyst::kinds::Kind &kind, hyst::kinds::Constants constants) {
         const std::size_t inside = constants.has_choice("inside") ? constants.choice("inside") : 0;
@@ -143,7 +183,9 @@ private:
     hyst_tracking_controller controller_{};
     hyst_guard guard_{};
     bool has_two_inputs_ = false;
-    bool is_limited_ = false;
+    bool is_limited_ = false, is_repetitive_ = false;
+    hyst_repetitive_memory memory_{};
+    int changed_ = 0;
     hyst_limited_tracking limited_{};
     hyst_limited_guard limited_guard_{};
     std::vector<float> before_;
@@ -182,6 +224,29 @@ private:
     std::vector<float> state_;
     hyst_guard guard_{};
     int outside_ = 0;
+};
+
+// Scale and offset; the constants are those that the engine's estimator in double tells.
+class ScaleEstimator {
+public:
+    ScaleEstimator(const std::vector<double> &constants, const std::vector<bool> &held,
+                   const std::vector<double> &start)
+        : state_(start.begin(), start.end()) {
+        if (constants.size() != 5 || held.size() != 2 || state_.size() != HYST_SCALE_LENGTH) {
+            throw std::invalid_argument("constants, held or start have the wrong length");
+        }
+        const auto of = [&](std::size_t place) { return static_cast<float>(constants[place]); };
+        scale_ = {of(0), of(1), of(2), of(3), of(4), held[0], held[1]};
+    }
+    int step(double w, double y) {
+        return hyst_scale_step(&scale_, state_.data(), static_cast<float>(w),
+                               static_cast<float>(y));
+    }
+    std::vector<double> state() const { return {state_.begin(), state_.end()}; }
+
+private:
+    std::vector<float> state_;
+    hyst_scale scale_{};
 };
 
 // A joint estimator; the constants are those that the engine's estimator in double tells.
@@ -252,12 +317,19 @@ NB_MODULE(_single, module) {
         .def_prop_ro("state", &Stepper::state)
         .def_prop_ro("fault", &Stepper::fault)
         .def_prop_ro("limited", &Stepper::limited)
-        .def("clear_fault", &Stepper::clear_fault);
+        .def("clear_fault", &Stepper::clear_fault)
+        .def("peek", &Stepper::peek, nb::arg("u"));
     nb::class_<MovingStepper>(module, "MovingStepper")
         .def(nb::init<const std::vector<double> &, const std::vector<std::vector<Description>> &,
                       const std::vector<double> &>(),
              nb::arg("at"), nb::arg("knots"), nb::arg("start"))
         .def("__call__", &MovingStepper::step, nb::arg("u"), nb::arg("s"));
+    nb::class_<ScaleEstimator>(module, "ScaleEstimator")
+        .def(nb::init<const std::vector<double> &, const std::vector<bool> &,
+                      const std::vector<double> &>(),
+             nb::arg("constants"), nb::arg("held"), nb::arg("start"))
+        .def("step", &ScaleEstimator::step, nb::arg("w"), nb::arg("y"))
+        .def_prop_ro("state", &ScaleEstimator::state);
     nb::class_<Estimator>(module, "Estimator")
         .def(nb::init<const Tables &, const std::vector<double> &>(), nb::arg("constants"),
              nb::arg("start"))

@@ -226,4 +226,26 @@ LoopResult run_limited_loop(std::size_t n, const double *step,
     return result;
 }
 
+LoopResult run_repetitive_loop(std::size_t n, const double *step,
+                               const hyst_repetitive_memory &memory, const hyst_chain &inverse,
+                               const hyst_limited_inverse *limited, const Chain &hysteresis,
+                               std::vector<double> &controller_state,
+                               std::vector<double> &hysteresis_state, const LoopSignals &signals,
+                               double limit) {
+    std::vector<double> before(controller_state.size());
+    hyst_limited_guard guard = {{limited == nullptr ? 0.0 : controller_state.back(), 0}, 0};
+    int changed = 0;
+    const auto answer = [&](double y_ref, double y, double &v) {
+        return limited == nullptr
+                   ? hyst_repetitive_step(&memory, &inverse, controller_state.data(), &guard.guard,
+                                          y_ref, y, &v, &changed)
+                   : hyst_limited_repetitive_step(&memory, limited, controller_state.data(),
+                                                  before.data(), &guard, y_ref, y, &v, &changed);
+    };
+    LoopResult result =
+        run_around(n, step, answer, hysteresis, hysteresis_state, signals, limit);
+    result.held = guard.limited != 0;
+    return result;
+}
+
 }  // namespace hyst

@@ -6,6 +6,7 @@
 
 #include "../chain.hpp"
 #include "hyst/limited_tracking.h"
+#include "hyst/repetitive_controller.h"
 #include "hyst/tracking_controller.h"
 
 namespace hyst {
@@ -51,5 +52,13 @@ LoopResult run_limited_loop(std::size_t n, const double *step,
                             std::vector<double> &controller_state,
                             std::vector<double> &hysteresis_state, const LoopSignals &signals,
                             double limit);
+
+// The same around a repetitive controller; `limited` where its drive has limits, else null.
+LoopResult run_repetitive_loop(std::size_t n, const double *step,
+                               const hyst_repetitive_memory &memory, const hyst_chain &inverse,
+                               const hyst_limited_inverse *limited, const Chain &hysteresis,
+                               std::vector<double> &controller_state,
+                               std::vector<double> &hysteresis_state, const LoopSignals &signals,
+                               double limit);
 
 }  // namespace hyst

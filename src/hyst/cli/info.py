@@ -30,7 +30,7 @@ def info(model_file: ModelFile) -> None:
         print(f"\n{hyst.report.invertible_sentence(operator)}")
 
 
-def _drive(found: hyst.control.TrackingController) -> str:
+def _drive(found: hyst.control.TrackingController | hyst.control.RepetitiveController) -> str:
     """Say what the drive of a controller may be."""
     said = ""
     if found.limits is not None:
@@ -48,6 +48,13 @@ def _operator(found: Any) -> hyst.operators.Operator | None:
         what = "no inverse" if found.inverse is None else "an inverse, as follows"
         print(
             f"tracking controller: {found.order} states, dt {found.dt:.6g} s, {_drive(found)}{what}"
+        )
+        return found.inverse
+    if isinstance(found, hyst.control.RepetitiveController):
+        what = "no inverse" if found.inverse is None else "an inverse, as follows"
+        print(
+            f"repetitive controller: period of {found.period} samples, dt {found.dt:.6g} s, "
+            f"{_drive(found)}{what}"
         )
         return found.inverse
     print(f"{type(found).__name__}: the model it has found so far is")

@@ -49,6 +49,8 @@ from hyst.control.q_filters import (
     q_filter,
     robust_performance,
 )
+from hyst.control.repetitive.certificate import RepetitiveCertificate
+from hyst.control.repetitive.controller import RepetitiveController
 from hyst.control.sampled.certificate import SampledCertificate, sampled_certificate
 from hyst.control.sampled.folding import folded_uncertainty
 from hyst.control.sampled.judged import LoopJudgement, judge_loop
@@ -86,6 +88,8 @@ __all__ = [
     "QFilter",
     "QFilterCertificate",
     "QFilterObserver",
+    "RepetitiveCertificate",
+    "RepetitiveController",
     "RobustPerformance",
     "SampledCertificate",
     "SampledPlant",

@@ -20,6 +20,7 @@ from hyst.control.closed_loop import ClosedLoop
 from hyst.control.controller_parts import disturbance_observer_of, feedback_controller, joined
 from hyst.control.feedback.settled_start import simulate_settled
 from hyst.control.loop_system import continuous_loop, held_step, plant_of
+from hyst.control.repetitive.controller import RepetitiveController
 from hyst.control.sampled.plant import SampledPlant, sampled_plant
 from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError, SolverError
@@ -75,7 +76,8 @@ def simulate_closed_loop(
         pair (num, den), matrices (A, B, C, D) or a number; with a TrackingController also
         LinearDynamics of the same dt.
     controller
-        C(s) in one of these forms, or a TrackingController, which has its own observer and inverse.
+        C(s) in one of these forms, or a TrackingController, which has its own observer and inverse;
+        or a RepetitiveController, which goes with the same kinds of plant and delay.
     hysteresis
         True hysteresis, from u to eta; the identity if left out.
     inverse
@@ -155,10 +157,10 @@ def simulate_closed_loop(
     inputs[2 if disturbance_at == "hysteresis" else 3] = d
     actuator = _chain(hysteresis, "hysteresis", time), _start(hysteresis)
     signals = inputs, outputs, _limit(limit, r, spread)
-    if isinstance(controller, TrackingController):
+    if isinstance(controller, TrackingController | RepetitiveController):
         if inverse is not None or observer is not None:
             raise InputError(
-                "a TrackingController has its own inverse and observer; leave them out"
+                f"a {type(controller).__name__} has its own inverse and observer; leave them out"
             )
         end, good, held = _sampled(controller, sampled_plant(plant, time, delay), actuator, signals)
     else:
@@ -195,7 +197,7 @@ def _refuse_unsolved(end: str, at: float) -> None:
 
 
 def _sampled(
-    controller: TrackingController,
+    controller: TrackingController | RepetitiveController,
     plant: SampledPlant,
     actuator: tuple[_engine.Chain, Array],
     signals: tuple[Array, Array, float],
@@ -206,9 +208,10 @@ def _sampled(
             "give the same for both"
         )
     step, (chain, state) = held_step(plant.system, plant.dt), actuator
-    return _engine.run_sampled_loop(
-        step, controller.compiled, chain, controller.initial_state(), state, *signals
-    )
+    after = chain, controller.initial_state(), state, *signals
+    if isinstance(controller, RepetitiveController):
+        return _engine.run_repetitive_loop(step, controller.compiled, *after)
+    return _engine.run_sampled_loop(step, controller.compiled, *after)
 
 
 def _settling(settle: float, samples: int, dt: float) -> float:

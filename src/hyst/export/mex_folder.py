@@ -13,7 +13,7 @@ from typing import final
 import hyst
 from hyst.errors import InputError
 from hyst.export.c.block import Block, Model, described, refuse_unfit
-from hyst.export.c.c_sources import header, places, source
+from hyst.export.c.c_sources import bad_samples, header, places, source
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.names import as_c_name, plain_text
 from hyst.export.c.one_file import in_one_file
@@ -161,12 +161,8 @@ def mex_files(tool: ToolBlock, name: str, about: ModelDescription) -> dict[str, 
         if tool.estimates
         else "is answered with the last output, leaves the memory as it is",
         **(_estimates(tool, name) if tool.estimates else _limited(block, name)),
-        "bad": f"{name}_fault(state)"
-        if block.limits is None
-        else f"({name}_fault(state) & ~{name.upper()}_OUT_OF_RANGE)",
-        "bad_here": f"{name}_fault(&state)"
-        if block.limits is None
-        else f"({name}_fault(&state) & ~{name.upper()}_OUT_OF_RANGE)",
+        "bad": bad_samples(block, name, "state"),
+        "bad_here": bad_samples(block, name, "&state"),
         "license": _commented(_LICENSE.read_text(encoding="utf-8"), " *"),
         "meaning": _meaning(common["signals"]),
         "rows": _rows(block, common["signals"], about),

@@ -24,7 +24,8 @@ class Knowledge:
     low, high
         Shape (m,): the truth is stated to lie between them, two standard errors to either side
         where nothing better is known; equal where a parameter is held. Where a parameter is not
-        determined they are no statement.
+        determined they are the interval in which the samples leave it; infinite where they say
+        nothing.
     determined
         Shape (m,): whether the samples determine the parameter.
     reasons
@@ -32,6 +33,8 @@ class Knowledge:
         there is nothing to add.
     sentences
         What there is to say about the estimate as a whole.
+    doubts
+        Those of the sentences that say why the bands cannot be believed; empty if they can.
 
     Examples
     --------
@@ -46,11 +49,12 @@ class Knowledge:
     determined: NDArray[np.bool_]
     reasons: tuple[str, ...]
     sentences: tuple[str, ...] = ()
+    doubts: tuple[str, ...] = ()
 
     @property
     def known(self) -> bool:
-        """Whether every parameter is determined."""
-        return bool(self.determined.all())
+        """Whether every parameter is determined, and there is no reason to doubt the bands."""
+        return bool(self.determined.all()) and not self.doubts
 
     def __str__(self) -> str:
         unknown = [

@@ -13,26 +13,37 @@ from numpy.typing import NDArray
 
 from hyst import _single
 from hyst.control.drive_limits import stated, within
+from hyst.control.repetitive.controller import RepetitiveController
+from hyst.control.repetitive.saved import REPETITIVE_KIND
 from hyst.control.saved_block import KIND
 from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError
 from hyst.export.c.core_stage import CoreStage, core_stages
 from hyst.export.c.limited import OUT_OF_RANGE, LimitedStages, limits_in
 from hyst.export.c.numbers import Precision
+from hyst.export.c.repetitive import REFERENCE_CHANGED, RepetitiveStages
 from hyst.export.c.scheduled import OFF_SCHEDULE, scheduled_code, second_values
 from hyst.export.c.stage_code import StageCode
 from hyst.models.schedule_run import ScheduledSystem
 from hyst.models.scheduled import Scheduled
 from hyst.models.scheduled_inverse import ScheduledInverse
 from hyst.models.stable_inverse import StableInverse
-from hyst.online import JointEstimator
+from hyst.online import JointEstimator, ScaleEstimator
 from hyst.operators import Affine, ModelDescription, Operator, Play
 from hyst.operators.registry import compose
 from hyst.operators.verdict import refuse_if_unfit
 
 Array = NDArray[np.float64]
 
-Model = Operator | ScheduledSystem | TrackingController | StableInverse | JointEstimator
+Model = (
+    Operator
+    | ScheduledSystem
+    | TrackingController
+    | RepetitiveController
+    | StableInverse
+    | JointEstimator
+    | ScaleEstimator
+)
 
 
 @final
@@ -85,6 +96,12 @@ class Block:
         one call of the stages after the other.
     limits
         Lowest and highest output, in numbers of the target; None without limits.
+    source_template
+        Of the source file, where it is another one than that of its header.
+    forgets
+        Numbers at the start of the memory that its reset makes 0; none has no reset.
+    tells
+        Bits of the fault, without the prefix, that no bad sample raises.
     """
 
     kind: str
@@ -108,6 +125,9 @@ class Block:
     faults: str = ""
     written: Callable[[StageCode], str] | None = None
     limits: tuple[float, float] | None = None
+    source_template: str = ""
+    forgets: int = 0
+    tells: tuple[str, ...] = ()
 
     def sha256(self) -> str:
         """Give the hash of the model."""
@@ -139,10 +159,11 @@ def stepper_of(block: Block, precision: Precision) -> Callable[..., float]:
         return block.stepper()
     if block.single_stepper is not None:
         return block.single_stepper()
-    return _single.Stepper([_told(stage) for stage in block.stages], block.start)
+    return _single.Stepper([told(stage) for stage in block.stages], block.start)
 
 
-def _told(stage: CoreStage) -> tuple[Any, ...]:
+def told(stage: CoreStage) -> tuple[Any, ...]:
+    """Give a ``stage`` as the twin in single precision takes it."""
     choices = {**stage.choices, **({"inside": stage.inside} if stage.inside else {})}
     return stage.kind, stage.form, dict(stage.numbers), dict(stage.tables), choices
 
@@ -153,8 +174,8 @@ def block_of(model: Model, precision: Precision) -> Block:
     Parameters
     ----------
     model
-        Any operator, a scheduled model or its inverse, or a tracking controller; a stable inverse
-        is refused with the reason.
+        Any operator, a scheduled model or its inverse, a tracking or a repetitive controller; a
+        stable inverse is refused with the reason.
     precision
         Of the target.
 
@@ -169,6 +190,8 @@ def block_of(model: Model, precision: Precision) -> Block:
     """
     if isinstance(model, TrackingController):
         return _controller(model, precision)
+    if isinstance(model, RepetitiveController):
+        return _repetitive(model, precision)
     if isinstance(model, Scheduled | ScheduledInverse):
         return _scheduled(model, precision)
     if isinstance(model, StableInverse):
@@ -231,7 +254,7 @@ def _scheduled(model: Scheduled | ScheduledInverse, precision: Precision) -> Blo
     start = tuple(model.initial_state().tolist())
 
     def single_stepper() -> Callable[..., float]:
-        knots = [[_told(stage) for stage in each] for each in code.knots]
+        knots = [[told(stage) for stage in each] for each in code.knots]
         return _single.MovingStepper(model.values.tolist(), knots, start)
 
     first = model.models[0] if isinstance(model, Scheduled) else model.scheduled.models[0].inverse()
@@ -314,6 +337,41 @@ def _limited(
         faults=OUT_OF_RANGE,
         written=stages.body,
         limits=(low, high),
+        tells=("OUT_OF_RANGE",),
+    )
+
+
+def _repetitive(model: RepetitiveController, precision: Precision) -> Block:
+    stages = RepetitiveStages.of(model, precision)
+    code = StageCode(stages.all, precision)
+    passed = Affine(1.0) if model.inverse is None else model.inverse
+    start = model.initial_state()
+    tells = ("OUT_OF_RANGE",) if stages.limits is not None else ()
+    if stages.limits is not None:
+        start[-1] = within(stages.limits[:2], model.u0)
+        reach = [abs(each) for each in model.limits or () if each != 0.0]
+        # Far enough to meet the limits, too.
+        passed = compose((passed, Play(max(reach)))) if reach else passed
+    return Block(
+        kind=REPETITIVE_KIND,
+        inputs=("y_ref", "y"),
+        output="u",
+        head=code.declarations(),
+        body=stages.body(code),
+        signal="v",
+        headers=code.headers(),
+        start=tuple(start.tolist()),
+        dt=model.dt,
+        model=model.to_dict(),
+        stages=code.stages,
+        chain=passed,
+        stepper=model.stepper,
+        faults=("" if stages.limits is None else OUT_OF_RANGE)
+        + ("" if model.tolerance is None else REFERENCE_CHANGED),
+        written=stages.body,
+        limits=None if stages.limits is None else stages.limits[:2],
+        forgets=model.compiled.memory_length,
+        tells=tells if model.tolerance is None else (*tells, "REFERENCE_CHANGED"),
     )
 
 

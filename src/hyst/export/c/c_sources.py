@@ -67,6 +67,7 @@ def places(
         "signals": _signals(block, about),
         "more_faults": block.faults.replace("@{NAME}", name.upper()),
         "raised": _raised(block, name.upper()),
+        **_reset(block, name),
         "sample_time": _sample_time(block, name),
         # What a refused sample leaves in an estimator's scratch area is of no use.
         "saved_number": "hyst_is_finite(state->memory[i]) ? state->memory[i] : HYST_REAL(0.0)"
@@ -94,7 +95,8 @@ def source(block: Block, places: dict[str, str], precision: Precision) -> str:
         "calls": indented(block.body.replace("@{NAME}", places["NAME"])),
         "signal": block.signal,
     }
-    return filled(f"{_template(block)}.c", places | more) + filled("state.c", places)
+    template = block.source_template or _template(block)
+    return filled(f"{template}.c", places | more) + filled("state.c", places)
 
 
 def selftest_source(block: Block, places: dict[str, str]) -> str:
@@ -158,17 +160,29 @@ def _rest(block: Block, precision: Precision) -> str:
 
 
 def _fault(block: Block, name: str, state: str) -> str:
-    """Give the fault as the self-test reads it: its input need not meet limits."""
+    """Give the fault as the self-test reads it: its input need not meet limits, for one."""
     fault = f"{name}_fault({state})"
-    return fault if block.limits is None else f"({fault} | {name.upper()}_OUT_OF_RANGE)"
+    return f"({' | '.join([fault, *told(block, name)])})" if block.tells else fault
+
+
+def told(block: Block, name: str) -> list[str]:
+    """Give the bits of the fault of a ``block`` called ``name`` that no bad sample raises."""
+    return [f"{name.upper()}_{each}" for each in block.tells]
+
+
+def bad_samples(block: Block, name: str, state: str) -> str:
+    """Give the fault of a ``block`` called ``name`` without what it tells, of a ``state``."""
+    fault, bits = f"{name}_fault({state})", told(block, name)
+    if not bits:
+        return fault
+    return f"({fault} & ~{bits[0] if len(bits) == 1 else '(' + ' | '.join(bits) + ')'})"
 
 
 def _raised(block: Block, prefix: str) -> str:
     bits = [f"{prefix}_NOT_FINITE"]
     if block.second:
         bits.append(f"{prefix}_OFF_SCHEDULE")
-    if block.limits is not None:
-        bits.append(f"{prefix}_OUT_OF_RANGE")
+    bits += [f"{prefix}_{each}" for each in block.tells]
     return bits[0] if len(bits) == 1 else f"({' | '.join(bits)})"
 
 
@@ -196,6 +210,20 @@ def _signals(block: Block, about: ModelDescription) -> str:
         said = f" in {plain_text(unit)}" if unit else ""
         lines.append(f" *   {role}: {plain_text(name)}{said}")
     return "\n".join(lines) + "\n" if len(lines) > 1 else "\n"
+
+
+def _reset(block: Block, name: str) -> dict[str, str]:
+    """Give declaration and definition of what forgets, where there is anything to forget."""
+    if block.forgets == 0:
+        return {"reset_declared": "", "reset_defined": ""}
+    signature = f"void {name}_reset({name}_state *state)"
+    return {
+        "reset_declared": "\n/* Forgets what was learned of a reference, for another one. What is "
+        f"known of the actuator stays. */\n{signature};\n",
+        "reset_defined": f"\n{signature}\n{{\n    size_t i;\n"
+        f"    for (i = 0; i < {block.forgets}u; ++i) {{\n"
+        "        state->memory[i] = HYST_REAL(0.0);\n    }\n}\n",
+    }
 
 
 def _sample_time(block: Block, name: str) -> str:

@@ -41,6 +41,7 @@ def estimator_block(estimator: JointEstimator, precision: Precision) -> Block:
     constants = estimator.core.constants()
     places = estimator.core.places()
     settings, state = estimator.saved()
+    del settings["folded"]  # samples; the core does not need them
     start = state.tolist()
 
     def in_double() -> Callable[..., float]:

@@ -81,6 +81,8 @@ class LimitedStages:
         Lowest and highest drive, and most change in a sample.
     w
         What the states of the linear part take back.
+    learning
+        What follows every sample and is told the excess, instead of w; None for none.
     """
 
     linear: CoreStage
@@ -88,6 +90,7 @@ class LimitedStages:
     forward: tuple[CoreStage, ...]
     limits: tuple[float, float, float]
     w: tuple[float, ...]
+    learning: CoreStage | None = None
 
     @property
     def all(self) -> tuple[CoreStage, ...]:
@@ -119,10 +122,34 @@ class LimitedStages:
             structure="",
             call="hyst_tracking_take_back(#w, $w, memory, $signal);",
         )
-        return (self.linear, *self.inverse, *self.forward, limits, windup)
+        after = windup if self.learning is None else self.learning
+        return (self.linear, *self.inverse, *self.forward, limits, after)
 
     def body(self, code: StageCode) -> str:
         """Give the statements that take ``y_ref`` and ``y`` and leave the drive in ``v``."""
+        if self.learning is not None:
+            return self._learning_body(code)
+        inner = self._inner(code, "const hyst_real excess = applied - wanted;", taken_back=True)
+        return (
+            "hyst_real v = (y_ref - y_ref) + (y - y); /* 0, or NaN if one is not finite */\n"
+            + code.calls("v", only=range(1))
+            + f"if (hyst_is_finite(v)) {{\n{inner}\n}}\n"
+        )
+
+    def _learning_body(self, code: StageCode) -> str:
+        """Give the same where all samples are told to what learns, those that are lost too."""
+        last = len(self.all) - 1
+        inner = self._inner(code, "excess = applied - wanted;", taken_back=False)
+        return (
+            "hyst_real v = HYST_REAL(0.0);\nhyst_real excess = HYST_REAL(0.0);\n"
+            + code.calls("v", only=range(1))
+            + f"if (hyst_is_finite(v)) {{\n{inner}\n}}\n"
+            + "if (!hyst_is_finite(excess)) {\n    excess = HYST_REAL(0.0);\n}\n"
+            + code.calls("excess", only=range(last, last + 1))
+        )
+
+    def _inner(self, code: StageCode, excess: str, taken_back: bool) -> str:
+        """Give the statements from a v that is finite to its drive."""
         first = 1 + len(self.inverse)
         last = first + len(self.forward)
         memory = sum(each.state_length for each in self.inverse)
@@ -150,21 +177,15 @@ class LimitedStages:
             "}",
             "if ((held != 0) || (v < u) || (v > u)) { /* on with what belongs to it */",
             *(["    hyst_real again = applied;"] if self.inverse else []),
-            "    const hyst_real excess = applied - wanted;",
+            f"    {excess}",
             *(f"    {line}" for line in self._copied("memory", "before", memory)),
             indented(code.calls("again", only=inverse)),
             *(["    (void)again;"] if self.inverse else []),
-            indented(code.calls("excess", only=range(last + 1, last + 2))),
+            *([indented(code.calls("excess", only=range(last + 1, last + 2)))] * taken_back),
             "    state->fault |= @{NAME}_OUT_OF_RANGE;",
             "}",
         ]
-        return (
-            "hyst_real v = (y_ref - y_ref) + (y - y); /* 0, or NaN if one is not finite */\n"
-            + code.calls("v", only=range(1))
-            + "if (hyst_is_finite(v)) {\n"
-            + indented("\n".join(line for line in inner if line.strip()))
-            + "\n}\n"
-        )
+        return indented("\n".join(line for line in inner if line.strip()))
 
     def _copied(self, to: str, source: str, count: int, declared: bool = False) -> list[str]:
         """C that copies the memory of the inverse, which stands behind that of the linear part."""

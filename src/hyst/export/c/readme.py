@@ -58,7 +58,9 @@ def readme(
         if block.is_estimator
         else _FAULTS
         + (_SCHEDULE_FAULTS if block.second else "")
-        + (_LIMIT_FAULTS if block.limits is not None else ""),
+        + (_LIMIT_FAULTS if block.limits is not None else "")
+        + (_REPETITIVE if block.forgets else "")
+        + (_CHANGED if "REFERENCE_CHANGED" in block.tells else ""),
         "in_precision": " in single precision" if places["precision"] == "single" else "",
         "elements": ", ".join(block.inputs),
     }
@@ -130,6 +132,16 @@ _LIMIT_FAULTS = """\
 The drive never leaves its limits, before `@{name}_init` and after bad samples neither; where more
 was asked for it is held there, and `@{name}_fault` gives `@{NAME}_OUT_OF_RANGE` too. That is no
 error: the controller goes on with what was applied.
+"""
+_REPETITIVE = """\
+
+The step must be called at every sample, for what is learned belongs to a place in the period: a
+lost sample teaches nothing, and time goes on. `@{name}_reset` forgets what was learned, for another
+reference; what is known of the actuator's memory stays.
+"""
+_CHANGED = """\
+Where the reference is another one than a period before, the block forgets by itself, and
+`@{name}_fault` gives `@{NAME}_REFERENCE_CHANGED` too.
 """
 _ESTIMATOR_USAGE = """\
     u = @{name}_command(&state, y_ref);               /* the input for the output that is wanted */

@@ -10,7 +10,7 @@ from typing import final
 
 from hyst.errors import InputError
 from hyst.export.c.block import Model
-from hyst.export.c.c_sources import header, places, source
+from hyst.export.c.c_sources import header, places, source, told
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.numbers import table
 from hyst.export.c.one_file import renamed, shared_names
@@ -166,7 +166,9 @@ def _model_header(model: FmuModel, common: dict[str, str], token: str) -> str:
         "estimate": f"(state)->memory[{common['NAME']}_THETA + (place)]"
         if tool.estimates
         else "HYST_REAL(0.0)",
-        "out_of_range": "0u" if tool.block.limits is None else f"{common['NAME']}_OUT_OF_RANGE",
+        "out_of_range": f"({' | '.join(told(tool.block, common['name']))})"
+        if tool.block.tells
+        else "0u",
         "count": str(len(values)),
         "size": str(max(len(values), 1)),
         "sample_time": "" if dt is None else f"#define HYST_FMU_DT {dt!r} /* seconds */\n",

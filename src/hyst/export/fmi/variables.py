@@ -108,6 +108,8 @@ def direct_inputs(stages: tuple[CoreStage, ...], inputs: tuple[str, ...]) -> tup
         False where a stage has a delay or no feedthrough.
     """
     passes = all(stage.feeds_through for stage in stages)
+    if stages and stages[0].kind == "repetitive_memory":  # y counts a period later
+        return tuple(passes and name != "y" for name in inputs)
     first = stages[0].numbers if stages and stages[0].kind == "tracking_controller" else {}
     return tuple(passes and first.get(f"d_{name}", 1.0) != 0.0 for name in inputs)
 

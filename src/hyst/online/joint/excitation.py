@@ -60,7 +60,7 @@ class Excitation:
 
     @property
     def persistent(self) -> bool:
-        """Whether every radius is being learnt."""
+        """Whether no play is frozen; whether samples determine its radius is in ``knowledge``."""
         return not any(play.frozen for play in self.plays)
 
     def __str__(self) -> str:
@@ -70,7 +70,11 @@ class Excitation:
             if play.frozen
         ]
         head = f"input spans {self.swing:.4g} of the {self.swing_needed:.4g} needed"
-        return "; ".join([head, *frozen]) if frozen else f"{head}; every radius is excited"
+        return (
+            "; ".join([head, *frozen])
+            if frozen
+            else f"{head}; every play goes from envelope to envelope"
+        )
 
 
 def watch(p0: float, p: Array, r: Array, age: Array, patience: float, swing: float) -> Excitation:

@@ -19,6 +19,9 @@ GROUPS = ("p0", "p", "r", "offset", "front", "back")
 _LINEAR_TERMS = ("front[1]", "back[1]")
 _NOISE_SAMPLES = 150.0
 _LEAST_SHARE = 1e-14
+# Over the largest radius of the start: what tells inputs apart, and what is too coarse to fold.
+_FINEST, _COARSEST, _MOST_ROWS = 2.0**-30, 2.0**-5, 2048.0
+_FOR_EVER = 1e300
 
 
 def prior_of(parts: Parts, theta: Array, settings: dict[str, Any]) -> Array:
@@ -64,7 +67,7 @@ def search_cells(
     n = parts.pi.p.size
     if not settings["search"] or (limit[: 2 * n + 1] == 0.0).any():
         return None
-    return cells_for(theta, n, float(limit[2 * n + 1]), _least_noise(settings))
+    return cells_for(theta, n, float(limit[2 * n + 1]), least_noise(settings))
 
 
 def new_core(
@@ -93,13 +96,18 @@ def new_core(
     dt, memory = settings["dt"], settings["memory"]
     forgetting = 0.0 if memory is None else min(dt / memory, 0.5)
     patience = round(settings["patience"] / dt)
-    core.set_memory(forgetting, _NOISE_SAMPLES, _least_noise(settings), _LEAST_SHARE, patience)
+    core.set_memory(forgetting, _NOISE_SAMPLES, least_noise(settings), _LEAST_SHARE, patience)
     if cells is not None:
         cells.hand_to(core)
+    n = parts.pi.p.size
+    radius = max(float(parts.pi.r[-1]) if n else 1.0, 1e-300)
+    page = _FOR_EVER if memory is None else memory / dt
+    core.set_folding(_FINEST * radius, _COARSEST * radius, _MOST_ROWS, page)
     return core
 
 
-def _least_noise(settings: dict[str, Any]) -> float:
+def least_noise(settings: dict[str, Any]) -> float:
+    """Give the least variance the noise is taken for."""
     return float((1e-10 * settings["noise"]) ** 2)
 
 

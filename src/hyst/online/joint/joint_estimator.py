@@ -21,12 +21,17 @@ from hyst.online.checks import (
 )
 from hyst.online.estimator import Estimator
 from hyst.online.estimator_file import check_saved, restored_state
+from hyst.online.joint.bands.found import Found, found_in
+from hyst.online.joint.bands.intervals import covariance_of_minimum
+from hyst.online.joint.bands.known import knowledge_of
+from hyst.online.joint.bands.samples import fold_again, folded_in, folded_samples
 from hyst.online.joint.excitation import Excitation, watch
 from hyst.online.joint.innovation import Innovation
-from hyst.online.joint.joint_core import GROUPS, new_core, prior_of, search_cells
+from hyst.online.joint.joint_core import GROUPS, least_noise, new_core, prior_of, search_cells
 from hyst.online.joint.parts import take_apart
 from hyst.online.joint.prior import covariance_of, factors
 from hyst.online.joint.start import checked_start, complete_scales
+from hyst.online.knowledge import Knowledge
 from hyst.online.trajectory import Trajectory
 from hyst.operators import Operator
 from hyst.operators.registry import operator_from_dict
@@ -230,6 +235,40 @@ class JointEstimator(Estimator):
             replacements=int(scalars[_REPLACEMENTS]),
         )
 
+    @property
+    def knowledge(self) -> Knowledge:
+        """What is known of each parameter, from least squares over all samples folded into rows.
+
+        Takes milliseconds, not microseconds: read it now and then, not at every sample.
+        """
+        return knowledge_of(self.names, self.parameters, self._found())
+
+    def refine(self) -> bool:
+        """Take the estimate to the least squares over all that was measured, if they are better.
+
+        Least squares start from the estimate and from the best radii on a grid, so that a false
+        minimum is left. Takes milliseconds.
+
+        Returns
+        -------
+        bool
+            Whether the estimate was replaced: where the chi-square of all samples falls by 1.
+        """
+        found = self._found()
+        if found is None:
+            return False
+        best = found.nearest_to(self._theta_at_start)
+        error, _ = found.problem.residual(self.parameters)
+        if not float(error @ error) > best.chi_square + 1.0:
+            return False
+        at = self._at
+        self.state[at["theta"] : at["d"]] = best.theta
+        covariance = covariance_of_minimum(found.problem, best, spreads=1.0)
+        self.state[at["d"] : at["u"]], self.state[at["u"] : at["z"]] = factors(covariance)
+        self.state[_NOISE] = found.problem.noise
+        self.core.replaced(self.state)
+        return True
+
     def update(self, u: float, y: float) -> bool:
         """Take in one sample.
 
@@ -328,6 +367,7 @@ class JointEstimator(Estimator):
         for first, last in (_KEPT, (at["side"], at["psi"]), cells):
             self.state[first:last] = kept[first:last]
         self.core.remember(self.state)
+        self.core.unfold()
 
     def frozen(self) -> JointEstimator:
         """Give an estimator that starts from this estimate and its memory and learns nothing."""
@@ -345,20 +385,33 @@ class JointEstimator(Estimator):
         ):
             scratch = state[first:last]
             scratch[~np.isfinite(scratch)] = 0.0
-        return {**self.settings, "start": self._theta_at_start.tolist()}, state
+        start, rows = self._theta_at_start.tolist(), folded_in(self.core)
+        return {**self.settings, "start": start, "folded": rows}, state
 
     @classmethod
     def restore(cls, settings: dict[str, Any], state: ArrayLike) -> JointEstimator:
         """Rebuild it from what ``saved`` gave, or the same read from a file."""
         given = dict(settings)
         model, start = operator_from_dict(given.pop("model")), given.pop("start", None)
+        rows = given.pop("folded", None)
         estimator = cls(model, memory=memory_from(given), **given)
         if start is not None:
             theta = finite_vector(start, "start")
             estimator._theta_at_start = checked_start(estimator._parts, theta, estimator.settings)
         restored_state(estimator.state, state)
         check_saved(estimator._parts, estimator.settings, estimator.state, estimator._at)
+        # Files of earlier versions have none; it then knows only what comes from here on.
+        if rows is not None:
+            fold_again(estimator.core, rows)
         return estimator
+
+    def _found(self) -> Found | None:
+        samples = folded_samples(self.core.folded(2))
+        pages = tuple(folded_samples(self.core.folded(page)) for page in (0, 1))
+        bounds = tuple(self.settings[each] for each in ("least_slope", "most_slope", "most_radius"))
+        limit = np.array(self.core.constants()["limit"])
+        floor = least_noise(self.settings)
+        return found_in(self._parts, samples, pages, self.parameters, limit, bounds, floor)
 
     def _plays_input(self, u: Any) -> Any:
         before = self._parts.before

@@ -61,7 +61,19 @@ class ScaleSums:
 
     @classmethod
     def of(cls, state: Array, at: Mapping[str, int]) -> Self:
-        """Read them from a state, whose places are named."""
+        """Read them from a state.
+
+        Parameters
+        ----------
+        state
+            Shape (length,).
+        at
+            Its places, by name.
+
+        Returns
+        -------
+        ScaleSums
+        """
         ww, weight = float(state[at["ww"]]), float(state[at["slope_weight"]])
 
         def number(name: str) -> float:

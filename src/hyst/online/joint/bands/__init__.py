@@ -1,0 +1,1 @@
+"""What a joint estimate knows: least squares over all that was measured, folded."""
