@@ -99,7 +99,13 @@ def within(slopes: Array, size: float) -> Inequalities:
 
 
 def stacked(one: Inequalities, other: Inequalities) -> Inequalities:
-    """Give both together, of the same parameters."""
+    """Give both together.
+
+    Parameters
+    ----------
+    one, other
+        Of the same parameters.
+    """
     return Inequalities(np.vstack([one.rows, other.rows]), np.concatenate([one.least, other.least]))
 
 

@@ -93,14 +93,28 @@ class Fitted:
 
 
 def clip_of(error: Array, weights: Array) -> float:
-    """Give beyond which size an error counts as an outlier; infinity where none can be told."""
+    """Give beyond which size an error counts as an outlier; infinity where none can be told.
+
+    Parameters
+    ----------
+    error, weights
+        Shape (N,); errors of weight 0 do not count.
+    """
     sizes = np.abs(error[weights > 0.0])
     usual = float(np.quantile(sizes, _SHARE)) if sizes.size else 0.0
     return _CLIP / _NORMAL * usual if usual > 0.0 else np.inf
 
 
 def squares_of(error: Array, weights: Array, clip: float) -> float:
-    """Sum squares, beyond the clip growing in line with the size (Huber)."""
+    """Sum squares, beyond the clip growing in line with the size (Huber).
+
+    Parameters
+    ----------
+    error, weights
+        Shape (N,).
+    clip
+        Above 0.
+    """
     size = np.abs(np.where(weights > 0.0, error, 0.0))
     inner = np.minimum(size, clip)
     return float(weights @ (inner * (2.0 * size - inner)))

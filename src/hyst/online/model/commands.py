@@ -16,7 +16,7 @@ from hyst.operators.stepper import Stepper
 
 Array = NDArray[np.float64]
 
-_MOST_DOUBLINGS, _MOST_PASSES = 2100, 400
+_MOST_DOUBLINGS, _MOST_PASSES, _JUDGED = 2100, 400, 500
 
 
 def refusal_of(model: Operator) -> str:
@@ -86,7 +86,15 @@ class Commands:
         return target
 
     def passed(self, u: float, state: Array) -> None:
-        """Go on: this input was applied, and left the model with this memory."""
+        """Go on.
+
+        Parameters
+        ----------
+        u
+            The input that was applied.
+        state
+            Shape (n,), the memory of the model after it.
+        """
         if self.is_exact:
             return
         if self._pending is not None and self._pending[0] == u:
@@ -113,6 +121,31 @@ class Commands:
             return step(u) - target
 
         return _root(miss, near)
+
+
+def error_of_commands(model: Operator, u: Array, state: Array) -> float:
+    """Give the root mean square of what commands for the last predicted outputs would miss.
+
+    Parameters
+    ----------
+    model
+        The plant, too.
+    u
+        Shape (N,), the input that predicts them; the last 500 count.
+    state
+        Shape (n,), memory of the model before it.
+    """
+    first = max(u.size - _JUDGED, 0)
+    if first == u.size:
+        return 0.0
+    begin = model.run(u[:first], state)[1] if first else state
+    step, commands = model.stepper(begin), Commands(model, begin)
+    near, missed = float(u[first]), []
+    for wanted in model.run(u[first:], begin)[0].tolist():
+        near = commands.input_for(wanted, np.array(step.state), near)
+        missed.append(step(near) - wanted)
+        commands.passed(near, np.array(step.state))
+    return float(np.sqrt(np.mean(np.square(missed))))
 
 
 def _root(miss: Callable[[float], float], near: float) -> float:

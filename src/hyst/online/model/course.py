@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from hyst.errors import InputError, NotInvertibleError
 from hyst.online.model.averaged import Averaged, averaged
 from hyst.online.model.block_fit import Fitted, Task, fitted
-from hyst.online.model.commands import Commands, refusal_of
+from hyst.online.model.commands import refusal_of
 from hyst.online.model.model_innovation import ModelInnovation
 from hyst.online.model.past import Past
 from hyst.online.model.prior import spreads_of, tied_scales
@@ -31,7 +31,6 @@ _ROUNDING = 1e-14
 _SURE_TRIALS = 8
 RIVALS = 8
 """How many of the last estimates from elsewhere are remembered; each may be as likely."""
-_COMMANDS = 500
 
 
 @final
@@ -104,7 +103,15 @@ class Course:
         self._step.state[:] = state
 
     def take(self, u: float, y: float, counted: bool = True) -> bool:
-        """Take in a sample; tells whether it was learnt from."""
+        """Take in a sample; tell whether it was learnt from.
+
+        Parameters
+        ----------
+        u, y
+            The sample.
+        counted
+            Whether an output was expected; else the memory follows the input.
+        """
         told = math.isfinite(y)
         if not math.isfinite(u) or (counted and not told):
             self.counts["skipped"] += 1
@@ -347,7 +354,15 @@ class Course:
         return np.asarray(0.5 * (inverse + inverse.T) * np.outer(scale, scale))
 
     def restart(self, theta: Array) -> None:
-        """Forget what was learnt, go on from constants with the memory the input has left."""
+        """Forget what was learnt, go on from constants with the memory the input has left.
+
+        Raises
+        ------
+        InputError
+            If a constant is not allowed.
+        NotInvertibleError
+            If they cannot be inverted.
+        """
         model = self.model.with_parameters(theta)
         why = refusal_of(model)
         if why:
@@ -374,20 +389,3 @@ class Course:
     def _new_spread(self, model: Operator) -> Array:
         self.is_begun = False
         return spreads_of(model, self.settings["spread"], self.settings["spreads"], (0.0, 0.0))
-
-    def error_of_commands(self) -> float:
-        """Give the root mean square of what commands for the last predicted outputs would miss."""
-        window = self.window
-        y, _ = window.outputs(self.theta)
-        first = max(window.count - _COMMANDS, 0)
-        if first == window.count:
-            return 0.0
-        begin = window.memory_for(self.theta)
-        state = self.model.run(window.u[:first], begin)[1] if first else begin
-        step, commands = self.model.stepper(state), Commands(self.model, state)
-        near, missed = float(window.u[first]), []
-        for wanted in y[first:].tolist():
-            near = commands.input_for(wanted, np.array(step.state), near)
-            missed.append(step(near) - wanted)
-            commands.passed(near, np.array(step.state))
-        return float(np.sqrt(np.mean(np.square(missed))))

@@ -16,7 +16,7 @@ from hyst.online.checks import memory_from, memory_or_none, names_of, sample
 from hyst.online.estimator import Estimator
 from hyst.online.knowledge import Knowledge
 from hyst.online.model.bands import known_of
-from hyst.online.model.commands import Commands, refusal_of
+from hyst.online.model.commands import Commands, error_of_commands, refusal_of
 from hyst.online.model.course import Course
 from hyst.online.model.model_innovation import ModelInnovation
 from hyst.online.model.saved_course import course_of, numbers_of
@@ -209,8 +209,13 @@ class ModelEstimator(Estimator):
         0 where the inverse is exact; where a stage has a causal inverse only, what its commands for
         the last 500 predicted outputs would give, less these. Output units.
         """
-        is_exact = self._course.model.is_invertible()
-        return 0.0 if is_exact else self._course.error_of_commands()
+        course = self._course
+        if course.model.is_invertible():
+            return 0.0
+        window = course.window
+        return error_of_commands(
+            course.model, window.u[: window.count], window.memory_for(course.theta)
+        )
 
     def update(self, u: float, y: float) -> bool:
         """Take in one sample; every so many the estimate changes.

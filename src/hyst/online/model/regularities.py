@@ -54,11 +54,22 @@ class Regularities:
         self.numbers[_EDGES:] *= 1.0 - lost
 
     def add(self, u: Array, error: Array, told: Array) -> None:
-        """Take in samples that follow each other."""
+        """Take in samples that follow each other.
+
+        Parameters
+        ----------
+        u, error, told
+            Shape (N,); told is 0 where there is no error, else 1.
+        """
         self.numbers[_EDGES:] += self._sums(u, error, told)
 
     def judge(self, u: Array, error: Array, told: Array) -> tuple[float, float]:
         """Give how far the past and these samples are beyond noise.
+
+        Parameters
+        ----------
+        u, error, told
+            As for ``add``.
 
         Returns
         -------

@@ -51,7 +51,15 @@ class Window:
         self.count = 0
 
     def add(self, u: float, y: float, told: float) -> None:
-        """Take in a sample behind the others."""
+        """Take in a sample behind the others.
+
+        Parameters
+        ----------
+        u, y
+            The sample.
+        told
+            1 if the output was measured, else 0.
+        """
         k = self.count
         self.u[k], self.y[k], self.told[k] = u, y, told
         self.count = k + 1
@@ -73,7 +81,15 @@ class Window:
         return y, jacobian
 
     def drop(self, theta: Array, count: int) -> tuple[Array, Array]:
-        """Leave the first ``count`` samples behind, of which it gives output and derivative."""
+        """Leave the first samples behind; give their output and derivative.
+
+        Parameters
+        ----------
+        theta
+            Shape (m,), for these constants.
+        count
+            How many.
+        """
         y, jacobian, state, tangents = self._carried(theta, count)
         if self.recalls:
             self.turns = kept_turns([*self.turns.tolist(), *self.u[:count].tolist()])
