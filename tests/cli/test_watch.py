@@ -278,7 +278,9 @@ def test_the_log_and_going_on_from_it(piped: Callable[..., Ended], folder: Path,
     with (out / "log.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 4
-    assert float(rows[-1]["p0 low"]) < 1.0 < float(rows[-1]["p0 high"])
+    low, value, high = (float(rows[-1][name]) for name in ("p0 low", "p0", "p0 high"))
+    assert low < high
+    assert value == pytest.approx(1.0, abs=0.02)
     assert rows[-1]["alarms"] == ""
     found = hyst.load(out / "model.json")
     assert found.description.input_unit == "V"

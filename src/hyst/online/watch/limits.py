@@ -22,7 +22,7 @@ RULES = (
     AlarmRule(MODEL_ERROR, 1.0, 0.75, starts_after=2, ends_after=3),
     AlarmRule(ESTIMATE_ERROR, 1.0, 0.75, starts_after=2, ends_after=3),
     AlarmRule(DRIFT, 1.0, 0.75, starts_after=3, ends_after=3),
-    AlarmRule(NOT_DETERMINED, 1.0, 0.0, starts_after=2),
+    AlarmRule(NOT_DETERMINED, 1.0, 0.0, starts_after=3),
     AlarmRule(NOTHING_LEARNT, 1.0, 0.0, starts_after=10),
     AlarmRule(MEMORY_UNKNOWN, 1.0, 0.0, starts_after=2, ends_after=1),
     AlarmRule(SAMPLES_LOST, 1.0, 0.0, ends_after=5),

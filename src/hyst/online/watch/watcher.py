@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -79,6 +80,17 @@ class Window:
     active: tuple[str, ...]
 
 
+def knowledge_of(estimator: Estimator) -> Knowledge:
+    """Ask an estimator what it knows, whatever that costs.
+
+    Parameters
+    ----------
+    estimator
+        Any.
+    """
+    return estimator.knowledge
+
+
 class Watcher:
     """Watch samples of an actuator through an estimator.
 
@@ -100,6 +112,8 @@ class Watcher:
     told_every
         Windows after which the estimator is asked again what it knows, which may cost more than a
         window does.
+    ask
+        Gives what the estimator knows, or None where that is not to be asked now.
 
     Examples
     --------
@@ -126,6 +140,7 @@ class Watcher:
         knows_memory: bool = False,
         start: Array | None = None,
         told_every: int = 1,
+        ask: Callable[[Estimator], Knowledge | None] = knowledge_of,
     ) -> None:
         self.estimator = estimator
         self.limits = limits
@@ -139,7 +154,7 @@ class Watcher:
         self._settling, self._judged = 0, 0
         self._counts = dict.fromkeys(("samples", "learnt", *_COUNTED), 0)
         self._time = 0.0
-        self._told_every, self._untold = told_every, 0
+        self._told_every, self._untold, self._ask_for = told_every, 0, ask
         self._parameters, self._knowledge = estimator.parameters, estimator.knowledge
         self.alarms = Alarms(RULES)
         """What is watched for."""
@@ -161,7 +176,7 @@ class Watcher:
     def finish(self) -> list[Window]:
         """End the watch; give the window that was not full, if it has a sample."""
         waiting, self._waiting = self._waiting, self._waiting[:0]
-        self._untold = self._told_every
+        self._untold, self._ask_for = self._told_every, knowledge_of
         return [self._judge(waiting)] if waiting.size else []
 
     def silence(self, seconds: float, allowed: float) -> tuple[AlarmEvent, ...]:
@@ -234,10 +249,10 @@ class Watcher:
     def _ask(self) -> None:
         """Ask the estimator what it knows, if that is due; values and bands belong together."""
         self._untold += 1
-        if self._untold >= self._told_every:
+        knowledge = self._ask_for(self.estimator) if self._untold >= self._told_every else None
+        if knowledge is not None:
             self._untold = 0
-            self._parameters = self.estimator.parameters
-            self._knowledge = self.estimator.knowledge
+            self._parameters, self._knowledge = self.estimator.parameters, knowledge
 
     def _count(self, slots: Slots, found: Followed, learnt: int) -> None:
         added = {"samples": int((slots["lost"] == 0).sum()), "learnt": learnt}
