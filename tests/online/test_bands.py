@@ -236,3 +236,23 @@ def test_units_change_nothing() -> None:
         found.append(np.concatenate([told.low / units, told.high / units]))
     # Least squares end where a step gains less than a thousandth of the chi-square.
     assert found[0] == pytest.approx(found[1], rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize(("swing", "decibels"), [(1.0, 20.0), (2.0, 40.0)])
+def test_plays_that_the_input_does_not_move_take_no_radius_from_noise(
+    swing: float, decibels: float
+) -> None:
+    right, u = constants(STAIRS), sine(swing)
+    start = hyst.PrandtlIshlinskii([0.75, 0.3, 0.38], [0.45, 1.8, 2.1], 0.9)
+    noise = float(np.std(STAIRS(u))) * 10.0 ** (-decibels / 20.0)
+    wrong = 0
+    for seed in range(8):
+        told = followed(STAIRS, start, u, noise, seed).knowledge
+        # Radii of 1.46 and 2.68, or of 2.68 alone, do not show.
+        assert not told.known
+        more = 0.25 * (told.high - told.low)
+        is_out = (right < told.low - more) | (told.high + more < right)
+        wrong += int((told.determined & is_out)[1:7].any())
+    # Three standard errors, seldom beyond in some thirty constants; a play that fits noise is by
+    # chance far off.
+    assert wrong <= 1

@@ -13,7 +13,7 @@ from scipy.signal import lfilter
 from scipy.stats import binom
 
 import hyst
-from hyst.online import JointEstimator, ModelEstimator, ScaleEstimator, estimator_for
+from hyst.online import Innovation, JointEstimator, ModelEstimator, ScaleEstimator, estimator_for
 from hyst.online.choice import ESTIMATORS
 from hyst.operators import Affine, Operator
 from reference.examples import EXAMPLES
@@ -173,7 +173,7 @@ def test_a_small_swing_tells_no_scale_and_it_says_so() -> None:
 def test_before_there_are_samples_nothing_is_known() -> None:
     knowledge = ScaleEstimator(BOUC_WEN).knowledge
     assert not knowledge.determined.any()
-    assert str(knowledge).startswith("scale is not determined: 0 samples are too few")
+    assert str(knowledge).startswith("scale, offset are not determined: 0 samples are too few")
     assert np.isinf(knowledge.high[1])
 
 
@@ -365,3 +365,23 @@ def test_the_estimator_that_suits() -> None:
     with pytest.raises(hyst.InputError, match="only names 'q'"):
         estimator_for(plays, only="q")
     assert set(ESTIMATORS) >= {"scale", "joint"}
+
+
+def test_what_is_said_of_errors_does_not_contradict_itself() -> None:
+    # What follows itself is below the noise, so neighbours do not show it; sums do.
+    rng = np.random.default_rng(7)
+    u = sine(20_000, 6.0, 100.0)
+    noise = 0.1 * rng.standard_normal(u.size) + 0.05 * np.sin(np.arange(u.size) / 300.0)
+    estimator = feed(ScaleEstimator(BOUC_WEN), u, BOUC_WEN(u) + noise)
+    innovation, knowledge = estimator.innovation, estimator.knowledge
+    assert abs(innovation.correlation) < 0.5
+    assert not innovation.consistent
+    assert str(innovation) in knowledge.sentences[0]
+    assert "as in noise" not in str(innovation)
+    assert "follow each other over some" in str(innovation)
+
+
+def test_what_is_negligible_is_not_called_noise() -> None:
+    told = Innovation(1e-9, 0.99, 5.0)
+    assert told.consistent
+    assert str(told) == "errors of 1e-09 rms, negligible beside a loop of height 5"

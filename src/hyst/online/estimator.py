@@ -93,7 +93,7 @@ class Estimator(Saved):
             if innovation.consistent
             else (f"{innovation}; the bands are then too narrow, since they take errors for noise",)
         )
-        return knowledge_from(self.names, self.parameters, self.standard_errors, {}, doubt)
+        return knowledge_from(self.names, self.parameters, self.standard_errors, {}, doubts=doubt)
 
     @abstractmethod
     def update(self, u: float, y: float) -> bool:

@@ -56,15 +56,21 @@ class Knowledge:
         """Whether every parameter is determined, and there is no reason to doubt the bands."""
         return bool(self.determined.all()) and not self.doubts
 
+    @property
+    def unknown(self) -> tuple[str, ...]:
+        """What is not determined and why, one sentence for each reason."""
+        by_reason: dict[str, list[str]] = {}
+        told = zip(self.names, self.determined, self.reasons, strict=True)
+        for name, is_known, reason in told:
+            if not is_known:
+                by_reason.setdefault(reason, []).append(name)
+        return tuple(
+            f"{', '.join(names)} {'is' if len(names) == 1 else 'are'} not determined: {reason}"
+            for reason, names in by_reason.items()
+        )
+
     def __str__(self) -> str:
-        unknown = [
-            f"{name} is not determined: {reason}"
-            for name, is_known, reason in zip(
-                self.names, self.determined, self.reasons, strict=True
-            )
-            if not is_known
-        ]
-        said = [*unknown, *self.sentences]
+        said = [*self.unknown, *self.sentences]
         return "; ".join(said) if said else "every parameter is determined"
 
 
@@ -74,6 +80,7 @@ def knowledge_from(
     standard_errors: Array | list[float],
     reasons: Mapping[str, str],
     sentences: tuple[str, ...] = (),
+    doubts: tuple[str, ...] = (),
 ) -> Knowledge:
     """Give bands of two standard errors.
 
@@ -88,6 +95,8 @@ def knowledge_from(
         standard error is finite.
     sentences
         What there is to say besides.
+    doubts
+        Why the bands cannot be believed; they are said first.
 
     Returns
     -------
@@ -106,5 +115,6 @@ def knowledge_from(
         high=value + width,
         determined=is_finite & np.array([name not in reasons for name in names], dtype=bool),
         reasons=why,
-        sentences=sentences,
+        sentences=(*doubts, *sentences),
+        doubts=doubts,
     )

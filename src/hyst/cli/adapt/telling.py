@@ -88,11 +88,7 @@ def _table(
 
 
 def _tell_doubts(estimator: hyst.online.Estimator, knowledge: hyst.online.Knowledge) -> None:
-    told = zip(knowledge.names, knowledge.determined, knowledge.reasons, strict=True)
-    for name, is_determined, reason in told:
-        if not is_determined:
-            note(f"{name} is not determined: {reason}")
-    for sentence in knowledge.sentences:
+    for sentence in (*knowledge.unknown, *knowledge.sentences):
         note(sentence)
     innovation = estimator.innovation
     if innovation.consistent:

@@ -25,6 +25,9 @@ class Innovation:
         Height of the widest loop the estimate has, output units.
     rivals, replacements
         Estimates that were started elsewhere and tried, and those that became the estimate.
+    over
+        Over how many samples sums of errors show that they follow each other, where neighbours need
+        not; 0 where they do not, or where nothing sums them.
 
     Examples
     --------
@@ -39,17 +42,28 @@ class Innovation:
     loop_height: float
     rivals: int = 0
     replacements: int = 0
+    over: int = 0
 
     @property
     def consistent(self) -> bool:
         """Whether errors are as noise, or below a ten-thousandth of the loop's height."""
-        negligible = self.rms <= _NEGLIGIBLE * self.loop_height
-        return negligible or abs(self.correlation) < _MOST_CORRELATION
+        return self._is_negligible or not (self._is_correlated or self.over)
+
+    @property
+    def _is_negligible(self) -> bool:
+        return self.rms <= _NEGLIGIBLE * self.loop_height
+
+    @property
+    def _is_correlated(self) -> bool:
+        return abs(self.correlation) >= _MOST_CORRELATION
 
     def __str__(self) -> str:
-        if not self.consistent:
-            return (
-                f"errors of {self.rms:.4g} rms follow each other (correlation "
-                f"{self.correlation:.2f}), so model or estimate are wrong"
-            )
-        return f"errors of {self.rms:.4g} rms, as noise (correlation {self.correlation:.2f})"
+        errors, found = f"errors of {self.rms:.4g} rms", f"(correlation {self.correlation:.2f})"
+        if not (self._is_correlated or self.over):
+            # Of neighbours alone: what else is known of them may be told beside it.
+            return f"{errors}, neighbours as in noise {found}"
+        if self._is_negligible:
+            return f"{errors}, negligible beside a loop of height {self.loop_height:.4g}"
+        if self.over:
+            found = f"over some {self.over} samples"
+        return f"{errors} follow each other {found}, so model or estimate are wrong"

@@ -52,7 +52,7 @@ def known_of(course: Course) -> Knowledge:
         reasons[place] = _why_held(course, place)
         determined[place] = course.names[place] in course.held
     said = () if innovation.consistent else (f"bands cannot be believed: {innovation}",)
-    return Knowledge(course.names, low, high, determined, tuple(reasons), said)
+    return Knowledge(course.names, low, high, determined, tuple(reasons), said, said)
 
 
 def _why_held(course: Course, place: int) -> str:

@@ -47,6 +47,8 @@ class ModelInnovation(Innovation):
         if self.samples == 0:
             return "too few samples to tell whether errors are noise"
         if self.consistent:
+            if max(self.regimes, self.neighbours) > 1.0:
+                return f"errors of {self.rms:.4g} rms, negligible"
             return f"errors of {self.rms:.4g} rms, as noise (correlation {self.correlation:.2f})"
         how = (
             f"follow the input ({self.regimes:.2g} times what noise does)"

@@ -224,7 +224,7 @@ class RadiusEstimator(Estimator):
         how = self.settings["method"], not self.knows_regimes
         reasons = reasons_of(self.names, self._p, sides, *how)
         doubt = () if self.innovation.consistent else (f"bands do not hold: {self.innovation}",)
-        return knowledge_from(self.names, self.radii, self.standard_errors, reasons, doubt)
+        return knowledge_from(self.names, self.radii, self.standard_errors, reasons, doubts=doubt)
 
     @property
     def error(self) -> float:

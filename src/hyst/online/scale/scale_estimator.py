@@ -27,7 +27,12 @@ from hyst.online.joint.innovation import Innovation
 from hyst.online.knowledge import Knowledge
 from hyst.online.scale.affine_of import affine_of
 from hyst.online.scale.followed import Followed
-from hyst.online.scale.scale_knowledge import ScaleSums, knowledge_of, refuse_state
+from hyst.online.scale.scale_knowledge import (
+    ScaleSums,
+    innovation_of,
+    knowledge_of,
+    refuse_state,
+)
 from hyst.online.trajectory import Trajectory
 from hyst.operators import Affine, Operator
 from hyst.operators.registry import compose, operator_from_dict
@@ -191,12 +196,7 @@ class ScaleEstimator(Estimator):
     @property
     def innovation(self) -> Innovation:
         """What the estimate leaves unexplained, and whether that can be noise."""
-        sums = self._sums
-        return Innovation(
-            rms=math.sqrt(sums.noise),
-            correlation=sums.product / sums.noise if sums.noise > 0.0 else 0.0,
-            loop_height=abs(self.parameters[0]) * sums.swing,
-        )
+        return innovation_of(self._sums, float(self.parameters[0]))
 
     @property
     def knowledge(self) -> Knowledge:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
+from hyst.online.joint.innovation import Innovation
 from hyst.online.knowledge import Knowledge, knowledge_from
 
 Array = NDArray[np.float64]
@@ -96,6 +97,29 @@ class ScaleSums:
         )
 
 
+def innovation_of(sums: ScaleSums, scale: float) -> Innovation:
+    """Say what the estimate leaves unexplained.
+
+    Parameters
+    ----------
+    sums
+        Of the core.
+    scale
+        The estimate.
+
+    Returns
+    -------
+    Innovation
+    """
+    is_wide = max(sums.wide_slope, sums.wide_mean) >= _TOLD_WIDENESS
+    return Innovation(
+        rms=math.sqrt(sums.noise),
+        correlation=sums.product / sums.noise if sums.noise > 0.0 else 0.0,
+        loop_height=abs(scale) * sums.swing,
+        over=sums.wide_samples if is_wide else 0,
+    )
+
+
 def knowledge_of(
     sums: ScaleSums, parameters: Array, standard_errors: Array, settings: dict[str, Any]
 ) -> Knowledge:
@@ -116,7 +140,9 @@ def knowledge_of(
     """
     reasons = _reasons(sums, float(parameters[0]), standard_errors, settings)
     names = ("scale", "offset")
-    return knowledge_from(names, parameters, standard_errors, reasons, _sentences(sums))
+    return knowledge_from(
+        names, parameters, standard_errors, reasons, _sentences(sums, parameters[0])
+    )
 
 
 def _reasons(
@@ -154,15 +180,14 @@ def _unknown_scale(sums: ScaleSums, settings: dict[str, Any]) -> str:
     )
 
 
-def _sentences(sums: ScaleSums) -> tuple[str, ...]:
-    widest = max(sums.wide_slope, sums.wide_mean)
-    if widest < _TOLD_WIDENESS:
+def _sentences(sums: ScaleSums, scale: float) -> tuple[str, ...]:
+    innovation = innovation_of(sums, scale)
+    if not innovation.over:
         return ()
+    widest = max(sums.wide_slope, sums.wide_mean)
     return (
-        f"errors of {math.sqrt(sums.noise):.4g} rms follow each other over some "
-        f"{sums.wide_samples} samples, since the shape is not the plant's or constants drift "
-        f"faster than the memory forgets; bands are up to {math.sqrt(widest):.3g} times as wide "
-        "as for noise",
+        f"{innovation}: the shape is not the plant's, or constants drift faster than the memory "
+        f"forgets; bands are up to {math.sqrt(widest):.3g} times as wide as for noise",
     )
 
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from hyst.online.joint.bands.found import CHANCE, Found
 from hyst.online.joint.bands.intervals import covariance_of_minimum, interval_of
+from hyst.online.joint.bands.shown import fits_of_fewer
 from hyst.online.knowledge import Knowledge
 
 Array = NDArray[np.float64]
@@ -40,6 +41,7 @@ def knowledge_of(names: tuple[str, ...], theta: Array, found: Found | None) -> K
     reasons = [""] * m
     for j in np.flatnonzero(found.problem.free):
         low[j], high[j], determined[j], reasons[j] = _of_one(found, int(j))
+    _hide_plays(found, low, high, determined, reasons)
     doubts = _doubts(found)
     sentences = (*doubts, *_about_estimate(names, theta, low, high, found))
     return Knowledge(names, low, high, determined, tuple(reasons), sentences, doubts)
@@ -71,6 +73,23 @@ def _of_one(found: Found, j: int) -> tuple[float, float, bool, str]:
     if np.isfinite(low) and np.isfinite(high):
         return low, high, False, f"the samples leave it between {low:.4g} and {high:.4g}"
     return low, high, False, "the samples do not tell it from the others"
+
+
+def _hide_plays(
+    found: Found, low: Array, high: Array, determined: NDArray[np.bool_], reasons: list[str]
+) -> None:
+    """Call nothing determined that fits of fewer plays, which are as good, have elsewhere."""
+    n = found.problem.parts.pi.p.size
+    for fewer, fit in enumerate(fits_of_fewer(found.problem, found.minima[0]), 1):
+        reason = f"{n - fewer} of {n} plays fit the samples as well"
+        width = 2.0 * np.sqrt(np.diag(covariance_of_minimum(found.problem, fit)))
+        for j in np.flatnonzero(found.problem.free).tolist():
+            if not 1 <= j <= 2 * n:
+                low[j] = min(low[j], fit.theta[j] - width[j])
+                high[j] = max(high[j], fit.theta[j] + width[j])
+            elif (j - 1) % n >= n - fewer or not low[j] <= fit.theta[j] <= high[j]:
+                reasons[j] = reasons[j] if not determined[j] else reason
+                determined[j] = False
 
 
 def _doubts(found: Found) -> tuple[str, ...]:
