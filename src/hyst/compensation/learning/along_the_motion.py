@@ -132,6 +132,11 @@ def _slowed(u: Array, step: float, last: float | None) -> tuple[Array, int]:
 def suited_method(model: Operator) -> str:
     """Choose how a model is inverted.
 
+    Parameters
+    ----------
+    model
+        Any operator.
+
     Raises
     ------
     NotInvertibleError

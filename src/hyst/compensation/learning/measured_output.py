@@ -87,6 +87,13 @@ def _same_length(signal: Array, name: str, wanted: int) -> None:
 def refuse_at_rest(y: Array, reference: Array, u: Array, noise: float) -> None:
     """Refuse an output that does not move while it should.
 
+    Parameters
+    ----------
+    y, reference, u
+        Measured, wanted, applied, shape (N,).
+    noise
+        Rms of what does not repeat.
+
     Raises
     ------
     InputError
