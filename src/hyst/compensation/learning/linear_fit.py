@@ -63,7 +63,13 @@ _MOST_BINS = 4000
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """What the model was told to give, and what was measured; both shape (N,)."""
+    """What the model was told to give, and what was measured.
+
+    Parameters
+    ----------
+    v, y
+        Shape (N,).
+    """
 
     v: Array
     y: Array

@@ -27,7 +27,15 @@ _SHIFT_GAIN = 0.25
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """Output and applied input of one repetition, both shape (N,)."""
+    """Output and applied input of one repetition.
+
+    Parameters
+    ----------
+    y, u
+        Shape (N,).
+    is_told
+        Whether the input was given, and is not the command.
+    """
 
     y: Array
     u: Array
