@@ -6,5 +6,6 @@
 namespace hyst {
 
 void bind_online_estimation(nanobind::module_ &module);
+void bind_scale_estimation(nanobind::module_ &module);
 
 }  // namespace hyst

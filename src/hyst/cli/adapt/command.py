@@ -88,6 +88,26 @@ def adapt(
         say("figure")
         picture = draw(follower, about, trajectory, data)
     follower.description = _described(follower, about, measured.whole)
+    files_there = _write(folder, follower, inverse, (trajectory, run, picture), measured, about)
+    tell(follower, before, about)
+    if isinstance(follower, hyst.online.RadiusEstimator):
+        tell_law(follower)
+    if inverse is not None and run is not None:
+        for sentence in guard_sentences(run, inverse, measured.record):
+            print(sentence)
+    show_files(files_there)
+
+
+def _write(
+    folder: Path,
+    follower: hyst.online.Estimator,
+    inverse: hyst.online.AdaptiveInverse | None,
+    found: tuple[hyst.online.Trajectory, GuardRun | None, bytes],
+    measured: Measured,
+    about: hyst.operators.ModelDescription,
+) -> list[Path]:
+    """Write all files or none, and give where they are."""
+    trajectory, run, picture = found
     names = ["model.json", "estimator.json", "parameters.csv", "parameters.png"]
     with replacing_files(folder) as temporary:
         follower.model.save(temporary / names[0])
@@ -98,13 +118,7 @@ def adapt(
             names += ["guard.csv", "guard.json"]
             write_guard_run(temporary / names[4], run, measured.record, about)
             inverse.save(temporary / names[5])
-    tell(follower, before, about)
-    if isinstance(follower, hyst.online.RadiusEstimator):
-        tell_law(follower)
-    if inverse is not None and run is not None:
-        for sentence in guard_sentences(run, inverse, measured.record):
-            print(sentence)
-    show_files([folder / name for name in names])
+    return [folder / name for name in names]
 
 
 def _follower(
