@@ -20,6 +20,8 @@ installed_dev := .venv/.installed-dev
 # How long `make fuzz` runs, and its first seed.
 FUZZ_SECONDS ?= 60
 FUZZ_SEED ?= 1
+# How long `make soak` runs.
+SOAK_SECONDS ?= 600
 core_build := build/core-tests/$(notdir $(CC))
 built_from := pyproject.toml CMakeLists.txt core/SOURCES \
 	$(shell find core/include core/src engine)
@@ -31,8 +33,8 @@ export MKL_NUM_THREADS := 1
 export CC CXX
 
 .DEFAULT_GOAL := help
-.PHONY: help venv install demo test core-test fuzz embedded embedded-table misra lint types bench \
-	clean distclean
+.PHONY: help venv install demo test core-test fuzz soak embedded embedded-table misra lint types \
+	bench clean distclean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -58,6 +60,9 @@ core-test: $(installed_dev) ## C tests of the core: double and float, plain and 
 
 fuzz: build/fuzz/engines ## random bytes through every engine against the core's loop, sanitized
 	build/fuzz/engines $(FUZZ_SECONDS) $(FUZZ_SEED)
+
+soak: $(installed_dev) ## hyst watch on lines with faults among them: its memory stays bounded
+	$(bin)/python -m benchmarks watch --soak $(SOAK_SECONDS)
 
 embedded: $(installed_dev) ## exported models on emulated Cortex-M4F and M7: numbers and costs
 	PYTHONPATH=tests $(bin)/python -m embedded --jobs $(JOBS)

@@ -16,6 +16,7 @@ import benchmarks  # noqa: E402
 
 SUPPORT = {
     "__main__",
+    "learning_stage",
     "measured_tasks",
     "peers",
     "plants",

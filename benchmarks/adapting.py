@@ -175,7 +175,7 @@ def cost() -> None:
         hyst.PrandtlIshlinskii(p, [0.4, 1.0, 1.5, 2.0, 3.6]), dt=DT, memory=1.0, search=False
     )
     model = nanoseconds(lambda: BOUC_WEN.run(u, engine="loop"), samples)
-    core, state, w = scale._core, scale.state.copy(), BOUC_WEN(u)
+    core, state, w = scale.core, scale.state.copy(), BOUC_WEN(u)
     theta, error = np.empty((1, 2)), np.empty(samples)
     alone = nanoseconds(
         lambda: core.run(state, w, record.y, samples, theta, theta.copy(), error), samples

@@ -9,6 +9,7 @@ Prints, for one machine and one run,
 - the same of 40 runs of 30 s at 20 to 60 dB, with the search and without,
 - the same for the paper's law on sine and staircase, over the bound of the radii alone, with
   regimes from the noisy output and from the slope of the output before the noise,
+- the share of radii within two standard errors of least squares whose regimes were told,
 - the tracking error of the adaptive inverse over that of a frozen one, while a weight and a radius
   drift by 30 % in 60 s at 30 dB.
 """
@@ -24,6 +25,7 @@ import hyst
 from hyst.online import AdaptiveInverse, JointEstimator, RadiusEstimator
 from hyst.studies.s2_adaptive_radii.over_bound import FILTER, slopes_of
 from hyst.studies.s2_adaptive_radii.paper import GAIN, INPUTS
+from hyst.studies.s2_adaptive_radii.printed_law import true_regimes
 
 Array = NDArray[np.float64]
 
@@ -161,6 +163,24 @@ def law_over_bound(u: Array, y: Array, sigma: float, slopes: Array | None) -> Ar
     return np.asarray(np.sqrt(np.mean(np.square(errors), axis=0)))
 
 
+def bands_of_told_regimes() -> None:
+    for name, give in INPUTS.items():
+        u = give(20.0)
+        y, regimes = TRUTH(u), true_regimes(u, R)
+        for decibels in (10.0, 20.0, 40.0):
+            sigma = float(np.std(y)) * 10.0 ** (-decibels / 20.0)
+            inside = []
+            for seed in range(40):
+                noise = sigma * np.random.default_rng(seed).standard_normal(u.size)
+                law = RadiusEstimator(P, 0.5 * R, 100.0 / sigma**2, DT, method="least-squares")
+                law.run(hyst.Record(u, y + noise, DT), every=u.size, regimes=regimes)
+                inside += (np.abs(law.radii - R) <= 2.0 * law.standard_errors).tolist()
+            print(
+                f"least squares, told regimes, {name}, {decibels:g} dB, 20 s, 40 runs: "
+                f"{np.mean(inside):.3f} of the radii within two standard errors"
+            )
+
+
 def drift() -> None:
     samples = 60_000
     growth = 1.0 + 0.3 * np.arange(samples) / samples
@@ -191,6 +211,7 @@ def main() -> None:
     over_bound()
     starts_in_noise()
     paper_law_over_bound()
+    bands_of_told_regimes()
     drift()
 
 

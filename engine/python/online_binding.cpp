@@ -306,6 +306,11 @@ public:
           bool scale_held, bool offset_held)
         : config_{forgetting, patience, spread, least, most, scale_held, offset_held} {}
 
+    // In the order of the core's structure; exports write them down.
+    std::vector<double> constants() const {
+        return {config_.forgetting, config_.patience, config_.spread, config_.least, config_.most};
+    }
+
     std::map<std::string, std::size_t> places() const {
         return {{"start", HYST_SCALE_START},
                 {"start_offset", HYST_SCALE_START_OFFSET},
@@ -424,6 +429,7 @@ void bind_online_estimation(nb::module_ &module) {
     nb::class_<Scale>(module, "ScaleEstimation")
         .def(nb::init<double, double, double, double, double, bool, bool>())
         .def("places", &Scale::places)
+        .def("constants", &Scale::constants)
         .def("start", &Scale::start, nb::arg("state").noconvert(), nb::arg("start"),
              nb::arg("offset"))
         .def("step", &Scale::step, nb::arg("state").noconvert(), nb::arg("w"), nb::arg("y"))

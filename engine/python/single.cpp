@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <deque>
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -84,6 +85,15 @@ public:
         if (has_two_inputs_) throw std::invalid_argument("this block takes y_ref and y");
         return hyst_guarded_step(&controller_.inverse, state_.data(), &guard_,
                                  static_cast<float>(u));
+    }
+    // The next output, of which nothing is remembered; NaN if there is none.
+    double peek(double u) const {
+        std::vector<float> memory = state_;
+        hyst_guard guard = guard_;
+        guard.fault = 0;
+        const double y = hyst_guarded_step(&controller_.inverse, memory.data(), &guard,
+                                           static_cast<float>(u));
+        return guard.fault != 0 ? std::numeric_limits<double>::quiet_NaN() : y;
     }
     double step_controller(double y_ref, double y) {
         if (!has_two_inputs_) throw std::invalid_argument("this block takes u");
@@ -216,6 +226,29 @@ private:
     int outside_ = 0;
 };
 
+// Scale and offset; the constants are those that the engine's estimator in double tells.
+class ScaleEstimator {
+public:
+    ScaleEstimator(const std::vector<double> &constants, const std::vector<bool> &held,
+                   const std::vector<double> &start)
+        : state_(start.begin(), start.end()) {
+        if (constants.size() != 5 || held.size() != 2 || state_.size() != HYST_SCALE_LENGTH) {
+            throw std::invalid_argument("constants, held or start have the wrong length");
+        }
+        const auto of = [&](std::size_t place) { return static_cast<float>(constants[place]); };
+        scale_ = {of(0), of(1), of(2), of(3), of(4), held[0], held[1]};
+    }
+    int step(double w, double y) {
+        return hyst_scale_step(&scale_, state_.data(), static_cast<float>(w),
+                               static_cast<float>(y));
+    }
+    std::vector<double> state() const { return {state_.begin(), state_.end()}; }
+
+private:
+    std::vector<float> state_;
+    hyst_scale scale_{};
+};
+
 // A joint estimator; the constants are those that the engine's estimator in double tells.
 class Estimator {
 public:
@@ -284,12 +317,19 @@ NB_MODULE(_single, module) {
         .def_prop_ro("state", &Stepper::state)
         .def_prop_ro("fault", &Stepper::fault)
         .def_prop_ro("limited", &Stepper::limited)
-        .def("clear_fault", &Stepper::clear_fault);
+        .def("clear_fault", &Stepper::clear_fault)
+        .def("peek", &Stepper::peek, nb::arg("u"));
     nb::class_<MovingStepper>(module, "MovingStepper")
         .def(nb::init<const std::vector<double> &, const std::vector<std::vector<Description>> &,
                       const std::vector<double> &>(),
              nb::arg("at"), nb::arg("knots"), nb::arg("start"))
         .def("__call__", &MovingStepper::step, nb::arg("u"), nb::arg("s"));
+    nb::class_<ScaleEstimator>(module, "ScaleEstimator")
+        .def(nb::init<const std::vector<double> &, const std::vector<bool> &,
+                      const std::vector<double> &>(),
+             nb::arg("constants"), nb::arg("held"), nb::arg("start"))
+        .def("step", &ScaleEstimator::step, nb::arg("w"), nb::arg("y"))
+        .def_prop_ro("state", &ScaleEstimator::state);
     nb::class_<Estimator>(module, "Estimator")
         .def(nb::init<const Tables &, const std::vector<double> &>(), nb::arg("constants"),
              nb::arg("start"))

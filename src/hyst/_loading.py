@@ -7,7 +7,7 @@ from typing import Any
 
 from hyst.errors import InputError
 from hyst.operators.description import ModelDescription
-from hyst.operators.model_file import ESTIMATOR, read_file
+from hyst.operators.model_file import ESTIMATOR, LEARNING, read_file
 
 _TWO_INPUTS = ("tracking-controller", "repetitive-controller")
 
@@ -22,8 +22,8 @@ def load(path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    Operator, Scheduled, TrackingController, RepetitiveController, or an estimator of hyst.online or
-    its AdaptiveInverse
+    Operator, Scheduled, TrackingController, RepetitiveController, LearningCompensator, or an
+    estimator of hyst.online or its AdaptiveInverse
         Equal to the one saved, every double exact; an estimator goes on with the same bits. What
         its numbers mean is its ``description``.
 
@@ -46,6 +46,8 @@ def load(path: str | os.PathLike[str]) -> Any:
     try:
         if saved.format is ESTIMATOR:
             return _estimator(saved.content, saved.description)
+        if saved.format is LEARNING:
+            return _learning(saved.content["learning"], saved.description)
         return _model(saved.content["model"]).with_description(saved.description)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
@@ -65,6 +67,12 @@ def _model(data: Any) -> Any:
     if isinstance(data, dict) and data.get("kind") == hyst.models.Scheduled.kind:
         return hyst.models.Scheduled.from_dict(data)
     return operator_from_dict(data)
+
+
+def _learning(data: Any, about: ModelDescription) -> Any:
+    from hyst.compensation import LearningCompensator
+
+    return LearningCompensator.from_dict(data, about)
 
 
 def _estimator(content: dict[str, Any], about: ModelDescription) -> Any:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_runs import STAGE, Ended, Run, describe, drive, snapshot, write_csv
+from learning_runs import COLUMNS, MODEL, TIME, Y_REF, Learn
 
 from hyst.cli import main
 
@@ -61,5 +62,39 @@ def refused(run: Run, folder: Path) -> Callable[..., str]:
         assert "Traceback" not in ended.err
         assert snapshot(folder) == before
         return ended.err
+
+    return run_it
+
+
+@pytest.fixture
+def known(folder: Path) -> Path:
+    """The model of the stage that the tests of hyst learn know, which is not the stage."""
+    path = folder / "model.json"
+    MODEL.save(path, describe(MODEL, input_low=-1.0, input_high=5.0, delay=0))
+    return path
+
+
+@pytest.fixture
+def wanted(folder: Path) -> Path:
+    """What the output should do, again and again."""
+    return write_csv(folder / "wanted.csv", "t [s],position [um]", TIME, Y_REF)
+
+
+@pytest.fixture
+def learn(run: Run, known: Path, wanted: Path) -> Learn:
+    """Run the verb with the files so far."""
+
+    def run_it(*more: object) -> Ended:
+        return run("learn", known, wanted, *more, *COLUMNS, "-o", "command.csv")
+
+    return run_it
+
+
+@pytest.fixture
+def refuses(refused: Callable[..., str], known: Path, wanted: Path) -> Callable[..., str]:
+    """Run the verb, and hold it to a refusal."""
+
+    def run_it(*more: object) -> str:
+        return refused("learn", known, wanted, *more, *COLUMNS, "-o", "command.csv")
 
     return run_it

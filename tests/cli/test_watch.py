@@ -208,11 +208,10 @@ def test_standard_input_with_semicolons_and_commas(piped: Callable[..., Ended]) 
     assert [report["time"] for report in reports(ended)] == pytest.approx([4.99, 9.99])
 
 
-def test_rows_without_header_or_time(piped: Callable[..., Ended], run: Run, folder: Path) -> None:
+def test_rows_without_header_or_time(run: Run, model: Path, folder: Path) -> None:
     bare = "".join(line.split(",", 1)[1] for line in strokes(10.0))
     (folder / "bare.csv").write_text(bare)
     how = ("--input", 0, "--output", 1, "--rate", 100, "--json", *END)
-    piped("u,y\n")
     ended = run("watch", "model.json", "bare.csv", *how)
     assert ended.code == 0, ended
     assert counts(ended)["learnt"] > 900

@@ -139,6 +139,8 @@ def test_what_cannot_be_watched_is_refused() -> None:
         read(b"words and words\n" * 100_000, 10**5)
     with pytest.raises(hyst.InputError, match="not a text file"):
         read(b"\x7fELF\x01\x02\x03\n" * 20, 1000)
+    with pytest.raises(hyst.InputError, match="LabVIEW"):
+        read(("LabVIEW Measurement\t\n" + PLAIN).encode(), 50)
     with pytest.raises(hyst.InputError, match="unit"):
         read(PLAIN.replace("[ms]", "[furlong]").encode(), 1000)
     with pytest.raises(hyst.InputError, match="time_unit"):

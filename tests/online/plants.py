@@ -19,6 +19,17 @@ def sine(seconds: float, dt: float = DT) -> Array:
     return 30.0 * np.sin(2.0 * np.pi * np.arange(round(seconds / dt) + 1) * dt)
 
 
+def regimes_of(u: Array, r: Array) -> Array:
+    """Count plays of radii r on the envelope the input moves along, eqs. 1 and 2; NaN at rest."""
+    z, before, found = np.zeros(r.size), u[0], np.full(u.size, np.nan)
+    for k, v in enumerate(u):
+        z = np.maximum(v - r, np.minimum(v + r, z))
+        if v != before:
+            found[k] = np.sum(np.sign(v - before) * (v - z) >= r - 1e-9)
+        before = v
+    return found
+
+
 def record(u: Array, y: Array, dt: float = DT) -> hyst.Record:
     return hyst.Record(u, y, dt)
 

@@ -207,4 +207,4 @@ def test_help_names_every_estimator(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["adapt", "--help"]) == 0
     shown = " ".join(capsys.readouterr().out.replace("│", " ").split())
     for name in ESTIMATORS:
-        assert name in shown.partition("Which one: auto")[2].partition("--")[0]
+        assert name in shown.partition("Which one: auto by")[2].partition("--")[0]

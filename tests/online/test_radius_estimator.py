@@ -11,7 +11,17 @@ import pytest
 import hyst
 from hyst import _engine
 from hyst.online import RadiusEstimator
-from online.plants import DT, FIVE_PLAYS, P, R, random_signals, record, sine, usable
+from online.plants import (
+    DT,
+    FIVE_PLAYS,
+    P,
+    R,
+    random_signals,
+    record,
+    regimes_of,
+    sine,
+    usable,
+)
 
 
 def test_paper_law_reaches_four_percent_then_three_per_mille() -> None:
@@ -244,15 +254,17 @@ def test_saved_and_restored_it_continues_with_the_same_bits(tmp_path: Path) -> N
     u = sine(1.0)
     y = FIVE_PLAYS(u)
     options = {"method": "least-squares", "filter_time": 0.005, "dead_time": 0.01, "memory": 3.0}
+    regimes = regimes_of(u, R)
     whole, part = (RadiusEstimator(P, 1.5 * R, 50.0, DT, **options) for _ in range(2))  # type: ignore[arg-type]
-    whole.run(record(u, y))
-    part.run(record(u[:444], y[:444]))
+    whole.run(record(u, y), regimes=regimes)
+    part.run(record(u[:444], y[:444]), regimes=regimes[:444])
     part.save(tmp_path / "estimator.json")
     restored = hyst.load(tmp_path / "estimator.json")
     assert isinstance(restored, RadiusEstimator)
-    for u_k, y_k in zip(u[444:], y[444:], strict=True):
-        restored.update(u_k, y_k)
+    for u_k, y_k, regime in zip(u[444:], y[444:], regimes[444:], strict=True):
+        restored.update(u_k, y_k, regime=regime)
     assert restored.radii.tobytes() == whole.radii.tobytes()
+    assert np.isfinite(whole.standard_errors).all()
     assert restored.standard_errors.tobytes() == whole.standard_errors.tobytes()
 
 

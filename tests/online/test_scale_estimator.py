@@ -13,7 +13,7 @@ from scipy.signal import lfilter
 from scipy.stats import binom
 
 import hyst
-from hyst.online import JointEstimator, ScaleEstimator, estimator_for
+from hyst.online import JointEstimator, ModelEstimator, ScaleEstimator, estimator_for
 from hyst.online.choice import ESTIMATORS
 from hyst.operators import Affine, Operator
 from reference.examples import EXAMPLES
@@ -358,6 +358,8 @@ def test_the_estimator_that_suits() -> None:
     free = dict(zip(one.names, one.standard_errors > 0.0, strict=True))
     assert [name for name, is_free in free.items() if is_free] == ["p0", "r[1]", "r[2]"]
     assert estimator_for(RATE).dt == DT
+    # What is no scale, nor of the joint estimator, is the model's own.
+    assert isinstance(estimator_for(BOUC_WEN, only="A"), ModelEstimator)
     with pytest.raises(hyst.InputError, match="there is no estimator 'kalman'"):
         estimator_for(plays, estimator="kalman")
     with pytest.raises(hyst.InputError, match="only names 'q'"):

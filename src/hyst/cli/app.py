@@ -24,6 +24,7 @@ from hyst.cli.family_options import FamilyCommand
 from hyst.cli.fit import fit
 from hyst.cli.identify import identify
 from hyst.cli.info import info
+from hyst.cli.learn.command import learn
 from hyst.cli.loop import loop
 from hyst.cli.observer.command import observer
 from hyst.cli.reproduce import reproduce
@@ -50,6 +51,7 @@ VERBS = (
     simulate,
     loop,
     compensate,
+    learn,
     observer,
     export,
     info,

@@ -134,6 +134,7 @@ _OF_A_FILE: dict[str, tuple[Any, Any]] = {
     "file_format": (FileFormat, None),
     "max_samples": (MaxSamples, _MOST_SAMPLES),
 }
+# Of repetitions of a motion, of which there are none before the first.
 _CALLED = {"input_column": "input", "output_column": "output", "file_format": "format"}
 
 Verb = Callable[..., Any]

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import final
 
+from hyst.export.c.any_estimator import any_estimator_block
 from hyst.export.c.block import Block, Model, block_of
-from hyst.export.c.estimator import estimator_block
-from hyst.online import JointEstimator
+from hyst.online import JointEstimator, ScaleEstimator
 
 
 @final
@@ -79,8 +79,8 @@ def tool_block(model: Model) -> ToolBlock:
     InputError
         If it cannot be exported.
     """
-    if isinstance(model, JointEstimator):
-        block = estimator_block(model, "double")
+    if isinstance(model, JointEstimator | ScaleEstimator):
+        block = any_estimator_block(model, "double")
         return ToolBlock(block, ("u", "y", "y_ref"), "command", model.names)
     block = block_of(model, "double")
     return ToolBlock(block, block.inputs, block.output)

@@ -13,6 +13,7 @@ from hyst.errors import InputError
 from hyst.io.decoding import decode
 from hyst.io.fast_numbers import Body, parse_numbers
 from hyst.io.growing_head import Head, Roles, find_head, number_of
+from hyst.io.lvm import is_lvm
 from hyst.io.stamps import seconds_of_stamps
 from hyst.io.text_lines import COMMENTS
 from hyst.io.unit_of_stamps import require_time_unit
@@ -230,6 +231,11 @@ class GrowingRows:
     def _head_of(self, whole: bytes, lines: int, rows: int) -> Head | None:
         first = b"".join(whole.splitlines(keepends=True)[:lines])
         text = decode(first, self.source)
+        if is_lvm(text):
+            raise InputError(
+                f"{self.source} is a LabVIEW measurement file, whose segments cannot be followed; "
+                "let the logger write a plain table"
+            )
         return find_head(text, self.source, self._roles, self._time_unit, rows, self._before)
 
     def _beyond_head(self, whole: bytes, head: Head, taken: int) -> Rows:

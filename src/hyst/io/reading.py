@@ -43,6 +43,7 @@ def read_record(
     output_time: int | str | None = None,
     output_file: str | os.PathLike[str] | None = None,
     max_samples: int = MOST_SAMPLES,
+    one_way: bool = False,
 ) -> Record:
     r"""Read input and output of a measurement from a data file.
 
@@ -93,6 +94,8 @@ def read_record(
         The file of the output, if it is another one, as an oscilloscope writes a file a channel.
     max_samples
         Most numbers to read, as of ``read_table``.
+    one_way
+        Take an input that does not turn or move too: a ramp or a hold whose answer is wanted.
 
     Returns
     -------
@@ -138,11 +141,11 @@ def read_record(
             format=format,
         )
         record = read_apart(path, output_file, where, max_samples)
-        refuse_unusable(str(path), record, dead_band)
+        refuse_unusable(str(path), record, dead_band, one_way)
         return record
     if hold_input:
         raise InputError("hold_input says how to resample; give it with resample")
-    wanted = Wanted(input, output, time, rate, time_unit, repair, dead_band, longest_gap)
+    wanted = Wanted(input, output, time, rate, time_unit, repair, dead_band, longest_gap, one_way)
     tables = read_tables(
         path, columns=wanted.used(), max_samples=max_samples, format=format, repair=repair
     )

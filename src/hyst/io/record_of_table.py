@@ -28,7 +28,7 @@ class Wanted:
 
     Parameters
     ----------
-    input, output, time, rate, time_unit, repair, dead_band, longest_gap
+    input, output, time, rate, time_unit, repair, dead_band, longest_gap, one_way
         As in ``read_record``.
 
     Raises
@@ -45,6 +45,7 @@ class Wanted:
     repair: bool = False
     dead_band: float | None = None
     longest_gap: int = LONGEST_GAP
+    one_way: bool = False
 
     def __post_init__(self) -> None:
         if self.rate is not None and self.time is not None:
@@ -111,7 +112,7 @@ def record_of_table(
         output_unit=table.units[chosen[1]],
         notes=(*notes_about(table, chosen), *told, *left_out, *even.notes),
     )
-    refuse_unusable(table.source, record, wanted.dead_band)
+    refuse_unusable(table.source, record, wanted.dead_band, wanted.one_way)
     return record
 
 
@@ -187,8 +188,12 @@ def _samples(
     return Samples(table, rows, rows.astype(np.float64), period, signals, rate_given=True), told
 
 
-def refuse_unusable(source: str, record: Record, dead_band: float | None) -> None:
+def refuse_unusable(
+    source: str, record: Record, dead_band: float | None, one_way: bool = False
+) -> None:
     """Refuse signals that stand still, and an input without two turns or one whole loop.
+
+    Of an input that may go one way nothing is asked.
 
     Parameters
     ----------
@@ -196,7 +201,7 @@ def refuse_unusable(source: str, record: Record, dead_band: float | None) -> Non
         Name of the file, for messages.
     record
         What was read.
-    dead_band
+    dead_band, one_way
         As in ``read_record``.
 
     Raises
@@ -208,12 +213,16 @@ def refuse_unusable(source: str, record: Record, dead_band: float | None) -> Non
         (record.input_name, record.u, "input"),
         (record.output_name, record.y, "output"),
     ):
+        if one_way and role == "input":
+            continue  # it may hold a level, too
         if signal.min() == signal.max():
             raise InputError(
                 f"{source}: the {role} {name!r} is {signal[0]:.6g} throughout; "
                 "choose a column that moves"
             )
     u = record.u
+    if one_way:
+        return
     if dead_band is None and reversals(u, float(np.ptp(u) / 4.0)).size >= _FEWEST_REVERSALS:
         return  # no dead band that is proposed is wider
     threshold = suggest_dead_band(u) if dead_band is None else dead_band

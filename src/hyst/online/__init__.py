@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hyst.online.adaptive_inverse import AdaptiveInverse
-from hyst.online.choice import ESTIMATORS, estimator_for
+from hyst.online.choice import ESTIMATORS, estimator_for, name_of_estimator
 from hyst.online.estimator import Estimator
 from hyst.online.joint.excitation import Excitation, PlayExcitation
 from hyst.online.joint.innovation import Innovation
@@ -30,6 +30,7 @@ __all__ = [
     "ScaleEstimator",
     "Trajectory",
     "estimator_for",
+    "name_of_estimator",
     "radius_estimator_for",
     "units_of_plays",
 ]

@@ -12,10 +12,11 @@ from hyst.online.estimator import Estimator
 from hyst.online.joint.joint_core import GROUPS
 from hyst.online.joint.joint_estimator import JointEstimator
 from hyst.online.joint.parts import take_apart
+from hyst.online.model.model_estimator import ModelEstimator
 from hyst.online.scale.scale_estimator import ScaleEstimator
 from hyst.operators import Operator
 
-ESTIMATORS = ("scale", "joint")
+ESTIMATORS = ("scale", "joint", "model")
 """Names of the estimators, the cheapest first."""
 
 _SCALE = ("scale", "offset")
@@ -33,8 +34,8 @@ def estimator_for(
 ) -> Estimator:
     """Make the estimator that suits a model and what is to be estimated.
 
-    Scale and offset are estimated of any model; all constants where an estimator knows them: the
-    joint one those of plays and maps.
+    Scale and offset are estimated of any model, the joint estimator has all constants of plays and
+    maps, the one of the model's own constants those of any family.
 
     Parameters
     ----------
@@ -48,10 +49,10 @@ def estimator_for(
         How far off the start is believed to be, a share; each estimator's own if left out.
     only
         What to estimate, by name, everything else being held: ``"scale"`` and ``"offset"``, or
-        parameters and groups of an estimator of all constants. Everything if left out.
+        parameters and groups of another estimator. Everything if left out.
     estimator
-        One of ``ESTIMATORS``, or ``"auto"``: that of all constants where there is one for the
-        model, unless ``only`` names a scale.
+        One of ``ESTIMATORS``, or ``"auto"``: the one that has what ``only`` names; without, the
+        joint one for plays and maps, else the cheap one of scale and offset.
     options
         More options of that estimator.
 
@@ -76,7 +77,7 @@ def estimator_for(
     ('scale', 'offset')
     """
     wanted = [only] if isinstance(only, str) else list(only)
-    name = _chosen(model, wanted) if estimator == "auto" else estimator
+    name = name_of_estimator(model, wanted) if estimator == "auto" else estimator
     if name not in ESTIMATORS:
         known = ", ".join(("auto", *ESTIMATORS))
         raise InputError(f"there is no estimator {name!r}; choose one of {known}")
@@ -85,6 +86,9 @@ def estimator_for(
     if name == "scale":
         held = [] if not wanted else _others(wanted, _SCALE, _SCALE)
         return ScaleEstimator(model, dt=dt, memory=memory, held=held, **options)
+    if name == "model":
+        held = _held_of_model(model, wanted)
+        return ModelEstimator(model, dt=dt, memory=memory, held=held, **options)
     held = _held_jointly(model, wanted)
     if any(each.startswith(("front", "back")) for each in wanted):
         options.setdefault("estimate_maps", True)
@@ -92,15 +96,52 @@ def estimator_for(
     return JointEstimator(model, dt=steps, memory=memory, held=held, **options)
 
 
-def _chosen(model: Operator, wanted: list[str]) -> str:
-    """Give the name of the estimator; a family with one of its own is asked here."""
+def name_of_estimator(model: Operator, only: Iterable[str] = ()) -> str:
+    """Give the name of the estimator that has what is to be estimated.
+
+    Parameters
+    ----------
+    model
+        Where to start.
+    only
+        Names of what to estimate; everything if left out.
+
+    Returns
+    -------
+    str
+        One of ``ESTIMATORS``.
+
+    Examples
+    --------
+    >>> import hyst
+    >>> name_of_estimator(hyst.RambergOsgood(1.0, 0.5, 1.2))
+    'scale'
+    >>> name_of_estimator(hyst.RambergOsgood(1.0, 0.5, 1.2), ["c1", "c2"])
+    'model'
+    """
+    wanted = [only] if isinstance(only, str) else list(only)
     if "scale" in wanted or wanted == ["offset"]:
         return "scale"
     try:
-        take_apart(model)
+        of_plays = take_apart(model).names()
     except InputError:
-        return "scale"
-    return "joint"
+        of_plays = ()
+    if of_plays and all(each in (*of_plays, *GROUPS) for each in wanted):
+        return "joint"
+    own = _with_groups(model.parameters().names)
+    if wanted and all(each in own for each in wanted):
+        return "model"
+    return "joint" if of_plays else "scale"
+
+
+def _with_groups(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Give names, and those of the groups they are of: ``p`` of ``p[1]``."""
+    return (*names, *dict.fromkeys(each.partition("[")[0] for each in names if "[" in each))
+
+
+def _held_of_model(model: Operator, wanted: list[str]) -> list[str]:
+    names = tuple(model.parameters().names)
+    return _others(wanted, names, _with_groups(names)) if wanted else []
 
 
 def _spreads(name: str, spread: float) -> dict[str, float]:

@@ -14,7 +14,7 @@ from hyst.checks.arrays import as_constants, refuse_overflow
 from hyst.errors import InputError, NotInvertibleError
 from hyst.operators.base import Operator
 from hyst.operators.cumulative_weights import cumulative, rounding_of_cumulative
-from hyst.operators.inequalities import MARGIN, Inequalities
+from hyst.operators.inequalities import MARGIN, Inequalities, stacked, within
 from hyst.operators.parameters import Parameters, as_parameter_vector, numbered
 from hyst.operators.portrait import MAP, Portrait
 from hyst.operators.registry import entries, register
@@ -202,12 +202,13 @@ class DeadZone(Operator):
                 first = side * np.eye(count)[int(np.argmax(here))]
                 gaps.append(first - last)
                 last = first
-        rows = np.zeros((len(slopes) + len(gaps), 2 * count))
-        rows[: len(slopes), :count] = slopes
+        weights, size = (float(np.abs(each).sum()) for each in (self.weights, rho))
+        pieces = np.hstack([np.array(slopes), np.zeros((len(slopes), count))])
+        apart = np.zeros((len(gaps), 2 * count))
         if gaps:
-            rows[len(slopes) :, count:] = gaps
-        sizes = [float(np.abs(each).sum()) for each in (self.weights, rho)]
-        return Inequalities(rows, MARGIN * np.repeat(sizes, [len(slopes), len(gaps)]))
+            apart[:, count:] = gaps
+        far = Inequalities(apart, np.full(len(gaps), MARGIN * size))
+        return stacked(within(pieces, weights), far)
 
     def with_parameters(self, theta: Sequence[float] | Array) -> DeadZone:
         """Give a map with other weights and thresholds."""

@@ -12,8 +12,8 @@ from hyst.operators.parameters import Parameters
 
 Array = NDArray[np.float64]
 
-MARGIN = 1e-6
-"""Least slope, over the sum of the weights in size."""
+MARGIN, MOST = 1e-6, 1e3
+"""Least and most slope, over the sum of the weights in size: beyond, an inverse has no digits."""
 
 
 @final
@@ -34,7 +34,7 @@ class Inequalities:
 
 
 def of_bounds(parameters: Parameters) -> Inequalities:
-    """Give the finite bounds of parameters.
+    """Give the finite bounds of parameters; what is above 0 stays above a millionth of itself.
 
     Parameters
     ----------
@@ -45,40 +45,62 @@ def of_bounds(parameters: Parameters) -> Inequalities:
     --------
     >>> one = Parameters(np.ones(1), ("a",), np.zeros(1), np.full(1, np.inf))
     >>> of_bounds(one).rows, of_bounds(one).least
-    (array([[1.]]), array([0.]))
+    (array([[1.]]), array([1.e-06]))
     """
     unit = np.eye(len(parameters))
     below, above = np.isfinite(parameters.lower), np.isfinite(parameters.upper)
+    least = np.maximum(parameters.lower, MARGIN * parameters.values)[below]
+    least = np.where(parameters.lower[below] < 0.0, parameters.lower[below], least)
     return Inequalities(
         np.vstack([unit[below], -unit[above]]),
-        np.concatenate([parameters.lower[below], -parameters.upper[above]]),
+        np.concatenate([least, -parameters.upper[above]]),
     )
 
 
-def of_plays(p0: float, p: Array, further: int = 0) -> Inequalities:
-    """Give thresholds that do not fall, from 0 or more, and cumulative weights above 0.
+def of_plays(p0: float, p: Array) -> Inequalities:
+    """Give thresholds that do not fall, from 0 or more, and cumulative weights within limits.
 
     Parameters
     ----------
     p0, p
         Present weights, which give the scale of the margin; the columns are those of p0, p and r.
-    further
-        Columns behind them, of constants that are free.
 
     Examples
     --------
-    >>> of_plays(1.0, np.array([0.5])).rows
+    >>> of_plays(1.0, np.array([0.5])).rows[:3]
     array([[0., 0., 1.],
            [1., 0., 0.],
            [1., 1., 0.]])
     """
     n = p.size
-    rows = np.zeros((2 * n + 1, 2 * n + 1 + further))
-    steps = np.eye(n) - np.eye(n, k=-1)
-    rows[:n, n + 1 : 2 * n + 1] = steps
-    rows[n:, : n + 1] = np.tril(np.ones((n + 1, n + 1)))
-    least = MARGIN * (abs(p0) + float(np.abs(p).sum()))
-    return Inequalities(rows, np.concatenate([np.zeros(n), np.full(n + 1, least)]))
+    steps, sums = np.eye(n) - np.eye(n, k=-1), np.tril(np.ones((n + 1, n + 1)))
+    thresholds = np.hstack([np.zeros((n, n + 1)), steps])
+    slopes = np.hstack([sums, np.zeros((n + 1, n))])
+    return stacked(
+        Inequalities(thresholds, np.zeros(n)),
+        within(slopes, abs(p0) + float(np.abs(p).sum())),
+    )
+
+
+def within(slopes: Array, size: float) -> Inequalities:
+    """Give slopes, rows of sums of weights, from a millionth to a thousand times a size.
+
+    Parameters
+    ----------
+    slopes
+        Shape (k, m).
+    size
+        The sum of the weights in size.
+    """
+    count = slopes.shape[0]
+    return Inequalities(
+        np.vstack([slopes, -slopes]), np.repeat([MARGIN * size, -MOST * size], count)
+    )
+
+
+def stacked(one: Inequalities, other: Inequalities) -> Inequalities:
+    """Give both together, of the same parameters."""
+    return Inequalities(np.vstack([one.rows, other.rows]), np.concatenate([one.least, other.least]))
 
 
 def side_by_side(parts: list[Inequalities]) -> Inequalities:

@@ -52,7 +52,8 @@ MODEL = Format("hyst model", "model", {1: 1, 2: 2, 3: 3, 4: 4}, ("model",))
 ESTIMATOR = Format(
     "hyst estimator", "estimator", {2: 1, 3: 2, 4: 3, 5: 4}, ("kind", "settings", "state")
 )
-_FORMATS = {each.name: each for each in (MODEL, ESTIMATOR)}
+LEARNING = Format("hyst learning", "learning", {1: 1, 2: 2, 3: 3, 4: 4}, ("learning",))
+_FORMATS = {each.name: each for each in (MODEL, ESTIMATOR, LEARNING)}
 
 
 @final

@@ -23,6 +23,10 @@ from hyst.report.forc_figure import draw_forc_diagram as draw_forc_diagram
 from hyst.report.forecast_summary import forecast_table as forecast_table
 from hyst.report.identification_report import Section as Section
 from hyst.report.identification_report import write_report as write_report
+from hyst.report.learning_figure import draw_learning as draw_learning
+from hyst.report.learning_report import learning_page as learning_page
+from hyst.report.learning_tables import learning_notes as learning_notes
+from hyst.report.learning_tables import learning_table as learning_table
 from hyst.report.loops_figure import draw_loops_behind as draw_loops_behind
 from hyst.report.loops_tables import loops_table as loops_table
 from hyst.report.loops_tables import repeated_loops_table as repeated_loops_table

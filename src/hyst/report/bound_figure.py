@@ -8,6 +8,8 @@ from matplotlib.figure import Figure
 
 from hyst.report.canvas import FAINT, MODELLED, SECOND, blank, drawn
 
+_COLOURS = (MODELLED, SECOND, "#047857")
+
 
 @drawn
 def draw_over_bound(
@@ -28,7 +30,7 @@ def draw_over_bound(
     bytes
         PNG.
     """
-    figure, axes = blank(len(ratios), 1, 4.6 * len(ratios), 3.6)
+    figure, axes = blank(len(ratios), 1, 2.2 + 3.8 * len(ratios), 3.6)
     for panel, (name, lines) in zip(axes, ratios.items(), strict=True):
         kinds = list(dict.fromkeys(label.partition(",")[0] for label in lines))
         seen: dict[str, int] = {}
@@ -39,7 +41,7 @@ def draw_over_bound(
                 times,
                 values,
                 ("o-", "s--")[seen[kind] % 2],
-                color=(MODELLED, SECOND)[kinds.index(kind) % 2],
+                color=_COLOURS[kinds.index(kind) % 3],
                 markersize=4.0,
                 label=label,
             )
@@ -51,6 +53,7 @@ def draw_over_bound(
     every = [value for lines in ratios.values() for values in lines.values() for value in values]
     for panel in axes:
         panel.set_ylim(0.7 * min(every), 1.4 * max(every))
-    axes[0].legend(loc="upper left")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside right upper")
     axes[0].set_ylabel("rms error of the radii / bound")
     return figure

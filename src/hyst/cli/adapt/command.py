@@ -33,7 +33,7 @@ from hyst.cli.adapt.options import (
     Which,
     Window,
 )
-from hyst.cli.adapt.starting import Asked, guarded, resumed, started
+from hyst.cli.adapt.starting import Asked, Found, guarded, resumed, started
 from hyst.cli.adapt.telling import draw, tell, write_parameters
 from hyst.cli.arguments import load_operator
 from hyst.cli.console import at_work, show_files
@@ -74,12 +74,7 @@ def adapt(
     measured = read_measured(data, how, about, start, commands)
     if model is None:
         model = model_from_slopes(rule, measured.record)
-    if found is not None:
-        follower = found.estimator
-    elif rule.method is not None:
-        follower = start_law(rule, model, measured.record, memory, how["dead_band"])
-    else:
-        follower = started(model, measured.record.dt, asked)
+    follower = _follower(found, rule, model, measured.record, asked, how)
     inverse = None if found is None else found.inverse
     if measured.history.size:
         (follower if inverse is None else inverse).follow(measured.history)
@@ -93,6 +88,26 @@ def adapt(
         say("figure")
         picture = draw(follower, about, trajectory, data)
     follower.description = _described(follower, about, measured.whole)
+    files_there = _write(folder, follower, inverse, (trajectory, run, picture), measured, about)
+    tell(follower, before, about)
+    if isinstance(follower, hyst.online.RadiusEstimator):
+        tell_law(follower)
+    if inverse is not None and run is not None:
+        for sentence in guard_sentences(run, inverse, measured.record):
+            print(sentence)
+    show_files(files_there)
+
+
+def _write(
+    folder: Path,
+    follower: hyst.online.Estimator,
+    inverse: hyst.online.AdaptiveInverse | None,
+    found: tuple[hyst.online.Trajectory, GuardRun | None, bytes],
+    measured: Measured,
+    about: hyst.operators.ModelDescription,
+) -> list[Path]:
+    """Write all files or none, and give where they are."""
+    trajectory, run, picture = found
     names = ["model.json", "estimator.json", "parameters.csv", "parameters.png"]
     with replacing_files(folder) as temporary:
         follower.model.save(temporary / names[0])
@@ -103,13 +118,23 @@ def adapt(
             names += ["guard.csv", "guard.json"]
             write_guard_run(temporary / names[4], run, measured.record, about)
             inverse.save(temporary / names[5])
-    tell(follower, before, about)
-    if isinstance(follower, hyst.online.RadiusEstimator):
-        tell_law(follower)
-    if inverse is not None and run is not None:
-        for sentence in guard_sentences(run, inverse, measured.record):
-            print(sentence)
-    show_files([folder / name for name in names])
+    return [folder / name for name in names]
+
+
+def _follower(
+    found: Found | None,
+    rule: Law,
+    model: hyst.operators.Operator,
+    record: hyst.Record,
+    asked: Asked,
+    how: dict[str, Any],
+) -> hyst.online.Estimator:
+    """Give the estimator an earlier run has left, or one that starts by the law or without it."""
+    if found is not None:
+        return found.estimator
+    if rule.method is not None:
+        return start_law(rule, model, record, asked.memory, how["dead_band"])
+    return started(model, record.dt, asked)
 
 
 def _followed(

@@ -15,7 +15,6 @@ import hyst
 from hyst.cli.adapt.measured import Measured
 from hyst.cli.console import note
 from hyst.cli.reading_options import Verb, with_options
-from hyst.online.radius.start import variance_for
 
 Array = NDArray[np.float64]
 
@@ -219,14 +218,12 @@ def start_law(
     dead_band: float | None,
 ) -> hyst.online.RadiusEstimator:
     """Make the estimator of the radii of a model."""
-    gain = law.gain
-    if gain is None and law.method == "least-squares":
-        gain = variance_for(model, record)
     band = hyst.signals.suggest_dead_band(record.u) if dead_band is None else dead_band
     return hyst.online.radius_estimator_for(
         model,
         record.dt,
-        gain,
+        law.gain,
+        record=record,
         method=law.method,
         memory=math.inf if memory is None else memory,
         filter_time=law.filter_time,
@@ -287,7 +284,8 @@ def tell_law(estimator: hyst.online.RadiusEstimator) -> None:
     gains = estimator.settings["gain"]
     told = "told" if estimator.knows_regimes else "measured"
     print(f"law: {estimator.settings['method']}, gain {gains[0]:.4g}, regimes {told}")
-    if not estimator.knows_regimes:
+    # Least squares says so for each radius.
+    if not estimator.knows_regimes and estimator.settings["method"] == "gradient":
         note(
             "regimes come from the measured slope, which noise makes wrong; adapt without --law "
             "needs no slope"

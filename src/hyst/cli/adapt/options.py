@@ -49,7 +49,8 @@ Which = Annotated[
     typer.Option(
         "--estimator",
         metavar="NAME",
-        help="Which one: auto by the model, or scale, joint.",  # hyst.online.ESTIMATORS
+        # Those of hyst.online.ESTIMATORS, which would load what help does not need.
+        help="Which one: auto by what is estimated, or scale, joint, model.",
     ),
 ]
 Guard = Annotated[

@@ -99,16 +99,22 @@ def started(model: hyst.operators.Operator, dt: float, asked: Asked) -> hyst.onl
         If no estimator can follow the model as asked.
     """
     options: dict[str, Any] = {"estimate_maps": True} if asked.estimate_maps else {}
+    only = [each.strip() for each in asked.only.split(",")] if asked.only else []
+    which = asked.which
+    if which == "auto":
+        which = hyst.online.name_of_estimator(model, only)
+    # The one of the model's own constants starts wider, since it has no other start to try.
+    spread = None if which == "model" else _SPREAD
     if asked.estimate_maps and asked.which == "scale":
         raise hyst.InputError("--estimate-maps is for --estimator joint; leave one of them out")
     return hyst.online.estimator_for(
         model.at_sample_time(dt).with_description(model.description),
         dt=dt,
         memory=math.inf if asked.memory is None else asked.memory,
-        spread=_SPREAD if asked.spread is None else asked.spread,
-        only=[each.strip() for each in asked.only.split(",")] if asked.only else (),
+        spread=spread if asked.spread is None else asked.spread,
+        only=only,
         # Maps are what the joint estimator alone knows; it says so of a model without plays.
-        estimator="joint" if asked.estimate_maps else asked.which,
+        estimator="joint" if asked.estimate_maps else which,
         **options,
     )
 

@@ -59,7 +59,8 @@ def line_of(report: Report, unit: str) -> str:
         f"noise {_number(last.noise)}"
     )
     learnt = f"learning paused: {last.paused}" if last.paused else _bands(last)
-    verdict = "" if last.paused or last.is_consistent else "; " + last.innovation
+    doubts = [last.innovation, *last.knowledge.sentences][last.is_consistent :]
+    verdict = "" if last.paused or not doubts else "; " + doubts[0]
     alarms = f"; alarms: {', '.join(last.active)}" if last.active else ""
     return f"{last.time:10.6g} s  {errors}; {learnt}{verdict}{alarms}"
 

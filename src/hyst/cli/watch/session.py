@@ -23,6 +23,8 @@ from hyst.online.watch.watcher import Watcher, Window
 _ROWS = 50
 _FEWEST_IN_A_WINDOW = 20
 _LONGEST_WINDOW = 1.0
+# Bands cost as much as some hundred samples.
+_FEWEST_TOLD = 250
 _STAMPS_ROUNDED = 1e-2
 
 
@@ -158,4 +160,5 @@ class Session:
             plan.limits,
             knows_memory=plan.knows_memory,
             start=plan.start,
+            told_every=max(self.windows_in(plan.every), -(-_FEWEST_TOLD // self._samples)),
         )

@@ -62,6 +62,9 @@ def watch_source(
 ) -> int:
     """Watch a file or standard input until it ends; give the exit code."""
     model = load_operator(model_file)
+    about = model.description
+    if about.verdict is not None and about.is_unfit:
+        note(f"the model is unfit, and so is what is estimated: {about.verdict.sentences[0]}")
     estimator = None if wishes.resume is None else _resumed(wishes.resume, model, wishes)
     plan = Plan(
         model=model,

@@ -83,7 +83,7 @@ class AlongTheMotion:
             history=past,
             rate_limit=self.rate_limit if own else None,
             despite_verdict=despite_verdict,
-            **({"allow_unconverged": True} if self.method == "trajectory" else {}),
+            allow_unconverged=True,
         )
         if self.rate_limit is None or own:
             return Made(done.u, done.clipped, done.notes)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import final
+import os
+from typing import Any, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,38 +12,31 @@ from numpy.typing import ArrayLike, NDArray
 from hyst.checks.arrays import finite_vector
 from hyst.checks.numbers import as_not_negative, as_positive, as_sample_time
 from hyst.compensation.exact import range_of_input
-from hyst.compensation.learning.along_the_motion import AlongTheMotion, Made, suited_method
+from hyst.compensation.learning.along_the_motion import AlongTheMotion, suited_method
 from hyst.compensation.learning.contraction import Contraction, given_slopes
 from hyst.compensation.learning.learnt import Learnt
-from hyst.compensation.learning.linear_fit import Pair
 from hyst.compensation.learning.measured_output import (
-    Measured,
     as_measured,
+    delay_or_refusal,
     refuse_at_rest,
-    shift_between,
-    stuck_samples,
 )
-from hyst.compensation.learning.measured_slopes import measured_slopes
-from hyst.compensation.learning.noise_floor import noise_between, noise_in
+from hyst.compensation.learning.repeated_motion import SAVED_AS_THEY_ARE, RepeatedMotion
 from hyst.compensation.learning.repetition import Repetition
-from hyst.compensation.learning.trial import Trial
+from hyst.compensation.learning.states import (
+    status_of,
+)
 from hyst.errors import InputError
-from hyst.operators import Operator
+from hyst.operators import ModelDescription, Operator, operator_from_dict
+from hyst.operators.model_file import LEARNING as LEARNING_FILE
+from hyst.operators.model_file import write_file
 from hyst.operators.verdict import refuse_if_unfit
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
 
-LEARNING, AT_THE_NOISE, SETTLED, DIVERGED = "learning", "at the noise", "settled", "diverged"
-
-_AT_THE_NOISE = 1.1
-_NOTHING_LEFT = 0.02
-_MOST_STRIKES = 4
-_LATEST = 0.125
-
 
 @final
-class LearningCompensator:
+class LearningCompensator(RepeatedMotion):
     """Iterative learning through a model's inverse, for a reference that is repeated.
 
         v[0] = y_ref,   u[k] = M^-1(v[k]),   v[k+1] = M(u[k]) + Q G^-1 (y_ref - y[k])
@@ -182,19 +176,8 @@ class LearningCompensator:
     @property
     def status(self) -> str:
         """How learning stands, in one sentence."""
-        if not self._history or self._best is None:
-            held = f"; {self._held} samples are held at a limit" if self._held else ""
-            return f"nothing measured yet: the command is the model's inverse{held}"
-        last, best = self._history[-1], self._history[self._best.number - 1]
-        told = (
-            f"{self._state} after {len(self._history)} repetitions: error {last.error_rms:.4g} rms"
-        )
-        told += f", at first {self._history[0].error_rms:.4g}, noise {last.noise:.3g}"
-        if best is not last:
-            told += f", best {best.error_rms:.4g} in repetition {best.number}"
-        if self._state == DIVERGED:
-            told += "; the best command is kept, look at model and plant and reset"
-        return told + (f"; {self._held} samples are held at a limit" if self._held else "")
+        best = None if self._best is None else self._best.number
+        return status_of(self._state, self._history, best, self._held)
 
     def reset(self, y_ref: ArrayLike | None = None, *, forget: bool = False) -> Array:
         """Begin with another reference, or anew; what is known of the plant is kept.
@@ -242,187 +225,83 @@ class LearningCompensator:
         noise = self._noise_of(measured)
         refuse_at_rest(measured.y, self._y_ref, measured.u, noise)
         expected = self._expected(v)
-        late, notes = self._lateness(measured.y, expected, noise)
+        late = self._learnt.linear.delay + delay_or_refusal(
+            expected, measured.y, noise, bool(self._history)
+        )
+        notes = list[str]()
         trial, told = self._trial(measured, v, expected)
         notes += told
         self._noise = noise
         self._next(trial, measured, late, notes)
         return self._command
 
-    def _begin(self, y_ref: Array) -> None:
-        """Start with a reference."""
-        self._y_ref = y_ref
-        self._history: list[Repetition] = []
-        self._best: Trial | None = None
-        self._last: Trial | None = None
-        self._state, self._strikes, self._gain = LEARNING, 0, 1.0
-        self._noise = self._given_noise
-        self._contraction = self._given or Contraction(math.nan, math.nan, 1.0, "unknown")
-        self._past = self._before
-        v = self._learnt.before_it(y_ref, self._periodic)
-        self._set(self._along.command(v, self._past))
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write all of it, every double exact; ``hyst.load`` goes on where it stopped.
 
-    def _set(self, made: Made) -> None:
-        self._command, self._held = made.u, made.held
-        self._command.flags.writeable = False
-
-    def _noise_of(self, measured: Measured) -> float:
-        """Estimate what does not repeat: as given, from a repeated command, or from a spectrum."""
-        if self._given_noise is not None:
-            return self._given_noise
-        last = self._last
-        if last is not None and np.array_equal(last.u, measured.u):
-            between = noise_between(last.y, measured.y)
-            known = self._noise or between
-            if between < 3.0 * known:
-                return max(0.5 * (known + between), noise_in(self._y_ref - measured.y))
-        found = noise_in(self._y_ref - measured.y)
-        return found if self._noise is None else min(max(found, 0.5 * self._noise), self._noise * 2)
-
-    def _expected(self, v: Array) -> Array:
-        """Give what the last repetition, or the model, leads to expect."""
-        near = self._best
-        if near is None:
-            return self._learnt.output(v, self._periodic)
-        return near.y + self._learnt.output(v - near.v, self._periodic)
-
-    def _lateness(self, y: Array, expected: Array, noise: float) -> tuple[int, list[str]]:
-        """Give the delay to learn, or refuse a shift.
+        Parameters
+        ----------
+        path
+            The file to create or replace; it is written whole or not at all.
 
         Raises
         ------
         InputError
-            If the record is shifted.
+            If the folder does not exist.
         """
-        late = shift_between(expected, y, y.size // 4, noise)
-        if late == 0:
-            return self._learnt.linear.delay, []
-        samples = f"{abs(late)} sample{'s' if abs(late) > 1 else ''}"
-        if not self._history and 0 < late <= _LATEST * y.size:
-            told = f"the output is late by {samples}, taken for a delay of the plant"
-            return self._learnt.linear.delay + late, [told]
-        way = "late" if late > 0 else "early"
-        raise InputError(
-            f"the measured output is {way} by {samples} against what was to be expected, so that "
-            "nothing was learnt; start recording with the first sample of the command, or, if the "
-            "plant itself has become so, begin anew with reset(forget=True)"
-        )
+        write_file(path, LEARNING_FILE, {"learning": self.to_dict()}, self.model.description)
 
-    def _trial(self, measured: Measured, v: Array, expected: Array) -> tuple[Trial, list[str]]:
-        error = self._y_ref - measured.y
-        notes = list[str]()
-        self._stuck = stuck_samples(measured.y, expected)
-        if self._stuck.any():
-            notes.append(
-                f"the sensor stands at an end of its range at {int(self._stuck.sum())} samples; "
-                "nothing is learnt there"
-            )
-        if measured.is_told and not np.array_equal(measured.u, self._command):
-            off = float(np.abs(measured.u - self._command).max())
-            notes.append(
-                f"the applied input is off the command by up to {off:.4g}; learnt is from what was "
-                "applied"
-            )
-        return Trial(len(self._history) + 1, measured.u, v, measured.y, error), notes
+    def to_dict(self) -> dict[str, Any]:
+        """Give all of it as plain numbers, lists and text."""
+        along = self._along
+        return {
+            "model": along.model.to_dict(),
+            "settings": {
+                "input_range": None if along.input_range is None else list(along.input_range),
+                "dt": self._dt,
+                "rate_limit": along.rate_limit,
+                "periodic": self._periodic,
+                "noise": self._given_noise,
+                "history": None if self._before is None else self._before.tolist(),
+                "slopes": None if self._given is None else list(self._given.slopes),
+            },
+            "y_ref": self._y_ref.tolist(),
+            "learnt": self._learnt.to_dict(),
+            "history": [each.to_dict() for each in self._history],
+            "trials": [each.to_dict() for each in self._trials],
+            "best": None if self._best is None else self._best.to_dict(),
+            "last": None if self._last is None else self._last.to_dict(),
+            "past": None if self._past is None else self._past.tolist(),
+            "command": self._command.tolist(),
+            "contraction": self._contraction.to_dict(),
+            **{name: getattr(self, f"_{name}") for name in SAVED_AS_THEY_ARE},
+        }
 
-    def _next(self, trial: Trial, measured: Measured, late: int, notes: list[str]) -> None:
-        """Decide what the next command is made from, and make it."""
-        noise = self._noise or 0.0
-        how = "better"
-        if self._best is not None:
-            how = trial.against(self._best, self._expected(trial.v), noise)
-        if how == "changed":
-            notes.append(self._take_change(trial))
-        elif how == "worse":
-            notes.append(self._step_back())
-        else:
-            self._gain = min(1.0, 1.5 * self._gain)
-            self._strikes = 0
-        if not self._stuck.any():
-            self._teach(trial, late, noise, how)
-        if how in ("better", "changed"):
-            self._best = trial
-        base = self._best if how == "worse" or self._best is None else trial
-        self._contract(trial, noise)
-        if self._periodic:
-            self._past = measured.u
-        gain = self._command_from(base or trial, noise, notes)
-        self._last = trial
-        self._history.append(
-            Repetition(
-                trial.number,
-                trial.u,
-                trial.y,
-                trial.rms,
-                trial.largest,
-                noise,
-                gain,
-                "; ".join(notes),
-            )
-        )
+    @classmethod
+    def from_dict(
+        cls, data: dict[str, Any], description: ModelDescription | None = None
+    ) -> LearningCompensator:
+        """Rebuild it from ``to_dict()``.
 
-    def _take_change(self, trial: Trial) -> str:
-        """Take it that the plant has changed: what was best is no more."""
-        gain = self._learnt.gain_of(trial.v, trial.y, self._periodic)
-        self._learnt = self._learnt.rescaled(gain)
-        self._best, self._strikes, self._gain, self._state = None, 0, 1.0, LEARNING
-        return f"the plant has changed, its gain {100.0 * (gain - 1.0):+.3g} %; learning goes on"
+        Parameters
+        ----------
+        data
+            What it gave, or the same read from a file.
+        description
+            What the model's numbers mean.
 
-    def _step_back(self) -> str:
-        self._strikes += 1
-        self._gain *= 0.5
-        assert self._best is not None
-        if self._strikes >= _MOST_STRIKES:
-            self._state = DIVERGED
-        return f"worse than repetition {self._best.number}; back to it with half of the gain"
-
-    def _teach(self, trial: Trial, late: int, noise: float, how: str) -> None:
-        """Let what is known take in a repetition, unless there is nothing but noise in it."""
-        near = None if how == "changed" else self._last
-        if near is not None and trial.rms < _AT_THE_NOISE * noise:
-            return
-        whole = Pair(trial.v, trial.y)
-        changes = [] if near is None else [Pair(trial.v - near.v, trial.y - near.y)]
-        own = self._learnt.linear.delay
-        delays = {0} if late == own == 0 else {late - 1, late, late + 1, own}
-        allowed = tuple(sorted(each for each in delays if each >= 0))
-        self._learnt = self._learnt.taught(whole, changes, noise, allowed)
-
-    def _contract(self, trial: Trial, noise: float) -> None:
-        if self._given is not None:
-            return
-        expected = self._learnt.output(trial.v, self._periodic)
-        found = measured_slopes(expected, trial.y, noise)
-        if found is not None:
-            self._contraction = Contraction.with_best_gain(*found, "measured")
-
-    def _command_from(self, base: Trial, noise: float, notes: list[str]) -> float:
-        """Set the next command; the share of the correction that it makes."""
-        if self._state == DIVERGED:
-            self._hold("diverged: the best command is kept", notes)
-            return 0.0
-        error = np.where(self._stuck, 0.0, base.error)
-        if base.rms <= _AT_THE_NOISE * noise:
-            self._state = AT_THE_NOISE
-            self._hold("", notes)
-            return 0.0
-        gain = self._gain * self._contraction.gain
-        step = self._learnt.step(error, noise, gain, self._periodic)
-        if step.share < _NOTHING_LEFT:
-            self._state = SETTLED
-            self._hold("nothing is left that could be learnt", notes)
-            return 0.0
-        self._state = LEARNING
-        if self._contraction.gain < 1.0:
-            notes.append(f"gain {self._contraction.gain:.3g}, as slopes ask for")
-        self._set(self._along.command(base.v + step.dv, self._past))
-        if self._held:
-            notes.append(f"{self._held} samples of the next command are held at a limit")
-        return gain
-
-    def _hold(self, why: str, notes: list[str]) -> None:
-        """Keep the best command."""
-        assert self._best is not None
-        self._command = self._best.u
-        if why:
-            notes.append(why)
+        Raises
+        ------
+        InputError
+            If an entry is missing or not allowed.
+        """
+        try:
+            model = operator_from_dict(data["model"])
+            if description is not None:
+                model = model.with_description(description)
+            own = cls(model, data["y_ref"], **data["settings"], despite_verdict=True)
+            own._take(data)
+        except InputError:
+            raise
+        except (AttributeError, KeyError, TypeError, ValueError) as error:
+            raise InputError(f"the learning is damaged ({error}); save it again") from None
+        return own

@@ -48,7 +48,7 @@ class Contraction:
 
     @classmethod
     def between(cls, plant: Operator, model: Operator, y_max: float) -> Contraction:
-        """Give the condition from a model error: slopes of one bank of plays behind another's inverse.
+        """Give the condition for one bank of plays behind the inverse of another.
 
         Parameters
         ----------
@@ -72,7 +72,13 @@ class Contraction:
 
     @classmethod
     def with_best_gain(cls, low: float, high: float, source: str) -> Contraction:
-        """Give the condition with the gain 1, or, where that does not contract, with the best one."""
+        """Give the condition with the gain 1, or, where that does not do, with the best one.
+
+        Parameters
+        ----------
+        low, high, source
+            As of the class.
+        """
         gain = 1.0
         if low > 0.0 and not max(abs(1.0 - low), abs(1.0 - high)) < _SURELY:
             gain = min(1.0, 2.0 / (low + high))
@@ -129,7 +135,13 @@ class Contraction:
 
     @classmethod
     def from_dict(cls, data: dict[str, Any]) -> Contraction:
-        """Rebuild it from ``to_dict()``."""
+        """Rebuild it from ``to_dict()``.
+
+        Parameters
+        ----------
+        data
+            What it gave.
+        """
         low, high = (math.nan if data[key] is None else float(data[key]) for key in ("low", "high"))
         return cls(low, high, float(data["gain"]), str(data["source"]))
 
@@ -140,6 +152,11 @@ _SURELY = 0.9
 
 def given_slopes(slopes: tuple[float, float]) -> Contraction:
     """Check slopes that the user gives.
+
+    Parameters
+    ----------
+    slopes
+        The least and the largest.
 
     Raises
     ------

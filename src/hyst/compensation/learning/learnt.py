@@ -9,7 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.compensation.learning.linear_fit import Pair, doubt_of, fit_linear_part
+from hyst.compensation.learning.linear_fit import (
+    Pair,
+    doubt_of,
+    fit_linear_part,
+    gain_over,
+)
 from hyst.compensation.learning.linear_part import LinearPart
 from hyst.compensation.learning.robust_step import Step, robust_step
 
@@ -37,7 +42,12 @@ class Learnt:
     pairs: tuple[Pair, ...] = ()
 
     def taught(
-        self, whole: Pair, changes: Sequence[Pair], noise: float, delays: tuple[int, ...]
+        self,
+        whole: Pair,
+        changes: Sequence[Pair],
+        noise: float,
+        delays: tuple[int, ...],
+        doubted: bool = False,
     ) -> Learnt:
         """Give what is known with one more repetition.
 
@@ -51,11 +61,22 @@ class Learnt:
             Rms of what does not repeat.
         delays
             To try, samples.
+        doubted
+            Whether what was known may be false.
         """
         kept = tuple(each for each in (*self.pairs, *changes))[-_MOST_PAIRS:]
-        used = [whole, *kept]
-        linear = fit_linear_part(used, noise, delays)
-        return Learnt(linear, doubt_of(used, linear, noise), kept)
+        used = [whole, *kept] if len(kept) < 1 else list(kept)
+        score, linear = fit_linear_part(used, noise, delays)
+        doubt = doubt_of(used, linear, noise)
+        if self.linear.order:
+            known = [Pair(self.output(each.v, False), each.y) for each in used]
+            again, gain = gain_over(known, noise)
+            # A mode that was seen is not forgotten for one that a larger hysteresis hides.
+            if again < score or (not linear.order and not doubted):
+                linear = self.linear.scaled(gain)
+                own = doubt_of(used, linear, noise)
+                doubt = own[0], np.minimum(own[1], np.interp(own[0], *self.doubt))
+        return Learnt(linear, doubt, kept)
 
     def rescaled(self, gain: float) -> Learnt:
         """Give the same of a plant whose gain has changed."""
@@ -65,18 +86,6 @@ class Learnt:
     def without_pairs(self) -> Learnt:
         """Give the same for a motion of another length."""
         return replace(self, pairs=())
-
-    def gain_of(self, v: Array, y: Array, periodic: bool) -> float:
-        """Give the gain of y over what the linear part gives, between a fifth and 5."""
-        expected = self.output(v, periodic)
-        own = expected - expected.mean()
-        way = float(own @ own)
-        return min(max(float(own @ (y - y.mean())) / way, 0.2), 5.0) if way > 0.0 else 1.0
-
-    def before_it(self, y_ref: Array, periodic: bool) -> Array:
-        """Give what to tell the model so that the linear part gives a reference, shape (N,)."""
-        missed = y_ref - self.output(y_ref, periodic)
-        return np.asarray(y_ref + self.step(missed, 0.0, 1.0, periodic).dv)
 
     def step(self, error: Array, noise: float, gain: float, periodic: bool) -> Step:
         """Give the change that an error asks for."""
@@ -101,7 +110,13 @@ class Learnt:
 
     @classmethod
     def from_dict(cls, data: dict[str, Any]) -> Learnt:
-        """Rebuild it from ``to_dict()``."""
+        """Rebuild it from ``to_dict()``.
+
+        Parameters
+        ----------
+        data
+            What it gave.
+        """
         frequency, size = (np.array(each, dtype=np.float64) for each in data["doubt"])
         pairs = tuple(
             Pair(np.array(v, dtype=float), np.array(y, dtype=float)) for v, y in data["pairs"]
@@ -112,4 +127,4 @@ class Learnt:
 def _led_back(own: Array) -> Array:
     """Hold the last level, and lead it back to the first."""
     fade = 0.5 + 0.5 * np.cos(np.pi * (np.arange(own.size) + 1.0) / (own.size + 1.0))
-    return own[-1] * fade
+    return np.asarray(own[-1] * fade)

@@ -13,6 +13,7 @@ Koerner, IEEE Trans. Autom. Control 8 (1963) 56, eq. 7, iterated with R.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,10 +26,30 @@ Complex = NDArray[np.complex128]
 _SIZES = ((0, 1), (0, 2), (2, 1), (2, 2), (2, 3), (4, 5))
 """Poles and coefficients above them."""
 
-PEN = 2.0
+_PENALTY = 2.0
+"""Of the information criterion: four times BIC's, as what is left is no white noise."""
+
+_NOT_SHOWN = 1e9
+
 _FEWEST_BINS = 40
-_BEYOND, _CAUTION = 2.5, 2.0
+
+_CLEAR = 3.0
+"""Times the noise: changes of a command have come from noise too, so that more counts as none."""
+
+_SEEN = 0.6
+"""Of the response: what is left of it at most where a mode counts as seen."""
+
+_TURNED, _RESIZED = 0.8, 0.5
+"""Radians, and the logarithm of a size: more than a hysteresis does to a harmonic."""
+
+_BEYOND, _CAUTION = 1.6, 2.0
+"""Times its frequency: how far a mode's shape is believed; and times its standard error."""
+
+_SURE = 0.06
+"""No response is known better."""
+
 _ROUNDS = 6
+_TINY, _SINGULAR = 1e-150, 1e-12
 
 _AT_REST = 0.1
 """By what a plant at rest is held to depart from the model; no record says it of rest itself."""
@@ -48,7 +69,15 @@ class Pair:
     y: Array
 
 
-def fit_linear_part(pairs: list[Pair], noise: float, delays: tuple[int, ...]) -> LinearPart:
+def gain_over(pairs: list[Pair], noise: float) -> tuple[float, float]:
+    """Give the criterion of a gain alone, and the gain."""
+    found = _fitted(pairs, noise, 0, 1, 0)
+    return (np.inf, 1.0) if found is None else (found[0], float(found[1].b[0]))
+
+
+def fit_linear_part(
+    pairs: list[Pair], noise: float, delays: tuple[int, ...]
+) -> tuple[float, LinearPart]:
     """Find the linear part that explains repetitions, of the size that they pay for.
 
     Parameters
@@ -67,123 +96,203 @@ def fit_linear_part(pairs: list[Pair], noise: float, delays: tuple[int, ...]) ->
         for each in (_fitted(pairs, noise, poles, zeros, delay),)
         if each is not None
     ]
-    if not found:
-        return LinearPart.one()
-    return min(found, key=lambda each: each[0])[1]
+    for score, linear in sorted(found, key=lambda each: each[0]):
+        if _is_seen(linear, pairs, noise):
+            return score, linear
+    return np.inf, LinearPart.one()
+
+
+def _is_seen(linear: LinearPart, pairs: list[Pair], noise: float) -> bool:
+    """Tell whether repetitions show what a linear part does, and that it is no hysteresis.
+
+    Every mode must be seen where it is, and somewhere the phase must turn, or the size change, by
+    more than a hysteresis does: at low frequency alone, a lag or a delay looks the same.
+    """
+    if linear.b.size == 1 and not linear.order and not linear.delay:
+        return True
+    frequency, doubt = _own_doubt(pairs, linear, noise)
+    modes = linear.modes()
+    if modes.size and not (np.interp(modes, frequency, doubt) < _SEEN).all():
+        return False
+    relative = linear.at(frequency[doubt < _SEEN]) / linear.at([0.0])[0].real
+    turned = np.abs(np.angle(relative)) > _TURNED
+    return bool((turned | (np.abs(np.log(np.abs(relative) + 1e-300)) > _RESIZED)).any())
 
 
 def _fitted(
     pairs: list[Pair], noise: float, poles: int, zeros: int, delay: int
 ) -> tuple[float, LinearPart] | None:
     """Fit one size; its information criterion beside it."""
-    spectra = [_spectrum(each, delay) for each in pairs]
-    used = _shown(spectra, noise * np.sqrt(pairs[0].v.size))
-    spectra = [(z[used], v[used], y[used]) for z, v, y in spectra]
-    z = spectra[0][0]
-    n, m = poles, zeros
-    tail = max(n, m - 1)
-    count = n + m + tail * len(pairs)
-    if 2 * z.size * len(pairs) < 4 * count:
+    task = _task(pairs, noise, poles, zeros, delay)
+    if 2 * task.z.size * len(pairs) < 4 * task.count:
         return None
-    powers = z[:, None] ** np.arange(max(n, m - 1) + 1)
-    floor = noise * np.sqrt(pairs[0].v.size)
-    below = np.ones(z.size, dtype=complex)
-    around = [_smooth(np.abs(v), z.size) for _, v, _ in spectra]
-    missed = _START
-    size = [np.hypot(missed * each, floor) for each in around]
-    theta, cost, covariance = np.zeros(0), np.inf, np.zeros((0, 0))
+    below: Complex = np.ones(task.z.size, dtype=complex)
+    around = [_smooth(np.abs(v)) for v in task.v]
+    missed, theta, rests = _START, np.zeros(0), list[Array]()
+    size = [np.hypot(missed * each, task.floor) for each in around]
+    covariance = np.zeros((0, 0))
     for _ in range(_ROUNDS):
-        rows, wanted = [], []
-        for k, (_, v, y) in enumerate(spectra):
-            weight = 1.0 / (np.abs(below) * size[k])
-            own = np.zeros((z.size, tail * len(pairs)), dtype=complex)
-            own[:, tail * k : tail * (k + 1)] = powers[:, :tail]
-            row = np.concatenate(
-                [-powers[:, 1 : n + 1] * y[:, None], powers[:, :m] * v[:, None], own], axis=1
-            )
-            rows.append(row * weight[:, None])
-            wanted.append(y * weight)
-        left, right = np.concatenate(rows), np.concatenate(wanted)
-        rest = np.zeros(count)
-        rest[:n], rest[n : n + m] = -1.0, 1.0
-        at_rest = 1.0 / (_AT_REST * abs(1.0 + theta[:n].sum())) if theta.size else 1.0 / _AT_REST
-        left = np.concatenate([left.real, left.imag, rest[None, :] * at_rest])
-        right = np.concatenate([right.real, right.imag, [at_rest]])
-        scale = np.linalg.norm(left, axis=0)
-        if not (np.isfinite(scale).all() and (scale > 0.0).all()):
+        solved = _solved(task, below, size, theta)
+        if solved is None:
             return None
-        q, triangle = np.linalg.qr(left / scale)
-        if np.abs(np.diag(triangle)).min() < 1e-12:
-            return None
-        inverse = np.linalg.inv(triangle)
-        theta = (inverse @ (q.T @ right)) / scale
-        covariance = (inverse @ inverse.T) / np.outer(scale, scale) * 0.5
-        a, b = theta[:n], theta[n : n + m]
-        if n and np.abs(np.roots(np.concatenate([[1.0], a]))).max() >= 1.0:
-            return None
-        below = powers[:, : n + 1] @ np.concatenate([[1.0], a])
-        above = powers[:, :m] @ b
-        rests = []
-        for k, (_, v, y) in enumerate(spectra):
-            own = powers[:, :tail] @ theta[n + m + tail * k : n + m + tail * (k + 1)]
-            rests.append(np.abs(y - (above * v + own) / below))
-        response = np.abs(above / below)
-        around = [_smooth(response * np.abs(v), z.size) for _, v, _ in spectra]
-        missed = _share_missed(rests, around, floor, missed)
-        size = [np.hypot(missed * each, floor) for each in around]
+        theta, covariance = solved
+        below, above, rests = _left(task, theta)
+        around = [_smooth(np.abs(above * v)) / np.abs(below) for v in task.v]
+        missed = _share_missed(rests, around, task.floor, missed)
+        size = [
+            _sizes(*each, below, missed, task.floor) for each in zip(rests, around, strict=True)
+        ]
     cost = sum(
         float(np.sum(2.0 * np.log(own) + (rest / own) ** 2))
         for rest, own in zip(rests, size, strict=True)
     )
-    shown = 2 * sum(int(np.count_nonzero(missed * each > floor)) for each in around)
-    if shown < 2 * (n + m):
-        shown = 2
-    score = cost + PEN * count * np.log(2.0 + shown) + (1e30 if shown < 2 * (n + m) and n else 0.0)
-    k = n + m
+    shown = 2 * sum(int(np.count_nonzero(missed * each > task.floor)) for each in around)
+    n, k = poles, poles + zeros
+    if shown < 2 * k:
+        cost, shown = cost + (_NOT_SHOWN if n else 0.0), 2
+    score = cost + _PENALTY * task.count * np.log(2.0 + shown)
     return score, LinearPart(theta[n:k], theta[:n], delay, covariance[:k, :k])
+
+
+@dataclass(frozen=True, eq=False)
+class _Task:
+    """Spectra of pairs at the frequencies that tell, and the size that is fitted."""
+
+    z: Complex
+    v: list[Complex]
+    y: list[Complex]
+    poles: int
+    zeros: int
+    floor: float
+
+    @property
+    def tail(self) -> int:
+        """Coefficients of what was before and after a record, for each."""
+        return max(self.poles, self.zeros - 1)
+
+    @property
+    def count(self) -> int:
+        """All coefficients."""
+        return self.poles + self.zeros + self.tail * len(self.v)
+
+    @property
+    def powers(self) -> Complex:
+        """Of z^-1, a column each."""
+        return np.asarray(self.z[:, None] ** np.arange(max(self.poles, self.zeros - 1) + 1))
+
+
+def _task(pairs: list[Pair], noise: float, poles: int, zeros: int, delay: int) -> _Task:
+    floor = _CLEAR * noise * float(np.sqrt(pairs[0].v.size))
+    spectra = [_spectrum(each, delay) for each in pairs]
+    used = _shown(spectra, floor)
+    v, y = [each[1][used] for each in spectra], [each[2][used] for each in spectra]
+    return _Task(spectra[0][0][used], v, y, poles, zeros, floor)
+
+
+def _solved(
+    task: _Task, below: Complex, size: list[Array], last: Array
+) -> tuple[Array, Array] | None:
+    """Solve the linear least squares with the weights of the round before; a, b, and all T."""
+    n, m, tail, powers = task.poles, task.zeros, task.tail, task.powers
+    rows, wanted = [], []
+    for k, (v, y) in enumerate(zip(task.v, task.y, strict=True)):
+        weight = 1.0 / np.maximum(np.abs(below) * size[k], _TINY)
+        own = np.zeros((task.z.size, tail * len(task.v)), dtype=complex)
+        own[:, tail * k : tail * (k + 1)] = powers[:, :tail]
+        parts = [-powers[:, 1 : n + 1] * y[:, None], powers[:, :m] * v[:, None], own]
+        rows.append(np.concatenate(parts, axis=1) * weight[:, None])
+        wanted.append(y * weight)
+    left, right = np.concatenate(rows), np.concatenate(wanted)
+    rest = np.zeros(task.count)
+    rest[:n], rest[n : n + m] = -1.0, 1.0
+    at_rest = 1.0 / (_AT_REST * (abs(1.0 + last[:n].sum()) if last.size else 1.0))
+    left = np.concatenate([left.real, left.imag, rest[None, :] * at_rest])
+    right = np.concatenate([right.real, right.imag, [at_rest]])
+    scale = np.linalg.norm(left, axis=0)
+    if not (np.isfinite(scale).all() and (scale > 0.0).all()):
+        return None
+    q, triangle = np.linalg.qr(left / scale)
+    if np.abs(np.diag(triangle)).min() < _SINGULAR:
+        return None
+    inverse = np.linalg.inv(triangle)
+    theta = (inverse @ (q.T @ right)) / scale
+    if n and np.abs(np.roots(np.concatenate([[1.0], theta[:n]]))).max() >= 1.0:
+        return None
+    return theta, (inverse @ inverse.T) / np.outer(scale, scale) * 0.5
+
+
+def _left(task: _Task, theta: Array) -> tuple[Complex, Complex, list[Array]]:
+    """Give A and B over frequency, and the size of what a fit leaves of every record."""
+    n, m, tail, powers = task.poles, task.zeros, task.tail, task.powers
+    below = powers[:, : n + 1] @ np.concatenate([[1.0], theta[:n]])
+    above = powers[:, :m] @ theta[n : n + m]
+    rests = []
+    for k, (v, y) in enumerate(zip(task.v, task.y, strict=True)):
+        first = n + m + tail * k
+        own = powers[:, :tail] @ theta[first : first + tail]
+        rests.append(np.abs(y - (above * v + own) / below))
+    return below, above, rests
+
+
+def _sizes(rest: Array, around: Array, below: Complex, missed: float, floor: float) -> Array:
+    """Give how large what is left is taken to be: it passes the same poles."""
+    shaped = _smooth(np.abs(below) * rest) / np.abs(below)
+    return np.sqrt((missed * around) ** 2 + shaped**2 + floor**2 + _TINY**2)
 
 
 def doubt_of(pairs: list[Pair], linear: LinearPart, noise: float) -> tuple[Array, Array]:
     """Give frequencies, in cycles a sample, and how far the linear part may be wrong there.
 
-    What it leaves of each repetition over what there was to be left, in bands of a third of an
-    octave; a band without signal tells nothing.
+    Where a mode is seen, its shape is believed around it.
+    """
+    frequency, doubt = _own_doubt(pairs, linear, noise)
+    reach = float(linear.modes().max(initial=0.0)) * _BEYOND
+    fitted = np.where(frequency <= reach, _CAUTION * linear.doubt(frequency), np.inf)
+    both = np.minimum(doubt, fitted)
+    return frequency, both if linear.order else _beyond(frequency, both)
+
+
+def _beyond(frequency: Array, doubt: Array) -> Array:
+    """Extend a doubt to higher frequencies: a mode that is not known departs as their square."""
+    least = np.minimum.accumulate(np.maximum(doubt, _SURE) / frequency**2)
+    return np.minimum(doubt, least * frequency**2)
+
+
+def _own_doubt(pairs: list[Pair], linear: LinearPart, noise: float) -> tuple[Array, Array]:
+    """Give what the linear part leaves of repetitions over what it gives of them.
+
+    In bands of a third of an octave; a band without signal tells nothing.
     """
     length = pairs[0].v.size
     edges = np.unique(np.concatenate([[1, 3], np.geomspace(5, (length + 1) // 2, 40).astype(int)]))
     known = np.zeros(edges.size - 1)
-    frequency = np.fft.rfftfreq(2 * length)
+    response = linear.at(np.fft.rfftfreq(2 * length))
+    window = np.hanning(length)
+    floor = noise**2 * float(np.sum(window**2))
     for each in pairs:
-        v = _apart(each.v, length)
-        y = _apart(each.y, length)
-        whole, got = np.fft.rfft(v), np.fft.rfft(y)
-        rest = np.fft.irfft(got - linear.at(frequency) * whole, 2 * length)[:length]
-        window = np.hanning(length)
+        told = np.fft.irfft(response * np.fft.rfft(_apart(each.v)), 2 * length)[:length]
+        rest = each.y - each.y[0] - told
         left = np.abs(np.fft.rfft(window * (rest - rest.mean()))) ** 2
-        told = np.fft.irfft(linear.at(frequency) * whole, 2 * length)[:length]
         there = np.abs(np.fft.rfft(window * (told - told.mean()))) ** 2
-        for k, (a, b) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
-            floor = 0.375 * noise**2 * length
-            known[k] += max(there[a:b].mean() - floor, 0.0) / max(left[a:b].mean(), floor)
-    middles = np.sqrt(edges[:-1] * (edges[1:] - 0.0)) / length
-    doubt = 1.0 / np.sqrt(np.maximum(known, 1e-12))
-    reach = linear.highest_mode() * _BEYOND
-    fitted = np.where(middles <= reach, _CAUTION * linear.doubt(middles), np.inf)
-    return middles, np.minimum(doubt, fitted)
+        for k, (a, b) in enumerate(pairwise(edges.tolist())):
+            below = max(float(left[a:b].mean()), floor, _TINY)
+            known[k] += max(float(there[a:b].mean()) - floor, 0.0) / below
+    middles = np.sqrt(edges[:-1] * edges[1:]) / length
+    return middles, 1.0 / np.sqrt(np.maximum(known, 1e-12))
 
 
-def _apart(signal: Array, length: int) -> Array:
-    """Give a record from its first level, its last one held as long again and led back."""
+def _apart(signal: Array) -> Array:
+    """Give a record from its first level, its last one led back as long again."""
     own = signal - signal[0]
-    fade = 0.5 + 0.5 * np.cos(np.pi * (np.arange(length) + 1.0) / (length + 1.0))
+    fade = 0.5 + 0.5 * np.cos(np.pi * (np.arange(own.size) + 1.0) / (own.size + 1.0))
     return np.concatenate([own, own[-1] * fade])
 
 
 def _shown(spectra: list[tuple[Complex, Complex, Complex]], floor: float) -> NDArray[np.bool_]:
     """Give the frequencies at which a dynamics of the plant could be seen in the noise."""
     used = np.zeros(spectra[0][0].size, dtype=bool)
-    for _, v, _ in spectra:
-        used |= _smooth(np.abs(v), v.size) > 0.5 * floor
+    for _, v, y in spectra:
+        used |= np.maximum(_smooth(np.abs(v)), _smooth(np.abs(y))) > floor
     used[:_FEWEST_BINS] = True
     return used
 
@@ -193,14 +302,11 @@ def _share_missed(rests: list[Array], around: list[Array], floor: float, missed:
     for _ in range(3):
         above = below = 0.0
         for rest, each in zip(rests, around, strict=True):
-            own = (missed * each) ** 2
-            shown = (own / (own + floor**2)) ** 2
-            above += float(
-                np.sum(shown * np.maximum((rest**2 - floor**2), 0.0) / np.maximum(each**2, 1e-300))
-            )
+            power = np.maximum(each**2, _TINY)
+            shown = (missed**2 * power / (missed**2 * power + floor**2)) ** 2
+            above += float(np.sum(shown * np.maximum(rest**2 - floor**2, 0.0) / power))
             below += float(np.sum(shown))
-        missed = float(np.sqrt(above / below)) if below > 0.0 else missed
-        missed = max(missed, _LEAST_MISSED)
+        missed = max(float(np.sqrt(above / below)) if below > 0.0 else missed, _LEAST_MISSED)
     return missed
 
 
@@ -223,10 +329,10 @@ def _bins(length: int) -> NDArray[np.intp]:
     return np.concatenate([np.arange(1, dense + 1), sparse])
 
 
-def _smooth(size: Array, count: int) -> Array:
+def _smooth(size: Array) -> Array:
     """Give the rms of a spectrum around every bin, over a band that grows with frequency."""
     power = np.concatenate([[0.0], np.cumsum(size**2)])
-    at = np.arange(count)
+    at = np.arange(size.size)
     half = 2 + at // 5
-    first, last = np.maximum(at - half, 0), np.minimum(at + half + 1, count)
+    first, last = np.maximum(at - half, 0), np.minimum(at + half + 1, size.size)
     return np.asarray(np.sqrt((power[last] - power[first]) / (last - first)))

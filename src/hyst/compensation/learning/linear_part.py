@@ -12,6 +12,9 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
+_TURNING = 1e-9
+
+
 @final
 @dataclass(frozen=True, eq=False)
 class LinearPart:
@@ -72,13 +75,12 @@ class LinearPart:
             [-powers[:, 1 : n + 1] / below[:, None], powers[:, :m] / above[:, None]], axis=1
         )
         variance = np.einsum("ki,ij,kj->k", relative, self.covariance, relative.conj()).real
-        return np.sqrt(np.maximum(variance, 0.0))
+        return np.asarray(np.sqrt(np.maximum(variance, 0.0)))
 
-    def highest_mode(self) -> float:
-        """Give the highest frequency of a pair of poles, cycles a sample; 0 without one."""
+    def modes(self) -> Array:
+        """Give the frequencies of pairs of poles, cycles a sample."""
         poles = np.roots(np.concatenate([[1.0], self.a]))
-        turning = poles[np.abs(poles.imag) > 1e-9]
-        return float(np.abs(np.angle(turning)).max(initial=0.0) / (2.0 * np.pi))
+        return np.asarray(np.abs(np.angle(poles[poles.imag > _TURNING])) / (2.0 * np.pi))
 
     def settling(self, share: float = 1e-3) -> int:
         """Give after how many samples less than a share of a pulse rings on."""
@@ -101,7 +103,13 @@ class LinearPart:
 
     @classmethod
     def from_dict(cls, data: dict[str, Any]) -> LinearPart:
-        """Rebuild it from ``to_dict()``."""
+        """Rebuild it from ``to_dict()``.
+
+        Parameters
+        ----------
+        data
+            What it gave.
+        """
         b, a = np.array(data["b"], dtype=float), np.array(data["a"], dtype=float)
         size = b.size + a.size
         covariance = np.array(data["covariance"], dtype=float).reshape(size, size)

@@ -14,6 +14,10 @@ from hyst.signals import Record
 Array = NDArray[np.float64]
 
 _SAME_TIME = 1e-6
+
+_LATEST = 0.125
+"""Of a record: a plant that is later than this is not believed."""
+
 _STUCK = 8
 """Samples on end at the extreme reading, from which on a sensor is held to be at its end."""
 
@@ -150,7 +154,7 @@ def shift_between(expected: Array, y: Array, most: int, noise: float) -> int:
     most = min(most, n // 2)
     if most < 1:
         return 0
-    now = _left(expected, y, 0)
+    now = min(_left(expected, y, 0), _left_by_gain(expected, y))
     if now <= 9.0 * noise**2:
         return 0
     size = 2 ** int(np.ceil(np.log2(2 * n)))
@@ -158,9 +162,52 @@ def shift_between(expected: Array, y: Array, most: int, noise: float) -> int:
     both = np.fft.irfft(np.fft.rfft(own, size) * np.conj(np.fft.rfft(told, size)), size)
     lags = np.concatenate([np.arange(most + 1), np.arange(-most, 0)])
     best = int(lags[int(np.argmax(both[lags]))])
-    near = [best + k for k in (-1, 0, 1) if abs(best + k) <= most]
-    best = min(near, key=lambda lag: _left(expected, y, lag))
+    for way in (-1, 1):
+        while abs(best + way) <= most and _left(expected, y, best + way) < _left(expected, y, best):
+            best += way
     return best if best and _left(expected, y, best) < _SHIFT_GAIN * now else 0
+
+
+def delay_or_refusal(expected: Array, y: Array, noise: float, has_history: bool) -> int:
+    """Give the delay to learn from a first repetition, or refuse one that is shifted.
+
+    Parameters
+    ----------
+    expected, y
+        Shape (N,).
+    noise
+        Rms of what does not repeat.
+    has_history
+        Whether there were repetitions before, whose delay is known.
+
+    Returns
+    -------
+    int
+        Samples.
+
+    Raises
+    ------
+    InputError
+        If the record is shifted.
+    """
+    late = shift_between(expected, y, y.size // 4, noise)
+    if late == 0 or (not has_history and 0 < late <= _LATEST * y.size):
+        return late
+    samples = f"{abs(late)} sample{'s' if abs(late) > 1 else ''}"
+    way = "late" if late > 0 else "early"
+    raise InputError(
+        f"the measured output is {way} by {samples} against what was to be expected, so that "
+        "nothing was learnt; start recording with the first sample of the command, or, if the "
+        "plant itself has become so, begin anew with reset(forget=True)"
+    )
+
+
+def _left_by_gain(expected: Array, y: Array) -> float:
+    """Power of what a gain and an offset leave."""
+    own, told = y - y.mean(), expected - expected.mean()
+    way = float(told @ told)
+    gain = float(own @ told) / way if way > 0.0 else 0.0
+    return float(np.mean((own - gain * told) ** 2))
 
 
 def _left(expected: Array, y: Array, lag: int) -> float:

@@ -58,7 +58,13 @@ class Repetition:
 
     @classmethod
     def from_dict(cls, data: dict[str, Any]) -> Repetition:
-        """Rebuild it from ``to_dict()``."""
+        """Rebuild it from ``to_dict()``.
+
+        Parameters
+        ----------
+        data
+            What it gave.
+        """
         own = dict(data)
         for name in ("command", "y_measured"):
             own[name] = np.array(own[name], dtype=np.float64)

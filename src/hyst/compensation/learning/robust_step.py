@@ -26,13 +26,20 @@ _DOUBT = 0.5
 """Relative standard error of the linear part at which half of the gain is left."""
 
 _AT_REST, _BEFORE = 0.1, 20.0
-"""By what a plant departs from the model before anything is known: at rest, and in a cycle a sample."""
+"""By what a plant departs from the model before anything is known: at rest, and more of it in a
+cycle a sample."""
+
+_PROBE = 0.06
+"""Of the correction where little is known: enough to learn there by what it does."""
+
+_TELLING = 25.0
+"""Times the noise's power: what an error must have for that."""
 
 _SURE = 0.02
 """Nothing is known better."""
 
-_LEAST = 0.05
-"""Of the largest response: dynamics that pass less are not inverted."""
+_LEAST = 0.3
+"""Of the response at rest: dynamics that pass less are not inverted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,13 +88,16 @@ def robust_step(
     spectrum = np.fft.rfft(whole)
     frequency = np.fft.rfftfreq(whole.size)
     response = linear.at(frequency)
-    passed = _above_noise(np.abs(spectrum) ** 2, noise**2 * error.size)
+    power, own_noise = np.abs(spectrum) ** 2, noise**2 * error.size
+    passed = _above_noise(power, own_noise)
+    probe = _PROBE * (_mean_around(power, 1) > _TELLING * own_noise)
     own = np.maximum(np.interp(frequency, *doubt), _SURE) ** -2
     prior = (_AT_REST + _BEFORE * frequency) ** -2
     response = (own * response + prior) / (own + prior)
-    passed = passed * np.clip(2.0 - 1.0 / np.sqrt(own + prior) / _DOUBT, 0.0, 1.0)
+    trust = np.clip(2.0 - 1.0 / np.sqrt(own + prior) / _DOUBT, probe, 1.0)
+    passed = passed * trust
     size = np.abs(response)
-    passed = passed * size**2 / (size**2 + (_LEAST * size.max()) ** 2)
+    passed = passed * size**2 / (size**2 + (_LEAST * size[0]) ** 2)
     change = gain * passed * spectrum / np.where(size > 0.0, response, 1.0)
     dv = np.fft.irfft(change, whole.size)[: error.size]
     dy = np.fft.irfft(change * response, whole.size)[: error.size]
@@ -117,4 +127,4 @@ def _mean_around(power: Array, half: int) -> Array:
     total = np.concatenate([[0.0], np.cumsum(power)])
     at = np.arange(power.size)
     first, last = np.maximum(at - half, 0), np.minimum(at + half + 1, power.size)
-    return (total[last] - total[first]) / (last - first)
+    return np.asarray((total[last] - total[first]) / (last - first))

@@ -81,6 +81,11 @@ class RepetitiveCertificate:
         ----------
         share
             Above 0, below 1.
+
+        Raises
+        ------
+        InputError
+            If it is not between.
         """
         if not 0.0 < as_number(share, "share") < 1.0:
             raise InputError(f"share is {share:.6g}; give one between 0 and 1")
@@ -130,7 +135,20 @@ def certified(
     slopes: tuple[float, float] = (1.0, 1.0),
     delay: float = 0.0,
 ) -> RepetitiveCertificate:
-    """Certify filters around a plant; the arguments are those of ``RepetitiveController``."""
+    """Certify filters around a plant.
+
+    Parameters
+    ----------
+    filters
+        As they run.
+    plant, dt, uncertainty, slopes, delay
+        As ``RepetitiveController.certificate`` takes them; the slopes checked.
+
+    Raises
+    ------
+    InputError
+        As there.
+    """
     sampled = sampled_plant(plant, dt, delay)
     refuse_lasting(sampled)
     values = ConditionValues(filters, sampled, stable_weight(uncertainty, "uncertainty"), slopes)
@@ -142,7 +160,18 @@ def certified(
 
 
 def refuse_lasting(plant: SampledPlant) -> None:
-    """Refuse a plant that integrates: no FIR inverts it, and nothing holds it between periods."""
+    """Refuse a plant that integrates: no FIR inverts it, and nothing holds it between periods.
+
+    Parameters
+    ----------
+    plant
+        As sampled.
+
+    Raises
+    ------
+    InputError
+        If it has a pole on the unit circle.
+    """
     poles = plant.system.poles()
     if poles.size and float(np.abs(poles).max()) > 1.0 - 1e-9:
         raise InputError(
@@ -153,7 +182,17 @@ def refuse_lasting(plant: SampledPlant) -> None:
 
 @dataclass(frozen=True)
 class ConditionValues:
-    """The condition over frequency."""
+    """The condition over frequency.
+
+    Parameters
+    ----------
+    filters, plant
+        What it is of.
+    weight
+        Of the uncertainty.
+    slopes
+        Checked.
+    """
 
     filters: RepetitiveFilters
     plant: SampledPlant
@@ -223,6 +262,11 @@ def ordered_slopes(slopes: Any) -> tuple[float, float]:
     ----------
     slopes
         Least and largest, above 0.
+
+    Raises
+    ------
+    InputError
+        If they are not.
     """
     try:
         low, high = slopes

@@ -75,10 +75,8 @@ class RepetitiveController(SavedRepetitive):
     Raises
     ------
     InputError
-        If the period is not whole or shorter than the filters need, a number is not finite, dt is
-        not above 0, the inverse is no operator, has another dt or is of a model whose verdict is
-        ``unfit``, limits do not ascend, or there is no operator of which the inverse is the exact
-        inverse.
+        If the period is not whole or shorter than the filters need, a number is not finite, or dt,
+        inverse or limits are none that ``TrackingController`` takes.
 
     Source
     ------

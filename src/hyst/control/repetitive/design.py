@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,18 +29,20 @@ from hyst.models import LinearDynamics
 from hyst.operators import Operator
 
 Array = NDArray[np.float64]
+Found: TypeAlias = tuple[RepetitiveFilters, RepetitiveCertificate]
 
 LARGEST_PERIOD = 2**23  # twice as many are counted in single precision
 _HALVES = (0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
 _WIDEST, _STEP, _BANDS = 0.45, 0.8, 24  # of pi/dt: the widest band, and how bands go down from it
 _ENOUGH = 0.9  # of contraction, for a band that is chosen: 1 % after 44 periods
+_SCALES = np.linspace(0.7, 1.7, 51)
 _LONGER = 4  # lengths after which nothing gained means that longer ones gain nothing
 _NEAR = 0.02  # of the least contraction: fewer taps are taken
 _FLOOR = 0.02  # of Q where it stops: the inverse is not left to itself there
 
 
 @dataclass(frozen=True)
-class Asked:
+class _Asked:
     """What a design is given, checked."""
 
     plant: SampledPlant
@@ -95,6 +97,11 @@ def taken_apart(plant: Any, inverse: Any, dt: float | None) -> tuple[Any, Any]:
         As given; None for that of the model.
     dt
         Sample time, s; that of the plant if None.
+
+    Raises
+    ------
+    NotInvertibleError
+        If the hysteresis of the model has no exact inverse.
     """
     if not isinstance(plant, Operator):
         return plant, inverse
@@ -115,8 +122,19 @@ def designed(
     slopes: Any,
     delay: float,
     gain: float,
-) -> tuple[RepetitiveFilters, RepetitiveCertificate]:
-    """Choose filters; the arguments are those of ``RepetitiveController.design``."""
+) -> Found:
+    """Choose filters, and prove what they do.
+
+    Parameters
+    ----------
+    plant, period, dt, bandwidth, uncertainty, slopes, delay, gain
+        As ``RepetitiveController.design`` takes them; the period checked.
+
+    Raises
+    ------
+    InputError
+        As there.
+    """
     if uncertainty is None and bandwidth is None:
         raise InputError(
             "neither uncertainty nor bandwidth is given, so nothing says up to where the plant is "
@@ -128,8 +146,8 @@ def designed(
     sampled = sampled_plant(plant, dt, delay)
     refuse_lasting(sampled)
     wu = 0.0 if uncertainty is None else uncertainty
-    asked = Asked(sampled, period, wu, ordered_slopes(slopes), share)
-    best: tuple[RepetitiveFilters, RepetitiveCertificate] | None = None
+    asked = _Asked(sampled, period, wu, ordered_slopes(slopes), share)
+    best: Found | None = None
     for passed in _bands(bandwidth, sampled.dt):
         if bandwidth is None and passed * period < 2.0 * math.pi:
             break  # below the first harmonic there is nothing to learn
@@ -157,7 +175,7 @@ def _bands(bandwidth: float | None, dt: float) -> Iterator[float]:
     yield passed
 
 
-def _at_band(asked: Asked, passed: float) -> tuple[RepetitiveFilters, RepetitiveCertificate] | None:
+def _at_band(asked: _Asked, passed: float) -> Found | None:
     """Give the best filters that pass up to an angle; None where Q is longer than the period."""
     # An octave to fall in, or more where the filter would be longer than the period.
     stopped = passed + max(passed, narrowest(asked.period / 2.0))
@@ -176,7 +194,7 @@ def _at_band(asked: Asked, passed: float) -> tuple[RepetitiveFilters, Repetitive
         taps = max(2 * half + 1, lead + 1)  # a memory of errors holds them up to now
         if smooth.size - 1 + lead >= asked.period:
             break
-        learn = asked.gain * inverse_taps(angle, P, np.maximum(Q, _FLOOR), doubt, lead, taps)
+        learn = inverse_taps(angle, P, np.maximum(Q, _FLOOR), doubt, lead, taps)
         filters = RepetitiveFilters(asked.period, smooth, learn, lead)
         L = filters.L(angle)
         tried.append((float((Q * (np.abs(1.0 - L * P) + np.abs(L) * doubt)).max()), filters))
@@ -187,6 +205,11 @@ def _at_band(asked: Asked, passed: float) -> tuple[RepetitiveFilters, Repetitive
     # The condition on the grid; the certificate closes in on what is between.
     least = _least(tried)
     filters = next(each for value, each in tried if value <= least + _NEAR)
+    L = filters.L(angle)
+    # Least squares fear doubt more than its worst case needs: all of L is scaled for that.
+    left = [(Q * (np.abs(1.0 - k * L * P) + k * np.abs(L) * doubt)).max() for k in _SCALES]
+    scale = asked.gain * _SCALES[int(np.argmin(left))]
+    filters = replace(filters, learn=scale * filters.learn)
     return filters, certified(filters, plant, plant.dt, asked.uncertainty, asked.slopes)
 
 
@@ -206,10 +229,10 @@ def _lateness(P: NDArray[np.complex128], angle: Array, passed: float) -> int:
 
 
 def _proven(
-    best: tuple[RepetitiveFilters, RepetitiveCertificate] | None,
-    asked: Asked,
+    best: Found | None,
+    asked: _Asked,
     bandwidth: float | None,
-) -> tuple[RepetitiveFilters, RepetitiveCertificate]:
+) -> Found:
     if best is None:
         raise InputError(
             f"the period of {asked.period} samples is shorter than the filter that such a band "

@@ -28,7 +28,7 @@ from hyst.models.schedule_run import ScheduledSystem
 from hyst.models.scheduled import Scheduled
 from hyst.models.scheduled_inverse import ScheduledInverse
 from hyst.models.stable_inverse import StableInverse
-from hyst.online import JointEstimator
+from hyst.online import JointEstimator, ScaleEstimator
 from hyst.operators import Affine, ModelDescription, Operator, Play
 from hyst.operators.registry import compose
 from hyst.operators.verdict import refuse_if_unfit
@@ -42,6 +42,7 @@ Model = (
     | RepetitiveController
     | StableInverse
     | JointEstimator
+    | ScaleEstimator
 )
 
 
@@ -95,6 +96,8 @@ class Block:
         one call of the stages after the other.
     limits
         Lowest and highest output, in numbers of the target; None without limits.
+    source_template
+        Of the source file, where it is another one than that of its header.
     forgets
         Numbers at the start of the memory that its reset makes 0; none has no reset.
     tells
@@ -122,6 +125,7 @@ class Block:
     faults: str = ""
     written: Callable[[StageCode], str] | None = None
     limits: tuple[float, float] | None = None
+    source_template: str = ""
     forgets: int = 0
     tells: tuple[str, ...] = ()
 
@@ -155,10 +159,11 @@ def stepper_of(block: Block, precision: Precision) -> Callable[..., float]:
         return block.stepper()
     if block.single_stepper is not None:
         return block.single_stepper()
-    return _single.Stepper([_told(stage) for stage in block.stages], block.start)
+    return _single.Stepper([told(stage) for stage in block.stages], block.start)
 
 
-def _told(stage: CoreStage) -> tuple[Any, ...]:
+def told(stage: CoreStage) -> tuple[Any, ...]:
+    """Give a ``stage`` as the twin in single precision takes it."""
     choices = {**stage.choices, **({"inside": stage.inside} if stage.inside else {})}
     return stage.kind, stage.form, dict(stage.numbers), dict(stage.tables), choices
 
@@ -249,7 +254,7 @@ def _scheduled(model: Scheduled | ScheduledInverse, precision: Precision) -> Blo
     start = tuple(model.initial_state().tolist())
 
     def single_stepper() -> Callable[..., float]:
-        knots = [[_told(stage) for stage in each] for each in code.knots]
+        knots = [[told(stage) for stage in each] for each in code.knots]
         return _single.MovingStepper(model.values.tolist(), knots, start)
 
     first = model.models[0] if isinstance(model, Scheduled) else model.scheduled.models[0].inverse()

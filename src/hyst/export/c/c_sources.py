@@ -95,7 +95,8 @@ def source(block: Block, places: dict[str, str], precision: Precision) -> str:
         "calls": indented(block.body.replace("@{NAME}", places["NAME"])),
         "signal": block.signal,
     }
-    return filled(f"{_template(block)}.c", places | more) + filled("state.c", places)
+    template = block.source_template or _template(block)
+    return filled(f"{template}.c", places | more) + filled("state.c", places)
 
 
 def selftest_source(block: Block, places: dict[str, str]) -> str:

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any, final
 
 from hyst import __version__
+from hyst.export.c.any_estimator import any_estimator_block
 from hyst.export.c.block import Block, Model, block_of, described, refuse_unfit
 from hyst.export.c.c_sources import WORD_BYTES, header, places, selftest_source, source, vectors
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.drive import SAMPLES
-from hyst.export.c.estimator import estimator_block
 from hyst.export.c.flat import flattened
 from hyst.export.c.names import as_c_name
 from hyst.export.c.numbers import Precision, as_precision
@@ -22,7 +22,7 @@ from hyst.export.c.readme import readme
 from hyst.export.c.selftest import SelfTest
 from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, MANIFEST, write_export
-from hyst.online import JointEstimator
+from hyst.online import JointEstimator, ScaleEstimator
 from hyst.operators import ModelDescription
 
 
@@ -78,8 +78,8 @@ def c_project(
     ----------
     model
         Any operator; a scheduled model, whose step takes the second signal too; a tracking
-        controller, whose step takes y_ref and y; or a joint estimator, which takes in samples and
-        gives commands, from the estimate and the memory it has now.
+        controller, whose step takes y_ref and y; or a joint or scale estimator, which takes in
+        samples and gives commands, from the estimate and the memory it has now.
     folder
         What to create: a folder, or a zip if it ends in ``.zip``.
     precision
@@ -120,8 +120,8 @@ def c_project(
     as_c_name(name)
     refuse_unfit(model, description, despite_verdict)
     exact = as_precision(precision)
-    if isinstance(model, JointEstimator):
-        block = estimator_block(model, exact)
+    if isinstance(model, JointEstimator | ScaleEstimator):
+        block = any_estimator_block(model, exact)
     else:
         block = block_of(model, exact)
     about = described(model, description)

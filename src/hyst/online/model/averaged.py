@@ -18,6 +18,9 @@ from hyst.online.model.window import Window
 
 Array = NDArray[np.float64]
 
+# Of the information: a standard error of half of what was believed.
+_VAGUE = 4.0
+
 
 @final
 @dataclass(frozen=True, eq=False)
@@ -54,6 +57,7 @@ def averaged(
     scale: Array,
     information: Array,
     limits: tuple[Array, Array],
+    local: Array,
 ) -> Averaged | None:
     """Regress the window's output over the uncertainty of the constants.
 
@@ -67,6 +71,9 @@ def averaged(
         Shape (f, f), inverse covariance of x, at least 1 in each direction.
     limits
         Lower and upper bounds, shape (m,), at which points stop.
+    local
+        Shape (N, f), the derivative at the estimate, which counts along axes of which hardly
+        anything is known: constants out of the drive's reach are not to be drawn into it.
 
     Returns
     -------
@@ -83,6 +90,9 @@ def averaged(
     count = free.size
     pairs = np.empty((2, count, window.count))
     for k in range(count):
+        if values[k] < _VAGUE:
+            pairs[:, k] = window.outputs(theta)[0]
+            continue
         for side, sign in enumerate((1.0, -1.0)):
             point = theta.copy()
             point[free] += sign * np.sqrt(count) * errors[k] * scale * axes[:, k]
@@ -91,6 +101,8 @@ def averaged(
         return None
     middle = pairs.mean(axis=(0, 1))
     slopes = (pairs[0] - pairs[1]) / (2.0 * np.sqrt(count))
+    vague = values < _VAGUE
+    slopes[vague] = (local @ axes[:, vague] * errors[vague]).T
     bends = pairs[0] + pairs[1] - 2.0 * middle
     columns = (slopes / errors[:, None]).T @ axes.T
     return Averaged(middle, columns, np.mean(bends**2, axis=0) / 4.0)

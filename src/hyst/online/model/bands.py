@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import chdtri
 
 from hyst.online.knowledge import Knowledge
+from hyst.online.model.block_fit import clip_of, squares_of
 from hyst.online.model.course import Course
 from hyst.online.model.profile import Profile
 
 Array = NDArray[np.float64]
 
-_BAND, _RISE = 2.0, 4.0
+_BAND, _RISE, _OUTSIDE = 2.0, 4.0, 0.05
 _LEARNT = 0.5
 # Of the start, where it is asked what samples tell without it.
 _BELIEF = 0.1
@@ -36,10 +38,12 @@ def known_of(course: Course) -> Knowledge:
     covariance = course.free_covariance(course.information)
     profile = _profile(course)
     recent = course.free_covariance(course.recent, _BELIEF)
+    likely = _as_likely(course)
     for k, place in enumerate(course.free.tolist()):
         width = _widths(course, profile, covariance, k)
-        low[place], high[place] = course.theta[place] - width[0], course.theta[place] + width[1]
-        error = max(float(np.sqrt(recent[k, k])), max(width) / _BAND)
+        low[place] = min(course.theta[place] - width[0], likely[:, place].min())
+        high[place] = max(course.theta[place] + width[1], likely[:, place].max())
+        error = max(float(np.sqrt(recent[k, k])), float(high[place] - low[place]) / (2.0 * _BAND))
         reason = _missing(course, place, error)
         if not reason and not innovation.consistent:
             reason = str(innovation)
@@ -83,6 +87,30 @@ def _widths(course: Course, profile: Profile, covariance: Array, k: int) -> tupl
     farthest = _BAND * float(course.spread[course.free[k]] / scale[k])
     down, up = (profile.reach(k, sign * step, farthest) for sign in (-1.0, 1.0))
     return max(down, _BAND * error), max(up, _BAND * error)
+
+
+def _as_likely(course: Course) -> Array:
+    """Give the estimate, and those from other starts that the window does not tell from it.
+
+    Their squares are within the 95 % region of as many constants, ridges and kinks and all.
+    """
+    task = course.task()
+    window = task.window
+
+    def error_of(theta: Array) -> Array:
+        return window.y[: window.count] - window.outputs(theta)[0]
+
+    error = error_of(course.theta)
+    clip = clip_of(error, task.weights)
+    region = float(chdtri(max(course.free.size, 1), _OUTSIDE)) * course.variance
+    most = squares_of(error, task.weights, clip) + region
+    with np.errstate(all="ignore"):
+        found = [
+            rival
+            for rival in course.rivals
+            if squares_of(error_of(rival), task.weights, clip) <= most
+        ]
+    return np.array([course.theta, *found])
 
 
 def _profile(course: Course) -> Profile:

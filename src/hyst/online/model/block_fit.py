@@ -75,6 +75,8 @@ class Fitted:
         Of the noise.
     information
         Shape (f, f), of the window, output units squared.
+    columns, columns_before
+        Shape (N, f), derivative of the output by x there, and where the steps began.
     squares
         Of the window, large errors counted less.
     refused
@@ -84,6 +86,8 @@ class Fitted:
     theta: Array
     variance: Array | float
     information: Array
+    columns: Array
+    columns_before: Array
     squares: float
     refused: int
 
@@ -124,6 +128,7 @@ def fitted(task: Task, theta: Array, variance: float, floor: float, passes: int)
         None where an output or a derivative is not finite.
     """
     refused, clip, count = 0, np.inf, float(task.weights.sum())
+    before = np.zeros((0, task.start.size))
     for pass_ in range(passes + 1):
         with np.errstate(all="ignore"):
             y, jacobian = task.window.sensitivity(theta)
@@ -135,6 +140,7 @@ def fitted(task: Task, theta: Array, variance: float, floor: float, passes: int)
             columns = jacobian[:, task.free] * task.scale
             information = columns.T @ (columns * weights[:, None])
             pull = columns.T @ (weights * error)
+        before = before if pass_ else columns
         squares = squares_of(error, task.weights, clip)
         if not (np.isfinite(information).all() and np.isfinite(pull).all() and squares < np.inf):
             return None
@@ -149,7 +155,7 @@ def fitted(task: Task, theta: Array, variance: float, floor: float, passes: int)
         theta, gained = found
         if gained < _ENOUGH * variance:
             break
-    return Fitted(theta, variance, information, squares, refused)
+    return Fitted(theta, variance, information, columns, before, squares, refused)
 
 
 def _variance(

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from hyst.errors import InputError, NotInvertibleError
 from hyst.operators import Operator
 from hyst.operators.composition import leaves_of
+from hyst.operators.stepper import Stepper
 
 Array = NDArray[np.float64]
 
@@ -32,25 +33,32 @@ def refusal_of(model: Operator) -> str:
 
 @final
 class Commands:
-    """Commands of one model from any memory.
+    """Commands of one model from the memory it has.
 
     Stages with an exact inverse are solved for their present sample, from the memory they have:
     the output rises or falls with the input, so that there is one solution, found to rounding. The
-    others take their causal inverse from the same memory, which is not exact.
+    others have their causal inverse step beside them, which is not exact, and goes on with what was
+    wanted as long as its commands are those that were applied. (Beginning anew with every sample
+    from the memory of the stage, it would go to and fro between fast and slow.)
 
     Parameters
     ----------
     model
         Every stage has one of both.
+    state
+        Shape (n,), its memory.
     """
 
-    def __init__(self, model: Operator) -> None:
-        leaves = leaves_of(model)
+    def __init__(self, model: Operator, state: Array) -> None:
         self.is_exact = model.is_invertible()
-        self._parts: tuple[Operator, ...] = (model,) if self.is_exact else leaves
+        self._parts = (model,) if self.is_exact else leaves_of(model)
         self._steps = [part.stepper() for part in self._parts]
         sizes = [part.initial_state().size for part in self._parts]
         self._ends = np.concatenate([[0], np.cumsum(sizes)])
+        self._backward: dict[int, Stepper] = {}
+        self._pending: tuple[float, dict[int, Array]] | None = None
+        if not self.is_exact:
+            self._begin(state)
 
     def input_for(self, y_ref: float, state: Array, near: float) -> float:
         """Give the command.
@@ -64,17 +72,40 @@ class Commands:
         near
             Where to begin to look, an input.
         """
-        target = y_ref
+        target, after = y_ref, {}
         for i in reversed(range(len(self._parts))):
-            own = state[self._ends[i] : self._ends[i + 1]]
-            target = self._back(i, target, own, near)
+            if i in self._backward:
+                step = self._backward[i]
+                kept = np.array(step.state)
+                target = step(target)
+                after[i] = np.array(step.state)
+                step.state[:] = kept
+            else:
+                target = self._solved(i, target, self._own(i, state), near)
+        self._pending = (target, after)
         return target
 
-    def _back(self, i: int, target: float, state: Array, near: float) -> float:
-        part = self._parts[i]
-        if not part.is_invertible():
-            inverse, memory = part.causal_inverse(state)
-            return float(inverse.run(np.array([target]), memory)[0][0])
+    def passed(self, u: float, state: Array) -> None:
+        """Go on: this input was applied, and left the model with this memory."""
+        if self.is_exact:
+            return
+        if self._pending is not None and self._pending[0] == u:
+            for i, after in self._pending[1].items():
+                self._backward[i].state[:] = after
+        else:
+            self._begin(state)
+        self._pending = None
+
+    def _begin(self, state: Array) -> None:
+        for i, part in enumerate(self._parts):
+            if not part.is_invertible():
+                inverse, memory = part.causal_inverse(self._own(i, state))
+                self._backward[i] = inverse.stepper(memory)
+
+    def _own(self, i: int, state: Array) -> Array:
+        return state[self._ends[i] : self._ends[i + 1]]
+
+    def _solved(self, i: int, target: float, state: Array, near: float) -> float:
         step = self._steps[i]
 
         def miss(u: float) -> float:

@@ -17,7 +17,7 @@ from hyst.online.model.model_innovation import ModelInnovation
 from hyst.online.model.past import Past
 from hyst.online.model.prior import spreads_of, tied_scales
 from hyst.online.model.regularities import LEAST_SAMPLES, Regularities
-from hyst.online.model.rivals import better_rival
+from hyst.online.model.rivals import rival_of
 from hyst.online.model.window import Window
 from hyst.operators import Operator
 
@@ -26,9 +26,12 @@ Array = NDArray[np.float64]
 _BEYOND = 1e100
 _PASSES = 4
 _LEAST_NOISE = 1e-10
+_ROUNDING = 1e-14
 # Tried in any case: noise may hide in every sum that a minimum is false.
 _SURE_TRIALS = 8
-_COMMANDS = 200
+RIVALS = 8
+"""How many of the last estimates from elsewhere are remembered; each may be as likely."""
+_COMMANDS = 500
 
 
 @final
@@ -67,6 +70,8 @@ class Course:
         """Start from constants, knowing nothing but how far off they may be."""
         self.theta_start = theta.copy()
         self.theta = theta.copy()
+        # Of the start, so that limits do not move with what they limit.
+        self.must = self.model.with_parameters(theta).inequalities()
         self.spread = np.where([name in self.held for name in self.names], 0.0, spread)
         self.free = np.flatnonzero(self.spread > 0.0)
         self.past = Past.none(self.free.size)
@@ -75,6 +80,7 @@ class Course:
         noise = self.settings["noise"]
         self.variance = 0.0 if noise is None else noise**2
         self.averaged: Averaged | None = None
+        self.rivals = np.tile(theta, (RIVALS, 1))
         self.regularities = Regularities()
         self.has_left = False
         self.in_block = 0
@@ -100,11 +106,9 @@ class Course:
     def take(self, u: float, y: float, counted: bool = True) -> bool:
         """Take in a sample; tells whether it was learnt from."""
         told = math.isfinite(y)
-        if not math.isfinite(u):
-            self.counts["skipped"] += counted
-            if self.model.dt is None or self.window.count == 0:
-                return False
-            u, told, counted = self.last_input, False, False
+        if not math.isfinite(u) or (counted and not told):
+            self.counts["skipped"] += 1
+            return False
         if max(abs(u), abs(y) if told else 0.0) > _BEYOND:
             self.counts["refused"] += counted
             return False
@@ -115,7 +119,7 @@ class Course:
             return False
         if told:
             self.error = y - predicted
-        self.counts["used" if told else "skipped"] += counted
+        self.counts["used"] += counted
         self.last_input = u
         self.window.add(u, y if told else 0.0, float(told))
         self.in_block += 1
@@ -150,7 +154,7 @@ class Course:
         window = self.window
         age = np.arange(window.count - 1.0, -1.0, -1.0)
         weights = window.told[: window.count] * np.exp(-self.fading * age)
-        must = self.model.inequalities()
+        must = self.must
         scale = self.spread[self.free]
         return Task(
             window,
@@ -170,6 +174,10 @@ class Course:
         if not np.isfinite(theta).all():
             return None
         mended = self.model.nearest_parameters(np.clip(theta, self.lower, self.upper))
+        rows = self.must.rows
+        room = rows @ mended - np.minimum(self.must.least, rows @ self.theta)
+        if (room < -_ROUNDING * (np.abs(rows) @ np.abs(mended))).any():
+            return None
         try:
             model = self.model.with_parameters(mended)
             return None if refusal_of(model) else np.array(mended)
@@ -184,7 +192,10 @@ class Course:
     def _fit(self) -> None:
         self.averaged = None
         task = self.task()
-        found = fitted(task, self.theta, self.variance, self.floor(), _PASSES)
+        try:
+            found = fitted(task, self.theta, self.variance, self.floor(), _PASSES)
+        except np.linalg.LinAlgError:
+            found = None
         if found is None:
             newest = slice(max(self.window.count - self.block, 0), self.window.count)
             lost = int(self.window.told[newest].sum())
@@ -199,26 +210,30 @@ class Course:
             self._search(task)
 
     def _accept(self, found: Fitted) -> None:
-        self.theta, self.variance = found.theta, float(found.variance)
+        before, self.theta = self.theta, found.theta
+        self.variance = float(found.variance)
         self.counts["refused steps"] += found.refused
-        scale, limits = self.spread[self.free], (self.lower, self.upper)
         known = self.information if self.information.any() else found.information
-        with np.errstate(all="ignore"):
-            rows = averaged(
-                self.window,
-                self.theta,
-                self.free,
-                scale,
-                known / self.variance + np.eye(scale.size),
-                limits,
-            )
-        information = found.information
-        if rows is not None:
-            weights = rows.weights(self.task().weights, self.variance)
-            information = rows.columns.T @ (rows.columns * weights[:, None])
+        self.averaged, information = self._seen_from(found.theta, known, found.columns)
+        if self.past.information.any():
+            _, old = self._seen_from(before, known, found.columns_before)
+            now = self.theta[self.free] / self.spread[self.free]
+            self.past = self.past.turned(old, information, self.variance, now)
         self.information = information + self.past.information
         self.recent = information + self.past.recent
-        self.averaged = rows
+
+    def _seen_from(
+        self, theta: Array, known: Array, columns: Array
+    ) -> tuple[Averaged | None, Array]:
+        """Give averaged derivatives of the window, if finite, and its information from there."""
+        scale, limits = self.spread[self.free], (self.lower, self.upper)
+        precision = known / self.variance + np.eye(scale.size)
+        weights = self.task().weights
+        with np.errstate(all="ignore"):
+            rows = averaged(self.window, theta, self.free, scale, precision, limits, columns)
+        if rows is not None:
+            columns, weights = rows.columns, rows.weights(weights, self.variance)
+        return rows, columns.T @ (columns * weights[:, None])
 
     def _search(self, task: Task) -> None:
         """Try an estimate from elsewhere, some in any case; while errors are no noise, for ever."""
@@ -227,11 +242,15 @@ class Course:
         self.wait = max(self.wait - 1, 0)
         if self.wait:
             return
-        self.wait = max(self.trials - _SURE_TRIALS, 0) // _SURE_TRIALS
+        self.wait = max(self.trials - _SURE_TRIALS, 0)
         self.trials += 1
         alone = replace(task, past=Past.none(self.free.size))
-        rival = better_rival(alone, self.theta, self.trials, self.floor(), self.judge)
-        if rival is not None:
+        found = rival_of(alone, self.theta, self.trials, self.floor(), self.judge)
+        if found is None:
+            return
+        rival, is_better = found
+        self.rivals[(self.trials - 1) % RIVALS] = self.theta if is_better else rival.theta
+        if is_better:
             self.replacements += 1
             self.past = alone.past
             self._accept(rival)
@@ -254,8 +273,7 @@ class Course:
             error = y - predicted
             pull = columns.T @ (weights * (y - middle))
         if not (np.isfinite(window.tangents).all() and np.isfinite(window.state).all()):
-            window.state, window.tangents = live, np.zeros_like(window.tangents)
-            window.count = 0
+            window.begin_at(live)
             return
         lost = -math.expm1(-self.fading * count)
         if np.isfinite(information).all() and np.isfinite(pull).all() and free.size:
@@ -324,7 +342,8 @@ class Course:
             return np.zeros((0, 0))
         if not information.any() or not self.variance > 0.0:
             return np.diag(scale**2) / belief
-        inverse = np.linalg.inv(information / self.variance + belief * np.eye(scale.size))
+        values, axes = np.linalg.eigh(information / self.variance)
+        inverse = (axes / (np.maximum(values, 0.0) + belief)) @ axes.T
         return np.asarray(0.5 * (inverse + inverse.T) * np.outer(scale, scale))
 
     def restart(self, theta: Array) -> None:
@@ -338,11 +357,7 @@ class Course:
 
     def goes_on_from(self, other: Course) -> None:
         """Take over the memory of another estimate of the same model."""
-        mine, its = self.window, other.window
-        mine.state, mine.tangents = its.state.copy(), its.tangents.copy()
-        mine.theta_at, mine.count = its.theta_at.copy(), its.count
-        for to, of in ((mine.u, its.u), (mine.y, its.y), (mine.told, its.told)):
-            to[:] = of
+        self.window.go_on_from(other.window)
         self.last_input = other.last_input
         self._only_memory(self.theta)
         self.set_estimate(self.theta)
@@ -353,29 +368,26 @@ class Course:
             self.window.drop(theta, self.window.count)
         window = self.window
         if not (np.isfinite(window.tangents).all() and np.isfinite(window.state).all()):
-            window.state, window.tangents = live, np.zeros_like(window.tangents)
+            window.begin_at(live)
         self.in_block = 0
 
     def _new_spread(self, model: Operator) -> Array:
         self.is_begun = False
         return spreads_of(model, self.settings["spread"], self.settings["spreads"], (0.0, 0.0))
 
-    def error_of(self, commands: Commands) -> float:
+    def error_of_commands(self) -> float:
         """Give the root mean square of what commands for the last predicted outputs would miss."""
         window = self.window
         y, _ = window.outputs(self.theta)
         first = max(window.count - _COMMANDS, 0)
-        begin = window.memory_for(self.theta)
-        state = self.model.run(window.u[:first], begin)[1] if first else begin
         if first == window.count:
             return 0.0
-        step, trial = self.model.stepper(state), self.model.stepper(state)
-        missed = []
-        for u, wanted in zip(
-            window.u[first : window.count].tolist(), y[first:].tolist(), strict=True
-        ):
-            here = np.array(step.state)
-            trial.state[:] = here
-            missed.append(trial(commands.input_for(wanted, here, u)) - wanted)
-            step(u)
+        begin = window.memory_for(self.theta)
+        state = self.model.run(window.u[:first], begin)[1] if first else begin
+        step, commands = self.model.stepper(state), Commands(self.model, state)
+        near, missed = float(window.u[first]), []
+        for wanted in y[first:].tolist():
+            near = commands.input_for(wanted, np.array(step.state), near)
+            missed.append(step(near) - wanted)
+            commands.passed(near, np.array(step.state))
         return float(np.sqrt(np.mean(np.square(missed))))

@@ -102,7 +102,7 @@ class ModelEstimator(Estimator):
         *,
         dt: float | None = None,
         memory: float = math.inf,
-        spread: float = 0.5,
+        spread: float = 1.0,
         spreads: Mapping[str, float] | None = None,
         held: Iterable[str] = (),
         noise: float | None = None,
@@ -207,10 +207,10 @@ class ModelEstimator(Estimator):
         """How far outputs are off at most of which the estimate were true, root mean square.
 
         0 where the inverse is exact; where a stage has a causal inverse only, what its commands for
-        the last 200 predicted outputs would give, less these. Output units.
+        the last 500 predicted outputs would give, less these. Output units.
         """
-        commands = self._solved()
-        return 0.0 if commands.is_exact else self._course.error_of(commands)
+        is_exact = self._course.model.is_invertible()
+        return 0.0 if is_exact else self._course.error_of_commands()
 
     def update(self, u: float, y: float) -> bool:
         """Take in one sample; every so many the estimate changes.
@@ -218,27 +218,32 @@ class ModelEstimator(Estimator):
         Parameters
         ----------
         u, y
-            Input and measured output. An input that is not finite is skipped, for sampled models
-            the last one holds; an output that is not finite is not learnt from, but the memory
-            follows the input.
+            Input and measured output; one that is not finite is skipped and counted. Where only
+            the output is missing, let the memory ``follow`` the input.
 
         Returns
         -------
         bool
             Whether the sample was used.
         """
-        return self._course.take(*sample(u, y))
+        u, y = sample(u, y)
+        is_used = self._course.take(u, y)
+        if is_used:
+            self._passed(u)
+        return is_used
 
     def follow(self, u: ArrayLike) -> None:
         """Let the memory follow inputs whose outputs were not measured; learns nothing."""
         for each in finite_vector(u, "u").tolist():
             self._course.take(each, math.nan, counted=False)
+            self._passed(each)
 
     def command(self, y_ref: float) -> float:
         """Give the input for which the present estimate predicts a wanted output; learns nothing.
 
-        Exact to rounding where the model has an exact inverse. Else its causal inverse steps from
-        the estimate's memory, and ``inverse_error`` says how inexact that is.
+        Exact to rounding where the model has an exact inverse. Else its causal inverse steps, begun
+        from the estimate's memory whenever the estimate changes or another input was applied than
+        it commanded, and ``inverse_error`` says how inexact that is.
 
         Parameters
         ----------
@@ -304,8 +309,12 @@ class ModelEstimator(Estimator):
     def _solved(self) -> Commands:
         model = self._course.model
         if self._commands is None or self._commands[0] is not model:
-            self._commands = (model, Commands(model))
+            self._commands = (model, Commands(model, self._course.memory))
         return self._commands[1]
+
+    def _passed(self, u: float) -> None:
+        if self._commands is not None and self._commands[0] is self._course.model:
+            self._commands[1].passed(u, self._course.memory)
 
 
 def _checked_spreads(spreads: Mapping[str, float], names: tuple[str, ...]) -> dict[str, float]:

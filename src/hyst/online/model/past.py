@@ -58,6 +58,34 @@ class Past:
             self.recent + information,
         )
 
+    def turned(self, before: Array, after: Array, floor: float, x: Array) -> Past:
+        """Give it as if its samples had been seen from where the estimate is now.
+
+        Derivatives turn as constants move. Sums of squares seen from here and from there would
+        tell of directions of which neither does. How derivatives have turned the samples at hand
+        show: ``A_after = T' A_before T``, and so for the past.
+
+        Parameters
+        ----------
+        before, after
+            Shape (f, f), information of the same samples from where the estimate was, and is.
+        floor
+            Information that counts as none, output units squared.
+        x
+            Shape (f,), the present estimate.
+        """
+        if not x.size or not self.information.any():
+            return self
+        base = floor * np.eye(x.size)
+        half, back = _roots(before + base)
+        turn = back @ _roots(half @ (after + base) @ half)[0] @ back
+        information = turn.T @ self.information @ turn
+        recent = turn.T @ self.recent @ turn
+        pull = turn.T @ self.pull(x)
+        return Past(
+            0.5 * (information + information.T), pull + information @ x, 0.5 * (recent + recent.T)
+        )
+
     def faded(self, lost: float, arriving: Array, floor: float, x: Array) -> Past:
         """Give it with a share forgotten, in directions of which samples tell anew.
 
@@ -78,7 +106,12 @@ class Past:
         if lost <= 0.0 or not x.size:
             return self
         base = self.information + floor * np.eye(x.size)
-        gain, directions = eigh(arriving, base)
+        try:
+            gain, directions = eigh(arriving, base)
+        except (np.linalg.LinAlgError, ValueError):
+            kept = 1.0 - lost
+            information, pull = kept * self.information, kept * self.pull(x)
+            return Past(information, pull + information @ x, kept * self.recent)
         kept = 1.0 - np.minimum(lost, _FASTER * np.maximum(gain, 0.0))
         back = directions.T @ base
         shrink = (directions * np.sqrt(kept)) @ back
@@ -86,3 +119,10 @@ class Past:
         information = 0.5 * (information + information.T)
         pull = (back.T * kept) @ (directions.T @ self.pull(x))
         return Past(information, pull + information @ x, (1.0 - lost) * self.recent)
+
+
+def _roots(matrix: Array) -> tuple[Array, Array]:
+    """Give the square root of a symmetric positive matrix, and the inverse of that."""
+    values, vectors = np.linalg.eigh(matrix)
+    roots = np.sqrt(np.maximum(values, 1e-30 * max(float(values[-1]), 1e-290)))
+    return (vectors * roots) @ vectors.T, (vectors / roots) @ vectors.T

@@ -18,14 +18,14 @@ _BEYOND_DOUBT = 3.0
 _MUCH_LESS = 0.5
 
 
-def better_rival(
+def rival_of(
     task: Task,
     theta: Array,
     trial: int,
     floor: float,
     judge: Callable[[Array], tuple[float, float]],
-) -> Fitted | None:
-    """Fit the window from another start; give the result if its errors are smaller beyond doubt.
+) -> tuple[Fitted, bool] | None:
+    """Fit the window from another start; tell whether its errors are smaller beyond doubt.
 
     Parameters
     ----------
@@ -47,7 +47,10 @@ def better_rival(
     rival are no noise either, neighbours do not tell anew, and it must halve the squares.
     """
     begin = _drawn(task, theta, trial)
-    found = None if begin is None else fitted(task, begin, 0.0, floor, _PASSES)
+    try:
+        found = None if begin is None else fitted(task, begin, 0.0, floor, _PASSES)
+    except np.linalg.LinAlgError:
+        return None
     if found is None:
         return None
     window = task.window
@@ -56,11 +59,9 @@ def better_rival(
     squares = [squares_of(error, task.weights, clip) for error in errors]
     sizes = [np.minimum(np.abs(error), clip) ** 2 for error in errors]
     gained = (task.weights * (sizes[0] - sizes[1]))[task.weights > 0.0]
-    if not gained.sum() > _BEYOND_DOUBT * np.sqrt(gained.size) * float(np.std(gained)):
-        return None
-    if squares[1] < _MUCH_LESS * squares[0] or max(judge(found.theta)) <= 1.0:
-        return found
-    return None
+    is_sure = gained.sum() > _BEYOND_DOUBT * np.sqrt(gained.size) * float(np.std(gained))
+    is_noise = squares[1] < _MUCH_LESS * squares[0] or max(judge(found.theta)) <= 1.0
+    return found, bool(is_sure and is_noise)
 
 
 def _drawn(task: Task, theta: Array, trial: int) -> Array | None:

@@ -10,6 +10,7 @@ from hyst.online.estimator_file import restored_state
 from hyst.online.model.commands import refusal_of
 from hyst.online.model.course import Course
 from hyst.online.model.past import Past
+from hyst.online.model.turns import MOST
 
 Array = NDArray[np.float64]
 
@@ -30,6 +31,7 @@ def numbers_of(course: Course) -> Array:
     ]  # fmt: skip
     window, count = course.window, course.window.count
     room = course.room - count
+    parts += [course.rivals.ravel(), window.turns, np.zeros(MOST - window.turns.size)]
     for each in (window.u, window.y, window.told):
         parts.append(np.concatenate([each[:count], np.zeros(room)]))
     past = course.past
@@ -73,6 +75,7 @@ def _scalars(course: Course) -> Array:
     flags = [float(course.is_begun), float(course.has_left)]
     whole = [course.trials, course.replacements, course.wait, course.in_block, course.window.count]
     numbers = [course.last_input, course.error, course.variance]
+    flags += [float(course.window.recalls), float(course.window.turns.size)]
     return np.array([*numbers, *flags, *map(float, whole), *counts])
 
 
@@ -91,6 +94,8 @@ def _take(course: Course, numbers: Array) -> None:
     theta, start, course.spread = next_of((m,)), next_of((m,)), next_of((m,))
     window = course.window
     window.state, window.theta_at, memory = next_of((n,)), next_of((m,)), next_of((n,))
+    course.rivals = next_of(course.rivals.shape)
+    window.turns = next_of((MOST,))
     window.u, window.y, window.told = (next_of((course.room,)) for _ in range(3))
     told, course.regularities.numbers = next_of((f,)), next_of(course.regularities.numbers.shape)
     information, recent = next_of((f, f)), next_of((f, f))
@@ -110,7 +115,9 @@ def _take_scalars(course: Course, scalars: Array) -> None:
     if (whole < 0.0).any() or (whole != np.floor(whole)).any() or course.variance < 0.0:
         raise InputError(f"the saved estimate has counts or a variance below 0, {_AGAIN}")
     course.is_begun, course.has_left = bool(whole[0]), bool(whole[1])
-    places = [int(each) for each in whole[2:]]
+    course.window.recalls = bool(whole[2])
+    course.window.turns = course.window.turns[: int(whole[3])]
+    places = [int(each) for each in whole[4:]]
     course.trials, course.replacements, course.wait, course.in_block = places[:4]
     course.window.count = places[4]
     if course.window.count > course.room or course.in_block > course.block:

@@ -27,7 +27,20 @@ _INPUT, _DIRECTION, _EXTREME = 9, 10, 11
 
 
 def checked_settings(start: PrandtlIshlinskii, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Check what an estimator is made from; in the form its file has."""
+    """Check what an estimator is made from; in the form its file has.
+
+    Parameters
+    ----------
+    start
+        Weights, radii and memory.
+    given
+        The other arguments of ``RadiusEstimator``.
+
+    Raises
+    ------
+    InputError
+        If a weight or gain is negative, or a number is out of range.
+    """
     n = start.p.size
     if (start.p < 0.0).any():
         worst = int(np.argmin(start.p))
@@ -66,7 +79,18 @@ def checked_settings(start: PrandtlIshlinskii, given: Mapping[str, Any]) -> dict
 
 
 def new_core(settings: Mapping[str, Any]) -> _engine.RadiusEstimation:
-    """Make the core from checked settings."""
+    """Make the core from checked settings.
+
+    Parameters
+    ----------
+    settings
+        As ``checked_settings`` gives them.
+
+    Raises
+    ------
+    InputError
+        If the method is unknown, or the gradient would diverge.
+    """
     p, gains, dt = np.array(settings["p"]), np.array(settings["gain"]), settings["dt"]
     is_gradient = settings["method"] == "gradient"
     if not is_gradient and settings["method"] != "least-squares":
@@ -93,7 +117,17 @@ def new_core(settings: Mapping[str, Any]) -> _engine.RadiusEstimation:
 
 
 def memory_of(state: Array, at: Mapping[str, int], r: Array) -> Array:
-    """Give what plays of radii ``r`` hold, shape (n,), after the inputs that the state has seen."""
+    """Give what plays hold after the inputs that the state has seen, shape (n,).
+
+    Parameters
+    ----------
+    state
+        Of the core.
+    at
+        Places in it.
+    r
+        Shape (n,), radii of this moment.
+    """
     home, side = state[at["home"] : at["side"]], state[at["side"] : at["age"]]
     z, before = home + side * r, float(state[_INPUT])
     s = float(state[_DIRECTION])
@@ -106,7 +140,20 @@ def memory_of(state: Array, at: Mapping[str, int], r: Array) -> Array:
 
 
 def radii_of(model: Operator, settings: Mapping[str, Any]) -> Array:
-    """Give the radii of a model of the same weights and offset."""
+    """Give the radii of a model of the same weights and offset.
+
+    Parameters
+    ----------
+    model
+        Plays with at most an offset behind them.
+    settings
+        Of the estimator.
+
+    Raises
+    ------
+    InputError
+        If it is another model, or a radius is out of bounds.
+    """
     parts = take_apart(model)
     fixed = (parts.pi.p0, parts.pi.p.tolist(), parts.after.gain, parts.after.offset)
     own = (settings["p0"], settings["p"], 1.0, settings["offset"])
@@ -123,7 +170,17 @@ def radii_of(model: Operator, settings: Mapping[str, Any]) -> Array:
 def reasons_of(
     names: tuple[str, ...], p: Array, sides: Array, method: str, measures_regimes: bool
 ) -> dict[str, str]:
-    """Say why radii are not determined, by name."""
+    """Say why radii are not determined, by name.
+
+    Parameters
+    ----------
+    names, p, sides
+        Of the plays: names of radii, weights, and envelopes they were on last (0: none yet).
+    method
+        Of the estimator.
+    measures_regimes
+        Whether regimes were taken from the measured slope.
+    """
     if method == "gradient":
         return dict.fromkeys(names, "the gradient has no standard error")
     if measures_regimes:

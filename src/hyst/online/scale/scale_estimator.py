@@ -132,10 +132,11 @@ class ScaleEstimator(Estimator):
                 "above it"
             )
         self._followed = Followed(model)
-        self._core = self._new_core(memory)
-        self._at = self._core.places()
+        # Public, for exports take its constants and the places in its state.
+        self.core = self._new_core(memory)
+        self._at = self.core.places()
         self.state = np.zeros(self._at["length"])
-        self._core.start(self.state, 1.0, 0.0)
+        self.core.start(self.state, 1.0, 0.0)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -218,12 +219,12 @@ class ScaleEstimator(Estimator):
         """
         u, y = sample(u, y)
         if not (math.isfinite(u) and math.isfinite(y)):
-            return self._core.step(self.state, u, y) == 0
+            return self.core.step(self.state, u, y) == 0
         w = self._followed.step(u)
         if math.isnan(w):
             self.state[self._at["refused"]] += 1.0
             return False
-        return self._core.step(self.state, w, y) == 0
+        return self.core.step(self.state, w, y) == 0
 
     def run(self, record: Record, every: int = 1) -> Trajectory:
         """Take in a whole record; as ``update`` for every sample, with the same bits.
@@ -249,7 +250,7 @@ class ScaleEstimator(Estimator):
         w = self._followed.run(u)
         shape = (time.size, 2)
         theta, variance, error = np.empty(shape), np.empty(shape), np.empty(u.size)
-        self._core.run(self.state, w, y, every, theta, variance, error)
+        self.core.run(self.state, w, y, every, theta, variance, error)
         lost = float(np.isnan(w).sum())  # the model overflowed there, which the core cannot know
         self.state[self._at["refused"]] += lost
         self.state[self._at["skipped"]] -= lost
@@ -308,14 +309,14 @@ class ScaleEstimator(Estimator):
         start = self.state[[self._at["start"], self._at["start_offset"]]].tolist()
         if model is not None:
             start = affine_of(model, self._followed.model)
-        self._core.start(self.state, *start)
+        self.core.start(self.state, *start)
 
     def frozen(self) -> ScaleEstimator:
         """Give an estimator that starts from this estimate and its memory and learns nothing."""
         other = ScaleEstimator(self._followed.model, dt=self.dt, held=_NAMES)
         other.description = self.description
         other._followed.memory = self._followed.memory
-        other._core.start(other.state, *self.parameters.tolist())
+        other.core.start(other.state, *self.parameters.tolist())
         return other
 
     def saved(self) -> tuple[dict[str, Any], Array]:

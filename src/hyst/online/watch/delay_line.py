@@ -8,12 +8,15 @@ import numpy as np
 
 from hyst.online.watch.sample_clock import SLOT, Slots
 
+_MARKS = ("lost", "repeated", "unreadable", "backwards", "gap")
+
 
 class DelayLine:
     """Set the input that the output of a sample answers beside it.
 
-    Part of a sample is interpolated: a cubic through the four samples around, kept between the two
-    next to it; a turn stays what it is, at the sample next to it.
+    Outputs that answer inputs from before the first sample, or before a gap of unknown length, are
+    left out. Part of a sample is interpolated: a cubic through the four samples around, kept
+    between the two next to it; a turn stays what it is, at the sample next to it.
 
     Parameters
     ----------
@@ -23,9 +26,10 @@ class DelayLine:
     Examples
     --------
     >>> slots = np.zeros(4, dtype=SLOT)
-    >>> slots["u"], slots["y"] = [0.0, 1.0, 2.0, 3.0], [0.0, 0.0, 10.0, 20.0]
-    >>> DelayLine(1).take(slots)["u"].tolist()
-    [nan, 0.0, 1.0, 2.0]
+    >>> slots["u"], slots["y"] = [0.0, 1.0, 2.0, 3.0], [9.0, 0.0, 10.0, 20.0]
+    >>> late = DelayLine(1).take(slots)
+    >>> late["u"].tolist(), late["y"].tolist()
+    ([0.0, 1.0, 2.0], [0.0, 10.0, 20.0])
     """
 
     def __init__(self, delay: float) -> None:
@@ -34,6 +38,11 @@ class DelayLine:
         # The newest input that a sample needs comes so much later than the sample itself.
         self._ahead = -whole + (1 if self._part else 0)
         self._past = max(whole, 0) + 4
+        self._unanswered = max(whole + (1 if self._part else 0), 0)
+        self._before_gap = max(-whole, 0)
+        self._left_out = self._unanswered
+        self._marks = np.zeros((), dtype=SLOT)
+        self._has_marks = False
         self._waiting = np.zeros(0, dtype=SLOT)
         self._inputs = np.full(self._past, math.nan)
 
@@ -48,9 +57,35 @@ class DelayLine:
         # inputs[k + past] belongs to waiting[k].
         at = np.arange(ready) + self._past + self._ahead
         out["u"] = inputs[at] if self._part == 0.0 else _later(inputs, at - 1, self._part)
+        out = self._without_unanswered(out, waiting["gap"])
         self._waiting = waiting[ready:]
         self._inputs = inputs[ready:]
         return out
+
+    def _without_unanswered(self, out: Slots, gaps: np.ndarray) -> Slots:
+        """Leave out samples whose input lies on the other side of a gap, which moves on."""
+        if not (self._left_out or self._has_marks or gaps.any()):
+            return out
+        kept = np.ones(out.size, dtype=np.bool_)
+        for k in range(out.size):
+            if out["gap"][k]:
+                self._left_out = self._unanswered
+            answers_beyond = gaps[k + 1 : k + 1 + self._before_gap].any()
+            if self._left_out or answers_beyond:
+                self._left_out = max(self._left_out - 1, 0)
+                kept[k] = False
+                self._keep_marks(out[k])
+            elif self._has_marks:
+                for name in _MARKS:
+                    out[name][k] += self._marks[name]
+                self._marks, self._has_marks = np.zeros((), dtype=SLOT), False
+        return out[kept]
+
+    def _keep_marks(self, slot: np.void) -> None:
+        """Let what is told of a sample that is left out be told of the next one."""
+        for name in _MARKS:
+            self._marks[name] += slot[name]
+            self._has_marks |= bool(slot[name])
 
 
 def _later(u: np.ndarray, at: np.ndarray, part: float) -> np.ndarray:

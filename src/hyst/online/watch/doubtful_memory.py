@@ -16,13 +16,14 @@ _LONGEST_WAY = 500
 
 
 class DoubtfulMemory:
-    """Two memories, as far apart as the input may have brought them, until they are one again.
+    """Memories as far apart as the input may have brought them, until they are one again.
 
-    Nobody knows where the input went in a gap. So the models follow it twice: once as if it had
-    gone to the lowest value it can have reached, once to the highest. Both then pass the inputs
-    that were measured. A turn that is large enough wipes out either past; the memory is known again
-    once both predict the same on a sweep through the whole range, upwards first and downwards
-    first. That holds for any kind of memory: plays, relays, creep.
+    Nobody knows where the input went in a gap. So the models follow it several times: as if it had
+    gone to the lowest value it can have reached, as if to the highest, and where nothing at all is
+    known, as if it had never moved. All then pass the inputs that were measured. A turn that is
+    large enough wipes out every past; the memory is known again once all predict the same on a
+    sweep through the whole range, upwards first and downwards first. That holds for any kind of
+    memory: plays, relays, creep.
 
     Parameters
     ----------
@@ -50,7 +51,10 @@ class DoubtfulMemory:
         high: float,
         samples: int,
     ) -> None:
-        turns = [[high, low], [low, high]] if before is None else [[before, low], [before, high]]
+        if before is None:
+            turns = [[high, low], [low, high], [after, after]]
+        else:
+            turns = [[before, low], [before, high]]
         ways = _ways(turns, after, samples)
         self._models = [
             (model, [model.run(way, state)[1] for way in ways]) for model, state in models
@@ -64,14 +68,14 @@ class DoubtfulMemory:
         before, after, low, high, samples
             As of the gap that began the doubt.
         """
-        ways = _ways([[before, low], [before, high]], after, samples)
+        ways = _ways([[before, low], [before, high], [before, after]], after, samples)
         self._models = [
-            (model, [model.run(way, state)[1] for way, state in zip(ways, states, strict=True)])
+            (model, [model.run(way, state)[1] for way, state in zip(ways, states, strict=False)])
             for model, states in self._models
         ]
 
     def follow(self, u: Array) -> None:
-        """Let both memories of every model pass inputs, shape (N,)."""
+        """Let all memories of every model pass inputs, shape (N,)."""
         if u.size:
             self._models = [
                 (model, [model.run(u, state)[1] for state in states])
@@ -79,7 +83,7 @@ class DoubtfulMemory:
             ]
 
     def is_wiped_out(self, u: float, low: float, high: float, tolerance: float) -> bool:
-        """Tell whether both memories predict the same.
+        """Tell whether all memories predict the same.
 
         Parameters
         ----------
@@ -94,9 +98,9 @@ class DoubtfulMemory:
         for first, last in ((low, high), (high, low)):
             way = np.concatenate([np.linspace(u, first, _STEPS), np.linspace(first, last, _STEPS)])
             for model, states in self._models:
-                one, other = (model.run(way, state)[0] for state in states)
-                allowed = max(tolerance, 1e-3 * float(np.ptp(one)))
-                if np.abs(one - other).max() > allowed:
+                outputs = np.array([model.run(way, state)[0] for state in states])
+                allowed = max(tolerance, 1e-3 * float(np.ptp(outputs[0])))
+                if np.ptp(outputs, axis=0).max() > allowed:
                     return False
         return True
 

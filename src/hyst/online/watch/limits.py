@@ -8,7 +8,11 @@ from hyst.checks.numbers import as_positive
 from hyst.online.alarms import AlarmRule
 
 MODEL_ERROR, ESTIMATE_ERROR, DRIFT = "model error", "estimate error", "drift"
-NOT_DETERMINED, MEMORY_UNKNOWN = "not determined", "memory unknown"
+NOT_DETERMINED, NOTHING_LEARNT, MEMORY_UNKNOWN = (
+    "not determined",
+    "nothing learnt",
+    "memory unknown",
+)
 SAMPLES_LOST, UNREADABLE, NO_NUMBER = "samples lost", "unreadable lines", "no number"
 CLOCK, SAMPLE_TIME, INPUT_RANGE = "clock", "sample time", "input range"
 STUCK, SATURATED, OVERFLOW, SILENT = "output stuck", "output saturated", "overflow", "no data"
@@ -18,7 +22,8 @@ RULES = (
     AlarmRule(MODEL_ERROR, 1.0, 0.75, starts_after=2, ends_after=3),
     AlarmRule(ESTIMATE_ERROR, 1.0, 0.75, starts_after=2, ends_after=3),
     AlarmRule(DRIFT, 1.0, 0.75, starts_after=3, ends_after=3),
-    AlarmRule(NOT_DETERMINED, 1.0, 0.0, starts_after=10, ends_after=1),
+    AlarmRule(NOT_DETERMINED, 1.0, 0.0, starts_after=2),
+    AlarmRule(NOTHING_LEARNT, 1.0, 0.0, starts_after=10),
     AlarmRule(MEMORY_UNKNOWN, 1.0, 0.0, starts_after=2, ends_after=1),
     AlarmRule(SAMPLES_LOST, 1.0, 0.0, ends_after=5),
     AlarmRule(UNREADABLE, 1.0, 0.0, ends_after=5),

@@ -26,8 +26,8 @@ SLOT = np.dtype(
 )
 """One sample time: when (s), what was measured (NaN: unknown), the time since the row before as it
 was stamped (NaN: unknown), how many lost samples this stands for, how many repeated rows were
-dropped before it, and whether its line could not be read, its stamp fell, or an unknown time passed
-before it."""
+dropped before it, and whether its line could not be read, its stamp fell or leapt, or an unknown
+time passed before it."""
 Slots = np.ndarray
 
 # More lost samples in a row are one long gap, of which nothing is known.
@@ -35,6 +35,8 @@ LONGEST_GAP = 1000
 # Stamps this much of a sample late are a lost sample; what they are early or late fades.
 _LATE, _FADES = 0.6, 0.9
 _COARSE = 0.2
+# A stamp that is later than so many samples is wrong.
+_MOST_LOST = 1e9
 # Where most of so many steps are another one, the rate is another one and nothing was lost.
 _RECENT, _OTHER = 32, 1.05
 
@@ -120,10 +122,11 @@ class SampleClock:
             self._unstamped += 1
             return 0, math.nan, False
         step = stamp - self._stamp
-        if math.isnan(step) or step < 0.0:
+        is_jump = step < 0.0 or step > _MOST_LOST * self._dt
+        if math.isnan(step) or is_jump:
             self._now += self._dt
             self._stamp, self._late, self._unstamped = stamp, 0.0, 0
-            return 0, math.nan, step < 0.0
+            return 0, math.nan, is_jump
         if step == 0.0 and self._resolution == 0.0:
             return -1, step, False
         rows = 1 + self._unstamped

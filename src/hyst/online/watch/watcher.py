@@ -24,12 +24,12 @@ _CALIBRATED_BY = 10
 _FEWEST = 5
 # An estimate is settled after so many windows in a row within the limit; late ones are judged too.
 _SETTLED_AFTER, _LATE = 3, 30
-_SURE = 4.0
+_SURE = 2.0
 _COUNTED = {
     named.SAMPLES_LOST: "samples lost",
     named.UNREADABLE: "lines that cannot be read",
     named.NO_NUMBER: "samples without a number that can be a measurement",
-    named.CLOCK: "stamps that repeat or go backwards",
+    named.CLOCK: "stamps that repeat, go backwards or leap",
     named.OVERFLOW: "samples that led to an overflow",
 }
 
@@ -48,9 +48,9 @@ class Window:
     noise
         As the estimator estimates it, output units.
     parameters
-        Shape (m,), the estimate.
+        Shape (m,), the estimate when it was last asked for.
     knowledge
-        Its bands.
+        Its bands then.
     innovation
         Whether what is left can be noise, in a sentence; and whether it can.
     is_consistent
@@ -97,6 +97,9 @@ class Watcher:
         nothing is learnt or judged until the input has wiped out whatever was before.
     start
         Shape (m,), parameters that drift is counted from; those of the estimator if left out.
+    told_every
+        Windows after which the estimator is asked again what it knows, which may cost more than a
+        window does.
 
     Examples
     --------
@@ -122,6 +125,7 @@ class Watcher:
         *,
         knows_memory: bool = False,
         start: Array | None = None,
+        told_every: int = 1,
     ) -> None:
         self.estimator = estimator
         self.limits = limits
@@ -135,6 +139,8 @@ class Watcher:
         self._settling, self._judged = 0, 0
         self._counts = dict.fromkeys(("samples", "learnt", *_COUNTED), 0)
         self._time = 0.0
+        self._told_every, self._untold = told_every, 0
+        self._parameters, self._knowledge = estimator.parameters, estimator.knowledge
         self.alarms = Alarms(RULES)
         """What is watched for."""
 
@@ -155,6 +161,7 @@ class Watcher:
     def finish(self) -> list[Window]:
         """End the watch; give the window that was not full, if it has a sample."""
         waiting, self._waiting = self._waiting, self._waiting[:0]
+        self._untold = self._told_every
         return [self._judge(waiting)] if waiting.size else []
 
     def silence(self, seconds: float, allowed: float) -> tuple[AlarmEvent, ...]:
@@ -180,13 +187,15 @@ class Watcher:
         self._time = float(slots["time"][-1])
         error, model_error = _rms(found.estimate_error), _rms(found.model_error)
         self._calibrate(model_error)
-        knowledge = self.estimator.knowledge
+        self._ask()
+        knowledge = self._knowledge
         paused = "" if tracker.used > before else self._why_paused(found, is_off)
         values = {
             **self._of_errors(error, model_error, found),
             **self._of_counts(slots, found),
             named.DRIFT: self._of_drift(found, knowledge),
-            named.NOT_DETERMINED: _of_knowledge(knowledge, paused),
+            named.NOT_DETERMINED: self._of_knowledge(),
+            named.NOTHING_LEARNT: (float(bool(paused)), paused),
             named.MEMORY_UNKNOWN: (
                 float(not tracker.is_memory_known),
                 "how the input went before is not known, and it has moved too little since then to "
@@ -212,7 +221,7 @@ class Watcher:
             error=error,
             model_error=model_error,
             noise=self.estimator.noise,
-            parameters=self.estimator.parameters,
+            parameters=self._parameters,
             knowledge=knowledge,
             innovation=str(innovation),
             is_consistent=innovation.consistent,
@@ -221,6 +230,14 @@ class Watcher:
             events=events,
             active=self.alarms.active,
         )
+
+    def _ask(self) -> None:
+        """Ask the estimator what it knows, if that is due; values and bands belong together."""
+        self._untold += 1
+        if self._untold >= self._told_every:
+            self._untold = 0
+            self._parameters = self.estimator.parameters
+            self._knowledge = self.estimator.knowledge
 
     def _count(self, slots: Slots, found: Followed, learnt: int) -> None:
         added = {"samples": int((slots["lost"] == 0).sum()), "learnt": learnt}
@@ -281,7 +298,8 @@ class Watcher:
         """Compare the predictions of estimate and model, where bands say that they differ."""
         span = float(np.ptp(self._tracker.output_range))
         off = _rms(found.model_error - found.estimate_error)
-        change = self.estimator.parameters - self._start
+        parameters = self.estimator.parameters
+        change = parameters - self._start
         width = (knowledge.high - knowledge.low) / 4.0
         is_known = knowledge.determined & (width > 0.0)
         if not is_known.any() or math.isnan(off) or span == 0.0:
@@ -290,9 +308,16 @@ class Watcher:
         k = int(np.argmax(sureness))
         sentence = (
             f"the estimate predicts {100.0 * off / span:.3g} % of the range off the model; surest: "
-            f"{knowledge.names[k]} is {self.estimator.parameters[k]:.5g}, was {self._start[k]:.5g}"
+            f"{knowledge.names[k]} is {parameters[k]:.5g}, was {self._start[k]:.5g}"
         )
         return (min(off / (self.limits.drift * span), float(sureness[k]) / _SURE), sentence)
+
+    def _of_knowledge(self) -> tuple[float, str]:
+        """Judge what the estimator knows where it was just asked."""
+        if self._untold:
+            return (math.nan, "")
+        # Doubts about the model's shape are told with the bands; what lacks here is excitation.
+        return (float(not self._knowledge.determined.all()), str(self._knowledge))
 
     def _of_input(self, found: Followed) -> tuple[float, str]:
         about = self._tracker.model.description
@@ -316,12 +341,6 @@ def stated_error(model: Operator) -> float:
         if value is not None:
             return float(value)
     return 0.0
-
-
-def _of_knowledge(knowledge: Knowledge, paused: str) -> tuple[float, str]:
-    if paused:
-        return (1.0, f"nothing is learnt: {paused}")
-    return (float(not knowledge.known), str(knowledge))
 
 
 def _counts_of(slots: Slots, found: Followed) -> dict[str, int]:

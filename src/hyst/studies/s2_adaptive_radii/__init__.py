@@ -99,3 +99,7 @@ def _radii_of(trajectory: Trajectory) -> Trajectory:
         values=trajectory.values[once],
         standard_errors=trajectory.standard_errors[once],
     )
+
+
+def __dir__() -> list[str]:
+    return __all__

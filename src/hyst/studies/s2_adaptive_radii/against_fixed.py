@@ -84,7 +84,24 @@ def compared(
     delay: float | None = None,
     counts: Iterable[int] = COUNTS,
 ) -> Table:
-    """Give the table of ``on_record`` with a ``name`` for its title."""
+    """Give the table of ``on_record``, under a name.
+
+    Parameters
+    ----------
+    record, validation, delay, counts
+        As there.
+    name
+        What the title calls the record.
+
+    Returns
+    -------
+    Table
+
+    Raises
+    ------
+    InputError, NotIdentifiableError
+        As there.
+    """
     several = list(counts)
     for n in several:
         if n < 2:

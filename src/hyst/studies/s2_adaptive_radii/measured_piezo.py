@@ -40,7 +40,15 @@ def drive(corners: list[float]) -> Array:
 
 
 def misses(fixed: PrandtlIshlinskii, corners: list[float]) -> float:
-    """Give how far a model misses the paper's four plays at most, without the mean, um."""
+    """Give how far a model misses the paper's four plays at most, its mean taken out, um.
+
+    Parameters
+    ----------
+    fixed
+        The model.
+    corners
+        Of the drive on which it is judged.
+    """
     u = drive(corners)
     error = (fixed(u) - piezo()(u))[round(RATE) :]
     return float(np.abs(error - error.mean()).max())

@@ -21,7 +21,7 @@ LEVELS = (10.0, 20.0)
 RUNS = 6
 # Filter and dead time that did best with the paper's law at 20 dB among 0 to 100 ms.
 FILTER = {"filter_time": 0.05, "dead_time": 0.05}
-ESTIMATORS = ("paper", "paper with the slope before noise", "joint")
+ESTIMATORS = ("paper", "paper told slopes", "joint")
 
 
 def paper_law(options: dict[str, float] | None = None) -> RadiusEstimator:
@@ -35,7 +35,13 @@ def joint() -> JointEstimator:
 
 
 def slopes_of(u: Array, y: Array) -> Array:
-    """Give dy/du from each sample to the next; NaN at the first and while the input rests."""
+    """Give dy/du from each sample to the next; NaN at the first and while the input rests.
+
+    Parameters
+    ----------
+    u, y
+        Shape (N,), input and output.
+    """
     du, dy = np.diff(u, prepend=u[0]), np.diff(y, prepend=y[0])
     return np.asarray(np.divide(dy, du, out=np.full(u.size, np.nan), where=du != 0.0))
 
@@ -49,7 +55,15 @@ def noisy(name: str, decibels: float) -> tuple[Array, Array, float]:
 
 
 def bounds(u: Array, sigma: float) -> tuple[Array, Array]:
-    """Give Cramer-Rao bounds at TIMES: of the radii alone, and with all parameters together."""
+    """Give Cramer-Rao bounds at TIMES: of the radii alone, and with all parameters together.
+
+    Parameters
+    ----------
+    u
+        Shape (N,), input.
+    sigma
+        Standard deviation of the noise.
+    """
     jacobian = np.column_stack([PLAYS.jacobian(u), np.ones(u.size)])
     alone, together = [], []
     for t in TIMES:
@@ -107,7 +121,10 @@ def errors_over_bound(name: str) -> Table:
         rows.append((f"largest bound, {decibels:g} dB", *(number(float(v), 3) for v in bound)))
     header = ("", *(f"{t:g} s" for t in TIMES))
     what = "of the radii alone for the paper's law, of all parameters for the joint estimator"
-    title = f"{name}: rms error of the radii over the Cramer-Rao bound ({what}; {RUNS} runs)"
+    told = "told slopes: those before the noise"
+    title = (
+        f"{name}: rms error of the radii over the Cramer-Rao bound ({what}; {told}; {RUNS} runs)"
+    )
     return Table(title, header, tuple(rows))
 
 

@@ -37,7 +37,15 @@ def piezo() -> PrandtlIshlinskii:
 
 
 def fixed_radii(n: int, half_range: float = 1.0) -> Array:
-    """Give the radii of the conventional model without the first, which is 0 (sec. V-C)."""
+    """Give the radii of the conventional model without the first, which is 0 (sec. V-C).
+
+    Parameters
+    ----------
+    n
+        How many plays, the first counted.
+    half_range
+        Half the range of the input, which the last radius is.
+    """
     return np.arange(1, n) / (n - 1) * half_range
 
 
@@ -75,7 +83,15 @@ def staircase(seconds: float) -> Array:
 
 
 def triangle(corners: list[float], step: float) -> Array:
-    """Give straight ways from corner to corner, about ``step`` a sample."""
+    """Give straight ways from corner to corner.
+
+    Parameters
+    ----------
+    corners
+        Two or more.
+    step
+        About what is gone in a sample.
+    """
     ways = [np.array(corners[:1])]
     for start, end in itertools.pairwise(corners):
         ways.append(np.linspace(start, end, round(abs(end - start) / step) + 1)[1:])

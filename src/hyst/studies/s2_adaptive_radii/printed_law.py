@@ -26,7 +26,15 @@ CASES = (
 
 
 def nested(height: float, factor: float, seconds: float = SECONDS) -> Array:
-    """Give ``30 sin x + height sin(factor x)``: minor loops in each period."""
+    """Give ``30 sin x + height sin(factor x)``, x = 2 pi t: minor loops in each period.
+
+    Parameters
+    ----------
+    height, factor
+        Of the second sine.
+    seconds
+        How long.
+    """
     x = 2.0 * np.pi * np.arange(round(seconds / DT)) * DT
     return np.asarray(30.0 * np.sin(x) + height * np.sin(factor * x))
 

@@ -1,0 +1,1 @@
+"""hyst learn: the next command of a motion that repeats."""
