@@ -69,8 +69,14 @@ class Knowledge:
             for reason, names in by_reason.items()
         )
 
+    @property
+    def said(self) -> tuple[str, ...]:
+        """All there is to say, each thing once."""
+        again = [each for each in self.sentences if each not in self.reasons]
+        return (*self.unknown, *again)
+
     def __str__(self) -> str:
-        said = [*self.unknown, *self.sentences]
+        said = self.said
         return "; ".join(said) if said else "every parameter is determined"
 
 

@@ -34,7 +34,7 @@ from hyst.cli.adapt.options import (
     Window,
 )
 from hyst.cli.adapt.starting import Asked, Found, guarded, resumed, started
-from hyst.cli.adapt.telling import draw, tell, write_parameters
+from hyst.cli.adapt.telling import draw, tell, tell_gain, write_knowledge, write_parameters
 from hyst.cli.arguments import load_operator
 from hyst.cli.console import at_work, show_files
 from hyst.cli.reading_options import reads_records
@@ -81,6 +81,7 @@ def adapt(
     if inverse is None and is_guarded:
         inverse = guarded(follower, asked)
     before = follower.parameters.tolist()
+    frozen = follower.model.run(measured.record.u, follower.memory)[0]
     with at_work("estimating") as say:
         source = data, how, about.delay
         trajectory, run = _followed(follower, inverse, measured, rule, source)
@@ -88,8 +89,12 @@ def adapt(
         say("figure")
         picture = draw(follower, about, trajectory, data)
     follower.description = _described(follower, about, measured.whole)
-    files_there = _write(folder, follower, inverse, (trajectory, run, picture), measured, about)
-    tell(follower, before, about)
+    knowledge = follower.knowledge
+    made = trajectory, run, picture, knowledge
+    files_there = _write(folder, follower, inverse, made, measured, about)
+    tell(follower, knowledge, before, about)
+    if run is None:
+        tell_gain(trajectory, measured.record.y, frozen)
     if isinstance(follower, hyst.online.RadiusEstimator):
         tell_law(follower)
     if inverse is not None and run is not None:
@@ -102,22 +107,23 @@ def _write(
     folder: Path,
     follower: hyst.online.Estimator,
     inverse: hyst.online.AdaptiveInverse | None,
-    found: tuple[hyst.online.Trajectory, GuardRun | None, bytes],
+    made: tuple[hyst.online.Trajectory, GuardRun | None, bytes, hyst.online.Knowledge],
     measured: Measured,
     about: hyst.operators.ModelDescription,
 ) -> list[Path]:
     """Write all files or none, and give where they are."""
-    trajectory, run, picture = found
-    names = ["model.json", "estimator.json", "parameters.csv", "parameters.png"]
+    trajectory, run, picture, knowledge = made
+    names = ["model.json", "estimator.json", "parameters.csv", "parameters.png", "knowledge.json"]
     with replacing_files(folder) as temporary:
         follower.model.save(temporary / names[0])
         follower.save(temporary / names[1])
         write_parameters(temporary / names[2], trajectory)
         (temporary / names[3]).write_bytes(picture)
+        write_knowledge(temporary / names[4], knowledge)
         if inverse is not None and run is not None:
             names += ["guard.csv", "guard.json"]
-            write_guard_run(temporary / names[4], run, measured.record, about)
-            inverse.save(temporary / names[5])
+            write_guard_run(temporary / names[5], run, measured.record, about)
+            inverse.save(temporary / names[6])
     return [folder / name for name in names]
 
 

@@ -105,7 +105,7 @@ def started(model: hyst.operators.Operator, dt: float, asked: Asked) -> hyst.onl
         which = hyst.online.name_of_estimator(model, only)
     # The one of the model's own constants starts wider, since it has no other start to try.
     spread = None if which == "model" else _SPREAD
-    if asked.estimate_maps and asked.which == "scale":
+    if asked.estimate_maps and asked.which in ("scale", "model"):
         raise hyst.InputError("--estimate-maps is for --estimator joint; leave one of them out")
     return hyst.online.estimator_for(
         model.at_sample_time(dt).with_description(model.description),

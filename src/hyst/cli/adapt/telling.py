@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
+import json
+import math
 from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
 
 import hyst
 from hyst.cli.console import note, show_table
+
+Array = NDArray[np.float64]
+
+_WORSE = 1.05
 
 
 def draw(
@@ -18,7 +27,10 @@ def draw(
     units = about.input_unit, about.output_unit
     if isinstance(estimator, hyst.online.JointEstimator):
         units = hyst.online.units_of_plays(estimator.model, *units)
-    heading = f"Estimates along {data.name}, bands of two standard errors"
+    bands = "bands of two standard errors"
+    if isinstance(estimator, hyst.online.JointEstimator):
+        bands = "two standard errors of the filter; what is known: knowledge.json"
+    heading = f"Estimates along {data.name}, {bands}"
     return hyst.report.draw_estimates({"": trajectory}, {}, heading, units)
 
 
@@ -32,8 +44,59 @@ def write_parameters(path: Path, trajectory: hyst.online.Trajectory) -> None:
     hyst.io.write_columns(path, headers, columns)
 
 
+def write_knowledge(path: Path, knowledge: hyst.online.Knowledge) -> None:
+    """Write what is known at the end, as the table on the console has it; infinite is null."""
+    told = zip(
+        knowledge.names,
+        knowledge.low.tolist(),
+        knowledge.high.tolist(),
+        knowledge.determined.tolist(),
+        knowledge.reasons,
+        strict=True,
+    )
+    rows = [
+        {
+            "name": name,
+            "low": low if math.isfinite(low) else None,
+            "high": high if math.isfinite(high) else None,
+            "determined": is_determined,
+            "reason": reason,
+        }
+        for name, low, high, is_determined, reason in told
+    ]
+    content = {"known": knowledge.known, "doubts": knowledge.doubts, "constants": rows}
+    path.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
+def tell_gain(trajectory: hyst.online.Trajectory, y: Array, frozen: Array) -> None:
+    """Say what estimating has gained over the constants from before, in the last half.
+
+    Parameters
+    ----------
+    trajectory
+        Errors of predictions, shape (N,).
+    y, frozen
+        Shape (N,), the output, measured and with the constants from before.
+    """
+    half = slice(y.size // 2, None)
+    adapted = float(np.sqrt(np.mean(trajectory.error[half] ** 2)))
+    held = float(np.sqrt(np.mean((y - frozen)[half] ** 2)))
+    said = (
+        f"predictions miss by {adapted:.4g} rms in the last half, with the constants from before "
+        f"by {held:.4g}"
+    )
+    if adapted <= _WORSE * held:
+        print(said)
+        return
+    note(
+        f"{said}: estimating made them worse; keep the model from before, or estimate less "
+        "(--only scale,offset)"
+    )
+
+
 def tell(
     estimator: hyst.online.Estimator,
+    knowledge: hyst.online.Knowledge,
     before: list[float],
     about: hyst.operators.ModelDescription,
 ) -> None:
@@ -43,12 +106,13 @@ def tell(
     ----------
     estimator
         At the end.
+    knowledge
+        Its own.
     before
         Its parameters at the start.
     about
         Of the model it started from.
     """
-    knowledge = estimator.knowledge
     show_table(_table(estimator, knowledge, before))
     if any(name.startswith(("front", "back")) for name in estimator.names):
         print("front, back: weights of the maps before and after the plays")
@@ -83,12 +147,13 @@ def _table(
             known = "held"
         value = float(estimator.parameters[index])
         rows.append((name, number(before[index]), number(value), known))
-    header = ("constant", "before", "after", "known within")
+    within = "known within" if not knowledge.doubts else "within, in doubt"
+    header = ("constant", "before", "after", within)
     return hyst.report.Table("Estimates, and bands of two standard errors", header, tuple(rows))
 
 
 def _tell_doubts(estimator: hyst.online.Estimator, knowledge: hyst.online.Knowledge) -> None:
-    for sentence in (*knowledge.unknown, *knowledge.sentences):
+    for sentence in knowledge.said:
         note(sentence)
     innovation = estimator.innovation
     if innovation.consistent:
