@@ -58,6 +58,7 @@ public:
                 {"weight", HYST_SCALE_WEIGHT},
                 {"mean_w", HYST_SCALE_MEAN_W},
                 {"ww", HYST_SCALE_WW},
+                {"wy", HYST_SCALE_WY},
                 {"slope_weight", HYST_SCALE_SLOPE_WEIGHT},
                 {"used", HYST_SCALE_USED},
                 {"skipped", HYST_SCALE_SKIPPED},

@@ -10,6 +10,7 @@ import pytest
 
 import hyst
 from hyst.cli import main
+from hyst.cli.adapt.telling import tell_gain
 from hyst.online import ESTIMATORS
 from reference.family_examples import family_example
 
@@ -172,6 +173,7 @@ def test_scale_and_offset_go_on_where_they_stopped(folder: Path) -> None:
         (["--estimator", "joint"], "no Prandtl-Ishlinskii stage"),
         (["--estimate-maps"], "no Prandtl-Ishlinskii stage"),
         (["--estimator", "scale", "--estimate-maps"], "leave one of them out"),
+        (["--estimator", "model", "--estimate-maps"], "leave one of them out"),
         (["--window", "long"], "--window is 'long'; give seconds, or auto"),
         (["--window", "-1"], "--window is -1"),
         (["--commands", "nothing"], "no column"),
@@ -208,3 +210,39 @@ def test_help_names_every_estimator(capsys: pytest.CaptureFixture[str]) -> None:
     shown = " ".join(capsys.readouterr().out.replace("│", " ").split())
     for name in ESTIMATORS:
         assert name in shown.partition("Which one: auto by")[2].partition("--")[0]
+
+
+def test_what_is_known_is_written_as_it_is_told(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plays = hyst.PrandtlIshlinskii([0.6, 0.4], [0.8, 2.0], 1.0)
+    u = 1.5 * np.sin(2.0 * np.pi * 2.0 * np.arange(4000) * DT)
+    y = plays(u) + 0.05 * np.random.default_rng(3).standard_normal(u.size)
+    hyst.io.write_columns(folder / "data.csv", ["drive", "way"], (u, y))
+    plays.save(folder / "model.json")
+    assert adapt(folder) == 0
+    told = capsys.readouterr()
+    written = json.loads((folder / "out" / "knowledge.json").read_text())
+    assert not written["known"]
+    unknown = [each["name"] for each in written["constants"] if not each["determined"]]
+    # 1.5 does not move the play of radius 2.
+    assert {"p[2]", "r[2]"} <= set(unknown)
+    table = [each.split() for each in told.out.splitlines()]
+    says = [each[0] for each in table if each and each[-2:] == ["not", "determined"]]
+    assert says == unknown
+    # One sentence for each reason, however many constants have it.
+    reasons = {each["reason"] for each in written["constants"] if not each["determined"]}
+    assert " ".join(told.err.split()).count("not determined: ") == len(reasons)
+
+
+@pytest.mark.parametrize(("off", "is_worse"), [(0.5, True), (0.0, False)])
+def test_estimates_that_predict_worse_than_their_start_are_told(
+    off: float, is_worse: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    y = np.sin(np.arange(400) / 20.0)
+    made = np.zeros((4, 1))
+    trajectory = hyst.online.Trajectory(np.arange(4.0), ("p0",), made, made, 0.1 * y + off)
+    tell_gain(trajectory, y, 0.8 * y)
+    told = capsys.readouterr()
+    assert ("made them worse" in told.err) is is_worse
+    assert ("predictions miss by 0.07" in told.out) is not is_worse

@@ -223,7 +223,8 @@ def test_what_is_held_has_no_band() -> None:
 def test_units_change_nothing() -> None:
     u = sine(6.0)
     found = []
-    for of_u, of_y in ((1.0, 1.0), (8.0, 0.25)):
+    # Micrometres or volts in metres and gigavolts, too.
+    for of_u, of_y in ((1.0, 1.0), (8.0, 0.25), (2.0**-20, 1.0), (2.0**-30, 2.0**20)):
         truth = hyst.PrandtlIshlinskii(
             STAIRS.p * of_y / of_u, STAIRS.r * of_u, STAIRS.p0 * of_y / of_u
         )
@@ -234,8 +235,10 @@ def test_units_change_nothing() -> None:
         told = estimator.knowledge
         units = np.repeat([of_y / of_u, of_u, of_y], [4, 3, 1])
         found.append(np.concatenate([told.low / units, told.high / units]))
+        assert told.known
     # Least squares end where a step gains less than a thousandth of the chi-square.
-    assert found[0] == pytest.approx(found[1], rel=1e-6, abs=1e-6)
+    for scaled in found[1:]:
+        assert found[0] == pytest.approx(scaled, rel=1e-6, abs=1e-6)
 
 
 @pytest.mark.parametrize(("swing", "decibels"), [(1.0, 20.0), (2.0, 40.0)])

@@ -317,3 +317,13 @@ def test_bytes_of_the_state_are_those_that_are_documented() -> None:
     assert "state {:,} and {:,} bytes".format(*(each.state.nbytes for each in searching)) in page
     assert "which is {} and {} bytes".format(*core) in header
     assert "{} and {} bytes. */".format(*sizes) in header
+
+
+@pytest.mark.parametrize("gain", [1.0, -1000.0])
+def test_noise_is_that_of_the_output_also_at_rest(gain: float) -> None:
+    u = np.zeros(6000)
+    y = gain * 0.01 * np.random.default_rng(0).standard_normal(u.size)
+    estimator = JointEstimator(hyst.Affine(gain) @ FIVE_PLAYS, dt=DT)
+    estimator.run(record(u, y))
+    # It is 0.01; what rests shows no more than the last 150 errors tell.
+    assert 0.004 < estimator.noise / abs(gain) < 0.02

@@ -385,3 +385,17 @@ def test_what_is_negligible_is_not_called_noise() -> None:
     told = Innovation(1e-9, 0.99, 5.0)
     assert told.consistent
     assert str(told) == "errors of 1e-09 rms, negligible beside a loop of height 5"
+
+
+@pytest.mark.parametrize(("factor", "says"), [(-1.0, "-1"), (1e-3, "0.001"), (1e3, "1000")])
+def test_a_sensor_of_other_sign_or_unit_is_told_with_its_errors(factor: float, says: str) -> None:
+    u = sine(2000, 6.0, 100.0)
+    y = factor * BOUC_WEN(u)
+    estimator = feed(ScaleEstimator(BOUC_WEN), u, y)
+    told = estimator.knowledge
+    assert not told.determined.any()
+    assert f"samples alone say {says};" in told.reasons[0]
+    assert not estimator.innovation.consistent
+    scale, offset = estimator.parameters
+    left = float(np.sqrt(np.mean((y - scale * BOUC_WEN(u) - offset) ** 2)))
+    assert estimator.innovation.rms == pytest.approx(left, rel=0.02)

@@ -71,10 +71,12 @@ def names_of(held: Iterable[str], known: Iterable[str], option: str = "held") ->
         names = [held] if isinstance(held, str) else list(held)
     except TypeError:
         raise InputError(f"{option} is {held!r}; give a list of names of parameters") from None
-    there = list(known)
+    there = list(dict.fromkeys(known))
     for name in names:
         if name not in there:
-            raise InputError(f"{option} names {name!r}; there are {', '.join(there)}")
+            raise InputError(
+                f"{option} names {name!r}; there are {', '.join(there)}"
+            )
     return sorted(names)
 
 

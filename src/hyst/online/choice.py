@@ -119,6 +119,8 @@ def name_of_estimator(model: Operator, only: Iterable[str] = ()) -> str:
     >>> name_of_estimator(hyst.RambergOsgood(1.0, 0.5, 1.2), ["c1", "c2"])
     'model'
     """
+    if not isinstance(model, Operator):
+        raise InputError(f"model is a {type(model).__name__}; give an operator")
     wanted = [only] if isinstance(only, str) else list(only)
     if "scale" in wanted or wanted == ["offset"]:
         return "scale"

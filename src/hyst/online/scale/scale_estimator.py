@@ -196,7 +196,7 @@ class ScaleEstimator(Estimator):
     @property
     def innovation(self) -> Innovation:
         """What the estimate leaves unexplained, and whether that can be noise."""
-        return innovation_of(self._sums, float(self.parameters[0]))
+        return innovation_of(self._sums, float(self.parameters[0]), self.settings)
 
     @property
     def knowledge(self) -> Knowledge:

@@ -40,8 +40,9 @@ class ScaleSums:
         How many there are in these means, and altogether.
     wide_slope, wide_mean, wide_samples
         By what variances are widened, and over how many samples errors follow each other.
-    mean_w, swing
-        Mean of the model's output and its range, as of a sine of its standard deviation.
+    mean_w, swing, slope
+        Mean of the model's output, its range, as of a sine of its standard deviation, and the scale
+        by the samples alone, whatever its bounds.
     start
         Scale to start from.
     """
@@ -58,6 +59,7 @@ class ScaleSums:
     wide_samples: int
     mean_w: float
     swing: float
+    slope: float
     start: float
 
     @classmethod
@@ -93,11 +95,12 @@ class ScaleSums:
             wide_samples=int(number("wide_samples")),
             mean_w=number("mean_w"),
             swing=2.0 * math.sqrt(2.0 * ww / weight) if weight > 0.0 else 0.0,
+            slope=number("wy") / ww if ww > 0.0 else 0.0,
             start=number("start"),
         )
 
 
-def innovation_of(sums: ScaleSums, scale: float) -> Innovation:
+def innovation_of(sums: ScaleSums, scale: float, settings: dict[str, Any]) -> Innovation:
     """Say what the estimate leaves unexplained.
 
     Parameters
@@ -106,12 +109,23 @@ def innovation_of(sums: ScaleSums, scale: float) -> Innovation:
         Of the core.
     scale
         The estimate.
+    settings
+        Of the estimator.
 
     Returns
     -------
     Innovation
     """
     is_wide = max(sums.wide_slope, sums.wide_mean) >= _TOLD_WIDENESS
+    if _bound_of(sums, scale, settings):
+        # The noise is that of the slope the samples have; on the bound more is left.
+        more = (sums.slope - scale) ** 2 * sums.swing**2 / 8.0
+        return Innovation(
+            rms=math.sqrt(sums.noise + more),
+            correlation=0.0,
+            loop_height=abs(scale) * sums.swing,
+            over=sums.used if more > sums.noise / max(sums.used, 1) else 0,
+        )
     return Innovation(
         rms=math.sqrt(sums.noise),
         correlation=sums.product / sums.noise if sums.noise > 0.0 else 0.0,
@@ -140,9 +154,17 @@ def knowledge_of(
     """
     reasons = _reasons(sums, float(parameters[0]), standard_errors, settings)
     names = ("scale", "offset")
-    return knowledge_from(
-        names, parameters, standard_errors, reasons, _sentences(sums, parameters[0])
-    )
+    sentences = _sentences(sums, float(parameters[0]), settings)
+    # Off its bounds the variances are widened by what errors that follow each other ask for.
+    doubts = sentences if _bound_of(sums, float(parameters[0]), settings) else ()
+    said = () if doubts else sentences
+    return knowledge_from(names, parameters, standard_errors, reasons, said, doubts)
+
+
+def _bound_of(sums: ScaleSums, scale: float, settings: dict[str, Any]) -> str:
+    """Give the name of the bound that the estimate is on; empty if it is on none."""
+    share = scale / sums.start
+    return next((each for each in ("least", "most") if share == settings[each]), "")
 
 
 def _reasons(
@@ -152,14 +174,17 @@ def _reasons(
     few = f"{sums.used} samples are too few"
     if "scale" not in held:
         why = few if sums.noise_samples < _LEAST_SAMPLES else _unknown_scale(sums, settings)
-        share = scale / sums.start
-        bound = next((each for each in ("least", "most") if share == settings[each]), "")
+        bound = _bound_of(sums, scale, settings)
         if bound:
-            why = f"it is on its bound, {bound} = {settings[bound]:.4g} of the start"
+            why = (
+                f"it is on its bound, {bound} = {settings[bound]:.4g} of the start, where samples "
+                f"alone say {sums.slope:.4g}; check sign and units of input and output"
+            )
         if why:
             reasons["scale"] = why
     if "offset" not in held:
         by_scale = sums.mean_w**2 * sums.variance > sums.mean_variance
+        by_scale = by_scale or bool(_bound_of(sums, scale, settings))
         if sums.noise_samples < _LEAST_SAMPLES:
             reasons["offset"] = few
         elif "scale" in reasons and by_scale:
@@ -180,14 +205,17 @@ def _unknown_scale(sums: ScaleSums, settings: dict[str, Any]) -> str:
     )
 
 
-def _sentences(sums: ScaleSums, scale: float) -> tuple[str, ...]:
-    innovation = innovation_of(sums, scale)
+def _sentences(sums: ScaleSums, scale: float, settings: dict[str, Any]) -> tuple[str, ...]:
+    innovation = innovation_of(sums, scale, settings)
     if not innovation.over:
         return ()
+    if _bound_of(sums, scale, settings):
+        return (f"{innovation}",)
     widest = max(sums.wide_slope, sums.wide_mean)
     return (
         f"{innovation}: the shape is not the plant's, or constants drift faster than the memory "
-        f"forgets; bands are up to {math.sqrt(widest):.3g} times as wide as for noise",
+        f"forgets; bands are up to {math.sqrt(widest):.3g} times as wide as for noise, and hold "
+        "for errors that do not repeat with the input",
     )
 
 

@@ -139,17 +139,19 @@ def minimum_from(
     free = problem.free.copy()
     if fixed is not None:
         free[fixed] = False
+    # In units of the spreads of the start: what is small beside what must not depend on units.
+    spread = np.sqrt(problem.limit[free])
     theta = problem.admissible(theta, fixed)
     error, jacobian = problem.residual(theta)
     square, damping = float(error @ error), 1e-4
     for taken in range(_STEPS):
-        own = jacobian[free]
+        own = spread[:, np.newaxis] * jacobian[free]
         information, slope = own @ own.T, own @ error
         scale = np.diag(information) + 1e-12 * (1.0 + float(np.diag(information).max(initial=0.0)))
         gained = 0.0
         while damping < 1e8:
             step = np.zeros_like(theta)
-            step[free] = np.linalg.solve(information + np.diag(damping * scale), slope)
+            step[free] = spread * np.linalg.solve(information + np.diag(damping * scale), slope)
             ahead = problem.admissible(theta + step, fixed)
             error_ahead, jacobian_ahead = problem.residual(ahead)
             square_ahead = float(error_ahead @ error_ahead)

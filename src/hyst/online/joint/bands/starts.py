@@ -173,7 +173,10 @@ def _with(theta: Array, n: int, weights: Array, radii: Array) -> Array:
 
 def _regular(gram: Array) -> Array:
     own = np.diag(gram)
-    return np.asarray(gram + np.diag(1e-10 * own + 1e-12 * own.max() + 1e-300))
+    # The second column is the offset's: its unit is not that of the input, as all others have.
+    floor = np.full(own.size, 1e-12 * float(np.delete(own, 1).max()))
+    floor[1] = 1e-12 * own[1]
+    return np.asarray(gram + np.diag(1e-10 * own + floor + 1e-300))
 
 
 def _solved(gram: Array, target: Array) -> Array:
