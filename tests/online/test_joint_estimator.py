@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import hyst
-from hyst.online import JointEstimator
+from hyst.online import Innovation, JointEstimator
 from online.plants import DT, FIVE_PLAYS, P, R, random_signals, record, sine, usable
 
 
@@ -327,3 +327,9 @@ def test_noise_is_that_of_the_output_also_at_rest(gain: float) -> None:
     estimator.run(record(u, y))
     # It is 0.01; what rests shows no more than the last 150 errors tell.
     assert 0.004 < estimator.noise / abs(gain) < 0.02
+
+
+def test_what_is_negligible_is_not_called_noise() -> None:
+    told = Innovation(1e-9, 0.99, 5.0)
+    assert told.consistent
+    assert str(told) == "errors of 1e-09 rms, negligible beside a loop of height 5"

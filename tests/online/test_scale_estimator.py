@@ -13,7 +13,7 @@ from scipy.signal import lfilter
 from scipy.stats import binom
 
 import hyst
-from hyst.online import Innovation, JointEstimator, ModelEstimator, ScaleEstimator, estimator_for
+from hyst.online import JointEstimator, ModelEstimator, ScaleEstimator, estimator_for
 from hyst.online.choice import ESTIMATORS
 from hyst.operators import Affine, Operator
 from reference.examples import EXAMPLES
@@ -379,12 +379,6 @@ def test_what_is_said_of_errors_does_not_contradict_itself() -> None:
     assert str(innovation) in knowledge.sentences[0]
     assert "as in noise" not in str(innovation)
     assert "follow each other over some" in str(innovation)
-
-
-def test_what_is_negligible_is_not_called_noise() -> None:
-    told = Innovation(1e-9, 0.99, 5.0)
-    assert told.consistent
-    assert str(told) == "errors of 1e-09 rms, negligible beside a loop of height 5"
 
 
 @pytest.mark.parametrize(("factor", "says"), [(-1.0, "-1"), (1e-3, "0.001"), (1e3, "1000")])

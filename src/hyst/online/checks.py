@@ -74,9 +74,7 @@ def names_of(held: Iterable[str], known: Iterable[str], option: str = "held") ->
     there = list(dict.fromkeys(known))
     for name in names:
         if name not in there:
-            raise InputError(
-                f"{option} names {name!r}; there are {', '.join(there)}"
-            )
+            raise InputError(f"{option} names {name!r}; there are {', '.join(there)}")
     return sorted(names)
 
 

@@ -111,6 +111,11 @@ def name_of_estimator(model: Operator, only: Iterable[str] = ()) -> str:
     str
         One of ``ESTIMATORS``.
 
+    Raises
+    ------
+    InputError
+        If the model is no operator.
+
     Examples
     --------
     >>> import hyst
