@@ -11,7 +11,7 @@ import pytest
 
 import hyst
 from hyst import _engine
-from hyst.online import AdaptiveInverse, JointEstimator
+from hyst.online import AdaptiveInverse, JointEstimator, ScaleEstimator
 from online.plants import DT, P, R
 
 P0 = 0.3
@@ -181,3 +181,12 @@ def test_engine_runs_a_record_to_the_same_bits() -> None:
     assert trajectory.values[-1].tobytes() == by_record.parameters.tobytes()
     assert trajectory.standard_errors[-1] == pytest.approx(by_record.standard_errors, rel=1e-9)
     assert trajectory.of("r[5]").size == 30
+
+
+def test_started_anew_a_scale_counts_samples_from_there_on() -> None:
+    model = hyst.BoucWen(0.6, 0.35, 0.12, 0.06)
+    u = 6.0 * np.sin(np.arange(400) / 16.0)
+    estimator = ScaleEstimator(model)
+    estimator.run(hyst.Record(u, model(u), 1.0))
+    estimator.restart()
+    assert "400 samples" not in str(estimator.knowledge)

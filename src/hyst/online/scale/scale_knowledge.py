@@ -171,7 +171,7 @@ def _reasons(
     sums: ScaleSums, scale: float, standard_errors: Array, settings: dict[str, Any]
 ) -> dict[str, str]:
     held, reasons = settings["held"], {}
-    few = f"{sums.used} samples are too few"
+    few = f"{sums.noise_samples} samples are too few"
     if "scale" not in held:
         why = few if sums.noise_samples < _LEAST_SAMPLES else _unknown_scale(sums, settings)
         bound = _bound_of(sums, scale, settings)
