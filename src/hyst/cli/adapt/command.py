@@ -96,7 +96,7 @@ def adapt(
     if run is None:
         tell_gain(trajectory, measured.record.y, frozen)
     if isinstance(follower, hyst.online.RadiusEstimator):
-        tell_law(follower)
+        tell_law(follower, before, measured.record)
     if inverse is not None and run is not None:
         for sentence in guard_sentences(run, inverse, measured.record):
             print(sentence)
