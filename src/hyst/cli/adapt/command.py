@@ -93,10 +93,10 @@ def adapt(
     made = trajectory, run, picture, knowledge
     files_there = _write(folder, follower, inverse, made, measured, about)
     tell(follower, knowledge, before, about)
-    if run is None:
-        tell_gain(trajectory, measured.record.y, frozen)
     if isinstance(follower, hyst.online.RadiusEstimator):
         tell_law(follower, before, measured.record)
+    elif run is None:
+        tell_gain(trajectory, measured.record.y, frozen)
     if inverse is not None and run is not None:
         for sentence in guard_sentences(run, inverse, measured.record):
             print(sentence)
