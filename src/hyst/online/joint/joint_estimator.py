@@ -25,8 +25,8 @@ from hyst.online.joint.bands.found import Found
 from hyst.online.joint.bands.known import knowledge_of
 from hyst.online.joint.bands.of_core import clear_scratch, found_of, take_over
 from hyst.online.joint.bands.samples import fold_again, folded_in
-from hyst.online.joint.excitation import Excitation, watch
-from hyst.online.joint.innovation import Innovation
+from hyst.online.joint.excitation import Excitation, excitation_of
+from hyst.online.joint.innovation import Innovation, innovation_of
 from hyst.online.joint.joint_core import GROUPS, new_core, prior_of, search_cells
 from hyst.online.joint.parts import take_apart
 from hyst.online.joint.prior import covariance_of, factors
@@ -43,8 +43,6 @@ Array = NDArray[np.float64]
 _ERROR, _VARIANCE, _NOISE, _UPDATES, _SKIPPED, _REFUSED = 0, 1, 2, 5, 6, 7
 # Ranges of the input; and what is known of the input altogether, which a restart keeps.
 _RANGES, _KEPT = slice(8, 12), (3, 13)
-# And from the place "scalars" on, as joint_search.h has them.
-_TRIALS, _REPLACEMENTS, _SQUARE = 5, 6, 15
 _BOUNDS = ("least_slope", "most_slope", "most_radius")
 
 
@@ -210,30 +208,16 @@ class JointEstimator(Estimator):
     @property
     def excitation(self) -> Excitation:
         """What the recent input tells about the radii, what is frozen, and why."""
-        n, theta, at = self._parts.pi.p.size, self.parameters, self._at
-        age = self.state[at["age"] : at["home"]]
-        return watch(
-            float(theta[0]),
-            theta[1 : n + 1],
-            theta[n + 1 : 2 * n + 1],
-            age,
-            self.settings["patience"] / self.dt,
-            float(np.ptp(self.state[_RANGES])),
-        )
+        age = self.state[self._at["age"] : self._at["home"]]
+        swing = float(np.ptp(self.state[_RANGES]))
+        return excitation_of(self.parameters, age, self.settings["patience"] / self.dt, swing)
 
     @property
     def innovation(self) -> Innovation:
         """What the estimate leaves unexplained, and whether that can be noise."""
         n, theta = self._parts.pi.p.size, self.parameters
-        scalars = self.state[self._at["scalars"] :]
-        gain = abs(self._parts.after.gain)
-        return Innovation(
-            rms=gain * math.sqrt(float(scalars[_SQUARE])),
-            correlation=self.core.correlation(self.state),
-            loop_height=2.0 * gain * float(np.abs(theta[1 : n + 1]) @ theta[n + 1 : 2 * n + 1]),
-            rivals=int(scalars[_TRIALS]),
-            replacements=int(scalars[_REPLACEMENTS]),
-        )
+        height = 2.0 * float(np.abs(theta[1 : n + 1]) @ theta[n + 1 : 2 * n + 1])
+        return innovation_of(self.core, self.state, height, abs(self._parts.after.gain))
 
     @property
     def knowledge(self) -> Knowledge:

@@ -24,7 +24,24 @@ _NOISE = 2
 def found_of(
     core: _engine.JointEstimation, parts: Parts, theta: Array, settings: dict[str, Any]
 ) -> Found | None:
-    """Fit the model ``parts`` to what ``core`` has folded, from ``theta`` and other starts."""
+    """Fit a model to what an engine has folded, from an estimate and other starts.
+
+    Parameters
+    ----------
+    core
+        The engine.
+    parts
+        The model.
+    theta
+        Shape (m,), the estimate.
+    settings
+        Of the estimator: bounds and noise.
+
+    Returns
+    -------
+    Found or None
+        None where too little is folded.
+    """
     samples = folded_samples(core.folded(2))
     pages = tuple(folded_samples(core.folded(page)) for page in (0, 1))
     bounds = (settings["least_slope"], settings["most_slope"], settings["most_radius"])
@@ -33,7 +50,22 @@ def found_of(
 
 
 def take_over(core: _engine.JointEstimation, state: Array, found: Found, start: Array) -> bool:
-    """Take the estimate to the minimum nearest to ``start``, if the chi-square falls by 1."""
+    """Take the estimate to the minimum nearest to the start, if the chi-square falls by 1.
+
+    Parameters
+    ----------
+    core, state
+        The engine and its state, which is changed.
+    found
+        What least squares over all samples have found.
+    start
+        Shape (m,), the parameters at the start.
+
+    Returns
+    -------
+    bool
+        Whether the estimate was replaced.
+    """
     at = core.places()
     best = found.nearest_to(start)
     error, _ = found.problem.residual(state[at["theta"] : at["d"]])
@@ -48,7 +80,15 @@ def take_over(core: _engine.JointEstimation, state: Array, found: Found, start: 
 
 
 def clear_scratch(state: Array, at: Mapping[str, int]) -> None:
-    """Clear NaN that a refused sample leaves in scratch areas, which are written before read."""
+    """Clear NaN that a refused sample leaves in scratch areas, which are written before read.
+
+    Parameters
+    ----------
+    state
+        Of the engine; changed.
+    at
+        Places in it.
+    """
     for first, last in (
         (at["psi"], at["scalars"]),
         (at["rival"] + at["psi"], at["cells"]),
