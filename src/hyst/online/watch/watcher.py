@@ -49,7 +49,7 @@ class Window:
         Root mean square of the errors of prediction, of the estimate before it learnt and of the
         model as it was given, output units; NaN where nothing is known.
     noise
-        As the estimator estimates it, output units.
+        As the estimator estimates it, output units; NaN before it has learnt from a sample.
     parameters
         Shape (m,), the estimate when it was last asked for.
     knowledge
@@ -244,7 +244,7 @@ class Watcher:
             time=self._time,
             error=error,
             model_error=model_error,
-            noise=self.estimator.noise,
+            noise=self.estimator.noise if self.estimator.counts["used"] else math.nan,
             parameters=self.estimator.parameters,
             knowledge=knowledge,
             has_bands=self._untold == 0,
