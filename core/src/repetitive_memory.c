@@ -131,14 +131,9 @@ void hyst_repetitive_learn(const hyst_repetitive_memory *memory, hyst_real *stat
     hyst_real *const held = error + taps; /* what each drive could not do, beside its error */
     const size_t place = repetitive_count(state[REPETITIVE_PLACE], length);
     const size_t of_error = repetitive_count(state[REPETITIVE_OF_ERROR], taps);
-    const hyst_real applied = ring[place] + excess;
-    /* Nothing is added where there is nothing: -0 stays -0. */
-    if ((excess < HYST_REAL(0.0) || excess > HYST_REAL(0.0)) && hyst_is_finite(applied) != 0) {
-        ring[place] = applied;
-        held[of_error] = excess;
-    } else {
-        held[of_error] = HYST_REAL(0.0);
-    }
+    /* What was wanted stays, though less was applied: with that in its place, a drive that lags by its
+     * rate would ask for the lag, and lag behind it again a period later. */
+    held[of_error] = hyst_is_finite(excess) != 0 ? excess : HYST_REAL(0.0);
     if (state[REPETITIVE_WHOLE] >= repetitive_enough(memory)) {
         const size_t at = repetitive_onwards(place, length - memory->lead, length);
         const hyst_real past = held[repetitive_onwards(of_error, taps - memory->lead, taps)];

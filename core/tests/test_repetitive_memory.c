@@ -101,8 +101,8 @@ static void test_learns_no_further_into_a_limit(void)
             v = hyst_repetitive_wanted(&memory, state, R(0.0), y, &changed);
             hyst_repetitive_learn(&memory, state, k == 4u ? R(-2.0) : R(0.0));
         }
-        /* At sample 10: s_4 = -2, and with the error at 5 +-1/2; s_5 = +-1/4, s_3 = 0. */
-        CHECK_EQUAL(v, sign > 0 ? R(-0.9375) : R(-1.3125));
+        /* At sample 10: s_4 = 0, or -1/2 by the error at 5; s_5 = +-1/4, s_3 = 0. */
+        CHECK_EQUAL(v, sign > 0 ? R(0.0625) : R(-0.3125));
     }
 }
 

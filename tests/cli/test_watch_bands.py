@@ -44,6 +44,14 @@ def test_values_are_of_the_time_of_the_report(run: Run, drifted: str) -> None:
     ] * len(estimates[-1])
 
 
+def test_no_noise_is_told_before_a_sample_was_learnt_from(run: Run, drifted: str) -> None:
+    rows = Path(drifted).read_text().splitlines(keepends=True)
+    Path("short.csv").write_text("".join(rows[:30]))
+    assert [(each["noise"], each["counts"]["learnt"]) for each in told(run, "short.csv")] == [
+        (None, 0)
+    ]
+
+
 def test_bands_that_were_not_asked_for_are_not_told(
     run: Run, drifted: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

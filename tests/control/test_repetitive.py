@@ -140,13 +140,26 @@ def test_what_cannot_be_reached_is_not_learned_and_the_rest_is() -> None:
     assert found.held
     assert (found.u.min(), found.u.max()) == (-0.7, 0.8)
     e = found.e.reshape(-1, N)
-    # Out of reach; what is learned has settled, with every other period the same: a sample next to
-    # the limit is held in one of two. No period is worse than the first.
+    # Out of reach; what is learned has settled but for samples next to the held ones, which change
+    # by some thousandths. No period is worse than the first.
     assert np.abs(e[19]).max() > 0.1
-    np.testing.assert_allclose(e[19], e[17], atol=1e-3 * np.abs(e[19]).max())
+    np.testing.assert_allclose(e[19], e[17], atol=5e-3 * np.abs(e[19]).max())
     assert by_period(found.e)[1:20].max() < by_period(found.e)[0]
     # Half of it is within reach: nothing is left of the limit after as few periods as without.
     assert by_period(found.e)[25] < 1e-4
+
+
+@pytest.mark.parametrize("amplitude", [0.9, 1.0, 1.2])
+def test_a_drive_too_slow_for_the_reference_does_not_lag_more_and_more(amplitude: float) -> None:
+    """A sine rises faster than the drive may, by up to a third, for 60 periods."""
+    fast, rate = ([1e8], [1.0, 1.2e4, 1e8]), 0.9 * 2.0 * np.pi / (200 * DT)
+    made = RepetitiveController.design(fast, 200, dt=DT, bandwidth=1500.0, rate=rate)
+    r = np.tile(amplitude * np.sin(2.0 * np.pi * np.arange(200) / 200), 60)
+    found = simulate_closed_loop(r, DT, plant=fast, controller=made)
+    e = np.sqrt((found.e.reshape(-1, 200) ** 2).mean(axis=1))
+    # The second period is the first whole one, and nothing is learned in it yet. Learning cannot
+    # undo the lag; it must not add to it, but for what it gains and loses around a held part.
+    assert e[2:].max() < max(1.1 * e[1], 1e-3)
 
 
 def test_holds_within_reach_what_is_next_to_a_limit() -> None:

@@ -237,12 +237,18 @@ def test_a_model_with_hysteresis_is_taken_apart() -> None:
         (STAGE, {"delay": -1.0}, "delay"),
         (STAGE, {"uncertainty": ([1.0], [1.0, -1.0])}, "uncertainty is not stable"),
         (([1.0], [1.0, 0.0]), {}, "does not come to rest"),
+        (([0.0], [1.0, 1.0]), {}, "passes nothing"),
         (([1.0], [1.0, -1.0]), {}, "unstable"),
     ],
 )
 def test_what_a_design_refuses(plant: tuple, changed: dict, said: str) -> None:
     with pytest.raises(InputError, match=said):
         Design(plant, **({"period": N, "dt": DT, "bandwidth": 900.0} | changed))
+
+
+def test_a_bandwidth_below_every_frequency_looked_at() -> None:
+    made = Design(STAGE, N, dt=DT, bandwidth=1e-9)
+    assert made.certificate(STAGE).holds
 
 
 def test_a_certificate_as_plain_numbers() -> None:

@@ -7,8 +7,7 @@
  * and is asked for at k + N - h at the earliest, so that h + lead < N must hold.
  *
  * The first samples teach nothing: what only a start makes must not be repeated.
- * Where a drive could not do what was wanted, s_k goes on from what it did, and learns nothing that
- * asks for more. Errors of which some are missing teach nothing, but time goes on, so that what is
+ * Where a drive could not do what was wanted, s_k learns nothing that asks for more. Errors of which some are missing teach nothing, but time goes on, so that what is
  * remembered stays in step with the reference.
  *
  * Inoue et al. 1981; Hara et al. 1988, IEEE TAC 33(7) (with Q); Tomizuka et al. 1989, J. Dyn. Sys.

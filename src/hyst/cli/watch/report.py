@@ -61,7 +61,7 @@ def line_of(report: Report, unit: str) -> str:
     allowed = "" if math.isnan(report.allowed) else f", allowed {_number(report.allowed)}"
     errors = (
         f"error {_said(report.error)}{after} (model {_said(report.model_error)}{allowed}), "
-        f"noise {_number(last.noise)}"
+        f"noise {_said(last.noise)}"
     )
     learnt = f"learning paused: {last.paused}" if last.paused else _bands(last)
     told = last.knowledge.sentences if last.has_bands else ()

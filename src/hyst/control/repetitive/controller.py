@@ -35,8 +35,8 @@ class RepetitiveController(SavedRepetitive):
 
     The first period teaches nothing, for what only a start makes must not be repeated; so in the
     first two the drive is that of the inverse alone. With limits or a rate the drive u_a is the
-    nearest to u that may be, v_a the v that belongs to it; s_k then goes on from v_a, and learns
-    nothing that asks for more. A lost sample teaches nothing, and time goes on.
+    nearest to u that may be; s_k then learns nothing that asks for more. A lost sample teaches
+    nothing, and time goes on.
 
     ``design`` chooses Q and L and proves what they do. It is no operator, for it has two inputs.
 

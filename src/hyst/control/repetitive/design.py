@@ -187,6 +187,8 @@ def _at_band(asked: _Asked, passed: float) -> Found | None:
     values = ConditionValues(bare, plant, weight, asked.slopes)
     Q, doubt = bare.Q(angle), values.doubt(w)
     P = values.middle * plant.system.response(np.exp(1j * angle))[:, 0, 0]
+    if not np.abs(P).max() > 0.0:
+        raise InputError("the plant passes nothing, so nothing can be learned; give its numerator")
     late = _lateness(P, angle, passed)
     tried: list[tuple[float, RepetitiveFilters]] = []
     for half in _HALVES:
@@ -219,7 +221,7 @@ def _least(tried: list[tuple[float, RepetitiveFilters]]) -> float:
 
 def _lateness(P: NDArray[np.complex128], angle: Array, passed: float) -> int:
     """Give the samples by which a plant is late over a band, at least the one of its hold."""
-    within = angle <= passed
+    within = angle <= max(passed, float(angle[0]))
     phase = np.unwrap(np.angle(P[within] * np.sign(P[0].real or 1.0)))
     a = angle[within]
     # The straight line through 0 that fits the phase; evenly over frequency.

@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.online.alarms import AlarmEvent, Alarms
 from hyst.online.estimator import Estimator
-from hyst.online.joint.joint_estimator import JointEstimator
 from hyst.online.knowledge import Knowledge
 from hyst.online.watch import limits as named
+from hyst.online.watch.asking import at_better_fit, knowledge_of
 from hyst.online.watch.limits import RULES, Limits
 from hyst.online.watch.sample_clock import SLOT, Slots
 from hyst.online.watch.tracker import Followed, Tracker
@@ -49,7 +48,7 @@ class Window:
         Root mean square of the errors of prediction, of the estimate before it learnt and of the
         model as it was given, output units; NaN where nothing is known.
     noise
-        As the estimator estimates it, output units.
+        As the estimator estimates it, output units; NaN before it has learnt from a sample.
     parameters
         Shape (m,), the estimate when it was last asked for.
     knowledge
@@ -81,17 +80,6 @@ class Window:
     counts: dict[str, int]
     events: tuple[AlarmEvent, ...]
     active: tuple[str, ...]
-
-
-def knowledge_of(estimator: Estimator) -> Knowledge:
-    """Ask an estimator what it knows, whatever that costs.
-
-    Parameters
-    ----------
-    estimator
-        Any.
-    """
-    return estimator.knowledge
 
 
 class Watcher:
@@ -244,7 +232,7 @@ class Watcher:
             time=self._time,
             error=error,
             model_error=model_error,
-            noise=self.estimator.noise,
+            noise=self.estimator.noise if self.estimator.counts["used"] else math.nan,
             parameters=self.estimator.parameters,
             knowledge=knowledge,
             has_bands=self._untold == 0,
@@ -262,15 +250,7 @@ class Watcher:
         knowledge = self._ask_for(self.estimator) if self._untold >= self._told_every else None
         if knowledge is None:
             return
-        # Nobody stands beside a watch who could take it out of a false minimum. What leaves more
-        # than noise is none to go to: of a plant that drifts it is the middle of what that was.
-        if (
-            not knowledge.doubts
-            and _is_outside(self.estimator, knowledge)
-            and self.estimator.refine()
-        ):
-            knowledge = self.estimator.knowledge
-        self._untold, self._knowledge = 0, knowledge
+        self._untold, self._knowledge = 0, at_better_fit(self.estimator, knowledge)
 
     def _count(self, slots: Slots, found: Followed, learnt: int) -> None:
         added = {"samples": int((slots["lost"] == 0).sum()), "learnt": learnt}
@@ -374,13 +354,6 @@ def stated_error(model: Operator) -> float:
         if value is not None:
             return float(value)
     return 0.0
-
-
-def _is_outside(estimator: Estimator, knowledge: Knowledge) -> TypeGuard[JointEstimator]:
-    """Tell whether a better fit of all samples is known than the running estimate."""
-    value = estimator.parameters
-    is_within = (knowledge.low <= value) & (value <= knowledge.high)
-    return isinstance(estimator, JointEstimator) and not bool(is_within.all())
 
 
 def _counts_of(slots: Slots, found: Followed) -> dict[str, int]:
