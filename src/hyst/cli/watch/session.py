@@ -19,7 +19,8 @@ from hyst.online.knowledge import Knowledge
 from hyst.online.watch.delay_line import DelayLine
 from hyst.online.watch.limits import Limits
 from hyst.online.watch.sample_clock import SampleClock, sample_time_of
-from hyst.online.watch.watcher import Watcher, Window
+from hyst.online.watch.watcher import Watcher
+from hyst.online.watch.window import Window
 
 # Rows by which the sample time is found.
 _ROWS = 50
@@ -127,12 +128,16 @@ class Session:
         return self.watcher.take(self._delay.take(slots))
 
     def _ask(self, estimator: Estimator) -> Knowledge | None:
-        """Ask what the estimator knows, which must not take more than a tenth of the time."""
-        begin = time.monotonic()
-        if begin < self._asks_again:
+        """Ask what the estimator knows, which must not take more than a tenth of the file's time.
+
+        Of the file's, for what is told of a file must not depend on how fast it is read.
+        """
+        at = 0.0 if self.watcher is None else self.watcher.time
+        if at < self._asks_again:
             return None
+        begin = time.monotonic()
         knowledge = estimator.knowledge
-        self._asks_again = begin + _RARELY * (time.monotonic() - begin)
+        self._asks_again = at + _RARELY * (time.monotonic() - begin)
         return knowledge
 
     def _tell_head(self) -> None:
