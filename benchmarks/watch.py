@@ -27,7 +27,8 @@ import hyst
 from hyst.online.choice import estimator_for
 from hyst.online.watch.limits import Limits
 from hyst.online.watch.sample_clock import SampleClock
-from hyst.online.watch.watcher import Watcher, Window
+from hyst.online.watch.watcher import Watcher
+from hyst.online.watch.window import Window
 
 Array = NDArray[np.float64]
 

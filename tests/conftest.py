@@ -26,6 +26,15 @@ def measured_data() -> Path:
     return folder
 
 
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave out matplotlib's work on figures that a test does not look at, most of its time.
+
+    Figures are made as ever, only not laid out and turned into pixels.
+    """
+    monkeypatch.setattr("hyst.report.canvas._png_of", lambda figure: b"\x89PNG\r\n\x1a\n")
+
+
 @pytest.fixture(scope="session")
 def cases(measured_data: Path) -> Path:
     """Folder of the cases, each with the right answer in its README."""

@@ -78,6 +78,7 @@ def test_gradient_from_a_model(
 
 
 @pytest.mark.parametrize("column", ["regime", "slope"])
+@pytest.mark.usefixtures("undrawn")
 def test_a_column_tells_what_noise_hides(
     files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str], column: str
 ) -> None:
@@ -100,6 +101,7 @@ def test_a_column_tells_what_noise_hides(
     assert "nan" in (measured / "parameters.csv").read_text()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_weights_from_slopes_need_no_model(
     files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -121,6 +123,7 @@ def test_weights_from_slopes_need_no_model(
     assert "give DATA alone" in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_radii_that_the_law_made_worse_are_told(
     files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -133,6 +136,7 @@ def test_radii_that_the_law_made_worse_are_told(
     assert "worse" not in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_stopped_and_resumed_it_gives_the_same(
     files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -152,6 +156,7 @@ def test_stopped_and_resumed_it_gives_the_same(
     assert "leave out --gain with --resume" in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_start_within_the_record_sets_the_memory(
     files: tuple[Path, Path], tmp_path: Path
 ) -> None:

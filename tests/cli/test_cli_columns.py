@@ -14,6 +14,9 @@ from command_runs import STAGE, Run, describe, drive, write_csv
 
 import hyst
 
+# Pictures are looked at elsewhere.
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 U = drive(400)
 T = np.arange(U.size) * 0.01
 

@@ -12,6 +12,9 @@ from command_runs import drive, snapshot, write_csv
 
 import hyst
 
+# Pictures are looked at elsewhere.
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 COLUMNS = ["--input", "u", "--output", "y", "--rate", 1000]
 DYNAMICS = hyst.LinearDynamics.from_transfer_function([0.2], [1.0, -0.8], dt=1e-3)
 TRUE = DYNAMICS @ hyst.PrandtlIshlinskii([0.4, 0.2], [1.0, 3.0], p0=0.8)

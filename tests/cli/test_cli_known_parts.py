@@ -12,6 +12,9 @@ from command_runs import Run, write_csv
 import hyst
 from hyst.models import LinearDynamics
 
+# Pictures are looked at elsewhere.
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 DT = 1e-4
 W = 2.0 * np.pi * 200.0
 G = LinearDynamics.from_continuous([W * W], [1.0, 0.06 * W, W * W], DT, 3)

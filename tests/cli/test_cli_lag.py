@@ -11,6 +11,9 @@ from command_runs import Run, write_csv
 
 import hyst
 
+# Pictures are looked at elsewhere.
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 DT = 1e-3
 PLAYS = hyst.PrandtlIshlinskii(p=[0.4, 0.3], r=[0.1, 0.35], p0=0.8)
 

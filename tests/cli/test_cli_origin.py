@@ -11,6 +11,9 @@ from command_runs import STAGE, Run, describe, drive, write_csv
 import hyst
 from hyst.operators import data_hash
 
+# Pictures are looked at elsewhere.
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 COLUMNS = ("--input", "u", "--output", "y", "--time", "t")
 QUICK = ("--family", "pi", "--plays", 2, "--delay", 0)
 

@@ -11,6 +11,9 @@ import pytest
 import hyst
 from hyst.cli import main
 
+# Pictures are looked at elsewhere.
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 
 @pytest.fixture
 def recorded(tmp_path: Path) -> Path:

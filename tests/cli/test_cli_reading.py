@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 from command_runs import STAGE, Run, describe, drive
 
+# Pictures are looked at elsewhere.
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 COLUMNS = ("--input", "drive", "--output", "stroke")
 QUICK = ("--family", "pi", "--plays", "2", "--delay", "0", "-o", "out")
 

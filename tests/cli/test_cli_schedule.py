@@ -13,6 +13,9 @@ from command_runs import write_csv
 import hyst
 from reference import moving_plays
 
+# Pictures are looked at elsewhere.
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 HEADER = "drive [V],position [um]"
 COLUMNS = ["--input", "drive", "--output", "position", "--rate", 1000]
 OVER = ["--schedule", "20,35,50", "--schedule-name", "temperature", "--schedule-unit", "degC"]

@@ -15,6 +15,9 @@ import hyst
 from hyst.identification.result import identified_from_fit
 from hyst.operators import Verdict
 
+# Pictures are looked at elsewhere.
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 COLUMNS = ("--input", "u", "--output", "y", "--time", "t")
 QUICK = ("--family", "pi", "--plays", 2, "--delay", 0)
 UNFIT = Verdict("unfit", ("Hardly better than a line.", "Record loops of several amplitudes."))

@@ -12,6 +12,9 @@ from command_runs import Run
 import hyst
 from hyst.cli.identify import identify
 
+# Pictures are looked at elsewhere.
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 COLUMNS = ("--input", "u", "--output", "y", "--time", "t")
 OPTIONS = sorted({option for each in hyst.families.values() for option in each.options()})
 

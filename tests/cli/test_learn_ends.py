@@ -41,6 +41,7 @@ def test_a_page_and_a_figure_are_drawn(learn: Learn, folder: Path) -> None:
     assert "wrote learning.html in out" in lines
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_repetitions_that_get_worse_are_stopped_and_the_best_is_kept(
     learn: Learn, folder: Path
 ) -> None:

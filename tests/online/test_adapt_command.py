@@ -51,6 +51,7 @@ def test_writes_parameters_over_time_with_bands(
     assert found(path)[100:] == pytest.approx(TRUTH(path)[100:], abs=0.1)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_stopped_and_resumed_it_gives_the_same(files: tuple[Path, Path], tmp_path: Path) -> None:
     model, data = files
     lines = data.read_text().splitlines()
@@ -67,6 +68,7 @@ def test_stopped_and_resumed_it_gives_the_same(files: tuple[Path, Path], tmp_pat
     assert whole["state"][used] == second["state"][used]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_bad_input_is_one_sentence(
     files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -104,6 +106,7 @@ def test_readme_names_the_command_and_its_page() -> None:
     assert (root / "docs" / "online.md").exists()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_resuming_needs_no_model_and_refuses_another(
     files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -127,6 +130,7 @@ def test_resuming_needs_no_model_and_refuses_another(
     assert "give MODEL and DATA" in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_start_at_the_end_of_the_record_is_refused(
     files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -136,6 +140,7 @@ def test_a_start_at_the_end_of_the_record_is_refused(
     assert adapt(files, tmp_path / "out", "--start", "3998") == 0
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_it_says_when_what_is_left_is_no_noise(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -149,6 +154,7 @@ def test_it_says_when_what_is_left_is_no_noise(
     assert "the plant is no such model, or has changed, and the bands are too narrow" in told
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_record_of_which_little_can_be_used_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -66,6 +66,7 @@ def test_a_family_without_an_estimator_of_its_own_is_followed_by_scale_and_offse
 
 
 @pytest.mark.parametrize("family", ["pi", "preisach", "jiles-atherton", "rdpi", "hammerstein"])
+@pytest.mark.usefixtures("undrawn")
 def test_only_scale_and_offset_of_any_family(
     family: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -82,6 +83,7 @@ def test_only_scale_and_offset_of_any_family(
     assert estimator.parameters == pytest.approx([1.2, -0.1], abs=1e-9)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_only_some_constants_of_plays(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     hyst.PrandtlIshlinskii([0.1, 0.1], [1.0, 3.0], 0.2).save(folder / "model.json")
     assert adapt(folder, "--only", "p0,r") == 0
@@ -91,6 +93,7 @@ def test_only_some_constants_of_plays(folder: Path, capsys: pytest.CaptureFixtur
     assert "held" not in (table["p0"], table["r[1]"], table["r[2]"])
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_swing_that_tells_no_scale_is_told(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -133,6 +136,7 @@ def test_the_guard_writes_what_it_would_have_done(
     assert np.std(values[2000:, 2]) < 0.2 * np.std(frozen[2000:])
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_guarded_run_goes_on_where_it_stopped(folder: Path) -> None:
     lines = (folder / "data.csv").read_text().splitlines()
     whole = folder / "data.csv"
@@ -151,6 +155,7 @@ def test_a_guarded_run_goes_on_where_it_stopped(folder: Path) -> None:
     assert once["settings"]["judgement"] == twice["settings"]["judgement"]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_scale_and_offset_go_on_where_they_stopped(folder: Path) -> None:
     lines = (folder / "data.csv").read_text().splitlines()
     assert adapt(folder, "--memory", "0.2", out="whole") == 0
@@ -196,6 +201,7 @@ def test_bad_input_is_one_sentence(
     assert not (folder / "out").exists()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_guard_of_what_has_no_inverse_is_refused(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

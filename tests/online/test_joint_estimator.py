@@ -176,9 +176,10 @@ def test_absurd_input_does_not_enter_the_range() -> None:
 def test_it_restarts_from_its_own_estimate_on_the_bounds() -> None:
     rng = np.random.default_rng(3)
     estimator = JointEstimator(FIVE_PLAYS, memory=0.5, dt=DT)
+    other = JointEstimator(FIVE_PLAYS, dt=DT)
     for u_k in np.cumsum(rng.normal(0.0, 3.0, 3000)).tolist():
         estimator.update(u_k, -3.0 * u_k)
-        JointEstimator(FIVE_PLAYS, dt=DT).restart(estimator.model)  # raises if it is refused
+        other.restart(estimator.model)  # raises if it is refused
     slopes = np.cumsum(estimator.parameters[:6])
     assert slopes.min() == pytest.approx(estimator.settings["least_slope"], rel=1e-6)
 

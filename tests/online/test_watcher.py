@@ -16,7 +16,8 @@ from hyst.online.watch.delay_line import DelayLine
 from hyst.online.watch.limits import Limits
 from hyst.online.watch.sample_clock import SLOT, SampleClock, sample_time_of
 from hyst.online.watch.tracker import Tracker
-from hyst.online.watch.watcher import Watcher, Window
+from hyst.online.watch.watcher import Watcher
+from hyst.online.watch.window import Window
 from hyst.operators import ModelDescription, Operator
 
 Array = NDArray[np.float64]

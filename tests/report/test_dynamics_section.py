@@ -95,6 +95,7 @@ def test_other_families_have_no_such_table() -> None:
     assert hyst.report.dynamics_table(plain).rows == ()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_drive_that_determines_no_impulse_response_has_none_in_the_report(
     found: tuple[IdentifiedHammerstein, Record],
 ) -> None:

@@ -97,34 +97,45 @@ def found(record: hyst.Record, kept: hyst.Record) -> Identified:
     return hyst.identify(record, plays=2, delay=0, validation=kept)
 
 
-def test_all_files_are_written(
-    found: Identified, record: hyst.Record, kept: hyst.Record, tmp_path: Path
-) -> None:
-    files = write_report(found, record, kept, tmp_path / "out")
-    assert files == tuple(tmp_path / "out" / name for name in FILES)
-    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == sorted(FILES)
-    assert hyst.load(tmp_path / "out" / "model.json") == found.model
-    numbers = json.loads((tmp_path / "out" / "metrics.json").read_text())
+@pytest.fixture(scope="module")
+def folder(
+    found: Identified,
+    record: hyst.Record,
+    kept: hyst.Record,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Path:
+    """The folder of one report, which several tests look at."""
+    out = tmp_path_factory.mktemp("report") / "out"
+    files = write_report(found, record, kept, out, sources=["a.csv", "b.csv"])
+    assert files == tuple(out / name for name in FILES)
+    return out
+
+
+@pytest.fixture(scope="module")
+def page(folder: Path) -> str:
+    return (folder / "report.html").read_text(encoding="utf-8")
+
+
+def test_all_files_are_written(found: Identified, folder: Path) -> None:
+    assert sorted(path.name for path in folder.iterdir()) == sorted(FILES)
+    assert hyst.load(folder / "model.json") == found.model
+    numbers = json.loads((folder / "metrics.json").read_text())
     assert numbers["metrics"] == found.to_dict()["metrics"]
     assert len(numbers["parameters"]) == len(found.parameter_names)
     for name in PICTURES:
-        hold_to_be_a_picture((tmp_path / "out" / name).read_bytes())
+        hold_to_be_a_picture((folder / name).read_bytes())
 
 
 def test_the_same_result_gives_the_same_files(
-    found: Identified, record: hyst.Record, tmp_path: Path
+    found: Identified, record: hyst.Record, kept: hyst.Record, folder: Path
 ) -> None:
-    one = write_report(found, record, (), tmp_path / "out")
-    contents = [path.read_bytes() for path in one]
-    again = write_report(found, record, (), tmp_path / "out")
+    contents = [(folder / name).read_bytes() for name in FILES]
+    again = write_report(found, record, kept, folder, sources=["a.csv", "b.csv"])
     assert [path.read_bytes() for path in again] == contents
 
 
-def test_the_page_needs_nothing_but_itself(
-    found: Identified, record: hyst.Record, kept: hyst.Record, tmp_path: Path
-) -> None:
-    *_, page = write_report(found, record, kept, tmp_path / "out")
-    reader = Reader(page.read_text(encoding="utf-8"))
+def test_the_page_needs_nothing_but_itself(folder: Path, page: str) -> None:
+    reader = Reader(page)
     names = {tag for tag, _ in reader.tags}
     assert not names & {"script", "link", "iframe", "object", "embed", "a", "base", "form"}
     images = [attributes["src"] or "" for tag, attributes in reader.tags if tag == "img"]
@@ -133,20 +144,16 @@ def test_the_page_needs_nothing_but_itself(
     for source, name in zip(images, PICTURES, strict=True):
         assert source.startswith(prefix)
         content = base64.b64decode(source.removeprefix(prefix), validate=True)
-        assert content == (tmp_path / "out" / name).read_bytes()
+        assert content == (folder / name).read_bytes()
     for tag, attributes in reader.tags:
         assert not {"href", "onload", "onerror", "style"} & set(attributes), tag
         assert tag == "img" or "src" not in attributes
-    text = page.read_text(encoding="utf-8")
     for outside in ("http:", "https:", "url(", "@import", "//cdn"):
-        assert outside not in text
+        assert outside not in page
 
 
-def test_the_page_says_what_was_found(
-    found: Identified, record: hyst.Record, kept: hyst.Record, tmp_path: Path
-) -> None:
-    *_, page = write_report(found, record, kept, tmp_path / "out", sources=["a.csv", "b.csv"])
-    words = Reader(page.read_text(encoding="utf-8")).words
+def test_the_page_says_what_was_found(found: Identified, folder: Path, page: str) -> None:
+    words = Reader(page).words
     training, validation = found.metrics["training"], found.metrics["validation"]
     expected = [
         "Hysteresis of stroke over drive",
@@ -159,7 +166,7 @@ def test_the_page_says_what_was_found(
         "b.csv",
         "600",
         "0.01 s",
-        f"hyst compensate {tmp_path}/out/model.json",
+        f"hyst compensate {folder}/model.json",
         *found.parameter_names,
         *(each.family for each in found.candidates),
     ]
@@ -169,15 +176,8 @@ def test_the_page_says_what_was_found(
         assert sentence in words
 
 
-def test_the_chosen_candidate_stands_out(
-    found: Identified, record: hyst.Record, tmp_path: Path
-) -> None:
-    *_, page = write_report(found, record, (), tmp_path / "out")
-    rows = [
-        tag
-        for tag, attributes in Reader(page.read_text()).tags
-        if attributes.get("class") == "marked"
-    ]
+def test_the_chosen_candidate_stands_out(page: str) -> None:
+    rows = [tag for tag, attributes in Reader(page).tags if attributes.get("class") == "marked"]
     assert rows == ["tr"]
 
 
@@ -218,6 +218,7 @@ def test_every_family_has_its_equation_and_pictures(
         hold_to_be_a_picture((tmp_path / "out" / name).read_bytes())
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_several_records_and_validations(tmp_path: Path) -> None:
     records = [stage_record(seed=seed, samples=300) for seed in (1, 2)]
     kept = [stage_record(seed=seed, samples=250) for seed in (3, 4)]
@@ -228,6 +229,7 @@ def test_several_records_and_validations(tmp_path: Path) -> None:
         assert label in words
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_delay_is_explained_and_drawn(tmp_path: Path) -> None:
     record = stage_record()
     late = hyst.Record(record.u, np.concatenate([[record.y[0]] * 3, record.y[:-3]]), record.dt)
@@ -250,14 +252,13 @@ def test_a_perfect_model_and_a_model_without_inverse(tmp_path: Path) -> None:
 
 
 def test_a_banner_and_a_further_section(
-    found: Identified, record: hyst.Record, tmp_path: Path
+    found: Identified, record: hyst.Record, kept: hyst.Record, folder: Path, tmp_path: Path
 ) -> None:
-    plain = write_report(found, record, (), tmp_path / "plain")
-    png = (tmp_path / "plain" / "loop.png").read_bytes()
+    png = (folder / "loop.png").read_bytes()
     table = Table("Of something", ("a", "b"), (("1", "2"),))
     section = Section("More", ("Said here.",), table, "more.png", png, "Seen here.")
     files = write_report(
-        found, record, (), tmp_path / "out", banner="SIMULATED", sections=[section]
+        found, record, kept, tmp_path / "out", banner="SIMULATED", sections=[section]
     )
     assert files[-1] == tmp_path / "out" / "more.png"
     assert files[-1].read_bytes() == png
@@ -265,6 +266,5 @@ def test_a_banner_and_a_further_section(
     for part in ("SIMULATED", "More", "Said here.", "Of something", "Seen here."):
         assert part in words
     # The banner is in every picture too.
-    assert len(plain) == len(FILES)
     for name in PICTURES:
-        assert (tmp_path / "out" / name).read_bytes() != (tmp_path / "plain" / name).read_bytes()
+        assert (tmp_path / "out" / name).read_bytes() != (folder / name).read_bytes()

@@ -18,6 +18,7 @@ PLAYS = hyst.PrandtlIshlinskii([0.5], [1.0], p0=1.0)
 LATE = hyst.LinearDynamics.from_transfer_function([0.5], [1.0, -0.5], dt=1e-3)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_rate_dependent_model_is_named_explained_and_led_on(tmp_path: Path) -> None:
     stage = hyst.RateDependentPrandtlIshlinskii([0.4], [2.0], 2e-3, 1e-3, 1.0)
     records = []
@@ -34,6 +35,7 @@ def test_a_rate_dependent_model_is_named_explained_and_led_on(tmp_path: Path) ->
     assert "--method trajectory -o command.csv" in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_hammerstein_model_without_plays_explains_dynamics_and_no_plays(tmp_path: Path) -> None:
     u = hyst.signals.multisine(1e-3, 2000, amplitude=1.0, periods=2).u
     dynamics = hyst.LinearDynamics.from_zeros_poles_gain([], [0.5], 0.5, 1e-3)

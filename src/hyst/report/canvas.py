@@ -67,22 +67,27 @@ def drawn(draw: Callable[Parameters, Figure]) -> Callable[Parameters, bytes]:
 
     @functools.wraps(draw)
     def draw_png(*args: Parameters.args, **kwargs: Parameters.kwargs) -> bytes:
-        content = io.BytesIO()
         with mpl.rc_context(_LOOK), warnings.catch_warnings():
             # A sign the font does not have, in a name from the user's file, is drawn as a box.
             warnings.filterwarnings("ignore", message="Glyph .* missing")
             figure = draw(*args, **kwargs)
             _number_logarithmic_axes(figure)
-            FigureCanvasAgg(figure)
-            # Laid out here, once: savefig would draw everything a second time for it.
-            layout = figure.get_layout_engine()
-            if layout is not None:
-                layout.execute(figure)
-            figure.set_layout_engine("none")
-            figure.savefig(content, format="png", metadata={"Software": None})
-        return content.getvalue()
+            return _png_of(figure)
 
     return draw_png
+
+
+def _png_of(figure: Figure) -> bytes:
+    """Lay a figure out and give its pixels."""
+    content = io.BytesIO()
+    FigureCanvasAgg(figure)
+    # Laid out here, once: savefig would draw everything a second time for it.
+    layout = figure.get_layout_engine()
+    if layout is not None:
+        layout.execute(figure)
+    figure.set_layout_engine("none")
+    figure.savefig(content, format="png", metadata={"Software": None})
+    return content.getvalue()
 
 
 class _PlainNumbers(LogFormatter):

@@ -20,7 +20,7 @@ from hyst.cli.watch.report import Report, json_of, json_of_event, line_of, line_
 from hyst.cli.watch.session import Session
 from hyst.cli.watch.sources import Source
 from hyst.online.alarms import AlarmEvent
-from hyst.online.watch.watcher import Window
+from hyst.online.watch.window import Window
 
 _PAUSE = 0.05
 _SAVED_EVERY = 60.0

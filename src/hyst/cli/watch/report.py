@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.online.alarms import AlarmEvent
-from hyst.online.watch.watcher import Window
+from hyst.online.watch.window import Window
 
 Array = NDArray[np.float64]
 

@@ -19,7 +19,8 @@ from hyst.online.knowledge import Knowledge
 from hyst.online.watch.delay_line import DelayLine
 from hyst.online.watch.limits import Limits
 from hyst.online.watch.sample_clock import SampleClock, sample_time_of
-from hyst.online.watch.watcher import Watcher, Window
+from hyst.online.watch.watcher import Watcher
+from hyst.online.watch.window import Window
 
 # Rows by which the sample time is found.
 _ROWS = 50

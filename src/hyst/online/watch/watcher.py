@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+<<<<<<< HEAD
 from dataclasses import dataclass
+=======
+from typing import TypeGuard
+>>>>>>> wt-trim
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +21,7 @@ from hyst.online.watch.asking import at_better_fit, knowledge_of
 from hyst.online.watch.limits import RULES, Limits
 from hyst.online.watch.sample_clock import SLOT, Slots
 from hyst.online.watch.tracker import Followed, Tracker
+from hyst.online.watch.window import Window
 from hyst.operators import Operator
 
 Array = NDArray[np.float64]
@@ -36,6 +41,7 @@ _COUNTED = {
 }
 
 
+<<<<<<< HEAD
 @dataclass(frozen=True, eq=False)
 class Window:
     """What a window of samples says.
@@ -80,6 +86,17 @@ class Window:
     counts: dict[str, int]
     events: tuple[AlarmEvent, ...]
     active: tuple[str, ...]
+=======
+def knowledge_of(estimator: Estimator) -> Knowledge:
+    """Ask an estimator what it knows, whatever that costs.
+
+    Parameters
+    ----------
+    estimator
+        Any.
+    """
+    return estimator.knowledge
+>>>>>>> wt-trim
 
 
 class Watcher:
