@@ -65,12 +65,30 @@ class AlongTheMotion:
     rate_limit: float | None
 
     def output(self, u: Array, past: Array | None) -> Array:
-        """Give what the model makes of a command, shape (N,), after inputs it has passed."""
+        """Give what the model makes of a command, shape (N,).
+
+        Parameters
+        ----------
+        u
+            The command, shape (N,).
+        past
+            Inputs it has passed before, shape (M,); None for none.
+        """
         state = None if past is None else self.model.run(past)[1]
         return self.model.run(u, state)[0]
 
     def command(self, v: Array, past: Array | None, despite_verdict: bool = True) -> Made:
-        """Give the command for which the model gives v, shape (N,), or as near as limits allow."""
+        """Give the command for which the model gives v, or as near as limits allow.
+
+        Parameters
+        ----------
+        v
+            Wanted of the model, shape (N,).
+        past
+            Inputs it has passed before, shape (M,); None for none.
+        despite_verdict
+            As of ``invert_trajectory``.
+        """
         if self.method == "exact" and self.rate_limit is not None:
             return self._sample_by_sample(v, past)
         own = self.method in ("preview", "trajectory")
@@ -131,6 +149,11 @@ def _slowed(u: Array, step: float, last: float | None) -> tuple[Array, int]:
 
 def suited_method(model: Operator) -> str:
     """Choose how a model is inverted.
+
+    Parameters
+    ----------
+    model
+        Any operator.
 
     Raises
     ------

@@ -88,11 +88,25 @@ class Learnt:
         return replace(self, pairs=())
 
     def step(self, error: Array, noise: float, gain: float, periodic: bool) -> Step:
-        """Give the change that an error asks for."""
+        """Give the change that an error asks for.
+
+        Parameters
+        ----------
+        error, noise, gain, periodic
+            As of ``robust_step``.
+        """
         return robust_step(error, self.linear, self.doubt, noise, gain, periodic)
 
     def output(self, v: Array, periodic: bool) -> Array:
-        """Give what the linear part makes of v, shape (N,)."""
+        """Give what the linear part makes of v, shape (N,).
+
+        Parameters
+        ----------
+        v
+            Shape (N,).
+        periodic
+            Whether it goes on at its end as at its beginning.
+        """
         own = v - v[0]
         ends = np.zeros(0) if periodic else _led_back(own)
         whole = np.concatenate([own, ends])

@@ -63,14 +63,26 @@ _MOST_BINS = 4000
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """What the model was told to give, and what was measured; both shape (N,)."""
+    """What the model was told to give, and what was measured.
+
+    Parameters
+    ----------
+    v, y
+        Shape (N,).
+    """
 
     v: Array
     y: Array
 
 
 def gain_over(pairs: list[Pair], noise: float) -> tuple[float, float]:
-    """Give the criterion of a gain alone, and the gain."""
+    """Give the criterion of a gain alone, and the gain.
+
+    Parameters
+    ----------
+    pairs, noise
+        As of ``fit_linear_part``.
+    """
     found = _fitted(pairs, noise, 0, 1, 0)
     return (np.inf, 1.0) if found is None else (found[0], float(found[1].b[0]))
 
@@ -244,6 +256,13 @@ def doubt_of(pairs: list[Pair], linear: LinearPart, noise: float) -> tuple[Array
     """Give frequencies, in cycles a sample, and how far the linear part may be wrong there.
 
     Where a mode is seen, its shape is believed around it.
+
+    Parameters
+    ----------
+    pairs, noise
+        As of ``fit_linear_part``.
+    linear
+        What was found.
     """
     frequency, doubt = _own_doubt(pairs, linear, noise)
     reach = float(linear.modes().max(initial=0.0)) * _BEYOND

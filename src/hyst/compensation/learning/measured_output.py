@@ -27,7 +27,15 @@ _SHIFT_GAIN = 0.25
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """Output and applied input of one repetition, both shape (N,)."""
+    """Output and applied input of one repetition.
+
+    Parameters
+    ----------
+    y, u
+        Shape (N,).
+    is_told
+        Whether the input was given, and is not the command.
+    """
 
     y: Array
     u: Array
@@ -86,6 +94,13 @@ def _same_length(signal: Array, name: str, wanted: int) -> None:
 
 def refuse_at_rest(y: Array, reference: Array, u: Array, noise: float) -> None:
     """Refuse an output that does not move while it should.
+
+    Parameters
+    ----------
+    y, reference, u
+        Measured, wanted, applied, shape (N,).
+    noise
+        Rms of what does not repeat.
 
     Raises
     ------

@@ -33,5 +33,11 @@ def noise_in(error: Array) -> float:
 
 
 def noise_between(first: Array, second: Array) -> float:
-    """Give the rms of what differs between two repetitions of one command, of each of them."""
+    """Give the rms of what differs between two repetitions of one command, of each of them.
+
+    Parameters
+    ----------
+    first, second
+        Outputs, shape (N,).
+    """
     return float(np.sqrt(np.mean((first - second) ** 2) / 2.0))
