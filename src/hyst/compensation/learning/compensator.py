@@ -17,8 +17,10 @@ from hyst.compensation.learning.contraction import Contraction, given_slopes
 from hyst.compensation.learning.learnt import Learnt
 from hyst.compensation.learning.measured_output import (
     as_measured,
+    as_reference,
     delay_or_refusal,
     refuse_at_rest,
+    refuse_reversed,
 )
 from hyst.compensation.learning.repeated_motion import SAVED_AS_THEY_ARE, RepeatedMotion
 from hyst.compensation.learning.repetition import Repetition
@@ -126,7 +128,7 @@ class LearningCompensator(RepeatedMotion):
         self._before = None if history is None else finite_vector(history, "history")
         self._given = None if slopes is None else given_slopes(slopes)
         self._learnt = Learnt()
-        self._begin(finite_vector(y_ref, "y_ref"))
+        self._begin(as_reference(y_ref))
 
     @property
     def model(self) -> Operator:
@@ -194,7 +196,7 @@ class LearningCompensator(RepeatedMotion):
         numpy.ndarray
             The first command.
         """
-        wanted = self._y_ref if y_ref is None else finite_vector(y_ref, "y_ref")
+        wanted = self._y_ref if y_ref is None else as_reference(y_ref)
         self._learnt = Learnt() if forget else self._learnt.without_pairs()
         self._begin(wanted)
         return self._command
@@ -228,6 +230,8 @@ class LearningCompensator(RepeatedMotion):
         late = self._learnt.linear.delay
         if self._is_foreseen(v):
             late += delay_or_refusal(expected, measured.y, noise, bool(self._history))
+        if not late and not self._history:
+            refuse_reversed(measured.y, expected)
         notes = list[str]()
         trial, told = self._trial(measured, v, expected)
         notes += told

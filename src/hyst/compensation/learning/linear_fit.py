@@ -48,8 +48,11 @@ _BEYOND, _CAUTION = 1.6, 2.0
 _SURE = 0.06
 """No response is known better."""
 
+_SMEARED = 2.0
+"""Sum of the sizes of weights over their sum, at most, without poles."""
+
 _ROUNDS = 6
-_TINY, _SINGULAR = 1e-150, 1e-12
+_TINY, _SINGULAR, _ROUNDING = 1e-150, 1e-12, 1e-9
 
 _AT_REST = 0.1
 """By what a plant at rest is held to depart from the model; no record says it of rest itself."""
@@ -101,11 +104,12 @@ def fit_linear_part(
     delays
         To try, samples.
     """
+    bins = _task(pairs, noise, 0, 1, 0).z.size
     found = [
         each
         for delay in delays
         for poles, zeros in _SIZES
-        for each in (_fitted(pairs, noise, poles, zeros, delay),)
+        for each in (_fitted(pairs, noise, poles, zeros, delay, bins),)
         if each is not None
     ]
     for score, linear in sorted(found, key=lambda each: each[0]):
@@ -132,9 +136,12 @@ def _is_seen(linear: LinearPart, pairs: list[Pair], noise: float) -> bool:
 
 
 def _fitted(
-    pairs: list[Pair], noise: float, poles: int, zeros: int, delay: int
+    pairs: list[Pair], noise: float, poles: int, zeros: int, delay: int, bins: int = 0
 ) -> tuple[float, LinearPart] | None:
-    """Fit one size; its information criterion beside it."""
+    """Fit one size; its information criterion beside it, for so many bins where they are given.
+
+    A delay leaves fewer bins, and the logarithm of a size in any unit is no reason for that.
+    """
     task = _task(pairs, noise, poles, zeros, delay)
     if 2 * task.z.size * len(pairs) < 4 * task.count:
         return None
@@ -158,8 +165,11 @@ def _fitted(
         float(np.sum(2.0 * np.log(own) + (rest / own) ** 2))
         for rest, own in zip(rests, size, strict=True)
     )
+    cost *= (bins or task.z.size) / task.z.size
     shown = 2 * sum(int(np.count_nonzero(missed * each > task.floor)) for each in around)
     n, k = poles, poles + zeros
+    if not n and np.abs(theta[:k]).sum() > _SMEARED * abs(theta[:k].sum()):
+        return None  # a differentiator: the delay was taken too large
     if shown < 2 * k:
         cost, shown = cost + (_NOT_SHOWN if n else 0.0), 2
     score = cost + _PENALTY * task.count * np.log(2.0 + shown)
@@ -194,7 +204,9 @@ class _Task:
 
 
 def _task(pairs: list[Pair], noise: float, poles: int, zeros: int, delay: int) -> _Task:
-    floor = _CLEAR * noise * float(np.sqrt(pairs[0].v.size))
+    size = float(np.sqrt(pairs[0].v.size))
+    largest = max(float(np.std(each.y)) for each in pairs)
+    floor = max(_CLEAR * noise * size, _ROUNDING * largest * size)
     spectra = [_spectrum(each, delay) for each in pairs]
     used = _shown(spectra, floor)
     v, y = [each[1][used] for each in spectra], [each[2][used] for each in spectra]
