@@ -357,3 +357,25 @@ def test_a_delay_is_learnt_in_any_unit():
         scaled.update(unit * Plant(delay=24, seed=seed).measured(scaled.command))
     # Sums of logarithms are rounded differently in another unit; nothing else is.
     assert np.abs(scaled.command - own.command).max() < 1e-12
+
+
+@pytest.mark.parametrize("y_ref", [Y_REF, TRIANGLE], ids=["sine", "triangle"])
+def test_spikes_of_the_sensor_are_told_and_not_learnt(y_ref):
+    draws = np.random.default_rng(21)
+    plant = Plant(seed=21)
+    learning = LearningCompensator(MODEL, y_ref, dt=DT)
+    for _ in range(4):
+        y = plant.measured(learning.command)
+        y[draws.integers(0, N, 3)] += draws.choice([-20.0, 20.0], 3)
+        learning.update(y)
+    assert "3 samples of the measured output jump by up to" in learning.history[0].note
+    # As without spikes: 1.5 times the noise after three repetitions.
+    assert learning.history[3].error_rms < 1.5 * NOISE
+
+
+def test_a_motion_that_jumps_has_no_spikes():
+    y_ref = np.where((np.arange(N) > 300) & (np.arange(N) < 303), 3.0, 0.0)
+    y_ref[500:] = np.tile([0.0, 0.0, 2.0, 0.0, 0.0], 100)
+    learning = LearningCompensator(Affine(1.0), y_ref)
+    learning.update(np.roll(0.9 * y_ref, 1))
+    assert "jump" not in learning.history[0].note

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from dataclasses import replace
 from typing import Any, final
 
 import numpy as np
@@ -24,6 +25,7 @@ from hyst.compensation.learning.measured_output import (
 )
 from hyst.compensation.learning.repeated_motion import SAVED_AS_THEY_ARE, RepeatedMotion
 from hyst.compensation.learning.repetition import Repetition
+from hyst.compensation.learning.spikes import without_spikes
 from hyst.compensation.learning.states import (
     status_of,
 )
@@ -224,15 +226,17 @@ class LearningCompensator(RepeatedMotion):
         """
         measured = as_measured(y_measured, u_applied, self._command, self._dt)
         v = self._along.output(measured.u, self._past)
+        expected = self._expected(v)
+        clean = without_spikes(measured.y, expected)
+        measured = replace(measured, y=clean.y)
         noise = self._noise_of(measured)
         refuse_at_rest(measured.y, self._y_ref, measured.u, noise)
-        expected = self._expected(v)
         late = self._learnt.linear.delay
         if self._is_foreseen(v):
             late += delay_or_refusal(expected, measured.y, noise, bool(self._history))
         if not late and not self._history:
             refuse_reversed(measured.y, expected)
-        notes = list[str]()
+        notes = clean.notes
         trial, told = self._trial(measured, v, expected)
         notes += told
         self._noise = noise
