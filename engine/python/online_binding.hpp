@@ -6,6 +6,7 @@
 namespace hyst {
 
 void bind_online_estimation(nanobind::module_ &module);
+void bind_radius_estimation(nanobind::module_ &module);
 void bind_scale_estimation(nanobind::module_ &module);
 
 }  // namespace hyst

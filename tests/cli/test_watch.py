@@ -6,7 +6,6 @@ import contextlib
 import csv
 import io
 import itertools
-import json
 import os
 import signal
 import subprocess
@@ -14,46 +13,34 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from command_runs import STAGE, Ended, Run, describe
+from command_runs import STAGE, Ended, Run
+from watch_runs import (
+    COLUMNS,
+    DT,
+    END,
+    NOISE,
+    alarms,
+    counts,
+    lines,
+    reports,
+    saved_stage,
+    strokes,
+    text_of,
+)
 
 import hyst
 from hyst.cli.watch.sources import GrowingFile, Piece
 
-DT = 0.01
-NOISE = 0.005
-COLUMNS = ("--input", "drive", "--output", "stroke")
-END = ("--stop-after", "at-end")
-HEADER = "t [s],drive [V],stroke [um]\n"
-
-
-def strokes(seconds: float, gain: float = 1.0, start: float = 0.0) -> list[str]:
-    """Lines of full strokes of the stage, two a second, with a little noise."""
-    t = np.arange(round(start / DT), round((start + seconds) / DT)) * DT
-    u = 2.0 - 2.0 * np.cos(2.0 * np.pi * 2.0 * t)
-    y = gain * STAGE(u) + np.random.default_rng(len(t)).normal(0.0, NOISE, t.size)
-    return [f"{a:.2f},{b:.6f},{c:.6f}\n" for a, b, c in zip(t, u, y, strict=True)]
-
 
 @pytest.fixture
 def model(folder: Path) -> Path:
-    """The stage's model with its range and error, without delay."""
-    u = np.array([0.0, 4.0, 0.0])
-    about = describe(
-        STAGE,
-        delay=0,
-        errors={"training": {"rms": NOISE}},
-        output_low=float(STAGE(u).min()),
-        output_high=float(STAGE(u).max()),
-    )
-    path = folder / "model.json"
-    STAGE.save(path, about)
-    return path
+    """The stage's model."""
+    return saved_stage(folder)
 
 
 @pytest.fixture
@@ -122,26 +109,6 @@ def cut_off(text: str) -> Callable[[Path], object]:
         path.write_text(text)
 
     return step
-
-
-def lines(ended: Ended) -> list[dict[str, object]]:
-    return [json.loads(line) for line in ended.out.splitlines()]
-
-
-def reports(ended: Ended) -> list[dict[str, object]]:
-    return [each for each in lines(ended) if "estimate" in each]
-
-
-def alarms(ended: Ended) -> list[str]:
-    return [each["alarm"] for each in lines(ended) if each.get("event") == "start"]
-
-
-def counts(ended: Ended) -> dict[str, int]:
-    return reports(ended)[-1]["counts"]
-
-
-def text_of(*parts: list[str]) -> str:
-    return HEADER + "".join(line for part in parts for line in part)
 
 
 def test_a_file_that_grows_is_followed_line_by_torn_line(grown: Callable[..., Ended]) -> None:
@@ -342,61 +309,3 @@ def test_silence_is_an_alarm_and_ends_with_the_next_line(grown: Callable[..., En
     ended = grown([add(text_of(rows[:400])), *wait], "--silence", 0.05)
     found = [each for each in lines(ended) if each.get("alarm") == "no data"]
     assert [each["event"] for each in found][:2] == ["start", "end"]
-
-
-REFUSALS = {
-    "both clocks": (["--rate", 100, "--time", "t"], "give one"),
-    "no clock": ([], "neither of --rate and --time"),
-    "another column": (["--time", "when"], "no column 'when'"),
-    "end": (["--time", "t", "--stop-after", "soon"], "give seconds, or at-end"),
-    "every": (["--time", "t", "--every", 0], "--every"),
-    "tolerance": (["--time", "t", "--tolerance", -1], "tolerance"),
-    "only": (["--time", "t", "--only", "p[9]"], "p[9]"),
-    "log": (["--time", "t", "--log", "model.json/x"], "model.json"),
-    "resume": (["--time", "t", "--resume", "model.json"], "holds no estimator"),
-}
-
-
-@pytest.mark.parametrize("name", REFUSALS)
-def test_what_makes_no_sense_is_refused(
-    name: str, refused: Callable[..., str], model: Path, folder: Path
-) -> None:
-    (folder / "run.csv").write_text(text_of(strokes(2.0)))
-    options, why = REFUSALS[name]
-    assert why in refused("watch", "model.json", "run.csv", *COLUMNS, *END, *options)
-
-
-def test_other_units_rates_and_models_are_refused(
-    refused: Callable[..., str], run: Run, model: Path, folder: Path
-) -> None:
-    path = folder / "run.csv"
-    path.write_text(text_of(strokes(2.0)).replace("[V]", "[mm]"))
-    how = ("watch", "model.json", "run.csv", *COLUMNS, "--time", "t", *END)
-    assert "'mm'" in refused(*how)
-    path.write_text(text_of(strokes(2.0)))
-    assert run(*how, "--log", "out").code in (0, 3)
-    hyst.PrandtlIshlinskii([0.5], [0.5], 1.0).save(folder / "other.json")
-    resume = ("--resume", "out/estimator.json")
-    said = refused("watch", "other.json", *how[2:], *resume)
-    assert "another model" in said
-    path.write_text(text_of([line.replace(",", "0,", 1) for line in strokes(2.0)]))
-    assert "0.01" in refused(*how[:-4], "--rate", 50, *END, *resume)
-    assert "folder" in refused("watch", "model.json", ".", *COLUMNS, "--rate", 100)
-
-
-def test_a_model_with_a_delay_is_compared_with_the_input_before(
-    run: Run, folder: Path, model: Path
-) -> None:
-    about = hyst.load(model).description
-    t = np.arange(1000) * DT
-    u = 2.0 - 2.0 * np.cos(2.0 * np.pi * 2.0 * t)
-    y = np.concatenate([np.full(3, STAGE(u)[0]), STAGE(u)[:-3]])
-    rows = [f"{a:.2f},{b:.9f},{c:.9f}\n" for a, b, c in zip(t, u, y, strict=True)]
-    (folder / "run.csv").write_text(text_of(rows))
-    how = ("--time", "t", "--json", *END)
-    STAGE.save(folder / "late.json", replace(about, delay=3))
-    late = run("watch", "late.json", "run.csv", *COLUMNS, *how)
-    assert late.code == 0, late
-    # Nine digits in the file and no noise: what is left is rounding.
-    assert reports(late)[-1]["model_error"] < 1e-8
-    assert run("watch", "model.json", "run.csv", *COLUMNS, *how).code == 3

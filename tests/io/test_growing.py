@@ -157,7 +157,7 @@ def test_few_rows_are_read_at_the_end_only() -> None:
 def test_random_bytes_depend_on_no_cut(seed: int) -> None:
     """Whatever comes after the head: the same rows, however it is cut, and no crash."""
     rng = np.random.default_rng(seed)
-    pool = np.frombuffer(b"0123456789.,;-+eE \t\r\n\n\n#\"nauy\xb5\xff", dtype=np.uint8)
+    pool = np.frombuffer(b'0123456789.,;-+eE \t\r\n\n\n#"nauy\xb5\xff', dtype=np.uint8)
     junk = rng.choice(pool, 3000).tobytes()
     text = PLAIN.encode() + junk + b"\n50,25,12\n"
     found = []

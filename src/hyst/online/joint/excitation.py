@@ -115,6 +115,25 @@ def watch(p0: float, p: Array, r: Array, age: Array, patience: float, swing: flo
     )
 
 
+def excitation_of(theta: Array, age: Array, patience: float, swing: float) -> Excitation:
+    """Say what is excited of an estimate.
+
+    Parameters
+    ----------
+    theta
+        The estimate, shape (m,), in the core's order.
+    age, patience, swing
+        As for ``watch``.
+
+    Returns
+    -------
+    Excitation
+    """
+    n = age.size
+    p0, p, r = float(theta[0]), theta[1 : n + 1], theta[n + 1 : 2 * n + 1]
+    return watch(p0, p, r, age, patience, swing)
+
+
 def _of_one(p: float, r: float, is_idle: bool, swing: float) -> PlayExcitation:
     if p == 0.0:
         return PlayExcitation(r, True, "its weight is 0, so its radius does not show")

@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst import _engine
+
+# Places of the scalars in the state, from "scalars" on, as joint_search.h has them.
+_TRIALS, _REPLACEMENTS, _SQUARE = 5, 6, 15
 
 _MOST_CORRELATION = 0.5
 _NEGLIGIBLE = 1e-4
@@ -53,3 +62,31 @@ class Innovation:
                 f"{self.correlation:.2f}), so model or estimate are wrong"
             )
         return f"errors of {self.rms:.4g} rms, as noise (correlation {self.correlation:.2f})"
+
+
+def innovation_of(
+    core: _engine.JointEstimation, state: NDArray[np.float64], loop_height: float, gain: float
+) -> Innovation:
+    """Say what an estimate leaves unexplained.
+
+    Parameters
+    ----------
+    core, state
+        The engine and its state.
+    loop_height
+        Height of the widest loop the estimate has, output units of the plays.
+    gain
+        Output units in one of the plays, above 0.
+
+    Returns
+    -------
+    Innovation
+    """
+    scalars = state[core.places()["scalars"] :]
+    return Innovation(
+        rms=gain * math.sqrt(float(scalars[_SQUARE])),
+        correlation=core.correlation(state),
+        loop_height=gain * loop_height,
+        rivals=int(scalars[_TRIALS]),
+        replacements=int(scalars[_REPLACEMENTS]),
+    )

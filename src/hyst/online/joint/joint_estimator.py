@@ -21,13 +21,13 @@ from hyst.online.checks import (
 )
 from hyst.online.estimator import Estimator
 from hyst.online.estimator_file import check_saved, restored_state
-from hyst.online.joint.bands.found import Found, found_in
-from hyst.online.joint.bands.intervals import covariance_of_minimum
+from hyst.online.joint.bands.found import Found
 from hyst.online.joint.bands.known import knowledge_of
-from hyst.online.joint.bands.samples import fold_again, folded_in, folded_samples
-from hyst.online.joint.excitation import Excitation, watch
-from hyst.online.joint.innovation import Innovation
-from hyst.online.joint.joint_core import GROUPS, least_noise, new_core, prior_of, search_cells
+from hyst.online.joint.bands.of_core import clear_scratch, found_of, take_over
+from hyst.online.joint.bands.samples import fold_again, folded_in
+from hyst.online.joint.excitation import Excitation, excitation_of
+from hyst.online.joint.innovation import Innovation, innovation_of
+from hyst.online.joint.joint_core import GROUPS, new_core, prior_of, search_cells
 from hyst.online.joint.parts import take_apart
 from hyst.online.joint.prior import covariance_of, factors
 from hyst.online.joint.start import checked_start, complete_scales
@@ -43,8 +43,6 @@ Array = NDArray[np.float64]
 _ERROR, _VARIANCE, _NOISE, _UPDATES, _SKIPPED, _REFUSED = 0, 1, 2, 5, 6, 7
 # Ranges of the input; and what is known of the input altogether, which a restart keeps.
 _RANGES, _KEPT = slice(8, 12), (3, 13)
-# And from the place "scalars" on, as joint_search.h has them.
-_TRIALS, _REPLACEMENTS, _SQUARE = 5, 6, 15
 _BOUNDS = ("least_slope", "most_slope", "most_radius")
 
 
@@ -210,44 +208,27 @@ class JointEstimator(Estimator):
     @property
     def excitation(self) -> Excitation:
         """What the recent input tells about the radii, what is frozen, and why."""
-        n, theta, at = self._parts.pi.p.size, self.parameters, self._at
-        age = self.state[at["age"] : at["home"]]
-        return watch(
-            float(theta[0]),
-            theta[1 : n + 1],
-            theta[n + 1 : 2 * n + 1],
-            age,
-            self.settings["patience"] / self.dt,
-            float(np.ptp(self.state[_RANGES])),
-        )
+        age = self.state[self._at["age"] : self._at["home"]]
+        swing = float(np.ptp(self.state[_RANGES]))
+        return excitation_of(self.parameters, age, self.settings["patience"] / self.dt, swing)
 
     @property
     def innovation(self) -> Innovation:
         """What the estimate leaves unexplained, and whether that can be noise."""
         n, theta = self._parts.pi.p.size, self.parameters
-        scalars = self.state[self._at["scalars"] :]
-        gain = abs(self._parts.after.gain)
-        return Innovation(
-            rms=gain * math.sqrt(float(scalars[_SQUARE])),
-            correlation=self.core.correlation(self.state),
-            loop_height=2.0 * gain * float(np.abs(theta[1 : n + 1]) @ theta[n + 1 : 2 * n + 1]),
-            rivals=int(scalars[_TRIALS]),
-            replacements=int(scalars[_REPLACEMENTS]),
-        )
+        height = 2.0 * float(np.abs(theta[1 : n + 1]) @ theta[n + 1 : 2 * n + 1])
+        return innovation_of(self.core, self.state, height, abs(self._parts.after.gain))
 
     @property
     def knowledge(self) -> Knowledge:
-        """What is known of each parameter, from least squares over all samples folded into rows.
-
-        Takes milliseconds, not microseconds: read it now and then, not at every sample.
-        """
+        """What is known of each parameter, from all samples; takes up to a second."""
         return knowledge_of(self.names, self.parameters, self._found())
 
     def refine(self) -> bool:
         """Take the estimate to the least squares over all that was measured, if they are better.
 
         Least squares start from the estimate and from the best radii on a grid, so that a false
-        minimum is left. Takes milliseconds.
+        minimum is left; takes up to a second.
 
         Returns
         -------
@@ -255,19 +236,7 @@ class JointEstimator(Estimator):
             Whether the estimate was replaced: where the chi-square of all samples falls by 1.
         """
         found = self._found()
-        if found is None:
-            return False
-        best = found.nearest_to(self._theta_at_start)
-        error, _ = found.problem.residual(self.parameters)
-        if not float(error @ error) > best.chi_square + 1.0:
-            return False
-        at = self._at
-        self.state[at["theta"] : at["d"]] = best.theta
-        covariance = covariance_of_minimum(found.problem, best, spreads=1.0)
-        self.state[at["d"] : at["u"]], self.state[at["u"] : at["z"]] = factors(covariance)
-        self.state[_NOISE] = found.problem.noise
-        self.core.replaced(self.state)
-        return True
+        return found is not None and take_over(self.core, self.state, found, self._theta_at_start)
 
     def update(self, u: float, y: float) -> bool:
         """Take in one sample.
@@ -376,15 +345,8 @@ class JointEstimator(Estimator):
 
     def saved(self) -> tuple[dict[str, Any], Array]:
         """Give settings and state, from which ``restore`` rebuilds the estimator."""
-        at, state = self._at, self.state.copy()
-        # A refused sample leaves NaN in scratch areas; the next one overwrites it before reading.
-        for first, last in (
-            (at["psi"], at["scalars"]),
-            (at["rival"] + at["psi"], at["cells"]),
-            (at["points"], at["length"]),
-        ):
-            scratch = state[first:last]
-            scratch[~np.isfinite(scratch)] = 0.0
+        state = self.state.copy()
+        clear_scratch(state, self._at)
         start, rows = self._theta_at_start.tolist(), folded_in(self.core)
         return {**self.settings, "start": start, "folded": rows}, state
 
@@ -406,12 +368,7 @@ class JointEstimator(Estimator):
         return estimator
 
     def _found(self) -> Found | None:
-        samples = folded_samples(self.core.folded(2))
-        pages = tuple(folded_samples(self.core.folded(page)) for page in (0, 1))
-        bounds = tuple(self.settings[each] for each in ("least_slope", "most_slope", "most_radius"))
-        limit = np.array(self.core.constants()["limit"])
-        floor = least_noise(self.settings)
-        return found_in(self._parts, samples, pages, self.parameters, limit, bounds, floor)
+        return found_of(self.core, self._parts, self.parameters, self.settings)
 
     def _plays_input(self, u: Any) -> Any:
         before = self._parts.before

@@ -64,7 +64,20 @@ def plays_after(way: Array, r: Array, z0: Array) -> Plays:
 
 
 def terms(x: Array, thresholds: Array) -> Array:
-    """Give the terms of a dead-zone map at x, shape (terms, *x.shape)."""
+    """Give the terms of a dead-zone map.
+
+    Parameters
+    ----------
+    x
+        Where, any shape.
+    thresholds
+        Shape (k,), as the core orders them.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (k, *x.shape).
+    """
     rho = thresholds.reshape(-1, *(1,) * x.ndim)
     above = np.where(rho > 0.0, np.maximum(x - rho, 0.0), np.minimum(x - rho, 0.0))
     return np.asarray(np.where(rho == 0.0, x, above))

@@ -53,7 +53,20 @@ class Problem:
         return weight * (self.samples.y - y), weight * jacobian
 
     def admissible(self, theta: Array, fixed: int | None = None) -> Array:
-        """Give the nearest parameters, one by one, of a model that has an inverse."""
+        """Give the nearest parameters, one by one, of a model that has an inverse.
+
+        Parameters
+        ----------
+        theta
+            Shape (m,).
+        fixed
+            A parameter that stays as it is.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (m,).
+        """
         n = self.parts.pi.p.size
         least, most, most_radius = self.bounds
         found = theta.copy()

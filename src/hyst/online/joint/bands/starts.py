@@ -130,7 +130,22 @@ def relocations(problem: Problem, grid: Grid, theta: Array) -> list[Array]:
 
 
 def scattered(problem: Problem, grid: Grid, theta: Array, count: int) -> list[Array]:
-    """Give parameters of ``count`` random sets of radii, with the weights that fit best."""
+    """Give parameters of random sets of radii, with the weights that fit best.
+
+    Parameters
+    ----------
+    problem, grid
+        What is fitted.
+    theta
+        Shape (m,), the estimate.
+    count
+        How many.
+
+    Returns
+    -------
+    list of numpy.ndarray
+        Shape (m,) each.
+    """
     n = problem.parts.pi.p.size
     rng = np.random.default_rng(0)
     last = max(float(theta[2 * n]), float(grid.radius[0]))
