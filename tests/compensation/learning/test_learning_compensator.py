@@ -382,8 +382,8 @@ def test_a_motion_that_jumps_has_no_spikes():
 
 
 def test_a_hysteresis_that_a_gain_misses_is_no_delay():
-    # A wide loop behind a gain is late by a twentieth of the motion; nothing of it is a delay.
-    plant = PrandtlIshlinskii([0.5, 0.5, 0.5], [0.5, 1.0, 1.5], p0=0.5)
+    # On a ramp a wide loop is late by a twentieth of the motion, as a delay is.
+    plant = PrandtlIshlinskii([0.4, 0.4], [1.0, 2.0], p0=0.5)
     slow = np.interp(np.linspace(0.0, 1.0, 4000), np.linspace(0.0, 1.0, N), TRIANGLE)
     learning = LearningCompensator(Affine(1.0), slow, dt=1e-4)
     draws = np.random.default_rng(22)
@@ -391,4 +391,5 @@ def test_a_hysteresis_that_a_gain_misses_is_no_delay():
         learning.update(plant(learning.command) + NOISE * draws.standard_normal(slow.size))
     errors = [each.error_rms for each in learning.history]
     assert max(errors) == errors[0]
-    assert errors[5] < 0.02 * errors[0]
+    # Taken for a delay, it stayed at ten times the noise.
+    assert errors[5] < 1.5 * NOISE

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.arrays import finite_vector
+from hyst.compensation.learning.one_play import left_by_a_play, left_by_a_shift
 from hyst.errors import InputError
 from hyst.signals import Record
 
@@ -255,6 +256,10 @@ def delay_or_refusal(expected: Array, y: Array, noise: float, has_history: bool)
         If the record is shifted.
     """
     late = shift_between(expected, y, y.size // 4, noise)
+    if late > 0 and not has_history:
+        by_a_shift = left_by_a_shift(expected, y, late)
+        if left_by_a_play(expected, y) <= by_a_shift:
+            return 0  # a hysteresis that the model misses
     if late == 0 or (not has_history and 0 < late <= _LATEST * y.size):
         return late
     samples = f"{abs(late)} sample{'s' if abs(late) > 1 else ''}"

@@ -26,7 +26,7 @@ from hyst.compensation.learning.trial import Trial
 Array = NDArray[np.float64]
 
 _AT_THE_NOISE, _NEAR, _PATIENCE = 1.1, 1.6, 2
-_NOTHING_LEFT, _LEAST_SHARE = 0.02, 0.05
+_NOTHING_LEFT, _LEAST_SHARE, _NO_WORSE = 0.02, 0.05, 0.5
 _MOST_STRIKES, _BETTER, _HALVED = 4, 0.98, 0.5
 _MIXED, _FAR = 2, 20.0
 _EARLIER = (0, 1, 2, 4, 8)
@@ -229,15 +229,15 @@ class RepeatedMotion(ABC):
         return gain
 
     def _foreseen_share(self, dv: Array, error: Array) -> float:
-        """Give the share of a change that leaves the least error as the linear part has it.
+        """Give the share of a change to make: all, if that is foreseen to make the error less.
 
-        The change itself is made through less than is known, where that is doubted, and may be too
-        large for what is.
+        Otherwise the share that leaves the least error. A change is made through less than is
+        known, where that is doubted, and may be too large for what is.
         """
         dy = self._learnt.output(dv, self._periodic)
         way = float(dy @ dy)
         share = float(error @ dy) / way if way > 0.0 else 1.0
-        return min(max(share, _LEAST_SHARE), 1.0)
+        return 1.0 if share > _NO_WORSE else max(share, _LEAST_SHARE)
 
     def _is_foreseen(self, v: Array) -> bool:
         """Tell whether a command is so near to a measured one that a shift can be told."""
