@@ -81,7 +81,7 @@ static void scale_widen(hyst_real *state, hyst_real remembered)
     scale_wideness mean = {ONE, ONE, ONE, 0};
     hyst_real length = ONE;
     const hyst_real *level = state + HYST_SCALE_BLOCK;
-    for (unsigned i = 0u; i < (unsigned)HYST_SCALE_LEVELS; ++i) {
+    for (unsigned i = 0u; i < HYST_SCALE_LEVELS; ++i) {
         const hyst_real blocks = level[HYST_SCALE_BLOCKS];
         if (blocks < SCALE_LEAST_BLOCKS || TWO * TWO * length > remembered) {
             break;
@@ -113,7 +113,7 @@ static unsigned scale_gather(hyst_real *state, hyst_real by_slope, hyst_real by_
 {
     hyst_real sums[4] = {by_slope, by_slope * by_slope, by_mean, by_mean * by_mean};
     hyst_real *level = state + HYST_SCALE_BLOCK;
-    for (unsigned i = 0u; i < (unsigned)HYST_SCALE_LEVELS; ++i) {
+    for (unsigned i = 0u; i < HYST_SCALE_LEVELS; ++i) {
         hyst_real *waiting = level + HYST_SCALE_SUM_SLOPE;
         if (!(level[HYST_SCALE_WAITS] > ZERO)) {
             level[HYST_SCALE_WAITS] = ONE;
@@ -136,7 +136,7 @@ static unsigned scale_gather(hyst_real *state, hyst_real by_slope, hyst_real by_
         scale_average(level, HYST_SCALE_NOISE_MEAN, share, sums[3]);
         level += HYST_SCALE_ONE_LEVEL;
     }
-    return (unsigned)HYST_SCALE_LEVELS;
+    return HYST_SCALE_LEVELS;
 }
 
 /* How much of the past the slope forgets: nothing while w rests. */
@@ -169,8 +169,8 @@ static void scale_estimate(const hyst_scale *scale, hyst_real *state)
             const hyst_real of_slope = state[HYST_SCALE_WIDE_SLOPE] * noise *
                                        (state[HYST_SCALE_WW_SQUARED] / ww) / ww;
             state[HYST_SCALE_SLOPE_VARIANCE] = of_slope;
-            if (state[HYST_SCALE_WEIGHT] >= (hyst_real)HYST_SCALE_LEAST ||
-                state[HYST_SCALE_NOISE_SAMPLES] >= (hyst_real)HYST_SCALE_LEAST) {
+            if (state[HYST_SCALE_WEIGHT] >= HYST_SCALE_LEAST ||
+                state[HYST_SCALE_NOISE_SAMPLES] >= HYST_SCALE_LEAST) {
                 const hyst_real share = variance / (variance + of_slope);
                 estimate += share * (state[HYST_SCALE_WY] / ww - start);
                 variance = share * of_slope;

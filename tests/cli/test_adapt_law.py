@@ -121,6 +121,18 @@ def test_weights_from_slopes_need_no_model(
     assert "give DATA alone" in capsys.readouterr().err
 
 
+def test_radii_that_the_law_made_worse_are_told(
+    files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Slopes by segmentation are right to a percent, those of two noisy samples are not."""
+    law = ["--law", "gradient", "--law-weights", "slopes", "--law-plays", "3"]
+    assert adapt([files[1]], tmp_path / "worse", *law, output="noisy") == 0
+    shown = capsys.readouterr()
+    assert "these radii are worse than those at the start" in shown.err
+    assert adapt([*files], tmp_path / "better", "--law", "gradient", "--regime", "regime") == 0
+    assert "worse" not in capsys.readouterr().err
+
+
 def test_stopped_and_resumed_it_gives_the_same(
     files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

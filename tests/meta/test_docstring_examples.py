@@ -12,6 +12,8 @@ import pytest
 def test_examples_run(
     source_file: Path, module_name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    if ">>>" not in source_file.read_text(encoding="utf-8"):
+        return  # doctest takes its time to find none
     monkeypatch.chdir(tmp_path)  # an example may write a file
     monkeypatch.setenv("MPLBACKEND", "Agg")
     module = importlib.import_module(module_name)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import re
 from pathlib import Path
 
@@ -23,11 +25,11 @@ def rows(repository: Path) -> dict[str, str]:
     return {line.split("`")[1]: line for line in lines}
 
 
-@pytest.fixture
-def help_of_identify(capsys: pytest.CaptureFixture[str]) -> str:
-    capsys.readouterr()
-    main(["identify", "--help"])
-    return " ".join(capsys.readouterr().out.replace("\u2502", " ").split())
+@pytest.fixture(scope="module")
+def help_of_identify() -> str:
+    with contextlib.redirect_stdout(io.StringIO()) as shown:
+        main(["identify", "--help"])
+    return " ".join(shown.getvalue().replace("\u2502", " ").split())
 
 
 @pytest.mark.parametrize("name", hyst.families)

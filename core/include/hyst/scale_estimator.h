@@ -41,7 +41,8 @@ typedef struct {
     int offset_held;
 } hyst_scale;
 
-enum { HYST_SCALE_LEVELS = 16, HYST_SCALE_LEAST = 10 };
+#define HYST_SCALE_LEVELS 16u
+#define HYST_SCALE_LEAST HYST_REAL(10.0) /* samples before the noise is believed */
 
 /* Of one length of blocks: the block that waits for its second half, and the means over blocks. */
 enum {
@@ -88,9 +89,10 @@ enum {
     HYST_SCALE_USED,
     HYST_SCALE_SKIPPED, /* not finite */
     HYST_SCALE_REFUSED, /* would overflow */
-    HYST_SCALE_BLOCK,
-    HYST_SCALE_LENGTH = HYST_SCALE_BLOCK + HYST_SCALE_LEVELS * HYST_SCALE_ONE_LEVEL
+    HYST_SCALE_BLOCK
 };
+
+#define HYST_SCALE_LENGTH ((unsigned)HYST_SCALE_BLOCK + HYST_SCALE_LEVELS * (unsigned)HYST_SCALE_ONE_LEVEL)
 
 typedef enum {
     HYST_SCALE_UPDATED,

@@ -91,7 +91,7 @@ def adapt(
     files_there = _write(folder, follower, inverse, (trajectory, run, picture), measured, about)
     tell(follower, before, about)
     if isinstance(follower, hyst.online.RadiusEstimator):
-        tell_law(follower)
+        tell_law(follower, before, measured.record)
     if inverse is not None and run is not None:
         for sentence in guard_sentences(run, inverse, measured.record):
             print(sentence)

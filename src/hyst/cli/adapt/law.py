@@ -18,6 +18,8 @@ from hyst.cli.reading_options import Verb, with_options
 
 Array = NDArray[np.float64]
 
+# By this factor errors of the start must be passed before a run along the same record is to blame.
+_WORSE, _NEGLIGIBLE = 1.1, 1e-4
 _METHODS = ("gradient", "least-squares")
 _OPTIONS: dict[str, tuple[Any, Any]] = {
     "law": (
@@ -279,8 +281,20 @@ def run_law(
     return trajectory
 
 
-def tell_law(estimator: hyst.online.RadiusEstimator) -> None:
-    """Say what the law rests on and what it does not know."""
+def tell_law(
+    estimator: hyst.online.RadiusEstimator, before: list[float], record: hyst.Record
+) -> None:
+    """Say what the law rests on, what it does not know, and if its start was better.
+
+    Parameters
+    ----------
+    estimator
+        At the end.
+    before
+        Its radii at the start.
+    record
+        What it has learnt from.
+    """
     gains = estimator.settings["gain"]
     told = "told" if estimator.knows_regimes else "measured"
     print(f"law: {estimator.settings['method']}, gain {gains[0]:.4g}, regimes {told}")
@@ -290,6 +304,21 @@ def tell_law(estimator: hyst.online.RadiusEstimator) -> None:
             "regimes come from the measured slope, which noise makes wrong; adapt without --law "
             "needs no slope"
         )
+    first, last = (_left(estimator, radii, record) for radii in (before, estimator.radii))
+    if last > max(_WORSE * first, _NEGLIGIBLE * float(np.ptp(record.y))):
+        note(
+            f"these radii are worse than those at the start: they leave {last:.4g} rms of the "
+            f"record, the others {first:.4g}; do not use model.json, or adapt without --law"
+        )
+
+
+def _left(estimator: hyst.online.RadiusEstimator, radii: Any, record: hyst.Record) -> float:
+    """Give the root mean square that radii leave of a record, once the input has turned twice."""
+    known = estimator.settings
+    y = hyst.PrandtlIshlinskii(known["p"], radii, known["p0"])(record.u) + known["offset"]
+    turns = hyst.signals.reversals(record.u, hyst.signals.suggest_dead_band(record.u))
+    settled = int(turns[1]) if turns.size > 1 else 0
+    return float(np.sqrt(np.mean((record.y - y)[settled:] ** 2)))
 
 
 def _told_column(

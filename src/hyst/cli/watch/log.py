@@ -13,7 +13,7 @@ from typing import TextIO
 
 import hyst
 from hyst._files import require_folder
-from hyst.cli.watch.report import Report
+from hyst.cli.watch.report import Report, bands_of
 from hyst.online.alarms import AlarmEvent
 
 _COUNTS = "samples", "learnt", "samples lost", "unreadable lines", "no number", "clock", "overflow"
@@ -86,12 +86,9 @@ class Log:
     def report(self, report: Report) -> None:
         """Write a report."""
         last = report.window
-        known = last.knowledge
         bands = [
             number
-            for value, low, high, is_known in zip(
-                last.parameters, known.low, known.high, known.determined, strict=True
-            )
+            for value, low, high, is_known in zip(last.parameters, *bands_of(last), strict=True)
             for number in (value, *((low, high) if is_known else (math.nan, math.nan)))
         ]
         errors = (report.error, report.model_error, report.allowed, last.noise)

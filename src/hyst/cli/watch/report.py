@@ -8,8 +8,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from hyst.online.alarms import AlarmEvent
 from hyst.online.watch.watcher import Window
+
+Array = NDArray[np.float64]
 
 _SHOWN = 4
 
@@ -59,7 +64,8 @@ def line_of(report: Report, unit: str) -> str:
         f"noise {_number(last.noise)}"
     )
     learnt = f"learning paused: {last.paused}" if last.paused else _bands(last)
-    doubts = [last.innovation, *last.knowledge.sentences][last.is_consistent :]
+    told = last.knowledge.sentences if last.has_bands else ()
+    doubts = [last.innovation, *told][last.is_consistent :]
     verdict = "" if last.paused or not doubts else "; " + doubts[0]
     alarms = f"; alarms: {', '.join(last.active)}" if last.active else ""
     return f"{last.time:10.6g} s  {errors}; {learnt}{verdict}{alarms}"
@@ -72,7 +78,7 @@ def json_of(report: Report) -> str:
     estimates = {
         name: {"value": float(value), "low": _plain(low), "high": _plain(high), "known": bool(sure)}
         for name, value, low, high, sure in zip(
-            known.names, last.parameters, known.low, known.high, known.determined, strict=True
+            known.names, last.parameters, *bands_of(last), strict=True
         )
     }
     return _as_json(
@@ -109,18 +115,33 @@ def line_of_event(event: AlarmEvent) -> str:
     return f"{event.time:10.6g} s  {event}"
 
 
+def bands_of(window: Window) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Give low and high ends and what is determined; nothing where bands are of another time."""
+    known = window.knowledge
+    if window.has_bands:
+        return known.low, known.high, known.determined
+    none = np.full(len(known.names), np.nan)
+    return none, none, np.zeros(none.size, dtype=np.bool_)
+
+
 def _bands(window: Window) -> str:
     """Give the first estimates with half their bands."""
-    known = window.knowledge
+    unknown = " (not determined)" if window.has_bands else " (band not asked for)"
     said = [
-        f"{name} {_number(value)}"
-        + (f" +- {_number((high - low) / 2.0)}" if sure else " (not determined)")
+        f"{name} {_number(value)}" + (_band(value, low, high) if sure else unknown)
         for name, value, low, high, sure in zip(
-            known.names, window.parameters, known.low, known.high, known.determined, strict=True
+            window.knowledge.names, window.parameters, *bands_of(window), strict=True
         )
     ]
     more = len(said) - _SHOWN
     return ", ".join(said[:_SHOWN]) + (f" and {more} more" if more > 0 else "")
+
+
+def _band(value: float, low: float, high: float) -> str:
+    """Give half a band after a value in it, or else the band: a better fit than the value's."""
+    if low <= value <= high:
+        return f" +- {_number((high - low) / 2.0)}"
+    return f" (outside its band, {_number(low)} to {_number(high)})"
 
 
 def _said(value: float) -> str:

@@ -127,12 +127,16 @@ class Session:
         return self.watcher.take(self._delay.take(slots))
 
     def _ask(self, estimator: Estimator) -> Knowledge | None:
-        """Ask what the estimator knows, which must not take more than a tenth of the time."""
-        begin = time.monotonic()
-        if begin < self._asks_again:
+        """Ask what the estimator knows, which must not take more than a tenth of the file's time.
+
+        Of the file's, for what is told of a file must not depend on how fast it is read.
+        """
+        at = 0.0 if self.watcher is None else self.watcher.time
+        if at < self._asks_again:
             return None
+        begin = time.monotonic()
         knowledge = estimator.knowledge
-        self._asks_again = begin + _RARELY * (time.monotonic() - begin)
+        self._asks_again = at + _RARELY * (time.monotonic() - begin)
         return knowledge
 
     def _tell_head(self) -> None:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.online.alarms import AlarmEvent, Alarms
 from hyst.online.estimator import Estimator
+from hyst.online.joint.joint_estimator import JointEstimator
 from hyst.online.knowledge import Knowledge
 from hyst.online.watch import limits as named
 from hyst.online.watch.limits import RULES, Limits
@@ -72,6 +74,7 @@ class Window:
     noise: float
     parameters: Array
     knowledge: Knowledge
+    has_bands: bool
     innovation: str
     is_consistent: bool
     paused: str
@@ -156,9 +159,14 @@ class Watcher:
         self._counts = dict.fromkeys(("samples", "learnt", *_COUNTED), 0)
         self._time = 0.0
         self._told_every, self._untold, self._ask_for = told_every, 0, ask
-        self._parameters, self._knowledge = estimator.parameters, estimator.knowledge
+        self._knowledge = estimator.knowledge
         self.alarms = Alarms(RULES)
         """What is watched for."""
+
+    @property
+    def time(self) -> float:
+        """Seconds since the first sample, of the last window."""
+        return self._time
 
     @property
     def allowed_error(self) -> float:
@@ -237,8 +245,9 @@ class Watcher:
             error=error,
             model_error=model_error,
             noise=self.estimator.noise,
-            parameters=self._parameters,
+            parameters=self.estimator.parameters,
             knowledge=knowledge,
+            has_bands=self._untold == 0,
             innovation=str(innovation),
             is_consistent=innovation.consistent,
             paused=paused,
@@ -248,12 +257,20 @@ class Watcher:
         )
 
     def _ask(self) -> None:
-        """Ask the estimator what it knows, if that is due; values and bands belong together."""
+        """Ask the estimator what it knows, if that is due."""
         self._untold += 1
         knowledge = self._ask_for(self.estimator) if self._untold >= self._told_every else None
-        if knowledge is not None:
-            self._untold = 0
-            self._parameters, self._knowledge = self.estimator.parameters, knowledge
+        if knowledge is None:
+            return
+        # Nobody stands beside a watch who could take it out of a false minimum. What leaves more
+        # than noise is none to go to: of a plant that drifts it is the middle of what that was.
+        if (
+            not knowledge.doubts
+            and _is_outside(self.estimator, knowledge)
+            and self.estimator.refine()
+        ):
+            knowledge = self.estimator.knowledge
+        self._untold, self._knowledge = 0, knowledge
 
     def _count(self, slots: Slots, found: Followed, learnt: int) -> None:
         added = {"samples": int((slots["lost"] == 0).sum()), "learnt": learnt}
@@ -357,6 +374,13 @@ def stated_error(model: Operator) -> float:
         if value is not None:
             return float(value)
     return 0.0
+
+
+def _is_outside(estimator: Estimator, knowledge: Knowledge) -> TypeGuard[JointEstimator]:
+    """Tell whether a better fit of all samples is known than the running estimate."""
+    value = estimator.parameters
+    is_within = (knowledge.low <= value) & (value <= knowledge.high)
+    return isinstance(estimator, JointEstimator) and not bool(is_within.all())
 
 
 def _counts_of(slots: Slots, found: Followed) -> dict[str, int]:
