@@ -140,8 +140,8 @@ def test_a_plant_that_answers_the_wrong_way_round_is_stopped_at_the_best_command
     learning = LearningCompensator(MODEL, Y_REF, dt=DT)
     first = PLANT(learning.command)
     draws = np.random.default_rng(9)
-    for _ in range(12):
-        y = first - 0.8 * (PLANT(learning.command) - first)
+    for _ in range(16):
+        y = first - 3.0 * (PLANT(learning.command) - first)
         learning.update(y + NOISE * draws.standard_normal(N))
     assert learning.state == "diverged"
     assert np.array_equal(learning.command, learning.best.command)
@@ -299,3 +299,97 @@ def test_a_damaged_file_is_refused(tmp_path):
     del data["trials"]
     with pytest.raises(hyst.InputError, match="damaged"):
         LearningCompensator.from_dict(data)
+
+
+@pytest.mark.parametrize("samples", [1, 5, 7])
+def test_a_reference_too_short_to_learn_from_is_refused(samples):
+    with pytest.raises(hyst.InputError, match=f"y_ref has {samples} samples, too few"):
+        LearningCompensator(MODEL, np.linspace(0.0, 3.0, samples))
+    learning = LearningCompensator(MODEL, Y_REF)
+    with pytest.raises(hyst.InputError, match="too few"):
+        learning.reset(np.zeros(samples))
+
+
+def test_a_sign_that_is_reversed_is_told_at_once():
+    learning = LearningCompensator(MODEL, Y_REF, dt=DT)
+    with pytest.raises(hyst.InputError, match="turn the sign of the sensor or of the drive"):
+        learning.update(-Plant(seed=19).measured(learning.command))
+    assert learning.history == ()
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("noise", [0.0, None])
+def test_a_plant_without_noise_is_learnt_without_a_warning(noise):
+    learning = LearningCompensator(MODEL, TRIANGLE, dt=DT, noise=noise)
+    for _ in range(5):
+        learning.update(PLANT(learning.command))
+    errors = [each.error_rms for each in learning.history]
+    # What plays at the turns miss is left; a hundredth of the first error is far above rounding.
+    assert errors[4] < 0.02 * errors[0]
+
+
+def test_an_error_that_repeats_is_not_taken_for_noise():
+    step = np.where(np.arange(N) < 300, 0.0, 4.0)
+    learning = LearningCompensator(MODEL, step, dt=DT)
+    plant = Plant(60.0, 0.05, seed=20)
+    repeated(learning, plant, 8)
+    # Ringing after a step fills the whole spectrum; only a command played twice tells it from
+    # noise. N samples tell an rms to 1 / sqrt(2 N) = 2 %; three times that.
+    assert learning.noise == pytest.approx(NOISE, rel=0.07)
+    assert learning.state != "at the noise"
+
+
+@pytest.mark.parametrize("delay", [20, 60])
+def test_a_long_delay_is_learnt_without_a_step_that_is_foreseen_to_be_worse(delay):
+    learning = LearningCompensator(MODEL, Y_REF, dt=DT)
+    errors = repeated(learning, Plant(delay=delay, seed=5), 6)
+    assert errors.max() == errors[0]
+    assert errors[5] < 0.02 * errors[0]
+
+
+def test_a_delay_is_learnt_in_any_unit():
+    unit = 2.0**20
+    model = PrandtlIshlinskii([0.5 * unit], [1.0], p0=unit)
+    own = LearningCompensator(MODEL, Y_REF, dt=DT)
+    scaled = LearningCompensator(model, unit * Y_REF, dt=DT)
+    for seed in range(3):
+        own.update(Plant(delay=24, seed=seed).measured(own.command))
+        scaled.update(unit * Plant(delay=24, seed=seed).measured(scaled.command))
+    # Sums of logarithms are rounded differently in another unit; nothing else is.
+    assert np.abs(scaled.command - own.command).max() < 1e-12
+
+
+@pytest.mark.parametrize("y_ref", [Y_REF, TRIANGLE], ids=["sine", "triangle"])
+def test_spikes_of_the_sensor_are_told_and_not_learnt(y_ref):
+    draws = np.random.default_rng(21)
+    plant = Plant(seed=21)
+    learning = LearningCompensator(MODEL, y_ref, dt=DT)
+    for _ in range(4):
+        y = plant.measured(learning.command)
+        y[draws.integers(0, N, 3)] += draws.choice([-20.0, 20.0], 3)
+        learning.update(y)
+    assert "3 samples of the measured output jump by up to" in learning.history[0].note
+    # As without spikes: 1.5 times the noise after three repetitions.
+    assert learning.history[3].error_rms < 1.5 * NOISE
+
+
+def test_a_motion_that_jumps_has_no_spikes():
+    y_ref = np.where((np.arange(N) > 300) & (np.arange(N) < 303), 3.0, 0.0)
+    y_ref[500:] = np.tile([0.0, 0.0, 2.0, 0.0, 0.0], 100)
+    learning = LearningCompensator(Affine(1.0), y_ref)
+    learning.update(np.roll(0.9 * y_ref, 1))
+    assert "jump" not in learning.history[0].note
+
+
+def test_a_hysteresis_that_a_gain_misses_is_no_delay():
+    # On a ramp a wide loop is late by a twentieth of the motion, as a delay is.
+    plant = PrandtlIshlinskii([0.4, 0.4], [1.0, 2.0], p0=0.5)
+    slow = np.interp(np.linspace(0.0, 1.0, 4000), np.linspace(0.0, 1.0, N), TRIANGLE)
+    learning = LearningCompensator(Affine(1.0), slow, dt=1e-4)
+    draws = np.random.default_rng(22)
+    for _ in range(6):
+        learning.update(plant(learning.command) + NOISE * draws.standard_normal(slow.size))
+    errors = [each.error_rms for each in learning.history]
+    assert max(errors) == errors[0]
+    # Taken for a delay, it stayed at ten times the noise.
+    assert errors[5] < 1.5 * NOISE

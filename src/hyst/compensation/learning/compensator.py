@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from dataclasses import replace
 from typing import Any, final
 
 import numpy as np
@@ -17,11 +18,14 @@ from hyst.compensation.learning.contraction import Contraction, given_slopes
 from hyst.compensation.learning.learnt import Learnt
 from hyst.compensation.learning.measured_output import (
     as_measured,
+    as_reference,
     delay_or_refusal,
     refuse_at_rest,
+    refuse_reversed,
 )
 from hyst.compensation.learning.repeated_motion import SAVED_AS_THEY_ARE, RepeatedMotion
 from hyst.compensation.learning.repetition import Repetition
+from hyst.compensation.learning.spikes import without_spikes
 from hyst.compensation.learning.states import (
     status_of,
 )
@@ -126,7 +130,7 @@ class LearningCompensator(RepeatedMotion):
         self._before = None if history is None else finite_vector(history, "history")
         self._given = None if slopes is None else given_slopes(slopes)
         self._learnt = Learnt()
-        self._begin(finite_vector(y_ref, "y_ref"))
+        self._begin(as_reference(y_ref))
 
     @property
     def model(self) -> Operator:
@@ -194,7 +198,7 @@ class LearningCompensator(RepeatedMotion):
         numpy.ndarray
             The first command.
         """
-        wanted = self._y_ref if y_ref is None else finite_vector(y_ref, "y_ref")
+        wanted = self._y_ref if y_ref is None else as_reference(y_ref)
         self._learnt = Learnt() if forget else self._learnt.without_pairs()
         self._begin(wanted)
         return self._command
@@ -222,13 +226,17 @@ class LearningCompensator(RepeatedMotion):
         """
         measured = as_measured(y_measured, u_applied, self._command, self._dt)
         v = self._along.output(measured.u, self._past)
+        expected = self._expected(v)
+        clean = without_spikes(measured.y, expected)
+        measured = replace(measured, y=clean.y)
         noise = self._noise_of(measured)
         refuse_at_rest(measured.y, self._y_ref, measured.u, noise)
-        expected = self._expected(v)
         late = self._learnt.linear.delay
         if self._is_foreseen(v):
             late += delay_or_refusal(expected, measured.y, noise, bool(self._history))
-        notes = list[str]()
+        if not late and not self._history:
+            refuse_reversed(measured.y, expected)
+        notes = clean.notes
         trial, told = self._trial(measured, v, expected)
         notes += told
         self._noise = noise

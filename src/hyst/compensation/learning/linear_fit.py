@@ -48,8 +48,11 @@ _BEYOND, _CAUTION = 1.6, 2.0
 _SURE = 0.06
 """No response is known better."""
 
+_SMEARED = 2.0
+"""Sum of the sizes of weights over their sum, at most, without poles."""
+
 _ROUNDS = 6
-_TINY, _SINGULAR = 1e-150, 1e-12
+_TINY, _SINGULAR, _ROUNDING, _SAME = 1e-150, 1e-12, 1e-9, 1e-12
 
 _AT_REST = 0.1
 """By what a plant at rest is held to depart from the model; no record says it of rest itself."""
@@ -83,7 +86,7 @@ def gain_over(pairs: list[Pair], noise: float) -> tuple[float, float]:
     pairs, noise
         As of ``fit_linear_part``.
     """
-    found = _fitted(pairs, noise, 0, 1, 0)
+    found = _fitted(pairs, noise, 0, 1, 0, _seen_frequencies(pairs, noise))
     return (np.inf, 1.0) if found is None else (found[0], float(found[1].b[0]))
 
 
@@ -101,11 +104,12 @@ def fit_linear_part(
     delays
         To try, samples.
     """
+    shown = _seen_frequencies(pairs, noise)
     found = [
         each
         for delay in delays
         for poles, zeros in _SIZES
-        for each in (_fitted(pairs, noise, poles, zeros, delay),)
+        for each in (_fitted(pairs, noise, poles, zeros, delay, shown),)
         if each is not None
     ]
     for score, linear in sorted(found, key=lambda each: each[0]):
@@ -132,10 +136,19 @@ def _is_seen(linear: LinearPart, pairs: list[Pair], noise: float) -> bool:
 
 
 def _fitted(
-    pairs: list[Pair], noise: float, poles: int, zeros: int, delay: int
+    pairs: list[Pair],
+    noise: float,
+    poles: int,
+    zeros: int,
+    delay: int,
+    seen: tuple[Array, NDArray[np.bool_]],
 ) -> tuple[float, LinearPart] | None:
-    """Fit one size; its information criterion beside it."""
-    task = _task(pairs, noise, poles, zeros, delay)
+    """Fit one size; its information criterion beside it.
+
+    A delay leaves fewer bins, and the logarithm of a size in any unit is no reason for that: the
+    criterion is for the same frequencies, and as many of them, whatever the delay.
+    """
+    task = _task(pairs, noise, poles, zeros, delay, seen)
     if 2 * task.z.size * len(pairs) < 4 * task.count:
         return None
     below: Complex = np.ones(task.z.size, dtype=complex)
@@ -158,8 +171,13 @@ def _fitted(
         float(np.sum(2.0 * np.log(own) + (rest / own) ** 2))
         for rest, own in zip(rests, size, strict=True)
     )
+    cost *= int(np.count_nonzero(seen[1])) / task.z.size
     shown = 2 * sum(int(np.count_nonzero(missed * each > task.floor)) for each in around)
     n, k = poles, poles + zeros
+    if theta[n:k].sum() <= 0.0 or 1.0 + theta[:n].sum() <= 0.0:
+        return None  # the other way round at rest
+    if not n and np.abs(theta[:k]).sum() > _SMEARED * abs(theta[:k].sum()):
+        return None  # a differentiator: the delay was taken too large
     if shown < 2 * k:
         cost, shown = cost + (_NOT_SHOWN if n else 0.0), 2
     score = cost + _PENALTY * task.count * np.log(2.0 + shown)
@@ -193,12 +211,35 @@ class _Task:
         return np.asarray(self.z[:, None] ** np.arange(max(self.poles, self.zeros - 1) + 1))
 
 
-def _task(pairs: list[Pair], noise: float, poles: int, zeros: int, delay: int) -> _Task:
-    floor = _CLEAR * noise * float(np.sqrt(pairs[0].v.size))
+def _task(
+    pairs: list[Pair],
+    noise: float,
+    poles: int,
+    zeros: int,
+    delay: int,
+    seen: tuple[Array, NDArray[np.bool_]],
+) -> _Task:
     spectra = [_spectrum(each, delay) for each in pairs]
-    used = _shown(spectra, floor)
+    frequency, shown = seen
+    own = _bins(pairs[0].v.size - delay) / (pairs[0].v.size - delay)
+    used = shown[np.minimum(np.searchsorted(frequency, own - _SAME), shown.size - 1)]
+    floor = _floor(pairs, noise)
     v, y = [each[1][used] for each in spectra], [each[2][used] for each in spectra]
     return _Task(spectra[0][0][used], v, y, poles, zeros, floor)
+
+
+def _floor(pairs: list[Pair], noise: float) -> float:
+    """Give the size of a spectrum that noise, or rounding, has."""
+    size = float(np.sqrt(pairs[0].v.size))
+    largest = max(float(np.std(each.y)) for each in pairs)
+    return max(_CLEAR * noise * size, _ROUNDING * largest * size)
+
+
+def _seen_frequencies(pairs: list[Pair], noise: float) -> tuple[Array, NDArray[np.bool_]]:
+    """Give frequencies, cycles a sample, and whether a dynamics of the plant is seen at them."""
+    spectra = [_spectrum(each, 0) for each in pairs]
+    length = pairs[0].v.size
+    return _bins(length) / length, _shown(spectra, _floor(pairs, noise))
 
 
 def _solved(

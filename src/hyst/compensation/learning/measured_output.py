@@ -8,12 +8,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.arrays import finite_vector
+from hyst.compensation.learning.one_play import left_by_a_play, left_by_a_shift
 from hyst.errors import InputError
 from hyst.signals import Record
 
 Array = NDArray[np.float64]
 
 _SAME_TIME = 1e-6
+
+_FEWEST = 8
+"""Samples of a motion: below, no two bands of a spectrum are told apart."""
+
+_REVERSED = 0.5
+"""Of the output's rms: what a negative gain must leave at most for a sign that is reversed."""
 
 _LATEST = 0.125
 """Of a record: a plant that is later than this is not believed."""
@@ -40,6 +47,27 @@ class Measured:
     y: Array
     u: Array
     is_told: bool
+
+
+def as_reference(y_ref: ArrayLike) -> Array:
+    """Check a wanted output.
+
+    Parameters
+    ----------
+    y_ref
+        Shape (N,).
+
+    Raises
+    ------
+    InputError
+        If it is not finite, or has too few samples to learn from.
+    """
+    checked = finite_vector(y_ref, "y_ref")
+    if checked.size < _FEWEST:
+        raise InputError(
+            f"y_ref has {checked.size} samples, too few to learn from; give {_FEWEST} or more"
+        )
+    return checked
 
 
 def as_measured(
@@ -119,6 +147,28 @@ def refuse_at_rest(y: Array, reference: Array, u: Array, noise: float) -> None:
             f"the measured output stays within {float(np.ptp(y)):.4g} where the reference moves "
             f"by {float(np.ptp(reference)):.4g}, while {what}; look at sensor and amplifier, "
             "nothing was learnt"
+        )
+
+
+def refuse_reversed(y: Array, expected: Array) -> None:
+    """Refuse a first output that goes down where it is to go up.
+
+    Parameters
+    ----------
+    y, expected
+        Shape (N,).
+
+    Raises
+    ------
+    InputError
+        If it does.
+    """
+    own, told = y - y.mean(), expected - expected.mean()
+    if float(own @ told) < 0.0 and _left_by_gain(expected, y) < _REVERSED**2 * float(np.var(y)):
+        raise InputError(
+            "the measured output goes down where the model's goes up, and up where it goes down; "
+            "turn the sign of the sensor or of the drive (or, if the actuator is late by half a "
+            "period, shift the record), nothing was learnt"
         )
 
 
@@ -206,6 +256,10 @@ def delay_or_refusal(expected: Array, y: Array, noise: float, has_history: bool)
         If the record is shifted.
     """
     late = shift_between(expected, y, y.size // 4, noise)
+    if late > 0 and not has_history:
+        by_a_shift = left_by_a_shift(expected, y, late)
+        if left_by_a_play(expected, y) <= by_a_shift:
+            return 0  # a hysteresis that the model misses
     if late == 0 or (not has_history and 0 < late <= _LATEST * y.size):
         return late
     samples = f"{abs(late)} sample{'s' if abs(late) > 1 else ''}"

@@ -16,6 +16,9 @@ _ENDS = 0.05
 _CLEAR = 20.0
 """Times the noise: the way within a window whose slope is asked for."""
 
+_STILL = 5e-4
+"""Of the range of the motion: noise that is reckoned with, also where less is claimed."""
+
 
 def measured_slopes(expected: Array, y: Array, noise: float) -> tuple[float, float] | None:
     """Give the least and the largest slope of y over what the linear part gives.
@@ -33,6 +36,7 @@ def measured_slopes(expected: Array, y: Array, noise: float) -> tuple[float, flo
         None where too little moves to tell.
     """
     length = max(expected.size // _WINDOWS, 4)
+    noise = max(noise, _STILL * float(np.ptp(expected)))
     slopes = []
     for first in range(0, expected.size - length + 1, length):
         x, own = expected[first : first + length], y[first : first + length]

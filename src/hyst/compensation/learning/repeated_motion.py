@@ -26,11 +26,12 @@ from hyst.compensation.learning.trial import Trial
 Array = NDArray[np.float64]
 
 _AT_THE_NOISE, _NEAR, _PATIENCE = 1.1, 1.6, 2
-_NOTHING_LEFT = 0.02
+_NOTHING_LEFT, _LEAST_SHARE, _NO_WORSE = 0.02, 0.05, 0.5
 _MOST_STRIKES, _BETTER, _HALVED = 4, 0.98, 0.5
 _MIXED, _FAR = 2, 20.0
+_EARLIER = (0, 1, 2, 4, 8)
 _BRANCHES, _FORESEEN = 10.0, 0.05
-SAVED_AS_THEY_ARE = ("noise", "held", "state", "strikes", "gain", "unlike")
+SAVED_AS_THEY_ARE = ("noise", "repeated", "held", "state", "strikes", "gain", "unlike")
 
 
 class RepeatedMotion(ABC):
@@ -49,6 +50,7 @@ class RepeatedMotion(ABC):
     _best: Trial | None
     _last: Trial | None
     _noise: float | None
+    _repeated: float | None
 
     def _begin(self, y_ref: Array) -> None:
         """Start with a reference."""
@@ -59,7 +61,7 @@ class RepeatedMotion(ABC):
         self._trials = []
         self._state, self._strikes, self._gain = LEARNING, 0, 1.0
         self._unlike = False
-        self._noise = self._given_noise
+        self._noise, self._repeated = self._given_noise, None
         self._contraction = self._given or Contraction(math.nan, math.nan, 1.0, "unknown")
         self._past = self._before
         self._set(self._along.command(y_ref, self._past))
@@ -75,9 +77,11 @@ class RepeatedMotion(ABC):
         last = self._last
         if last is not None and np.array_equal(last.u, measured.u):
             between = noise_between(last.y, measured.y)
-            known = self._noise or between
-            if between < 3.0 * known:
-                return max(0.5 * (known + between), noise_in(self._y_ref - measured.y))
+            if between < 3.0 * (self._noise or between):
+                before = between if self._repeated is None else self._repeated
+                self._repeated = 0.5 * (before + between)
+        if self._repeated is not None:  # what a spectrum shows may be an error that repeats
+            return self._repeated
         found = noise_in(self._y_ref - measured.y)
         return found if self._noise is None else min(max(found, 0.5 * self._noise), self._noise * 2)
 
@@ -178,7 +182,8 @@ class RepeatedMotion(ABC):
         whole = Pair(trial.v, trial.y)
         changes = [] if near is None else [Pair(trial.v - near.v, trial.y - near.y)]
         own = self._learnt.linear.delay
-        delays = {0} if late == own == 0 else {late - 1, late, late + 1, own}
+        # What the model's hysteresis misses looks like a delay too, so that it is often less.
+        delays = {0} if late == own == 0 else {own, late + 1, *(late - k for k in _EARLIER)}
         allowed = tuple(sorted(each for each in delays if each >= 0))
         self._learnt = self._learnt.taught(whole, changes, noise, allowed, self._strikes > 1)
 
@@ -217,10 +222,22 @@ class RepeatedMotion(ABC):
         self._state = LEARNING
         if self._contraction.gain < 1.0:
             notes.append(f"gain {self._contraction.gain:.3g}, as slopes ask for")
-        self._set(self._along.command(v + self._along_branches(step.dv, base, noise), self._past))
+        dv = self._foreseen_share(step.dv, error) * step.dv
+        self._set(self._along.command(v + self._along_branches(dv, base, noise), self._past))
         if self._held:
             notes.append(f"{self._held} samples of the next command are held at a limit")
         return gain
+
+    def _foreseen_share(self, dv: Array, error: Array) -> float:
+        """Give the share of a change to make: all, if that is foreseen to make the error less.
+
+        Otherwise the share that leaves the least error. A change is made through less than is
+        known, where that is doubted, and may be too large for what is.
+        """
+        dy = self._learnt.output(dv, self._periodic)
+        way = float(dy @ dy)
+        share = float(error @ dy) / way if way > 0.0 else 1.0
+        return 1.0 if share > _NO_WORSE else max(share, _LEAST_SHARE)
 
     def _is_foreseen(self, v: Array) -> bool:
         """Tell whether a command is so near to a measured one that a shift can be told."""
@@ -237,6 +254,8 @@ class RepeatedMotion(ABC):
 
     def _along_branches(self, dv: Array, base: Trial, noise: float) -> Array:
         if base.rms < _BRANCHES * noise or self._learnt.linear.order:
+            return dv
+        if self._contraction.low <= 0.0:  # of a lag or a mode: no branch goes the other way
             return dv
         expected = self._learnt.output(base.v, self._periodic)
         return along_branches(dv, base.v, expected, base.y, noise)

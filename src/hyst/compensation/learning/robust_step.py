@@ -35,6 +35,9 @@ _PROBE = 0.06
 _TELLING = 25.0
 """Times the noise's power: what an error must have for that."""
 
+_ROUNDING = 1e-9
+"""Of the largest line: less is nothing that is known, also where there is no noise."""
+
 _SURE = 0.02
 """Nothing is known better."""
 
@@ -88,7 +91,8 @@ def robust_step(
     spectrum = np.fft.rfft(whole)
     frequency = np.fft.rfftfreq(whole.size)
     response = linear.at(frequency)
-    power, own_noise = np.abs(spectrum) ** 2, noise**2 * error.size
+    power = np.abs(spectrum) ** 2
+    own_noise = max(noise**2 * error.size, _ROUNDING**2 * float(power.max(initial=0.0)))
     passed = _above_noise(power, own_noise)
     probe = _PROBE * (_mean_around(power, 1) > _TELLING * own_noise)
     own = np.maximum(np.interp(frequency, *doubt), _SURE) ** -2
