@@ -4,11 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-<<<<<<< HEAD
-from dataclasses import dataclass
-=======
-from typing import TypeGuard
->>>>>>> wt-trim
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,64 +34,6 @@ _COUNTED = {
     named.CLOCK: "stamps that repeat, go backwards or leap",
     named.OVERFLOW: "samples that led to an overflow",
 }
-
-
-<<<<<<< HEAD
-@dataclass(frozen=True, eq=False)
-class Window:
-    """What a window of samples says.
-
-    Parameters
-    ----------
-    time
-        Seconds since the first sample, of the last one.
-    error, model_error
-        Root mean square of the errors of prediction, of the estimate before it learnt and of the
-        model as it was given, output units; NaN where nothing is known.
-    noise
-        As the estimator estimates it, output units; NaN before it has learnt from a sample.
-    parameters
-        Shape (m,), the estimate when it was last asked for.
-    knowledge
-        Its bands then.
-    innovation
-        Whether what is left can be noise, in a sentence; and whether it can.
-    is_consistent
-        The same as a truth value.
-    paused
-        Why nothing was learnt; empty where something was.
-    counts
-        Since the start: samples, samples learnt from, and what was wrong with the others.
-    events
-        Alarms that start or end here.
-    active
-        Names of the alarms that are on.
-    """
-
-    time: float
-    error: float
-    model_error: float
-    noise: float
-    parameters: Array
-    knowledge: Knowledge
-    has_bands: bool
-    innovation: str
-    is_consistent: bool
-    paused: str
-    counts: dict[str, int]
-    events: tuple[AlarmEvent, ...]
-    active: tuple[str, ...]
-=======
-def knowledge_of(estimator: Estimator) -> Knowledge:
-    """Ask an estimator what it knows, whatever that costs.
-
-    Parameters
-    ----------
-    estimator
-        Any.
-    """
-    return estimator.knowledge
->>>>>>> wt-trim
 
 
 class Watcher:
