@@ -25,9 +25,9 @@ class Window:
         Root mean square of the errors of prediction, of the estimate before it learnt and of the
         model as it was given, output units; NaN where nothing is known.
     noise
-        As the estimator estimates it, output units.
+        As the estimator estimates it, output units; NaN before it has learnt from a sample.
     parameters
-        Shape (m,), the estimate.
+        Shape (m,), the estimate when it was last asked for.
     knowledge
         Bands of the estimate when it was last asked for them.
     has_bands
