@@ -15,6 +15,7 @@ from hyst.online.radius.radius_estimator import RadiusEstimator
 from hyst.online.radius.start import radius_estimator_for
 from hyst.online.scale.scale_estimator import ScaleEstimator
 from hyst.online.trajectory import Trajectory
+from hyst.online.watch.asking import at_better_fit
 
 __all__ = [
     "ESTIMATORS",
@@ -29,6 +30,7 @@ __all__ = [
     "RadiusEstimator",
     "ScaleEstimator",
     "Trajectory",
+    "at_better_fit",
     "estimator_for",
     "name_of_estimator",
     "radius_estimator_for",

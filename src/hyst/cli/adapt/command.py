@@ -90,6 +90,8 @@ def adapt(
         picture = draw(follower, about, trajectory, data)
     follower.description = _described(follower, about, measured.whole)
     knowledge = follower.knowledge
+    if inverse is None:
+        knowledge = hyst.online.at_better_fit(follower, knowledge)
     made = trajectory, run, picture, knowledge
     files_there = _write(folder, follower, inverse, made, measured, about)
     tell(follower, knowledge, before, about)

@@ -118,6 +118,6 @@ def _about_estimate(
     if not outside or rise < 1.0:
         return []
     return [
-        f"the running estimate has {', '.join(outside)} outside these bands; refine() takes it to "
-        "the better fit"
+        f"the running estimate has {', '.join(outside)} outside these bands, where a better fit "
+        "lies"
     ]
