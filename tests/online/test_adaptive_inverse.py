@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -190,3 +191,22 @@ def test_started_anew_a_scale_counts_samples_from_there_on() -> None:
     estimator.run(hyst.Record(u, model(u), 1.0))
     estimator.restart()
     assert "400 samples" not in str(estimator.knowledge)
+
+
+@pytest.mark.parametrize("gain", [0.0, -1.0])
+def test_a_sensor_that_dies_or_turns_round_moves_no_command(gain: float) -> None:
+    plant = hyst.PrandtlIshlinskii([0.5, 0.3], [1.0, 2.0], 1.0)
+    inverse = AdaptiveInverse(hyst.online.ScaleEstimator(plant, memory=300), window=400)
+    rng = np.random.default_rng(4)
+    actuator, frozen = plant.stepper(), plant.inverse().stepper()
+    worst = 0.0
+    for k in range(8000):
+        y_ref = 4.0 * math.sin(k / 30.0)
+        u, alone = inverse.command(y_ref), frozen(y_ref)
+        worst = max(worst, abs(u - alone)) if k >= 3600 else 0.0
+        y = actuator(u)
+        inverse.update(u, (gain if k > 3000 else 1.0) * y + 0.01 * rng.standard_normal())
+    assert not inverse.trusts_estimate
+    assert "ran to its bound (least)" in inverse.status
+    # 3 % of the range: commands are those of a model from before.
+    assert worst < 0.15

@@ -267,7 +267,10 @@ class AdaptiveInverse(Saved):
         is_doubtful = not self.estimator.innovation.consistent
         self.doubts = self.doubts + 1 if is_doubtful else 0
         usual, seconds = self._usual, self._samples * self.estimator.dt
-        is_rejected = is_worse or (is_unusual and adaptive > good / self._margin)
+        # A sensor that died or was turned round asks for what no plant does: on its bound an
+        # estimate is no better for leaving less.
+        bound = self.estimator.at_bound
+        is_rejected = is_worse or bool(bound) or (is_unusual and adaptive > good / self._margin)
         if is_rejected:
             self.trusts_estimate = False
             self.fallbacks += 1
@@ -279,7 +282,7 @@ class AdaptiveInverse(Saved):
                 self._good = self.estimator.model
                 self._fallback.restart(self._good)
         outcome = self.trusts_estimate, is_rejected
-        self.judgement = judged(seconds, (adaptive, good), usual, outcome, self.doubts)
+        self.judgement = judged(seconds, (adaptive, good), usual, outcome, self.doubts, bound)
 
 
 def _estimator_from(saved: dict[str, Any]) -> Estimator:

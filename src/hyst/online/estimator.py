@@ -85,6 +85,11 @@ class Estimator(Saved):
         """What the estimate leaves unexplained, and whether that can be noise."""
 
     @property
+    def at_bound(self) -> str:
+        """Which bound stops the estimate from what the samples ask for; empty if none does."""
+        return ""
+
+    @property
     def knowledge(self) -> Knowledge:
         """What is known of each parameter: a band, or why it is not determined."""
         innovation = self.innovation

@@ -29,6 +29,8 @@ class Judgement:
         Whether the estimate was given up and started anew from the last good model at its end.
     doubts
         In how many windows in a row, this one included, errors of the estimate were no noise.
+    bound
+        Which bound stopped the estimate from what the samples asked for; empty if none did.
     """
 
     seconds: float
@@ -38,6 +40,7 @@ class Judgement:
     trusted: bool
     restarted: bool
     doubts: int
+    bound: str = ""
 
     def __str__(self) -> str:
         window = f"in the last window of {self.seconds:.4g} s"
@@ -61,6 +64,8 @@ class Judgement:
         if not self.restarted:
             return f"{head}; the estimate{doubt} missed it by {self.estimate:.3g}, not yet trusted"
         usual = "" if self.usual is None else f", {self.usual:.3g} when it was trusted last"
+        if self.bound:
+            usual += f", and ran to its bound ({self.bound})"
         return (
             f"{head}; the estimate{doubt} missed it by {self.estimate:.3g}{usual}, so it has just "
             "been restarted and nothing of it is judged yet"
@@ -88,6 +93,7 @@ class Judgement:
             trusted=data["trusted"],
             restarted=data["restarted"],
             doubts=int(data["doubts"]),
+            bound=str(data.get("bound", "")),
         )
         is_plain = isinstance(found.trusted, bool) and isinstance(found.restarted, bool)
         if not is_plain or (found.trusted and found.restarted) or found.doubts < 0:
@@ -101,6 +107,7 @@ def judged(
     usual: float,
     outcome: tuple[bool, bool],
     doubts: int,
+    bound: str,
 ) -> Judgement:
     """Make a judgement of mean squares.
 
@@ -116,6 +123,8 @@ def judged(
         Whether it is trusted, and whether it was restarted.
     doubts
         Windows in a row without noise.
+    bound
+        That the estimate is on; empty if none.
 
     Returns
     -------
@@ -129,4 +138,5 @@ def judged(
         trusted=outcome[0],
         restarted=outcome[1],
         doubts=doubts,
+        bound=bound,
     )

@@ -29,6 +29,7 @@ from hyst.online.scale.affine_of import affine_of
 from hyst.online.scale.followed import Followed
 from hyst.online.scale.scale_knowledge import (
     ScaleSums,
+    bound_of,
     innovation_of,
     knowledge_of,
     refuse_state,
@@ -197,6 +198,11 @@ class ScaleEstimator(Estimator):
     def innovation(self) -> Innovation:
         """What the estimate leaves unexplained, and whether that can be noise."""
         return innovation_of(self._sums, float(self.parameters[0]), self.settings)
+
+    @property
+    def at_bound(self) -> str:
+        """Which bound the scale is on; empty if it is on none."""
+        return bound_of(self._sums, float(self.parameters[0]), self.settings)
 
     @property
     def knowledge(self) -> Knowledge:

@@ -117,7 +117,7 @@ def innovation_of(sums: ScaleSums, scale: float, settings: dict[str, Any]) -> In
     Innovation
     """
     is_wide = max(sums.wide_slope, sums.wide_mean) >= _TOLD_WIDENESS
-    if _bound_of(sums, scale, settings):
+    if bound_of(sums, scale, settings):
         # The noise is that of the slope the samples have; on the bound more is left.
         more = (sums.slope - scale) ** 2 * sums.swing**2 / 8.0
         return Innovation(
@@ -156,13 +156,23 @@ def knowledge_of(
     names = ("scale", "offset")
     sentences = _sentences(sums, float(parameters[0]), settings)
     # Off its bounds the variances are widened by what errors that follow each other ask for.
-    doubts = sentences if _bound_of(sums, float(parameters[0]), settings) else ()
+    doubts = sentences if bound_of(sums, float(parameters[0]), settings) else ()
     said = () if doubts else sentences
     return knowledge_from(names, parameters, standard_errors, reasons, said, doubts)
 
 
-def _bound_of(sums: ScaleSums, scale: float, settings: dict[str, Any]) -> str:
-    """Give the name of the bound that the estimate is on; empty if it is on none."""
+def bound_of(sums: ScaleSums, scale: float, settings: dict[str, Any]) -> str:
+    """Give the name of the bound that the estimate is on; empty if it is on none.
+
+    Parameters
+    ----------
+    sums
+        Of the estimator.
+    scale
+        The estimate.
+    settings
+        Of the estimator: the bounds over the start.
+    """
     share = scale / sums.start
     return next((each for each in ("least", "most") if share == settings[each]), "")
 
@@ -174,7 +184,7 @@ def _reasons(
     few = f"{sums.noise_samples} samples are too few"
     if "scale" not in held:
         why = few if sums.noise_samples < _LEAST_SAMPLES else _unknown_scale(sums, settings)
-        bound = _bound_of(sums, scale, settings)
+        bound = bound_of(sums, scale, settings)
         if bound:
             why = (
                 f"it is on its bound, {bound} = {settings[bound]:.4g} of the start, where samples "
@@ -184,7 +194,7 @@ def _reasons(
             reasons["scale"] = why
     if "offset" not in held:
         by_scale = sums.mean_w**2 * sums.variance > sums.mean_variance
-        by_scale = by_scale or bool(_bound_of(sums, scale, settings))
+        by_scale = by_scale or bool(bound_of(sums, scale, settings))
         if sums.noise_samples < _LEAST_SAMPLES:
             reasons["offset"] = few
         elif "scale" in reasons and by_scale:
@@ -209,7 +219,7 @@ def _sentences(sums: ScaleSums, scale: float, settings: dict[str, Any]) -> tuple
     innovation = innovation_of(sums, scale, settings)
     if not innovation.over:
         return ()
-    if _bound_of(sums, scale, settings):
+    if bound_of(sums, scale, settings):
         return (f"{innovation}",)
     widest = max(sums.wide_slope, sums.wide_mean)
     return (
