@@ -2,26 +2,36 @@
 
 from __future__ import annotations
 
-import os
-from abc import ABC
-from typing import Any, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.errors import InputError
+from hyst.control.block_file import InModelFile
 from hyst.operators import Operator
-from hyst.operators.description import Described, ModelDescription
-from hyst.operators.model_file import MODEL, write_file
-from hyst.operators.registry import entries, operator_from_dict
 
 Array = NDArray[np.float64]
 
 KIND = "tracking-controller"
 
 
-class SavedBlock(Described, ABC):
+class SavedBlock(InModelFile):
     """What ``TrackingController`` has of its constants; the names are explained there."""
+
+    file_kind: ClassVar[str] = KIND
+    needed: ClassVar[tuple[str, ...]] = ("dt", "A", "B", "C", "D")
+    optional: ClassVar[tuple[str, ...]] = (
+        "E",
+        "F",
+        "x0",
+        "u0",
+        "inverse",
+        "limits",
+        "rate",
+        "hysteresis",
+        "W",
+        "G",
+    )
 
     A: Array
     B: Array
@@ -61,55 +71,5 @@ class SavedBlock(Described, ABC):
             data["hysteresis"] = self.hysteresis.to_dict()
         return data
 
-    @classmethod
-    def from_dict(cls, data: dict[str, Any]) -> Self:
-        """Rebuild from ``to_dict()``.
-
-        Parameters
-        ----------
-        data
-            What ``to_dict()`` gave, or the same read from a model file.
-
-        Raises
-        ------
-        InputError
-            If an entry is missing, unknown or not allowed.
-        """
-        if not isinstance(data, dict) or data.get("kind") != KIND:
-            kind = data.get("kind") if isinstance(data, dict) else data
-            raise InputError(f"the kind is {kind!r}; give the dictionary of a {KIND}")
-        optional = ("E", "F", "x0", "u0", "inverse", "limits", "rate", "hysteresis", "W", "G")
-        given = entries(data, ("dt", "A", "B", "C", "D"), optional)
-        for name in ("inverse", "hysteresis"):
-            if name in given:
-                given[name] = operator_from_dict(given[name])
-        return cls(**given)
-
-    def save(
-        self, path: str | os.PathLike[str], description: ModelDescription | None = None
-    ) -> None:
-        """Write a model file, every double exact; ``hyst.load`` reads it.
-
-        Parameters
-        ----------
-        path
-            The file to create or replace; it is written whole or not at all.
-        description
-            What the numbers mean; that of the controller itself if left out.
-
-        Raises
-        ------
-        InputError
-            If the folder does not exist.
-        """
-        about = self.description if description is None else description
-        write_file(path, MODEL, {"model": self.to_dict()}, about)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, type(self)) and self.to_dict() == other.to_dict()
-
     def __hash__(self) -> int:
         return hash((KIND, self.dt, *self.A.ravel().tolist(), *self.C.tolist()))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return type(self).from_dict, (self.to_dict(),), self._carried()
