@@ -252,3 +252,12 @@ def test_estimates_that_predict_worse_than_their_start_are_told(
     told = capsys.readouterr()
     assert ("made them worse" in told.err) is is_worse
     assert ("predictions miss by 0.07" in told.out) is not is_worse
+
+
+@pytest.mark.parametrize(("name", "is_advised"), [("p0", True), ("scale", False)])
+def test_estimating_less_is_advised_where_there_is_less(
+    name: str, is_advised: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    y, made = np.sin(np.arange(400) / 20.0), np.zeros((4, 1))
+    tell_gain(hyst.online.Trajectory(np.arange(4.0), (name,), made, made, y), y, 0.8 * y)
+    assert ("--only scale,offset" in capsys.readouterr().err) is is_advised

@@ -88,10 +88,8 @@ def tell_gain(trajectory: hyst.online.Trajectory, y: Array, frozen: Array) -> No
     if adapted <= _WORSE * held:
         print(said)
         return
-    note(
-        f"{said}: estimating made them worse; keep the model from before, or estimate less "
-        "(--only scale,offset)"
-    )
+    less = "" if "scale" in trajectory.names else ", or estimate less (--only scale,offset)"
+    note(f"{said}: estimating made them worse; keep the model from before{less}")
 
 
 def tell(
