@@ -86,7 +86,9 @@ def meanings(block: Block, about: ModelDescription) -> dict[str, tuple[str, str]
         wanted = f"wanted {out[0]}" if out[0] else ""
         return dict(zip((*block.inputs, "y_ref"), (into, out, (wanted, out[1])), strict=True))
     if block.second:
-        return dict(zip((*block.inputs, block.output), (into, block.second_meaning, out), strict=True))
+        return dict(
+            zip((*block.inputs, block.output), (into, block.second_meaning, out), strict=True)
+        )
     if len(block.inputs) == 1:
         return {block.inputs[0]: into, block.output: out}
     return dict.fromkeys((*block.inputs, block.output), ("", ""))

@@ -175,7 +175,7 @@ def project_files(
     common = places(block, name, precision, about)
     head, main = header(block, common), source(block, common, precision)
     core = {f"core/{path}": text for path, text in core_files(main + head).items()}
-    own = [f"{name}.c", f"{name}_selftest.c"]
+    own = [f"{name}.c", f"{name}_step_response.c"]
     sources = [*own, *(path for path in core if path.endswith(".c"))]
     cmake = {
         "sources": "\n".join(f"  {each}" for each in sources),
@@ -186,7 +186,7 @@ def project_files(
     texts = {
         f"{name}.h": head,
         f"{name}.c": main,
-        f"{name}_selftest.c": short_test_source(block, test, common, precision),
+        f"{name}_step_response.c": short_test_source(block, test, common, precision),
         "selftest.c": selftest_source(block, common),
         "selftest_vectors.h": vectors(block, test, common, precision),
         "CMakeLists.txt": filled("CMakeLists.txt", common | cmake),
@@ -207,7 +207,7 @@ def _commands(common: dict[str, str], sources: list[str], flat: bool) -> dict[st
             "build_example": f"{define}*.c",
             "own_files": "The `.c` and `.h` files of this folder are all it takes",
         }
-    own, core = f"{name}.c {name}_selftest.c", " core/src/*.c" if len(sources) > 2 else ""
+    own, core = f"{name}.c {name}_step_response.c", " core/src/*.c" if len(sources) > 2 else ""
     paths = f"{define}-I. -Icore/include "
     return {
         "build_test": f"{paths}selftest.c {own}{core}",

@@ -18,9 +18,7 @@ def signals(block: Block, about: ModelDescription) -> dict[str, tuple[str, str]]
     return meanings(block, about) if told else {}
 
 
-def signal_rows(
-    block: Block, about: ModelDescription, variable: dict[str, str]
-) -> dict[str, str]:
+def signal_rows(block: Block, about: ModelDescription, variable: dict[str, str]) -> dict[str, str]:
     """Give a row for every signal: what it means, its unit, and its range in the record.
 
     Parameters
@@ -32,7 +30,10 @@ def signal_rows(
     """
     ranges = {
         block.inputs[0]: (about.input_low, about.input_high),
-        block.inputs[1] if block.is_estimator else block.output: (about.output_low, about.output_high),
+        block.inputs[1] if block.is_estimator else block.output: (
+            about.output_low,
+            about.output_high,
+        ),
     }
     rows = {}
     for role, (name, unit) in signals(block, about).items():

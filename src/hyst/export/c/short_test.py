@@ -15,7 +15,24 @@ from hyst.export.c.templating import filled
 
 KEPT = 4  # outputs compared while one level is held
 # Levels as parts of the range: its ends, beyond them, and loops inside.
-_LEVELS = (0.0, 1.0, 0.0, 0.5, 0.75, 0.25, 1.25, 0.625, -0.25, 0.375, 0.875, 0.125, 1.0, 0.4375, 0.0, 0.5)
+_LEVELS = (
+    0.0,
+    1.0,
+    0.0,
+    0.5,
+    0.75,
+    0.25,
+    1.25,
+    0.625,
+    -0.25,
+    0.375,
+    0.875,
+    0.125,
+    1.0,
+    0.4375,
+    0.0,
+    0.5,
+)
 SHORT_SAMPLES = KEPT * len(_LEVELS)
 _ENOUGH = 8  # different outputs, below which the levels are held longer: a long delay shows nothing
 _LONGEST_HOLD = 256
@@ -93,7 +110,7 @@ def short_test_source(
         call = f"result.number = {name}_step(&state, {', '.join(levels)});"
     state = int(places["word_bytes"]) * (max(len(block.start), 1) + 1) + 8
     return filled(
-        "short_selftest.c",
+        "step_response.c",
         places
         | {
             "tables": "\n".join(tables),
