@@ -106,7 +106,8 @@ def _sample(block: Block, name: str, number: str, named: dict[str, str]) -> Iter
         yield f"const {number} {u} = {name}_command(&{name}, {wanted});"
         yield f"const {number} {y} = {wanted}; /* what was measured then */"
         yield f"const int used = {name}_update({arguments});"
-        yield f'printf("%g: %g, used %d, fault %u\\n", {wanted}, {u}, used, (unsigned){name}_fault(&{name}));'
+        shown = f"{wanted}, {u}, used, (unsigned){name}_fault(&{name})"
+        yield f'printf("%g: %g, used %d, fault %u\\n", {shown});'
         return
     for role in block.inputs[1:]:
         value = sorted(block.second)[len(block.second) // 2] if block.second else 0.0

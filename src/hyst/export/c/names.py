@@ -130,7 +130,7 @@ def plain_text(text: str, longest: int = _LONGEST_TEXT) -> str:
     Returns
     -------
     str
-        One line of so many ASCII characters at most; what is not letter, digit or harmless becomes "_".
+        At most so many ASCII characters, one line; what is not letter, digit or harmless is "_".
 
     Examples
     --------

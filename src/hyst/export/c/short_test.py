@@ -1,4 +1,4 @@
-"""The self-test that a target runs by itself: a step response of a few samples, compared by bits."""
+"""The self-test that a target runs by itself: a step response, compared by its bits."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from hyst.export.c.names import is_word, spelled
 
 _LONGEST_PART = 24
-# Macros of common headers and compilers in small letters, and what the example calls something else.
+# Macros of common headers and compilers in small letters, and functions the example calls.
 _MACROS = """
     assert errno far huge i386 linux main near printf signal stderr stdin stdout unix
 """
