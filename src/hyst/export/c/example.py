@@ -80,18 +80,21 @@ def example_of(
 
 
 def meanings(block: Block, about: ModelDescription) -> dict[str, tuple[str, str]]:
-    """Give name and unit of every signal of a ``block`` by what its functions call it."""
+    """Give name and unit of every signal of a ``block`` by what its functions call it.
+
+    One whose name is empty is called what the functions call it.
+    """
     into, out = (about.input_name, about.input_unit), (about.output_name, about.output_unit)
+    roles, meant = (*block.inputs, block.output), [("", "")] * (len(block.inputs) + 1)
     if block.is_estimator:
-        wanted = f"wanted {out[0]}" if out[0] else ""
-        return dict(zip((*block.inputs, "y_ref"), (into, out, (wanted, out[1])), strict=True))
-    if block.second:
-        return dict(
-            zip((*block.inputs, block.output), (into, block.second_meaning, out), strict=True)
-        )
-    if len(block.inputs) == 1:
-        return {block.inputs[0]: into, block.output: out}
-    return dict.fromkeys((*block.inputs, block.output), ("", ""))
+        wanted = f"wanted {out[0]}" if out[0].strip() else ""
+        roles, meant = (*block.inputs, "y_ref"), [into, out, (wanted, out[1])]
+    elif block.second:
+        meant = [into, block.second_meaning, out]
+    elif len(block.inputs) == 1:
+        meant = [into, out]
+    pairs = zip(roles, meant, strict=True)
+    return {role: (name if name.strip() else role, unit) for role, (name, unit) in pairs}
 
 
 def _driven(block: Block) -> str:

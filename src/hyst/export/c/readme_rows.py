@@ -38,7 +38,7 @@ def signal_rows(block: Block, about: ModelDescription, variable: dict[str, str])
     rows = {}
     for role, (name, unit) in signals(block, about).items():
         low, high = ranges.get(role, (None, None))
-        said = plain_text(name) or "no name"
+        said = plain_text(name)
         said += f" in {plain_text(unit)}" if unit else ""
         said += "" if low is None or high is None else f", {low:.6g} to {high:.6g} in the record"
         called = f"{role}, `{variable[role]}`" if variable[role] != role else f"`{role}`"

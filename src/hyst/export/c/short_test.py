@@ -15,24 +15,7 @@ from hyst.export.c.templating import filled
 
 KEPT = 4  # outputs compared while one level is held
 # Levels as parts of the range: its ends, beyond them, and loops inside.
-_LEVELS = (
-    0.0,
-    1.0,
-    0.0,
-    0.5,
-    0.75,
-    0.25,
-    1.25,
-    0.625,
-    -0.25,
-    0.375,
-    0.875,
-    0.125,
-    1.0,
-    0.4375,
-    0.0,
-    0.5,
-)
+_LEVELS = tuple(n / 16 for n in (0, 16, 0, 8, 12, 4, 20, 10, -4, 6, 14, 2, 16, 7, 0, 8))
 SHORT_SAMPLES = KEPT * len(_LEVELS)
 _ENOUGH = 8  # different outputs, below which the levels are held longer: a long delay shows nothing
 _LONGEST_HOLD = 256
