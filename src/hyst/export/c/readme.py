@@ -107,8 +107,8 @@ _POWER = """
 The step takes powers, in plain arithmetic that gives the same bits everywhere. If your target has a
 better function, compile every file with `-D@{PREFIX}POWER_HEADER='"my_power.h"'`. That header
 defines, for this precision and as `static inline`, `@{prefix}power(x, e)` for x >= 0,
-`@{prefix}log2(x)` for x > 0, and `@{prefix}exp2(v)`. The bits are then no longer those of Python: both
-self-tests say so, and the difference that the first one prints is yours to judge.
+`@{prefix}log2(x)` for x > 0, and `@{prefix}exp2(v)`. The bits are then no longer those of Python:
+both self-tests say so, and the difference that the first one prints is yours to judge.
 """
 _FAULTS = """\
 A sample that is NaN or infinite, or that overflows inside, is answered with the last output; the
