@@ -146,8 +146,8 @@ class ModelDescription:
             What ``to_dict()`` gave, or the same read from a file.
         version
             Of the description: 1 has neither errors nor provenance, 2 neither verdict nor what
-            records leave open, and both know whole delays from 0 only; 3 has no errors of dynamics, 4 does not say what is an
-            inverse.
+            records leave open, and both know whole delays from 0 only; 3 has no errors of
+            dynamics, 4 does not say what is an inverse.
 
         Raises
         ------
@@ -178,8 +178,11 @@ class ModelDescription:
     def of_inverse(self) -> ModelDescription:
         """Give that of the inverse: input and output change places, without errors and swing.
 
-        The verdict stays, for the inverse of a model that is not fit is not fit either.
+        The verdict stays, for the inverse of a model that is not fit is not fit either. Where nothing
+        is known of the signals, all that is said is that it is an inverse.
         """
+        if replace(self, is_inverse=False) == _NOTHING_SAID:
+            return replace(self, is_inverse=not self.is_inverse)
         return replace(
             self,
             input_name=self.output_name,
