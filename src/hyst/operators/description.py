@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any, ClassVar, Self, final
 
 from hyst.errors import InputError
+from hyst.operators.driver.driver import Driver
 from hyst.operators.dynamics_errors import DynamicsErrors
 from hyst.operators.plain_data import (
     as_finite,
@@ -58,6 +59,8 @@ class ModelDescription:
         show nothing.
     dynamics_errors
         How well linear dynamics behind a hysteresis are known, if they were identified.
+    driver
+        Which volts the codes of the drive's converter give, if the record's input was in codes.
 
     Raises
     ------
@@ -83,6 +86,7 @@ class ModelDescription:
     delay_interval: tuple[float, float] | None = None
     smallest_swing: float | None = None
     dynamics_errors: DynamicsErrors | None = None
+    driver: Driver | None = None
 
     # Of the file format: entries that files of a version may have are those of it and before.
     ADDED: ClassVar[dict[str, int]] = {
@@ -92,6 +96,7 @@ class ModelDescription:
         "delay_interval": 3,
         "smallest_swing": 3,
         "dynamics_errors": 4,
+        "driver": 5,
     }
 
     def __post_init__(self) -> None:
@@ -123,7 +128,7 @@ class ModelDescription:
     def to_dict(self) -> dict[str, Any]:
         """Give what there is to say as values of JSON; what is not known is left out."""
         plain = asdict(self)
-        for name in ("verdict", "dynamics_errors"):
+        for name in ("verdict", "dynamics_errors", "driver"):
             given = getattr(self, name)
             plain[name] = None if given is None else given.to_dict()
         if self.delay_interval is not None:
@@ -131,7 +136,7 @@ class ModelDescription:
         return {key: value for key, value in plain.items() if value not in (None, {})}
 
     @classmethod
-    def from_dict(cls, data: Any, version: int = 4) -> ModelDescription:
+    def from_dict(cls, data: Any, version: int = 5) -> ModelDescription:
         """Rebuild a description from ``to_dict()``.
 
         Parameters
@@ -140,7 +145,8 @@ class ModelDescription:
             What ``to_dict()`` gave, or the same read from a file.
         version
             Of the description: 1 has neither errors nor provenance, 2 neither verdict nor what
-            records leave open, and both know whole delays from 0 only; 3 has no errors of dynamics.
+            records leave open, and both know whole delays from 0 only; 3 has no errors of
+            dynamics, 4 no driver.
 
         Raises
         ------
@@ -285,6 +291,10 @@ def _as_dynamics_errors(name: str, value: Any) -> DynamicsErrors | None:
     return value if known else DynamicsErrors.from_dict(value)
 
 
+def _as_driver(name: str, value: Any) -> Driver | None:
+    return value if value is None or isinstance(value, Driver) else Driver.from_dict(value)
+
+
 # How each entry is checked; one that has a structure gives back what is plain and its own.
 _CHECKS: dict[str, Callable[[str, Any], Any]] = {
     **dict.fromkeys(("input_name", "output_name", "input_unit", "output_unit", "family"), as_text),
@@ -297,6 +307,7 @@ _CHECKS: dict[str, Callable[[str, Any], Any]] = {
     "delay_interval": as_finite_pair_or_none,
     "smallest_swing": as_finite_or_none,
     "dynamics_errors": _as_dynamics_errors,
+    "driver": _as_driver,
 }
 _ANY_DELAY = 3  # the version from which on a delay may be a fraction or negative
 _NOTHING_SAID = ModelDescription()
