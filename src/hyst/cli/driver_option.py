@@ -88,3 +88,29 @@ def driver_for(text: str | None, about: hyst.ModelDescription) -> hyst.Driver | 
             "converts no units, so convert the table, or correct its header"
         )
     return driver
+
+
+def range_of_codes(
+    input_range: tuple[float, float] | None, driver: hyst.Driver | None
+) -> tuple[float, float] | None:
+    """Give the range that a command may have: of its limits what a driver's codes reach.
+
+    Parameters
+    ----------
+    input_range
+        The limits; None for none.
+    driver
+        None for a drive that takes any volts.
+
+    Raises
+    ------
+    InputError
+        If no code is within the limits.
+    """
+    if driver is None:
+        return input_range
+    low, high = driver.volt_range
+    if input_range is None:
+        return low, high
+    driver.codes_within(*input_range)
+    return max(low, input_range[0]), min(high, input_range[1])

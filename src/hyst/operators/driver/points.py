@@ -55,7 +55,7 @@ class Points:
         """Give the nearest codes from ``lowest`` to ``highest``, of two as near the lower one."""
         volts = np.asarray(volts, dtype=self.volts.dtype)
         piece = self._piece_of(volts)
-        first = self.codes[piece]
+        first: Codes = self.codes[piece]
         most = self.codes[piece + 1] - first
         codes = self._passed(piece, volts, most)
         up = np.minimum(codes + 1, most)
@@ -63,7 +63,8 @@ class Points:
             further = abs(volts - self._in_piece(piece, up)) < abs(
                 volts - self._in_piece(piece, codes)
             )
-        return np.clip(first + np.where(further, up, codes), lowest, highest)
+        nearest: Codes = np.clip(first + np.where(further, up, codes), lowest, highest)
+        return nearest
 
     def _in_piece(self, piece: NDArray[np.intp], codes: Codes) -> Reals:
         """Give the volts so many codes after the start of a piece, never beyond its end."""
@@ -77,7 +78,8 @@ class Points:
     def _piece_of(self, volts: Reals) -> NDArray[np.intp]:
         sign = self.volts.dtype.type(-1.0 if self.falls else 1.0)
         found = np.searchsorted(sign * self.volts, sign * volts, side="right") - 1
-        return np.clip(found, 0, self.codes.size - 2)
+        piece: NDArray[np.intp] = np.clip(found, 0, self.codes.size - 2)
+        return piece
 
     def _passed(self, piece: NDArray[np.intp], volts: Reals, most: Codes) -> Codes:
         """Give the last codes of the pieces that the volts have passed, 0 where none is."""
