@@ -61,6 +61,8 @@ class ModelDescription:
         How well linear dynamics behind a hysteresis are known, if they were identified.
     driver
         Which volts the codes of the drive's converter give, if the record's input was in codes.
+    is_inverse
+        Whether the output is the drive of an actuator and the input what it shall do.
 
     Raises
     ------
@@ -87,6 +89,7 @@ class ModelDescription:
     smallest_swing: float | None = None
     dynamics_errors: DynamicsErrors | None = None
     driver: Driver | None = None
+    is_inverse: bool = False
 
     # Of the file format: entries that files of a version may have are those of it and before.
     ADDED: ClassVar[dict[str, int]] = {
@@ -97,6 +100,7 @@ class ModelDescription:
         "smallest_swing": 3,
         "dynamics_errors": 4,
         "driver": 5,
+        "is_inverse": 5,
     }
 
     def __post_init__(self) -> None:
@@ -133,6 +137,8 @@ class ModelDescription:
             plain[name] = None if given is None else given.to_dict()
         if self.delay_interval is not None:
             plain["delay_interval"] = list(self.delay_interval)
+        if not self.is_inverse:
+            del plain["is_inverse"]
         return {key: value for key, value in plain.items() if value not in (None, {})}
 
     @classmethod
@@ -146,7 +152,7 @@ class ModelDescription:
         version
             Of the description: 1 has neither errors nor provenance, 2 neither verdict nor what
             records leave open, and both know whole delays from 0 only; 3 has no errors of
-            dynamics, 4 no driver.
+            dynamics, 4 no driver and not what is an inverse.
 
         Raises
         ------
@@ -192,6 +198,7 @@ class ModelDescription:
             errors={},
             smallest_swing=None,
             dynamics_errors=None,
+            is_inverse=not self.is_inverse,
         )
 
     def of_other_constants(self) -> ModelDescription:
@@ -295,6 +302,12 @@ def _as_driver(name: str, value: Any) -> Driver | None:
     return value if value is None or isinstance(value, Driver) else Driver.from_dict(value)
 
 
+def _as_yes_or_no(name: str, value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise InputError(f"{name} is {value!r}; give true or false")
+    return value
+
+
 # How each entry is checked; one that has a structure gives back what is plain and its own.
 _CHECKS: dict[str, Callable[[str, Any], Any]] = {
     **dict.fromkeys(("input_name", "output_name", "input_unit", "output_unit", "family"), as_text),
@@ -308,6 +321,7 @@ _CHECKS: dict[str, Callable[[str, Any], Any]] = {
     "smallest_swing": as_finite_or_none,
     "dynamics_errors": _as_dynamics_errors,
     "driver": _as_driver,
+    "is_inverse": _as_yes_or_no,
 }
 _ANY_DELAY = 3  # the version from which on a delay may be a fraction or negative
 _NOTHING_SAID = ModelDescription()
