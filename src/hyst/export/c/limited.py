@@ -42,7 +42,7 @@ def limits_in(
     """
     if precision == "double":
         return low, high, change
-    inner = _not_below(low), -_not_below(-high), -_not_below(-change)
+    inner = not_below(low), not_above(high), not_above(change)
     if not inner[0] < inner[1] or (change > 0.0 and inner[2] <= 0.0):
         raise InputError(
             f"the limits {low:.9g} to {high:.9g}, {change:.9g} a sample, leave no number of single "
@@ -59,11 +59,17 @@ def limits_in(
     return inner
 
 
-def _not_below(value: float) -> float:
+def not_below(value: float) -> float:
+    """Give the number of single precision nearest to a ``value`` that is not below it."""
     largest = np.finfo(np.float32).max
     nearest = np.float32(np.clip(value, -float(largest), float(largest)))
     below = float(nearest) < value and nearest < largest
     return float(np.nextafter(nearest, np.float32(np.inf)) if below else nearest)
+
+
+def not_above(value: float) -> float:
+    """Give the number of single precision nearest to a ``value`` that is not above it."""
+    return -not_below(-value)
 
 
 @final
