@@ -58,6 +58,8 @@ class ModelDescription:
         show nothing.
     dynamics_errors
         How well linear dynamics behind a hysteresis are known, if they were identified.
+    is_inverse
+        Whether the output is the drive of an actuator and the input what it shall do.
 
     Raises
     ------
@@ -83,6 +85,7 @@ class ModelDescription:
     delay_interval: tuple[float, float] | None = None
     smallest_swing: float | None = None
     dynamics_errors: DynamicsErrors | None = None
+    is_inverse: bool = False
 
     # Of the file format: entries that files of a version may have are those of it and before.
     ADDED: ClassVar[dict[str, int]] = {
@@ -92,6 +95,7 @@ class ModelDescription:
         "delay_interval": 3,
         "smallest_swing": 3,
         "dynamics_errors": 4,
+        "is_inverse": 5,
     }
 
     def __post_init__(self) -> None:
@@ -128,10 +132,12 @@ class ModelDescription:
             plain[name] = None if given is None else given.to_dict()
         if self.delay_interval is not None:
             plain["delay_interval"] = list(self.delay_interval)
+        if not self.is_inverse:
+            del plain["is_inverse"]
         return {key: value for key, value in plain.items() if value not in (None, {})}
 
     @classmethod
-    def from_dict(cls, data: Any, version: int = 4) -> ModelDescription:
+    def from_dict(cls, data: Any, version: int = 5) -> ModelDescription:
         """Rebuild a description from ``to_dict()``.
 
         Parameters
@@ -140,7 +146,8 @@ class ModelDescription:
             What ``to_dict()`` gave, or the same read from a file.
         version
             Of the description: 1 has neither errors nor provenance, 2 neither verdict nor what
-            records leave open, and both know whole delays from 0 only; 3 has no errors of dynamics.
+            records leave open, and both know whole delays from 0 only; 3 has no errors of dynamics, 4 does not say what is an
+            inverse.
 
         Raises
         ------
@@ -186,6 +193,7 @@ class ModelDescription:
             errors={},
             smallest_swing=None,
             dynamics_errors=None,
+            is_inverse=not self.is_inverse,
         )
 
     def of_other_constants(self) -> ModelDescription:
@@ -285,6 +293,12 @@ def _as_dynamics_errors(name: str, value: Any) -> DynamicsErrors | None:
     return value if known else DynamicsErrors.from_dict(value)
 
 
+def _as_yes_or_no(name: str, value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise InputError(f"{name} is {value!r}; give true or false")
+    return value
+
+
 # How each entry is checked; one that has a structure gives back what is plain and its own.
 _CHECKS: dict[str, Callable[[str, Any], Any]] = {
     **dict.fromkeys(("input_name", "output_name", "input_unit", "output_unit", "family"), as_text),
@@ -297,6 +311,7 @@ _CHECKS: dict[str, Callable[[str, Any], Any]] = {
     "delay_interval": as_finite_pair_or_none,
     "smallest_swing": as_finite_or_none,
     "dynamics_errors": _as_dynamics_errors,
+    "is_inverse": _as_yes_or_no,
 }
 _ANY_DELAY = 3  # the version from which on a delay may be a fraction or negative
 _NOTHING_SAID = ModelDescription()
