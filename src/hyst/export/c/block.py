@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from hyst import _single
+from hyst.control.limited_drive.drive import LimitedDrive
 from hyst.control.repetitive.controller import RepetitiveController
 from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError
 from hyst.export.c.controllers import repetitive_block, tracking_block
+from hyst.export.c.drive_block import limited_block
 from hyst.export.c.exported import Block, Memory, stepper_of
 from hyst.export.c.following import told
 from hyst.export.c.numbers import Precision
@@ -26,6 +28,7 @@ __all__ = ["Block", "Model", "block_of", "described", "refuse_unfit", "stepper_o
 
 Model = (
     Operator
+    | LimitedDrive
     | ScheduledSystem
     | TrackingController
     | RepetitiveController
@@ -41,8 +44,8 @@ def block_of(model: Model, precision: Precision) -> Block:
     Parameters
     ----------
     model
-        Any operator, a scheduled model or its inverse, a tracking or a repetitive controller; a
-        stable inverse is refused with the reason.
+        Any operator, a limited drive, a scheduled model or its inverse, a tracking or a repetitive
+        controller; a stable inverse is refused with the reason.
     precision
         Of the target.
 
@@ -59,6 +62,8 @@ def block_of(model: Model, precision: Precision) -> Block:
         return tracking_block(model, precision)
     if isinstance(model, RepetitiveController):
         return repetitive_block(model, precision)
+    if isinstance(model, LimitedDrive):
+        return limited_block(model, precision)
     if isinstance(model, Scheduled | ScheduledInverse):
         return _scheduled(model, precision)
     if isinstance(model, StableInverse):

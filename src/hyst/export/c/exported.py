@@ -89,6 +89,8 @@ class Block:
         Memory and answer before the history that ``start`` comes after; None without a history.
     history
         The drives the memory comes after.
+    tested
+        Lowest and highest input of the self-test; None for that of the record, or what passes all.
     """
 
     kind: str
@@ -120,6 +122,7 @@ class Block:
     no_start: str = ""
     before: tuple[Memory, float] | None = None
     history: Memory = ()
+    tested: tuple[float, float] | None = None
 
     @property
     def limits(self) -> tuple[float, float] | None:

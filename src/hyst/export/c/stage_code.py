@@ -172,6 +172,17 @@ class StageCode:
             [f"if (hyst_is_finite({signal})) {{", *(f"    {each}" for each in lines), "}"]
         )
 
+    def name(self, index: int) -> str:
+        """Give what C calls the structure of a stage."""
+        return _name(self.stages[index], index)
+
+    def local(self, index: int) -> str:
+        """Give the declaration of the structure of a stage where it is used; "" if in the file."""
+        if self.held_by is None:
+            return ""
+        stage = self.stages[index]
+        return "\n".join(_in_lines(f"const {self._written(stage.structure, stage, index)}")) + "\n"
+
     def _declaration(self, constant: Constant) -> Iterator[str]:
         size = f"[{len(constant.values)}]" if constant.is_table else ""
         if self.held_by is not None:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from hyst import _engine
 from hyst.checks.arrays import finite_vector
+from hyst.control.limited_drive.checked import reach_of_bank
 from hyst.errors import InputError, NotInvertibleError
 from hyst.export.c.core_stage import core_stages
 from hyst.export.c.drive_range import DriveRange
@@ -13,11 +15,11 @@ from hyst.export.c.exported import Block
 from hyst.export.c.following import Following, Passed
 from hyst.export.c.numbers import Precision, rounded
 from hyst.export.c.stage_code import StageCode
-from hyst.models.schedule_stages import with_kind
 from hyst.operators import Operator
+from hyst.operators.stage import Stage
 
 _SOLVED = "(void)hyst_pi_solved_step(&$model, $memory, $signal);"
-_SOLVED_HEADER = "hyst/solved.h"
+SOLVED_HEADER = "hyst/solved.h"
 
 
 def moved_bank(inverse: Operator) -> bool:
@@ -25,8 +27,7 @@ def moved_bank(inverse: Operator) -> bool:
 
     The bank is solved for what belongs to the drive, and what is before it has no memory.
     """
-    stages = core_stages(inverse)
-    return bool(stages) and stages[-1].kind == "pi" and not any(e.state_length for e in stages[:-1])
+    return reach_of_bank(_engine.Chain(inverse.stages()), -1.0, 1.0) is not None
 
 
 def bank_passed(inverse: Operator, first: int, place: int) -> Passed:
@@ -39,9 +40,11 @@ def bank_passed(inverse: Operator, first: int, place: int) -> Passed:
     first, place
         Of the inverse: its first stage among those of the code, and its memory in the block's.
     """
-    bank = inverse.stages()[-1]
-    at = first + len(core_stages(inverse)) - 1
-    return Passed((with_kind(bank, "pi_solved"),), at, place, call=_SOLVED)
+    stages = core_stages(inverse)
+    bank = stages[-1]
+    constants = (bank.numbers["p0"], *bank.tables["p"], *bank.tables["r"])
+    solved = Stage("pi_solved", constants)
+    return Passed((solved,), first + len(stages) - 1, place, call=_SOLVED)
 
 
 def inverse_following(
@@ -102,7 +105,7 @@ def with_start(block: Block, code: StageCode, inverse: Operator, place: int) -> 
         whole, following = inverse_following(inverse, code, place)
     except (NotInvertibleError, InputError) as reason:
         return replace(block, no_start=f"the model in front of it is not known: {reason}")
-    headers = tuple(sorted({*whole.headers(), *([_SOLVED_HEADER] * moved_bank(inverse))}))
+    headers = tuple(sorted({*whole.headers(), *([SOLVED_HEADER] * moved_bank(inverse))}))
     return replace(block, head=whole.declarations(), headers=headers, following=following)
 
 
