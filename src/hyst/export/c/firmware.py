@@ -20,6 +20,7 @@ from hyst.export.c.names import as_c_name
 from hyst.export.c.numbers import Precision, as_precision
 from hyst.export.c.readme import readme
 from hyst.export.c.selftest import SelfTest
+from hyst.export.c.short_test import short_test_source
 from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, MANIFEST, write_export
 from hyst.online import JointEstimator, ScaleEstimator
@@ -174,7 +175,8 @@ def project_files(
     common = places(block, name, precision, about)
     head, main = header(block, common), source(block, common, precision)
     core = {f"core/{path}": text for path, text in core_files(main + head).items()}
-    sources = [f"{name}.c", *(path for path in core if path.endswith(".c"))]
+    own = [f"{name}.c", f"{name}_step_response.c"]
+    sources = [*own, *(path for path in core if path.endswith(".c"))]
     cmake = {
         "sources": "\n".join(f"  {each}" for each in sources),
         "definitions": f"target_compile_definitions({name} PUBLIC HYST_SINGLE)\n"
@@ -184,15 +186,34 @@ def project_files(
     texts = {
         f"{name}.h": head,
         f"{name}.c": main,
+        f"{name}_step_response.c": short_test_source(block, test, common, precision),
         "selftest.c": selftest_source(block, common),
         "selftest_vectors.h": vectors(block, test, common, precision),
         "CMakeLists.txt": filled("CMakeLists.txt", common | cmake),
         "LICENSE": filled("LICENSE", {}),
-        "README.md": readme(block, common, about, test, len(sources) > 1),
+        "README.md": readme(block, common, about, test, _commands(common, sources, flat)),
     }
     files = {path: text.encode("ascii") for path, text in texts.items()} | core
     files = flattened(files, name) if flat else files
     return files | {MANIFEST: _manifest(block, name, precision, files, test)}
+
+
+def _commands(common: dict[str, str], sources: list[str], flat: bool) -> dict[str, str]:
+    """Give what the README tells of compiling: options and files, and what goes elsewhere."""
+    name, define = common["name"], common["define"]
+    if flat:
+        return {
+            "build_test": f"{define}*.c selftest/*.c",
+            "build_example": f"{define}*.c",
+            "own_files": "The `.c` and `.h` files of this folder are all it takes",
+        }
+    own, core = f"{name}.c {name}_step_response.c", " core/src/*.c" if len(sources) > 2 else ""
+    paths = f"{define}-I. -Icore/include "
+    return {
+        "build_test": f"{paths}selftest.c {own}{core}",
+        "build_example": f"{paths}example.c {own}{core}",
+        "own_files": f"`{name}.c`, `{name}.h` and `core/` are all it takes",
+    }
 
 
 def _manifest(
