@@ -74,6 +74,7 @@ def places(
         "raised": _raised(block, name.upper()),
         **_reset(block, name),
         "sample_time": _sample_time(block, name) + block.drive.defined(name),
+        "answered": _answered(block, name),
         "start_declared": start_declared(block, name),
         # What a refused sample leaves in an estimator's scratch area is of no use.
         "saved_number": "hyst_is_finite(state->memory[i]) ? state->memory[i] : HYST_REAL(0.0)"
@@ -158,6 +159,17 @@ def vectors(block: Block, test: SelfTest, places: dict[str, str], precision: Pre
         "expected": table(test.expected.tolist(), precision, "expected"),
     }
     return filled("selftest_vectors.h", places | more)
+
+
+def _answered(block: Block, name: str) -> str:
+    """Give the end of an estimator's command: finite, and within the limits of the drive."""
+    if block.drive.limits is None:
+        return "    return hyst_is_finite(u) ? u : state->y_last;\n"
+    low, high = f"{name.upper()}_U_MIN", f"{name.upper()}_U_MAX"
+    return (
+        "    u = hyst_is_finite(u) ? u : state->y_last;\n"
+        f"    u = u < {low} ? {low} : u;\n    return u > {high} ? {high} : u;\n"
+    )
 
 
 def _fault(block: Block, name: str, state: str) -> str:

@@ -31,6 +31,8 @@ class DriveRange:
         The most it moves in a second; None for any.
     source
         Where the limits come from, or why there are none.
+    unit
+        Of the drive, as text, or "".
     stated
         The limits before they were rounded inwards; None without limits.
     """
@@ -41,6 +43,7 @@ class DriveRange:
     rate: float | None = None
     source: str = NO_RANGE
     stated: tuple[float, float] | None = None
+    unit: str = ""
 
     @classmethod
     def of(
@@ -73,15 +76,28 @@ class DriveRange:
         """Tell whether a ``drive`` is within the limits."""
         return self.limits is None or self.limits[0] <= drive <= self.limits[1]
 
-    def said(self, unit: str = "") -> str:
+    def said(self) -> str:
         """Give the row of a table: limits, rate, and where they come from."""
         if not self.is_limited:
             return self.source
         parts = [] if self.limits is None else [f"{_short(self.low)} to {_short(self.high)}"]
-        behind = f" {unit}" if unit else ""
+        behind = f" {self.unit}" if self.unit else ""
         rate = "" if self.rate is None else f"at most {_short(self.rate)}{behind} per second"
         parts = [f"{each}{behind}" for each in parts] + ([rate] if rate else [])
         return f"{', '.join(parts)} ({self.source})"
+
+    def told(self) -> dict[str, str | float]:
+        """Give what a manifest says."""
+        said = {
+            "side": self.side,
+            "low": self.low,
+            "high": self.high,
+            "rate": self.rate,
+            "unit": self.unit,
+        }
+        return {"source": self.source} | {
+            key: value for key, value in said.items() if value not in (None, "")
+        }
 
     def defined(self, name: str) -> str:
         """Give the lines of a header that say it, for an export called ``name``."""

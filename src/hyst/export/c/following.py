@@ -131,11 +131,11 @@ def _run(
     chain = _engine.Chain(stages)
     memory = np.array(start[: chain.state_length], dtype=np.float64)
     if precision == "double":
-        y = np.empty_like(signal)
-        bad = chain.run(memory, signal, y)
+        y, ends = np.empty((1, signal.size)), memory[None, :].copy()
+        bad = chain.run(ends, signal[None, :].copy(), y)
         if bad >= 0:
-            y[bad:] = np.nan
-        return y, memory
+            y[0, bad:] = np.nan
+        return y[0], ends[0]
     step = _single.Stepper([told(each) for each in stages_as_core(stages)], memory.tolist())
     y = np.array([step(float(each)) if not step.fault else np.nan for each in signal])
     return np.where(step.fault, np.nan, y), np.array(step.state)

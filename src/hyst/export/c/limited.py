@@ -101,7 +101,8 @@ class LimitedStages:
     @property
     def all(self) -> tuple[CoreStage, ...]:
         """All of them, in the order of their memory."""
-        limits = limits_stage(self.limits, {"forward": outermost(self.forward)})
+        told = {"forward": outermost(self.forward)} | ({"way": 1} if self.linear is None else {})
+        limits = limits_stage(self.limits, told)
         windup = CoreStage(
             kind="anti_windup",
             numbers={},

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
+
+from numpy.typing import ArrayLike
 
 from hyst import _engine
 from hyst.checks.arrays import finite_vector
@@ -18,7 +19,7 @@ from hyst.export.c.stage_code import StageCode
 from hyst.operators import Operator
 from hyst.operators.stage import Stage
 
-_SOLVED = "(void)hyst_pi_solved_step(&$model, $memory, $signal);"
+_SOLVED = "$signal = hyst_pi_solved_step(&$model, $memory, $signal);"
 SOLVED_HEADER = "hyst/solved.h"
 
 
@@ -109,7 +110,7 @@ def with_start(block: Block, code: StageCode, inverse: Operator, place: int) -> 
     return replace(block, head=whole.declarations(), headers=headers, following=following)
 
 
-def after_history(block: Block, history: Sequence[float] | None, precision: Precision) -> Block:
+def after_history(block: Block, history: ArrayLike | None, precision: Precision) -> Block:
     """Give a ``block`` that starts after a history.
 
     Parameters

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from hyst.export.c.exported import Block, Memory
 from hyst.export.c.following import Following
 from hyst.export.c.numbers import Precision, literal, table
@@ -84,7 +86,7 @@ def _init_after(block: Block, following: Following, name: str, virgin: str) -> s
     if block.drive.limits is not None:
         outside += [f"(drive < {prefix}_U_MIN)", f"(drive > {prefix}_U_MAX)"]
     apart, last = following.apart, following.last
-    uses_memory = last is not None or any(each.place is not None for each in following.passed)
+    uses_memory = last is not None or re.search(r"\bmemory\b", following.statements) is not None
     lines = [
         f"int {name}_init_after({name}_state *state, const hyst_real *extremes, size_t count)",
         "{",
