@@ -105,7 +105,13 @@ def starts_from_extremes(block: Block) -> bool:
 
 
 def swept_name(block: Block, name: str, about: ModelDescription) -> str:
-    """Give what the example calls the drives at which the sweep turned."""
+    """Give what the example calls the drives at which the sweep turned.
+
+    Parameters
+    ----------
+    block, name, about
+        As of ``example_of``.
+    """
     unit = identifier(drive_unit(block, about))
     return f"{name}_swept_{unit}" if unit else f"{name}_swept"
 

@@ -144,7 +144,7 @@ def c_project(
     >>> with tempfile.TemporaryDirectory() as parent:
     ...     project = c_project(model.inverse(), f"{parent}/inverse", name="inverse")
     >>> [file for file in project.files if file.endswith(".c")]
-    ['core/src/prandtl_ishlinskii.c', 'inverse.c', 'selftest.c']
+    ['core/src/prandtl_ishlinskii.c', 'inverse.c', 'inverse_step_response.c', 'selftest.c']
     """
     as_c_name(name)
     refuse_unfit(model, description, despite_verdict)
