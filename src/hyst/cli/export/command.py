@@ -15,10 +15,19 @@ from hyst.cli.export.targets import TARGETS, takers
 from hyst.cli.relevant_options import refuse_irrelevant
 from hyst.cli.scheduled import ScheduleValue, loaded_at
 
-Flat = Annotated[
+Layout = Annotated[
+    str,
+    typer.Option(
+        help="Of C: folder; flat, all that is compiled in one folder, as for Arduino; or "
+        "single-file, one header and one source."
+    ),
+]
+
+SharedCore = Annotated[
     bool,
     typer.Option(
-        "--flat", help="C in one folder without paths of includes, as an Arduino library."
+        "--shared-core",
+        help="Of C: exports of one folder share one copy of the core in each precision.",
     ),
 ]
 
@@ -75,7 +84,8 @@ def export(
         ),
     ] = True,
     despite_verdict: DespiteVerdict = False,
-    flat: Flat = False,
+    layout: Layout = "folder",
+    shared_core: SharedCore = False,
     schedule_value: ScheduleValue = None,
 ) -> None:
     """Write a model as code for other tools: the numbers of Python, bit for bit in double."""
@@ -87,7 +97,9 @@ def export(
     model = loaded_at(model_file, schedule_value)
     if inverse or explicit:
         model = hyst.export.inverse_of(model, explicit, preview)
-    order = Order(model, out, precision, name, force, fmi, binary, despite_verdict, flat)
+    order = Order(
+        model, out, precision, name, force, fmi, binary, despite_verdict, layout, shared_core
+    )
     done = TARGETS[target].write(order)
     what = "inverse of " if inverse or explicit else ""
     title = f"{what}{model_file.name} as {target}: {out}"

@@ -23,7 +23,8 @@ class Order:
     fmi: str
     binary: bool
     despite_verdict: bool
-    flat: bool
+    layout: str
+    shared_core: bool
 
 
 @dataclass(frozen=True)

@@ -53,11 +53,6 @@ def places(
         "fault_there": _fault(block, name, "state"),
         "fault_here": _fault(block, name, "&state"),
         "identity": f"0x{block.identity(precision):08x}",
-        "wrong_precision": "ifndef" if single else "ifdef",
-        "how_to_compile": "compile every file with -DHYST_SINGLE"
-        if single
-        else "compile without HYST_SINGLE",
-        "define": "-DHYST_SINGLE " if single else "",
         "output": block.output,
         "first": block.inputs[0],
         "arguments": ", ".join(f"hyst_real {each}" for each in block.inputs),

@@ -14,7 +14,6 @@ def readme(
     places: dict[str, str],
     about: ModelDescription,
     test: SelfTest,
-    has_core: bool,
 ) -> str:
     """Give the README.
 
@@ -28,8 +27,6 @@ def readme(
         What the numbers mean.
     test
         The self-test.
-    has_core
-        Whether there are sources of the core.
 
     Returns
     -------
@@ -67,8 +64,7 @@ def readme(
     for part in ("usage", "faults"):
         for key in ("name", "NAME", "output", "elements"):
             more[part] = more[part].replace(f"@{{{key}}}", (places | more)[key])
-    text = filled("README.md", places | more)
-    return text if has_core else text.replace(" core/src/*.c", "")
+    return filled("README.md", places | more)
 
 
 def signals(block: Block, about: ModelDescription) -> dict[str, tuple[str, str]]:
