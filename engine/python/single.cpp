@@ -9,13 +9,16 @@
 #include <deque>
 #include <limits>
 #include <map>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "hyst/hyst.h"
 #include "../kinds/kind.hpp"
+#include "../limited_drive.hpp"
 #include "../moving.hpp"
 
 namespace nb = nanobind;
@@ -60,6 +63,8 @@ public:
                 limited_.inverse.limits = {limits.number("low"), limits.number("high"),
                                            limits.number("change")};
                 forward = limits.choice("forward");
+                if (limits.has_choice("way")) way_ = static_cast<Way>(limits.choice("way"));
+                if (way_ == Way::bank) reach_ = {limits.number("v_low"), limits.number("v_high")};
                 length += 1;
                 is_limited_ = true;
             } else if (name == "anti_windup") {
@@ -83,6 +88,10 @@ public:
 
     double step(double u) {
         if (has_two_inputs_) throw std::invalid_argument("this block takes y_ref and y");
+        if (drive_ != nullptr) {
+            return drive_->step(state_.data(), before_.data(), &limited_guard_,
+                                static_cast<float>(u));
+        }
         return hyst_guarded_step(&controller_.inverse, state_.data(), &guard_,
                                  static_cast<float>(u));
     }
@@ -132,6 +141,12 @@ private:
         limited_.inverse.forward = {forward, stages_.data() + count};
         before_.resize(state_.size());
         limited_guard_.guard.y_last = state_.back();
+        if (has_two_inputs_) return;
+        const hyst_drive_limits &limits = limited_.inverse.limits;
+        drive_ = std::make_unique<hyst::LimitedDrive>(
+            way_, limited_.inverse.inverse, limited_.inverse.forward,
+            hyst_bank_limits{limits, reach_.first, reach_.second});
+        limited_guard_.guard.y_last = drive_->start(state_.data());
     }
 
     void add_controller(const hyst::kinds::Constants &of) {
@@ -190,6 +205,10 @@ private:
     hyst_limited_guard limited_guard_{};
     std::vector<float> before_;
     float v_ = 0.0f, excess_ = 0.0f;
+    using Way = hyst::LimitedDrive::Way;
+    Way way_ = Way::forward;
+    std::pair<float, float> reach_{};
+    std::unique_ptr<hyst::LimitedDrive> drive_;
 };
 
 // Stages whose constants follow a second signal: what each knot has of them.

@@ -81,8 +81,7 @@ def run_selftest(project: Path, objects: Objects) -> subprocess.CompletedProcess
     build = [compiler("gcc"), *AS_C, "-O1", *STRICT]
     sources = sorted(project.glob("core/*.c"))
     parts = [str(objects.of(each, project, build)) for each in sources]
-    name = project_name(project)
-    own = [f"{name}.c", f"{name}_selftest.c"]
+    own = sorted(each.name for each in project.glob("*.c"))
     compiled([*build, *own, *parts, "-o", "selftest"], project)
     return subprocess.run(
         [str(project / "selftest")], cwd=project, capture_output=True, text=True, check=False

@@ -36,7 +36,7 @@ def laid_out(name: str, precision: Precision, form: str, shared: bool = False) -
     return {
         path: content.decode()
         for path, content in files.items()
-        if path.endswith((".c", ".h")) and "selftest" not in path
+        if path.endswith((".c", ".h")) and not path.startswith("extras/") and "test" not in path
     }
 
 

@@ -121,7 +121,10 @@ def test_an_inverse_means_the_same_with_the_signals_exchanged() -> None:
     assert about.smallest_swing is None  # of what is the output here
     assert about.verdict == UNFIT  # what is wrong about the model is wrong about its inverse
     assert about.delay_interval == (1.75, 2.5)
-    assert PLAYS.inverse().description == ModelDescription()
+    assert about.is_inverse
+    assert not about.of_inverse().is_inverse
+    assert PLAYS.inverse().description == ModelDescription(is_inverse=True)
+    assert PLAYS.inverse().inverse().description == ModelDescription()
 
 
 def test_what_is_estimated_anew_has_neither_the_errors_nor_the_origin_of_its_start() -> None:

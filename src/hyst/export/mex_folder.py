@@ -18,7 +18,7 @@ from hyst.export.c.core_copy import CoreCopy
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.names import as_c_name, plain_text
 from hyst.export.c.one_file import in_one_file
-from hyst.export.c.readme import lag_row, verdict_row
+from hyst.export.c.readme_rows import lag_row, verdict_row
 from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, MANIFEST, write_export
 from hyst.export.tool_block import ToolBlock, tool_block

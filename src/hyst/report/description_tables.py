@@ -34,6 +34,8 @@ def description_table(about: ModelDescription) -> Table:
         ("sample time", "any" if about.dt is None else f"{number(about.dt, 6)} s"),
         ("delay of the output", _delay(about)),
     ]
+    if about.driver is not None:
+        rows.append(("driver", about.driver.told()))
     if about.smallest_swing is not None:
         swing = with_unit(number(about.smallest_swing), about.input_unit)
         rows.append(("smallest loop it was shown", swing))

@@ -7,8 +7,9 @@ from hyst.export.c.block import Block
 from hyst.export.c.drive import PERIOD, SAMPLES
 from hyst.export.c.names import plain_text
 from hyst.export.c.numbers import Precision, literal, table
-from hyst.export.c.readme import signals
+from hyst.export.c.readme_rows import signals
 from hyst.export.c.selftest import BAD, SECOND_RESTS, SEEDS, SelfTest
+from hyst.export.c.short_test import SHORT_SAMPLES
 from hyst.export.c.templating import filled, indented
 from hyst.operators import ModelDescription
 
@@ -59,6 +60,7 @@ def places(
         "records": ", ".join(f"const hyst_real *{each}" for each in block.inputs),
         "elements": ", ".join(f"{each}[k]" for each in block.inputs),
         "samples": str(SAMPLES),
+        "short_samples": str(SHORT_SAMPLES),
         "signals": _signals(block, about),
         "more_faults": block.faults.replace("@{NAME}", name.upper()),
         "raised": _raised(block, name.upper()),

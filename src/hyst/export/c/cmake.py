@@ -26,7 +26,7 @@ def cmake_file(layout: Layout, places: dict[str, str], core: Sequence[str]) -> s
     """
     name, prefix = layout.name, layout.core.prefix
     shared = layout.shared_core and bool(core)
-    sources = [f"{name}.c", *([] if shared else core)]
+    sources = [f"{name}.c", places["short_test"], *([] if shared else core)]
     more = {
         "core_folder": layout.core_folder,
         "core_prefix": prefix,

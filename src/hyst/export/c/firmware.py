@@ -23,6 +23,7 @@ from hyst.export.c.numbers import as_precision
 from hyst.export.c.one_file import in_one_file
 from hyst.export.c.readme import readme
 from hyst.export.c.selftest import SelfTest
+from hyst.export.c.short_test import short_test_source
 from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, write_export
 from hyst.export.shared_folder import add_to_folder
@@ -189,6 +190,7 @@ def project_files(
     head, main = header(block, common), source(block, common, precision)
     needed = core_files(main + head)
     common |= layout.places(any(path.endswith(".c") for path in needed))
+    short = layout.own(short_test_source(block, test, common, precision), layout.short_test_folder)
     core = layout.core.files(needed)
     if layout.form == "single-file":
         compiled = {f"{name}.c": in_one_file(core, {f"{name}.c": layout.own(main)})}
@@ -198,6 +200,7 @@ def project_files(
     tests = layout.test_folder
     texts = compiled | {
         f"{name}.h": layout.own(head),
+        f"{layout.short_test_folder}{name}_step_response.c": short,
         f"{tests}{name}_selftest.c": layout.own(selftest_source(block, common), tests),
         f"{tests}{name}_selftest_vectors.h": layout.own(vectors(block, test, common, precision)),
         layout.beside("LICENSE"): filled("LICENSE", {}),

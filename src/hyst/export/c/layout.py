@@ -79,6 +79,11 @@ class Layout:
         return "" if self.form == "folder" else "extras/"
 
     @property
+    def short_test_folder(self) -> str:
+        """Where the self-test for a target lies, which belongs to a library but not to one file."""
+        return "extras/" if self.form == "single-file" else ""
+
+    @property
     def manifest(self) -> str:
         """The name of the manifest."""
         return self.beside(MANIFEST)
@@ -114,18 +119,20 @@ class Layout:
         has_core
             Whether there are sources of the core.
         """
-        core = f" {self.core_folder}{self.core.prefix}_*.c"
-        library = f"{self.name}.c" + (core if has_core and self.form != "single-file" else "")
-        test = f"{library} {self.test_folder}{self.name}_selftest.c"
-        program = f"{self.name}_selftest"
+        short = f"{self.short_test_folder}{self.name}_step_response.c"
+        library = f"{self.name}.c {short}"
+        if has_core and self.form != "single-file":
+            library += f" {self.core_folder}{self.core.prefix}_*.c"
+        test = f"{self.test_folder}{self.name}_selftest.c"
+        compiler, program = "cc -std=c99 -O2 -ffp-contract=off", f"{self.name}_test"
         return {
-            "build_test": test,
             "build_example": f"example.c {library}",
-            "test_command": f"cc -std=c99 -O2 -ffp-contract=off {test} -o {program} && ./{program}",
+            "test_command": f"{compiler} {test} {library} -o {program} && ./{program}",
             "with_cmake": self._with_cmake(),
             "own_files": self._own_files(),
             "manifest": self.manifest,
-            "selftest": f"{self.test_folder}{self.name}_selftest.c",
+            "selftest": test,
+            "short_test": short,
         }
 
     def _with_cmake(self) -> str:
@@ -136,7 +143,8 @@ class Layout:
 
     def _own_files(self) -> str:
         if self.form == "flat":
-            return "the `.c` and `.h` files of this folder"
-        core = "" if self.form == "single-file" else " and `core/`"
-        own = (f"`{self.name}.c`", f"`{self.name}.h`")
-        return (", " if core else " and ").join(own) + core
+            return "The `.c` and `.h` files of this folder are all it takes"
+        own = f"`{self.name}.c` and `{self.name}.h`"
+        if self.form == "folder":
+            own = f"`{self.name}.c`, `{self.name}.h` and `core/`"
+        return f"{own} are all it takes"

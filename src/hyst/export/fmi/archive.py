@@ -175,7 +175,10 @@ def _contents(
 
 def _describe(model: FmuModel, name: str, about: ModelDescription, token: str) -> FmuDescription:
     tool = model.tool
-    units = {"u": (about.input_name, about.input_unit), "y": (about.output_name, about.output_unit)}
+    units = {
+        "u": (about.input_name.strip() or "u", about.input_unit),
+        "y": (about.output_name.strip() or "y", about.output_unit),
+    }
     units |= {"y_ref": (f"wanted {units['y'][0]}", units["y"][1])}
     units |= {"command": (f"wanted {units['u'][0]}", units["u"][1])}
     return FmuDescription(
