@@ -29,7 +29,6 @@ def cmake_file(layout: Layout, places: dict[str, str], core: Sequence[str]) -> s
     sources = [f"{name}.c", places["short_test"], *([] if shared else core)]
     more = {
         "core_folder": layout.core_folder,
-        "core_prefix": prefix,
         "core_target": f"{prefix}_core",
         "sources": "\n".join(f"  ${{CMAKE_CURRENT_LIST_DIR}}/{each}" for each in sources),
         "linked": f"target_link_libraries({name} PUBLIC {prefix}_core)\n" if shared else "",

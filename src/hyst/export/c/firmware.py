@@ -10,13 +10,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, final
 
+from numpy.typing import ArrayLike
+
 from hyst import __version__
-from hyst.export.c.any_estimator import any_estimator_block
-from hyst.export.c.block import Block, Model, block_of, described, refuse_unfit
+from hyst.control.drive_limits import Limits
+from hyst.export.c.any_block import any_block
+from hyst.export.c.block import Block, Model, described, refuse_unfit
 from hyst.export.c.c_sources import WORD_BYTES, header, places, selftest_source, source, vectors
 from hyst.export.c.cmake import cmake_file
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.drive import SAMPLES
+from hyst.export.c.drive_options import AUTO, DriveOptions
+from hyst.export.c.drive_range import DriveRange
 from hyst.export.c.layout import Layout
 from hyst.export.c.names import as_c_name
 from hyst.export.c.numbers import as_precision
@@ -27,7 +32,6 @@ from hyst.export.c.short_test import short_test_source
 from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, write_export
 from hyst.export.shared_folder import add_to_folder
-from hyst.online import JointEstimator, ScaleEstimator
 from hyst.operators import ModelDescription
 
 
@@ -58,6 +62,12 @@ class CProject:
         The one of ``files`` that people read.
     test_command
         What a shell compiles and runs the self-test with, in the folder.
+    drive
+        Limits of the drive, and where they come from.
+    history
+        The drives it starts after.
+    has_start
+        Whether ``NAME_init_after`` starts it after others.
     """
 
     path: Path
@@ -70,6 +80,9 @@ class CProject:
     away_from_double: float
     readme: str
     test_command: str
+    drive: DriveRange
+    history: tuple[float, ...]
+    has_start: bool
 
 
 def c_project(
@@ -83,6 +96,9 @@ def c_project(
     despite_verdict: bool = False,
     layout: str = "folder",
     shared_core: bool = False,
+    limits: Limits | str | None = AUTO,
+    rate_limit: float | None = None,
+    history: ArrayLike | None = None,
 ) -> CProject:
     """Write a model as C99 for firmware, with the core's sources it needs and a self-test.
 
@@ -113,6 +129,15 @@ def c_project(
     shared_core
         Whether exports of one folder share one copy of the core in each precision; each is then
         added to a folder that is there.
+    limits
+        Of the drive, the output of an inverse or the input of a model: ``"auto"`` for its range in
+        the record, None or ``"none"`` for none, or lowest and highest. Where it is held at them,
+        the memory follows what the actuator really does; see ``hyst.control.LimitedDrive``.
+    rate_limit
+        The most the drive moves in a second; any if left out.
+    history
+        What drove the actuator before, in time order, where the start shall be after it: where the
+        drive turned is enough, unless time counts.
 
     Returns
     -------
@@ -122,7 +147,10 @@ def c_project(
     ------
     InputError
         If the model, the name, the precision or the layout cannot be used, the path exists or holds
-        what would be overwritten, or the verdict on the model is ``unfit``.
+        what would be overwritten, the verdict on the model is ``unfit``, the limits are upside down
+        or not for this model, or the history is beyond them.
+    NotInvertibleError
+        If the output of the model in front of an inverse turns back within the limits.
 
     Examples
     --------
@@ -137,16 +165,14 @@ def c_project(
     as_c_name(name)
     refuse_unfit(model, description, despite_verdict)
     exact = as_precision(precision)
-    places = Layout(layout, shared_core, name, exact)
-    if isinstance(model, JointEstimator | ScaleEstimator):
-        block = any_estimator_block(model, exact)
-    else:
-        block = block_of(model, exact)
+    where = Layout(layout, shared_core, name, exact)
+    options = DriveOptions(limits, rate_limit, history)
+    block = any_block(model, exact, options, description)
     about = described(model, description)
     test = SelfTest.of(block, exact, about)
-    files = project_files(block, test, about, places)
+    files = project_files(block, test, about, where)
     length = max(len(block.start), 1)
-    if places.is_alone:
+    if where.is_alone:
         path = write_export(folder, files, name, force=force)
     else:
         path = add_to_folder(folder, files, name, force=force)
@@ -159,8 +185,11 @@ def c_project(
         state_bytes=WORD_BYTES[exact] * (length + 1) + 8,
         saved_bytes=WORD_BYTES[exact] * (length + 1) + 12,
         away_from_double=test.away_from_double,
-        readme=places.beside("README.md"),
-        test_command=places.places(any(map(places.is_core_source, files)))["test_command"],
+        readme=where.beside("README.md"),
+        test_command=where.places(any(map(where.is_core_source, files)))["test_command"],
+        drive=block.drive,
+        history=block.history,
+        has_start=block.following is not None,
     )
 
 
@@ -204,7 +233,9 @@ def project_files(
         f"{tests}{name}_selftest.c": layout.own(selftest_source(block, common), tests),
         f"{tests}{name}_selftest_vectors.h": layout.own(vectors(block, test, common, precision)),
         layout.beside("LICENSE"): filled("LICENSE", {}),
-        layout.beside("README.md"): readme(block, common, about, test),
+        layout.beside("README.md"): readme(
+            block, common, about, test, any(each.endswith("power.h") for each in needed)
+        ),
         "CMakeLists.txt" if layout.is_alone else f"{name}.cmake": cmake_file(
             layout, common, sorted(filter(layout.is_core_source, compiled))
         ),
@@ -229,6 +260,8 @@ def _manifest(
         "precision": layout.precision,
         "layout": layout.form,
         "model": {"kind": block.kind, "sha256": block.sha256()},
+        "drive": block.drive.told(),
+        "history": list(block.history),
         "selftest": {"samples": SAMPLES, "away_from_double": test.away_from_double},
         # The core's own files, before their names became those of the copy.
         "core": {

@@ -131,6 +131,7 @@ class Layout:
             "with_cmake": self._with_cmake(),
             "own_files": self._own_files(),
             "manifest": self.manifest,
+            "core_prefix": f"{self.core.prefix}_",
             "selftest": test,
             "short_test": short,
         }
