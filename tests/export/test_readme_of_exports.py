@@ -6,6 +6,7 @@ import re
 import subprocess
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -243,3 +244,21 @@ def test_ranges_between_which_single_precision_has_no_number(tmp_path: Path) -> 
     model, place = MODEL.with_description(about), tmp_path / "out"
     folder = c_project(model, place, precision="single", limits=None).path
     assert len(columns(run_readme(folder, "example", program_of(folder)))) >= 1
+
+
+@pytest.mark.parametrize(
+    ("model", "constants", "kept"),
+    [
+        (MODEL, 8 * (64 + 16), "stack"),  # outputs, and the levels of one signal
+        (estimation()[0], 8 * (64 + 2 * 16), "memory"),  # too large for a stack
+    ],
+)
+def test_what_the_short_test_costs_is_told(
+    model: Any, constants: int, kept: str, tmp_path: Path
+) -> None:
+    project = c_project(model, tmp_path / "out", name="lens")
+    assert f"{constants} bytes of constants and {project.state_bytes} of {kept}" in readme_of(
+        project.path
+    )
+    source = (project.path / "lens_step_response.c").read_text()
+    assert ("static lens_state state;" in source) == (kept == "memory")
