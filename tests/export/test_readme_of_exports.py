@@ -92,6 +92,17 @@ def test_the_program_starts_after_the_sweep_it_tells_of(precision: str, tmp_path
     np.testing.assert_allclose(printed[:, 1], expected, rtol=1.1e-5)
 
 
+def test_an_export_with_a_history_starts_after_it(tmp_path: Path) -> None:
+    drive, history = LimitedDrive(MODEL.inverse()), [0.0, 120.0, 30.0]
+    folder = c_project(MODEL.inverse(), tmp_path / "out", name="lens", history=history).path
+    assert "| start | after drives of 0, 120, 30 V |" in readme_of(folder)
+    printed = columns(run_readme(folder, "example", program_of(folder), *STRICTLY))
+    expected = drive.run(printed[:, 0], drive.state_after(history))[0]
+    # Of six digits.
+    np.testing.assert_allclose(printed[:, 1], expected, rtol=1e-5)
+    assert "the state after those drives" in readme_of(folder)
+
+
 def test_where_time_counts_the_start_takes_every_sample(tmp_path: Path) -> None:
     creeping = hyst.Creep([0.1], [0.5], 1e-3) @ MODEL
     told = readme_of(c_project(creeping.inverse(), tmp_path / "out", name="lens").path)
