@@ -137,16 +137,26 @@ class TrackingStepper:
     def __call__(self, y_ref: float, y: float) -> float: ...
 
 class LimitedDrive:
+    @overload
     def __init__(
         self,
-        way: int,
+        is_inverse: bool,
         chain: Chain,
         forward: Chain,
         low: float,
         high: float,
         change: float,
-        v_low: float,
-        v_high: float,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        chain: Chain,
+        low: float,
+        high: float,
+        moved_down: int,
+        down: Sequence[float],
+        moved_up: int,
+        up: Sequence[float],
     ) -> None: ...
     @property
     def state_length(self) -> int: ...

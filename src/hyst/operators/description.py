@@ -178,8 +178,8 @@ class ModelDescription:
     def of_inverse(self) -> ModelDescription:
         """Give that of the inverse: input and output change places, without errors and swing.
 
-        The verdict stays, for the inverse of a model that is not fit is not fit either. Where nothing
-        is known of the signals, all that is said is that it is an inverse.
+        The verdict stays, for the inverse of a model that is not fit is not fit either. Where
+        nothing is known of the signals, all that is said is that it is an inverse.
         """
         if replace(self, is_inverse=False) == _NOTHING_SAID:
             return replace(self, is_inverse=not self.is_inverse)
