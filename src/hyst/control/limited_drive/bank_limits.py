@@ -1,7 +1,7 @@
 """What is known beforehand of a bank of plays at the ends of its drive.
 
-Invariant: it agrees with any memory; what holds for most of them only is tried by the core, and saves
-it time where it does.
+Invariant: it agrees with any memory; what holds for most of them only is tried by the core, and
+saves it time where it does.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 # The core compares radii with rounded sums: what is less than this share of the largest is none.
 _NARROWEST = 1e-5
-# By how much the ends of what leaves the drive within its limits are set too near: more than rounding.
+# By how much the ends of what leaves the drive within are set too near: more than rounding.
 _SPARE = 1e-3
 # Of how many roundings the end of a bank is made, at most: four a play.
 _ROUNDING = 64.0
