@@ -46,6 +46,7 @@ def places(
         "version": plain_text(__version__),
         "title": f"{plain_text(block.kind)} as C, {precision} precision",
         "precision": precision,
+        "core_prefix": "hyst_",
         "state_length": str(len(block.start)),
         "memory_length": str(length),
         "saved_bytes": str(12 + WORD_BYTES[precision] * (length + 1)),

@@ -220,7 +220,14 @@ def project_files(
         "selftest_vectors.h": vectors(block, test, common, precision),
         "CMakeLists.txt": filled("CMakeLists.txt", common | cmake),
         "LICENSE": filled("LICENSE", {}),
-        "README.md": readme(block, common, about, test, _commands(common, sources, flat)),
+        "README.md": readme(
+            block,
+            common,
+            about,
+            test,
+            _commands(common, sources, flat),
+            any(path.endswith("power.h") for path in core),
+        ),
     }
     files = {path: text.encode("ascii") for path, text in texts.items()} | core
     files = flattened(files, name) if flat else files
