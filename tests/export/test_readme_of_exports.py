@@ -70,7 +70,10 @@ def test_the_program_prints_what_python_computes(
     printed = columns(run_readme(folder, "example", program, *STRICTLY))
     np.testing.assert_array_equal(printed[:, 0], np.arange(0.0, 41.0, 5.0))
     # "%g" prints six digits, and single precision has seven.
-    np.testing.assert_allclose(printed[:, 1], inverse(printed[:, 0]), rtol=1.1e-5)
+    # The drive ends at 150 V, where the record ended.
+    np.testing.assert_allclose(
+        printed[:, 1], np.minimum(inverse(printed[:, 0]), 150.0), rtol=1.1e-5
+    )
 
 
 @pytest.mark.parametrize("shared_core", [False, True])
