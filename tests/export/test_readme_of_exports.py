@@ -14,6 +14,7 @@ from fmu_runs import CONTROLLER, LIMITED_CONTROLLER, estimation
 from readme_programs import program_of, readme_of, run_readme
 
 import hyst
+from hyst.control import LimitedDrive
 from hyst.export import c_project
 from hyst.export.c.layout import LAYOUTS
 from hyst.export.c.signal_names import variables
@@ -76,6 +77,34 @@ def test_the_program_prints_what_python_computes(
     )
 
 
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_the_program_starts_after_the_sweep_it_tells_of(precision: str, tmp_path: Path) -> None:
+    drive = LimitedDrive(MODEL.inverse())
+    folder = c_project(drive, tmp_path / "out", precision=precision, name="lens").path
+    told = readme_of(folder)
+    assert "## How to start the actuator" in told
+    assert "| limits of the drive | `LENS_U_MIN` to `LENS_U_MAX`: 0 to 150 V" in told
+    printed = columns(run_readme(folder, "example", program_of(folder), *STRICTLY))
+    # Up from the lowest drive after the highest: not what it would be without a history.
+    expected = drive.run(printed[:, 0], drive.state_after([150.0, 0.0]))[0]
+    assert abs(expected[1] - drive(printed[:, 0])[1]) > 1.0
+    # "%g" prints six digits, and single precision has seven.
+    np.testing.assert_allclose(printed[:, 1], expected, rtol=1.1e-5)
+
+
+def test_where_time_counts_the_start_takes_every_sample(tmp_path: Path) -> None:
+    creeping = hyst.Creep([0.1], [0.5], 1e-3) @ MODEL
+    told = readme_of(c_project(creeping.inverse(), tmp_path / "out", name="lens").path)
+    assert "at every sample" in told
+
+
+def test_what_cannot_be_told_a_history_says_so(tmp_path: Path) -> None:
+    model = hyst.Delay(2.7, 1e-3).inverse(preview=4)
+    told = readme_of(c_project(model, tmp_path / "out", name="lens").path)
+    assert "This code can be told no history: the model in front of it is not known" in told
+    assert "init_after" not in told
+
+
 @pytest.mark.parametrize("shared_core", [False, True])
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_the_command_of_the_test_is_true(layout: str, shared_core: bool, tmp_path: Path) -> None:
@@ -115,7 +144,7 @@ def test_the_table_says_what_is_known(tmp_path: Path) -> None:
         "| y, `position_um` | Position in um, 0 to 40 in the record |",
         "| error, training | rms 0.0123 um, 0.031 % of the range, at most 0.05 um |",
         "| error, validation | rms 0.02 um |",
-        "| verdict | good: What is left is the record_s own noise. |",
+        "| verdict | good: What is left is the record's own noise. |",
         "| sample time | any |",
     ):
         assert row in readme

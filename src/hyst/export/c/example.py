@@ -10,7 +10,7 @@ import numpy as np
 
 from hyst.export.c.block import Block
 from hyst.export.c.selftest import SelfTest
-from hyst.export.c.signal_names import variables
+from hyst.export.c.signal_names import identifier, variables
 from hyst.operators import ModelDescription
 
 _STEPS = 8
@@ -68,8 +68,9 @@ def example_of(
         "#include <stdio.h>",
         f'#include "{name}.h"',
         f"static {name}_state {name}; /* its memory: one for each actuator */",
+        *_swept(block, name, number, about),
         "int main(void) {",
-        f"    {name}_init(&{name}); /* once */",
+        f"    {_started(block, name, about)}",
         f"    {loop} /* every sample */",
         *(f"        {line}" for line in _sample(block, name, number, named)),
         "    }",
@@ -95,6 +96,46 @@ def meanings(block: Block, about: ModelDescription) -> dict[str, tuple[str, str]
         meant = [into, out]
     pairs = zip(roles, meant, strict=True)
     return {role: (name if name.strip() else role, unit) for role, (name, unit) in pairs}
+
+
+def starts_from_extremes(block: Block) -> bool:
+    """Tell whether a sweep over the limits of the drive says all that the start needs to know."""
+    known = block.following is not None and block.drive.limits is not None
+    return known and block.chain.dt is None
+
+
+def swept_name(block: Block, name: str, about: ModelDescription) -> str:
+    """Give what the example calls the drives at which the sweep turned.
+
+    Parameters
+    ----------
+    block, name, about
+        As of ``example_of``.
+    """
+    unit = identifier(drive_unit(block, about))
+    return f"{name}_swept_{unit}" if unit else f"{name}_swept"
+
+
+def drive_unit(block: Block, about: ModelDescription) -> str:
+    """Give the unit of the actuator's drive, where it is known."""
+    meant = meanings(block, about)
+    role = {"input": block.inputs[0], "output": block.output, "command": "u"}.get(block.drive.side)
+    return meant.get(role or "", ("", ""))[1]
+
+
+def _swept(block: Block, name: str, number: str, about: ModelDescription) -> list[str]:
+    if not starts_from_extremes(block):
+        return []
+    drives = f"{{{name.upper()}_U_MAX, {name.upper()}_U_MIN}}"
+    swept = swept_name(block, name, about)
+    return [f"static const {number} {swept}[] = {drives}; /* where the sweep turned */"]
+
+
+def _started(block: Block, name: str, about: ModelDescription) -> str:
+    if not starts_from_extremes(block):
+        return f"{name}_init(&{name}); /* once */"
+    call = f"{name}_init_after(&{name}, {swept_name(block, name, about)}, 2u)"
+    return f"if ({call} != 0) {{ return 1; }} /* once, after it */"
 
 
 def _driven(block: Block) -> str:
