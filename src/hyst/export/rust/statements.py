@@ -109,7 +109,9 @@ class Statements:
                 of, Decay
             ):
                 if isinstance(of.type.to, Scalar):
-                    return f"slices::set_cell({write.slice(of, True)}, {write.value(index)}, {text});"
+                    return (
+                        f"slices::set_cell({write.slice(of, True)}, {write.value(index)}, {text});"
+                    )
                 return f"*{write.whole(place)} = {text};"
             case Element(of=of, index=index):
                 array = of.of if isinstance(of, Decay) else of
