@@ -98,7 +98,7 @@ def export(
         ),
     ] = False,
     preview: Preview = None,
-    precision: Annotated[str, typer.Option(help="Of C: double or single.")] = "double",
+    precision: Annotated[str, typer.Option(help="Of C or Rust: double or single.")] = "double",
     name: Annotated[
         str, typer.Option(metavar="NAME", help="Prefix of files, functions and types.")
     ] = "stage",

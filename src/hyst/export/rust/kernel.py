@@ -12,6 +12,7 @@ from hyst.export.translate.facts import facts_of
 from hyst.export.translate.program import VOID, Function, Pointer, Program, Scalar
 from hyst.export.translate.refusal import UntranslatableError
 
+
 def kernel(program: Program, head: str) -> str:
     """Give the module of a program.
 
@@ -72,7 +73,9 @@ def _structure(places: Places, name: str) -> str:
         f"pub {rust_name(each)}: {places.member_type(name, each, kind)},\n"
         for each, kind in members
     )
-    blank = ", ".join(f"{rust_name(each)}: {places.blank(kind, (name, each))}" for each, kind in members)
+    blank = ", ".join(
+        f"{rust_name(each)}: {places.blank(kind, (name, each))}" for each, kind in members
+    )
     own = type_name(name)
     return (
         f"#[derive(Clone, Copy)]\npub struct {own}{of} {{\n{declared}}}\n\n"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 from fractions import Fraction
 
@@ -102,11 +103,13 @@ def _as_single(digits: str, value: float) -> float:
         return nearest  # type: ignore[no-any-return]
     exact = Fraction(digits)
     bits = struct.unpack("I", struct.pack("f", nearest))[0]
-    near = [
-        struct.unpack("f", struct.pack("I", bits + by))[0] for by in (-1, 0, 1) if bits + by > 0
-    ]
+    around = range(max(bits - 1, 0), bits + 2)
+    near = [struct.unpack("f", struct.pack("I", each))[0] for each in around]
     # A tie goes to the even one, which is what double has chosen unless it was no tie.
-    return min(near, key=lambda each: (abs(Fraction(each) - exact), each != nearest))  # type: ignore[no-any-return]
+    return min(  # type: ignore[no-any-return]
+        (each for each in near if math.isfinite(each)),
+        key=lambda each: (abs(Fraction(each) - exact), each != nearest),
+    )
 
 
 def _pointer(value: Expression, to: Pointer) -> Expression:
