@@ -62,7 +62,7 @@ def load(path: str | os.PathLike[str]) -> Any:
 def _model(data: Any) -> Any:
     import hyst.models  # from here on its classes are known
 
-    if isinstance(data, dict) and data.get("kind") in _BLOCKS:
+    if isinstance(data, dict) and str(data.get("kind")) in _BLOCKS:
         import hyst.control
 
         return getattr(hyst.control, _BLOCKS[data["kind"]]).from_dict(data)

@@ -93,8 +93,8 @@ def range_of_drive(
         if rate is not None:
             return None
         raise InputError(
-            "the description of the operator does not tell the range of the drive; give limits, the "
-            "lowest and the highest drive"
+            "the description of the operator does not tell the range of the drive; give limits, "
+            "the lowest and the highest drive"
         )
     return as_limits((low, high))
 
@@ -143,9 +143,9 @@ def reach_of_bank(chain: _engine.Chain, low: float, high: float) -> tuple[float,
     Returns
     -------
     tuple of float, or None
-        Lowest and highest input of the bank, with much more to spare than rounding needs. None where
-        the last stage is no bank that rises however many plays move, narrowest first, or another
-        one has a memory: then the memory of the model is needed.
+        Lowest and highest input of the bank, with much more to spare than rounding needs. None
+        where the last stage is no bank that rises however many plays move, narrowest first, or
+        another one has a memory: then the memory of the model is needed.
     """
     stages = [chain.constants(i) for i in range(len(chain))]
     if not stages or stages[-1]["call"] != "$signal = hyst_pi_step(&$model, $memory, $signal);":

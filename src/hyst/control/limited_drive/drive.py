@@ -56,8 +56,8 @@ class LimitedDrive(InModelFile):
     forward
         Operator from u to v of which an inverse is the exact inverse; where left out, its inverse.
     drive
-        ``"input"`` or ``"output"``: which signal the drive is. Left out, the description tells: that
-        of every ``model.inverse()`` says that it is an inverse.
+        ``"input"`` or ``"output"``: which signal the drive is. Left out, the description tells:
+        that of every ``model.inverse()`` says that it is an inverse.
 
     Raises
     ------
