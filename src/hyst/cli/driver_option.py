@@ -10,7 +10,7 @@ import typer
 
 import hyst
 
-_HOW = "FILE|linear:VOLTS_PER_CODE,OFFSET,LOW,HIGH"
+_HOW = "FILE|linear:.."
 _LINEAR = "linear:"
 
 DriverOfInput = Annotated[
@@ -19,8 +19,8 @@ DriverOfInput = Annotated[
         "--driver",
         metavar=_HOW,
         show_default=False,
-        help="The input is in codes: its driver's table (columns code and volt), or scale, volts "
-        "of code 0, lowest and highest code.",
+        help="The input is in codes: its driver's table (columns code and volt), or "
+        "linear:VOLTS_PER_CODE,VOLTS_OF_0,LOW,HIGH.",
     ),
 ]
 DriverOfCommand = Annotated[
@@ -29,8 +29,8 @@ DriverOfCommand = Annotated[
         "--driver",
         metavar=_HOW,
         show_default="that of the model file, if it has one",
-        help="Give the command in codes too: the driver's table (columns code and volt), or scale, "
-        "volts of code 0, lowest and highest code.",
+        help="Give the command in codes too: the driver's table (columns code and volt), or "
+        "linear:VOLTS_PER_CODE,VOLTS_OF_0,LOW,HIGH.",
     ),
 ]
 
