@@ -19,7 +19,7 @@ from hyst.cli.demo import demo
 from hyst.cli.diagnose import diagnose
 from hyst.cli.excite import excite
 from hyst.cli.exit_codes import BAD_INPUT, DONE, FAILURE
-from hyst.cli.export import export
+from hyst.cli.export.command import export
 from hyst.cli.family_options import FamilyCommand
 from hyst.cli.fit import fit
 from hyst.cli.identify import identify

@@ -205,6 +205,17 @@ class _Work:
                 raise refused(f"the pointer {name}, chosen by what changes,")
 
 
+def with_plain_pointers(value: Expression) -> Any:
+    """Give a value without conversions of pointers, which only make what they point to constant."""
+
+    def change(each: Any) -> Any:
+        if isinstance(each, Convert) and isinstance(each.type, Pointer):
+            return each.operand
+        return each
+
+    return changed(value, change)
+
+
 def split(pointer: Expression) -> tuple[Expression, Expression]:
     """Give what a pointer points into, and the index.
 

@@ -9,7 +9,7 @@ from typing import Any
 from hyst.errors import HystError, MissingExtraError
 from hyst.export.translate.declared import Declared
 from hyst.export.translate.expressions import Expressions
-from hyst.export.translate.pointers import without_local_pointers
+from hyst.export.translate.pointers import with_plain_pointers, without_local_pointers
 from hyst.export.translate.preprocessor import preprocessed
 from hyst.export.translate.program import (
     VOID,
@@ -28,6 +28,7 @@ from hyst.export.translate.program import (
 from hyst.export.translate.refusal import UntranslatableError, refused
 from hyst.export.translate.scope import Scope
 from hyst.export.translate.statements import Statements
+from hyst.export.translate.unread import without_unread_pointers
 
 _STANDARD = "".join(
     f"typedef int {name};\n" for name in ("size_t", "uint8_t", "int32_t", "uint32_t", "uint64_t")
@@ -95,14 +96,10 @@ class _Reading:
         kind = self.declared.names.get(real)
         if not isinstance(kind, Scalar) or not kind.is_real:
             raise HystError(f"the C to translate has no type {real}")
-        return Program(
-            kind,
-            self.functions,
-            self._structures(),
-            self.tables,
-            dict(self.declared.enumerators),
-            entries,
+        whole = Program(
+            kind, self.functions, {}, self.tables, dict(self.declared.enumerators), entries
         )
+        return without_unread_pointers(whole, self.declared.structures)
 
     def _take(self, node: Any) -> None:
         match type(node).__name__:
@@ -238,32 +235,9 @@ class _Reading:
             expressions = Expressions(
                 self.declared, Scope(frozenset()), self._call_of, self._table, self._target
             )
-            value = expressions.as_type(node.init, kind)
+            value = with_plain_pointers(expressions.as_type(node.init, kind))
             self.tables[name] = Table(name, value.type, value)
         return Name(name, self.tables[name].type, "table")
-
-    def _structures(self) -> dict[str, Structure]:
-        """Give the structures that functions and tables use."""
-        used: dict[str, Structure] = {}
-
-        def use(kind: CType) -> None:
-            if isinstance(kind, Pointer):
-                use(kind.to)
-            elif isinstance(kind, Array):
-                use(kind.of)
-            elif isinstance(kind, Named) and kind.name not in used:
-                structure = self.declared.structures[kind.name]
-                for each in structure.members.values():
-                    use(each)
-                used[kind.name] = structure
-
-        for function in self.functions.values():
-            for each in (*function.parameters, *function.locals):
-                use(each.type)
-            use(function.result)
-        for table in self.tables.values():
-            use(table.type)
-        return used
 
 
 def _is_void(kind: CType) -> bool:
