@@ -60,12 +60,19 @@ _PRELUDE = """
 #include <setjmp.h>
 #include <stdint.h>
 #include <stddef.h>
+#define TURNS 100000 /* of loops in one call; more is a loop without an end */
 static jmp_buf stopped;
 static int stopped_at;
 static int32_t at(int32_t i, int32_t low, int32_t high, int line)
 {
     if (i < low || i > high) { stopped_at = line; longjmp(stopped, 1); }
     return i - low;
+}
+static int64_t fuel;
+static int burn(int line)
+{
+    if (--fuel < 0) { stopped_at = line; longjmp(stopped, 1); }
+    return 1;
 }
 static int32_t divisor(int32_t i, int line)
 {
@@ -238,7 +245,7 @@ class Compiler:
         self.lines.append("} }")
 
     def do_while(self, condition: Any, inside: list[Any], line: int) -> None:
-        self.lines.append(f"while ({self.as_type(condition, 'BOOL')}) {{")
+        self.lines.append(f"while (burn({line}) && {self.as_type(condition, 'BOOL')}) {{")
         self.loops += 1
         self.body(inside)
         self.loops -= 1
@@ -437,7 +444,7 @@ class Machine:
             "int run(void *it, size_t samples, void *const *all, const int8_t *runs)\n{",
             f"t_{low} *const self = it; stopped_at = 0;",
             "if (setjmp(stopped)) { return stopped_at; }",
-            "for (size_t k = 0; k < samples; ++k) {",
+            "for (size_t k = 0; k < samples; ++k) { fuel = TURNS;",
         ]
         for role, write in (("VAR_INPUT", "self->{0} = (({1} *)all[{2}])[k];"),
                             ("VAR_OUTPUT", "(({1} *)all[{2}])[k] = self->{0};")):  # fmt: skip
@@ -487,5 +494,5 @@ class Instance:
             ctypes.c_void_p(runs.ctypes.data),
         )
         if line:
-            raise StructuredTextError(f"line {line}: out of bounds")
+            raise StructuredTextError(f"line {line}: out of bounds, or a loop without an end")
         return tuple(arrays[name] for name in outputs)

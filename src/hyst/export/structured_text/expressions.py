@@ -13,11 +13,13 @@ from typing import Any
 from hyst.export.structured_text.numbers import constant, real_text
 from hyst.export.structured_text.plan import Plan
 from hyst.export.structured_text.usage import (
+    is_array_of_numbers,
     is_structure_table,
     nodes_in,
     plain,
     points_to_number,
     points_to_structure,
+    size_of,
 )
 from hyst.export.structured_text.words import Names
 from hyst.export.translate.program import (
@@ -196,13 +198,13 @@ class Expressions:
 
     def _binary(self, of: Binary) -> str:
         left, right = of.left, of.right
+        folded = self.plan.folded(of)
+        if folded is not None:
+            return self.number(folded)
         word = {"%": "MOD", "&": "AND", "|": "OR", "^": "XOR"}.get(of.operator, of.operator)
         is_bits = word in ("AND", "OR", "XOR")
         if of.operator in ("<<", ">>") or (of.type == UNSIGNED) != is_bits:
             raise refused(f"{of.operator} of {of.type}")
-        folded = self.plan.folded(of)
-        if folded is not None:
-            return self.number(folded)
         return f"({self.value(left)} {word} {self.value(right)})"
 
     def _conditional(self, of: Conditional) -> str:
@@ -219,8 +221,13 @@ class Expressions:
             other()
 
     def _converted(self, of: Convert) -> str:
-        inner = self.value(of.operand)
+        folded = self.plan.folded(of)
+        if folded is not None:
+            return self.number(folded)
         before, after = of.operand.type, of.type
+        if before == UNSIGNED and after in _WHOLE:
+            return self.value(_counted(of.operand))
+        inner = self.value(of.operand)
         if before == after or (before in _WHOLE and after in _WHOLE):
             return inner
         told = {each: self.plan.type_text(each) for each in (before, after)}
@@ -262,7 +269,7 @@ class Expressions:
         if isinstance(of, Decay):
             of = of.of
         if isinstance(of.type, Array):
-            if isinstance(of.type.of, Named) or self.plan.is_inline(of):
+            if not is_array_of_numbers(of.type) or self.plan.is_inline(of):
                 return f"{self.place(of)}[{self.value(index)}]"
             return f"numbers[{self.index(of, index)}]"
         if points_to_number(of.type):
@@ -290,9 +297,9 @@ class Expressions:
         base, offset = self._split(of)
         parts = [each for each in (offset, more) if each is not None]
         first = int(base) if base.lstrip("-").isdigit() else 0
-        first += sum(int(each.value) for each in parts if isinstance(each, Number))
+        first += sum(int(each.value) for each in map(self.plan.folded, parts) if each is not None)
         texts = [] if base.lstrip("-").isdigit() else [base]
-        texts += [self.value(each) for each in parts if not isinstance(each, Number)]
+        texts += [self.value(each) for each in parts if self.plan.folded(each) is None]
         if first or not texts:
             texts.append(str(first))
         return " + ".join(texts)
@@ -309,11 +316,14 @@ class Expressions:
             case Name(kind="table", name=name):
                 return str(self.plan.numbers.table(name)), None
             case Name(name=name) if isinstance(of.type, Array):
-                return str(self.plan.numbers.place(self.function.name, name, of.type.count)), None
+                return str(self.plan.numbers.place(self.function.name, name, size_of(of.type))), None
             case Name(name=name):
                 return self.aliases.get(name) or self.names.of(name), None
             case AddressOf(of=Name(name=name)) if name in self.stored:
                 return str(self.plan.numbers.place(self.function.name, name, 1)), None
+            case Element() if isinstance(of.type, Array):
+                row = Number(size_of(of.type), SIZE)
+                return self.index(of.of), Binary("*", of.index, row, SIZE)
             case Member() if isinstance(of.type, Array):
                 return str(self.plan.array_member(of)), None
             case Member():
@@ -454,3 +464,17 @@ def _changes(of: Any) -> bool:
         isinstance(each, Call) and any(isinstance(given.type, Pointer) for given in each.arguments)
         for each in nodes_in(of)
     )
+
+
+def _counted(of: Any) -> Any:
+    """Give an unsigned number that C computes, as one that counts: none comes near 2^31."""
+    match of:
+        case Number():
+            return Number(of.value, SIZE)
+        case Conditional():
+            return Conditional(of.condition, _counted(of.then), _counted(of.other), SIZE)
+        case Binary(operator="+" | "-" | "*" | "/" | "%"):
+            return Binary(of.operator, _counted(of.left), _counted(of.right), SIZE)
+        case Convert(operand=operand) if operand.type in _WHOLE:
+            return operand
+    raise refused("an unsigned number")

@@ -8,7 +8,8 @@ from itertools import groupby
 from typing import Any, final
 
 from hyst.errors import HystError
-from hyst.export.translate.program import Array, Number, Program, Scalar, Unary
+from hyst.export.structured_text.usage import is_array_of_numbers
+from hyst.export.translate.program import Initialiser, Number, Program, Unary
 
 
 def real_text(value: float, precision: str) -> str:
@@ -65,12 +66,9 @@ class Numbers:
     def take_tables(self, program: Program) -> None:
         """Give every table of real numbers a place."""
         for name, table in program.tables.items():
-            if isinstance(table.type, Array) and isinstance(table.type.of, Scalar):
-                if not table.type.of.is_real:
-                    raise HystError(f"{name}, a table of whole numbers, cannot be translated")
-                first = self.place("", name, 0)
-                assert first == len(self.starts)
-                self.starts += [constant(each) for each in table.value.values]  # type: ignore[union-attr]
+            if is_array_of_numbers(table.type):
+                self.place("", name, 0)
+                self.starts += constants(table.value)
 
     def table(self, name: str) -> int:
         """Give where a table begins."""
@@ -83,6 +81,13 @@ class Numbers:
             count = len(list(run))
             parts += [f"{count}({text})"] if count > 2 else [text] * count
         return "[" + ", ".join(parts) + "]"
+
+
+def constants(value: Any) -> list[float]:
+    """Give the values of a constant, or of arrays of them."""
+    if isinstance(value, Initialiser):
+        return [each for inner in value.values for each in constants(inner)]
+    return [constant(value)]
 
 
 def constant(value: Any) -> float:

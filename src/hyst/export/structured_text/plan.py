@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hyst.export.structured_text.numbers import Numbers
-from hyst.export.structured_text.usage import Usage, nodes_in, plain, usage_of
+from hyst.export.structured_text.usage import Usage, innermost, nodes_in, plain, usage_of
 from hyst.export.structured_text.words import Names
 from hyst.export.translate.program import (
     INT,
@@ -17,6 +17,7 @@ from hyst.export.translate.program import (
     UNSIGNED,
     Array,
     Binary,
+    Convert,
     CType,
     Decay,
     FunctionPointer,
@@ -50,7 +51,8 @@ class Plan:
         self.real = "REAL" if self.precision == "single" else "LREAL"
         self.usage: Usage = usage_of(program)
         self.numbers = Numbers(self.precision)
-        self.global_names = Names(frozenset({name}))
+        self._names = Names(frozenset({name, f"{name}_numbers", self.whole_part_name}))
+        self._global_names: dict[tuple[str, str], str] = {}
         # The memory comes first, where one looks for it.
         self.memory = self._memory_length()
         self.numbers.place("", "memory", self.memory)
@@ -70,8 +72,11 @@ class Plan:
     # Names.
 
     def _global(self, kind: str, name: str) -> str:
-        plain_name = name.removeprefix("hyst_").removeprefix(f"{self.name}_")
-        return self.global_names.of(f"{self.name}_{plain_name}{kind}")
+        key = (kind, name)
+        if key not in self._global_names:
+            shorter = name.removeprefix("hyst_").removeprefix(f"{self.name}_")
+            self._global_names[key] = self._names.fresh(f"{self.name}_{shorter}{kind}")
+        return self._global_names[key]
 
     def name_of_function(self, name: str) -> str:
         """Give what a function is called."""
@@ -168,7 +173,9 @@ class Plan:
 
     def is_inline(self, of: Any) -> bool:
         """Tell whether an array is a member that stays in its structure."""
-        return isinstance(of, Member) and (of.of.type.name, of.name) not in self._walked
+        if not isinstance(of, Member) or (of.of.type.name, of.name) == (self.state, "memory"):
+            return False
+        return (of.of.type.name, of.name) not in self._walked
 
     def array_member(self, of: Member) -> int:
         """Give where an array inside a structure begins, if it has one place alone."""
@@ -184,9 +191,17 @@ class Plan:
 
     # Constants.
 
-    def folded(self, of: Binary) -> Number | None:
-        """Give the result of an operation of two real constants, rounded as the target would."""
-        left, right = plain(of.left), plain(of.right)
+    def folded(self, of: Any) -> Number | None:
+        """Give the value of constants, rounded as the target would; None if it is none."""
+        if isinstance(of, Number):
+            return of
+        if isinstance(of, Convert) and isinstance(of.type, Scalar) and not of.type.is_real:
+            inner = self.folded(of.operand)
+            whole = inner is not None and not inner.type.is_real  # type: ignore[union-attr]
+            return Number(inner.value, of.type) if whole and inner is not None else None
+        if not isinstance(of, Binary):
+            return None
+        left, right = self.folded(plain(of.left)), self.folded(plain(of.right))
         if not (isinstance(left, Number) and isinstance(right, Number)):
             return None
         if not (isinstance(of.type, Scalar) and of.type.is_real):

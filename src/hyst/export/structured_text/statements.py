@@ -7,12 +7,16 @@ from typing import Any
 
 from hyst.export.structured_text.expressions import Expressions
 from hyst.export.structured_text.plan import Plan
-from hyst.export.structured_text.usage import nodes_in, points_to_structure
+from hyst.export.structured_text.usage import (
+    is_array_of_numbers,
+    nodes_in,
+    points_to_structure,
+    size_of,
+)
 from hyst.export.translate.program import (
     SIZE,
     VOID,
     AddressOf,
-    Array,
     Assign,
     Binary,
     Block,
@@ -31,7 +35,6 @@ from hyst.export.translate.program import (
     Number,
     Pointer,
     Return,
-    Scalar,
 )
 from hyst.export.translate.refusal import refused
 
@@ -76,15 +79,13 @@ class Statements(Expressions):
             # One name for what is pointed to; it does not move.
             self.aliases[variable.name] = self._steady(self.structure(value))
             return
-        place = self.place(Name(variable.name, variable.type, "local"))
-        if isinstance(variable.type, Array) and isinstance(variable.type.of, Scalar):
-            assert isinstance(value, Initialiser)
-            first = self.plan.numbers.place(
-                self.function.name, variable.name, variable.type.count
-            )
-            for at, each in enumerate(value.values):
-                self.assign(f"numbers[{first + at}]", variable.type.of, each)
+        if is_array_of_numbers(variable.type):
+            size = size_of(variable.type)
+            first = self.plan.numbers.place(self.function.name, variable.name, size)
+            for at, each in enumerate(_flat(value)):
+                self.assign(f"numbers[{first + at}]", each.type, each)
             return
+        place = self.place(Name(variable.name, variable.type, "local"))
         self.assign(place, variable.type, value)
 
     def _steady(self, text: str) -> str:
@@ -198,8 +199,7 @@ class Statements(Expressions):
 
     def _has_a_place_elsewhere(self, variable: Any) -> bool:
         kind = variable.type
-        is_array = isinstance(kind, Array) and isinstance(kind.of, Scalar)
-        return is_array or points_to_structure(kind) or variable.name in self.stored
+        return is_array_of_numbers(kind) or points_to_structure(kind) or variable.name in self.stored
 
     def _parameters(self) -> tuple[list[Any], list[Any], list[str]]:
         """Give inputs, references and the statements that copy inputs which change."""
@@ -230,6 +230,12 @@ class Statements(Expressions):
         own = self.temporary(self.plan.type_text(parameter.type), f"{parameter.name}_now")
         self.aliases[parameter.name] = own
         return own
+
+
+def _flat(value: Any) -> list[Any]:
+    if isinstance(value, Initialiser):
+        return [each for inner in value.values for each in _flat(inner)]
+    return [value]
 
 
 def _changed(body: tuple[Any, ...]) -> list[str]:

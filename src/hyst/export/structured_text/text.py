@@ -12,7 +12,7 @@ from hyst.export.structured_text.plan import Plan
 from hyst.export.structured_text.statements import Statements, folded, section
 from hyst.export.structured_text.usage import is_structure_table
 from hyst.export.structured_text.words import Names
-from hyst.export.translate.program import Function, Initialiser, Named, Program
+from hyst.export.translate.program import Function, Initialiser, Named, Pointer, Program
 
 
 def structured_text_of(block: Block, program: Program, name: str) -> str:
@@ -40,8 +40,8 @@ def structured_text_of(block: Block, program: Program, name: str) -> str:
     plan = Plan(program, name)
     functions = []
     for function in program.functions.values():
-        if function.name in plan.usage.by_hand:
-            continue
+        if function.name in plan.usage.by_hand or isinstance(function.result, Pointer):
+            continue  # what only gives a pointer is written out where it is called
         try:
             functions.append(Statements(plan, function).function_text())
         except HystError as error:

@@ -14,6 +14,7 @@ from typing import Any, final
 
 from hyst.export.translate.program import (
     AddressOf,
+    Array,
     Call,
     Comparison,
     Convert,
@@ -183,9 +184,25 @@ def _tables(program: Program, body: list[Any], usage: Usage) -> tuple[str, ...]:
 
 
 def is_structure_table(program: Program, name: str) -> bool:
-    """Tell whether a constant of the file is a structure, or an array of them."""
+    """Tell whether a constant of the file stays whole: a structure, an array of them or of counts."""
     kind = program.tables[name].type
-    return isinstance(kind, Named) or isinstance(getattr(kind, "of", None), Named)
+    return isinstance(kind, Named) or (isinstance(kind, Array) and not is_array_of_numbers(kind))
+
+
+def innermost(kind: CType) -> CType:
+    """Give what an array of arrays is made of in the end."""
+    return innermost(kind.of) if isinstance(kind, Array) else kind
+
+
+def is_array_of_numbers(kind: CType) -> bool:
+    """Tell whether a type is an array of real numbers, or of such arrays."""
+    inner = innermost(kind)
+    return isinstance(kind, Array) and isinstance(inner, Scalar) and inner.is_real
+
+
+def size_of(kind: CType) -> int:
+    """Give how many numbers an array of arrays has."""
+    return kind.count * size_of(kind.of) if isinstance(kind, Array) else 1
 
 
 def _reaches_numbers(function: Function, body: list[Any], usage: Usage) -> bool:

@@ -32,7 +32,10 @@ _FUNCTIONS = """
 # One letter alone means something in sequential charts, instruction lists or literals of time.
 _LETTERS = "d l n p r s t"
 RESERVED = frozenset((_KEYWORDS + _FUNCTIONS + _LETTERS).split())
-_CONVERSION = re.compile(r"\w+_to_\w+|(l?real|[usd]?l?u?[sd]?int)_trunc\w*")
+_ELEMENTARY = (
+    "bool|byte|l?date|l?dt|d?word|lword|l?real|l?time|l?tod|u?[sdl]?int|string|wstring|w?char|bcd"
+)
+_CONVERSION = re.compile(rf"({_ELEMENTARY})_(to|trunc|bcd)\w*|to_({_ELEMENTARY})")
 
 
 def is_taken(name: str) -> bool:
