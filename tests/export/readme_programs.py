@@ -13,7 +13,7 @@ MAIN, END = "int main(void) {", "    return 0;\n}"
 
 def program_of(folder: Path) -> str:
     """The program of the README."""
-    (program,) = re.findall(r"```c\n(.*?)\n```", (folder / "README.md").read_text(), re.DOTALL)
+    (program,) = re.findall(r"```c\n(.*?)\n```", readme_of(folder), re.DOTALL)
     return str(program)
 
 
@@ -25,18 +25,31 @@ def pasted(programs: list[str]) -> str:
     return "\n".join([*dict.fromkeys(heads), MAIN, bodies + END])
 
 
-def run_readme(folder: Path, what: str, program: str = "", *options: str) -> str:
-    """What the README's command prints, a `program` saved as it says; "example" or "test"."""
-    if program:
-        (folder / "example.c").write_text(program)
-    lines = (folder / "README.md").read_text().splitlines()
+def readme_of(folder: Path) -> str:
+    """The text of the README."""
+    (file,) = folder.glob("*README.md")
+    return file.read_text()
+
+
+def ran(folder: Path, what: str, *options: str) -> subprocess.CompletedProcess[str]:
+    """The README's command for "example" or "test", carried out, with options of ours."""
     (command,) = [
-        each for each in lines if each.startswith("cc ") and re.search(rf"-o \w*{what} ", each)
+        each
+        for each in readme_of(folder).splitlines()
+        if each.startswith("cc ") and re.search(rf"-o \w*{what} ", each)
     ]
     compiler("cc")
     command = command.replace("cc ", " ".join(["cc", *options, ""]), 1)
-    done = subprocess.run(
-        command, shell=True, cwd=folder, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, f"{command}\n{done.stderr}{done.stdout}"
+    return subprocess.run(
+        command.replace(" -o ", " -lm -o "),
+        shell=True, cwd=folder, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+
+
+def run_readme(folder: Path, what: str, program: str = "", *options: str) -> str:
+    """What that command prints, after a `program` has been saved as the README says."""
+    if program:
+        (folder / "example.c").write_text(program)
+    done = ran(folder, what, *options)
+    assert done.returncode == 0, done.stderr + done.stdout
     return done.stdout

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from c_builds import AS_C, AS_CXX, STRICT, compiled, compiler
 from fmu_runs import CONTROLLER, LIMITED_CONTROLLER, estimation
-from readme_programs import pasted, program_of, run_readme
+from readme_programs import pasted, program_of, readme_of, run_readme
 
 import hyst
 from hyst.export import c_project
@@ -114,16 +114,18 @@ def test_two_exports_make_one_program_of_twenty_lines(tmp_path: Path) -> None:
 
 
 def test_the_table_says_what_is_known(tmp_path: Path) -> None:
-    readme = (c_project(MODEL, tmp_path / "out", name="lens").path / "README.md").read_text()
+    readme = readme_of(c_project(MODEL, tmp_path / "out", name="lens").path)
     for row in (
         "| u, `voltage_V` | Voltage in V, 0 to 150 in the record |",
         "| y, `position_um` | Position in um, 0 to 40 in the record |",
-        "| error, training | rms 0.0123 um, 0.031 % of the output's range, at most 0.05 um |",
+        "| error, training | rms 0.0123 um, 0.031 % of the range, at most 0.05 um |",
         "| error, validation | rms 0.02 um |",
         "| verdict | good: What is left is the record_s own noise. |",
         "| sample time | any |",
     ):
         assert row in readme
+    inverse = readme_of(c_project(MODEL.inverse(), tmp_path / "i", name="lens").path)
+    assert "| error of the model it inverts, validation | rms 0.02 um |" in inverse
     (origin,) = [line for line in readme.splitlines() if line.startswith("| origin")]
     for part in ("as pi", "2026-01-31", "hyst 0.1.0", "abababab", "hyst identify lens.csv"):
         assert part in origin

@@ -30,6 +30,7 @@ from hyst.cli.observer.command import observer
 from hyst.cli.reproduce import reproduce
 from hyst.cli.simulate import simulate
 from hyst.cli.watch.command import watch
+from hyst.cli.waveform import waveform
 
 app = typer.Typer(
     add_completion=False,
@@ -54,6 +55,7 @@ VERBS = (
     learn,
     observer,
     export,
+    waveform,
     info,
     reproduce,
     demo,

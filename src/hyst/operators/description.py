@@ -47,7 +47,8 @@ class ModelDescription:
         Family the model was identified in.
     errors
         How good the model is, by record: ``training``, ``validation``, ... Each has ``rms`` and
-        ``max_abs`` in output units, and ``rms_percent`` of the output's range.
+        ``max_abs`` in output units, and ``rms_percent`` of the output's range. Those of an inverse
+        are of the model that it inverts, whose output is the inverse's input.
     provenance
         Where the model comes from, if it was identified.
     verdict
@@ -181,7 +182,9 @@ class ModelDescription:
         return about
 
     def of_inverse(self) -> ModelDescription:
-        """Give that of the inverse: input and output change places, without errors and swing.
+        """Give that of the inverse: input and output change places, without swing.
+
+        The errors stay those of the model: the inverse has none of its own but the rounding.
 
         The verdict stays, for the inverse of a model that is not fit is not fit either. Where
         nothing is known of the signals, all that is said is that it is an inverse.
@@ -198,7 +201,6 @@ class ModelDescription:
             output_unit=self.input_unit,
             output_low=self.input_low,
             output_high=self.input_high,
-            errors={},
             smallest_swing=None,
             dynamics_errors=None,
             is_inverse=not self.is_inverse,

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 import hyst
-from hyst.cli.arguments import DespiteVerdict, ModelFile
+from hyst.cli.arguments import DespiteVerdict, ModelFile, history_of, numbers
 from hyst.cli.console import show_table
 from hyst.cli.export.order import Order
 from hyst.cli.export.targets import TARGETS, takers
@@ -19,6 +19,35 @@ Flat = Annotated[
     bool,
     typer.Option(
         "--flat", help="C in one folder without paths of includes, as an Arduino library."
+    ),
+]
+
+Limits = Annotated[
+    str,
+    typer.Option(
+        metavar="auto|none|LOW,HIGH",
+        help="Of the drive, which is the output of an inverse and the input of a model: auto for "
+        "its range in the record; where more is asked for, it is held, and the memory follows.",
+    ),
+]
+
+RateLimit = Annotated[
+    float | None,
+    typer.Option(
+        "--rate-limit",
+        metavar="R",
+        show_default=False,
+        help="The most the drive moves in a second.",
+    ),
+]
+
+History = Annotated[
+    str | None,
+    typer.Option(
+        metavar="A,B,..|FILE:COLUMN",
+        show_default=False,
+        help="Start after this: where the drive of the actuator turned, in time order; samples "
+        "where time counts.",
     ),
 ]
 
@@ -76,6 +105,9 @@ def export(
     ] = True,
     despite_verdict: DespiteVerdict = False,
     flat: Flat = False,
+    limits: Limits = "auto",
+    rate_limit: RateLimit = None,
+    history: History = None,
     schedule_value: ScheduleValue = None,
 ) -> None:
     """Write a model as code for other tools: the numbers of Python, bit for bit in double."""
@@ -87,13 +119,37 @@ def export(
     model = loaded_at(model_file, schedule_value)
     if inverse or explicit:
         model = hyst.export.inverse_of(model, explicit, preview)
-    order = Order(model, out, precision, name, force, fmi, binary, despite_verdict, flat)
+    order = Order(
+        model,
+        out,
+        precision,
+        name,
+        force,
+        fmi,
+        binary,
+        despite_verdict,
+        flat,
+        _ends(limits),
+        rate_limit,
+        None if history is None else history_of(history),
+    )
     done = TARGETS[target].write(order)
     what = "inverse of " if inverse or explicit else ""
     title = f"{what}{model_file.name} as {target}: {out}"
     show_table(hyst.report.Table(title, ("", ""), done.rows))
     _tell_lateness(model.description, preview)
     print(f"\nnext: {done.next_step}")
+
+
+def _ends(text: str) -> tuple[float, float] | str:
+    if text in ("auto", "none"):
+        return text
+    ends = numbers(text, "limits")
+    if len(ends) != 2:
+        raise hyst.InputError(
+            f"--limits is {text!r}; give auto, none, or the lowest and the highest drive, as 0,150"
+        )
+    return ends[0], ends[1]
 
 
 def _tell_lateness(about: hyst.ModelDescription, preview: int | None) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hyst
-from hyst.cli.export.order import Done, Order
+from hyst.cli.export.order import Done, Order, drive_rows
 
 
 def fmu(order: Order) -> Done:
@@ -21,6 +21,7 @@ def fmu(order: Order) -> Done:
         force=order.force,
         binary=order.binary,
         despite_verdict=order.despite_verdict,
+        **order.drive,
     )
     binaries = [each for each in written.files if each.startswith("binaries/")]
     rows = (
@@ -28,6 +29,7 @@ def fmu(order: Order) -> Done:
         ("variables", f"{', '.join(written.inputs)} -> {written.output}; fault"),
         ("parameters", _shortened(written.parameters)),
         ("communication step", "any" if written.dt is None else f"multiples of {written.dt!r} s"),
+        *drive_rows(written.drive, written.history),
         ("binary", ", ".join(binaries) or "none; the importer compiles the sources"),
     )
     return Done(rows, f"import {path} into a simulation tool; docs/fmu.md says what it expects")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hyst
-from hyst.cli.export.order import Done, Order, into_folder
+from hyst.cli.export.order import Done, Order, drive_rows, into_folder
 
 
 def mex(order: Order) -> Done:
@@ -14,10 +14,13 @@ def mex(order: Order) -> Done:
         name=order.name,
         force=order.force,
         despite_verdict=order.despite_verdict,
+        **order.drive,
     )
+    start = "init_after" if written.has_start else ""
     rows = (
         ("files", ", ".join(written.files)),
         ("state", f"{written.saved_bytes} bytes, {written.state_length} numbers of memory"),
+        *drive_rows(written.drive, written.history, start),
     )
     _, there = into_folder(order)
     return Done(

@@ -24,6 +24,7 @@ def readme(
     about: ModelDescription,
     test: SelfTest,
     commands: dict[str, str],
+    takes_power: bool,
 ) -> str:
     """Give the README.
 
@@ -40,6 +41,8 @@ def readme(
     commands
         How the layout is compiled: ``build_test`` and ``build_example``, options and files after
         the compiler; ``own_files``, what goes into another project.
+    takes_power
+        Whether the sources of the core take powers, which may be another's.
 
     Returns
     -------
@@ -60,6 +63,7 @@ def readme(
         "rows": "\n".join(f"| {key} | {value} |" for key, value in rows.items()),
         "program": example.program,
         "start_section": "",
+        "power_section": _power_section(places["core_prefix"]) if takes_power else "",
         "faults": _faults(block),
         "in_precision": " in single precision" if precision == "single" else "",
         "test_bytes": str(short_test_bytes(block, precision)),
@@ -80,6 +84,11 @@ def _size_rows(block: Block, places: dict[str, str]) -> dict[str, str]:
     }
 
 
+def _power_section(prefix: str) -> str:
+    """Give what is told of powers, whose function in the core starts with ``prefix``."""
+    return _POWER.replace("@{prefix}", prefix).replace("@{PREFIX}", prefix.upper())
+
+
 def _faults(block: Block) -> str:
     if block.is_estimator:
         return _ESTIMATOR_FAULTS
@@ -92,6 +101,15 @@ def _faults(block: Block) -> str:
     )
 
 
+_POWER = """
+## A power function of your own
+
+The step takes powers, in plain arithmetic that gives the same bits everywhere. If your target has a
+better function, compile every file with `-D@{PREFIX}POWER_HEADER='"my_power.h"'`. That header
+defines, for this precision and as `static inline`, `@{prefix}power(x, e)` for x >= 0,
+`@{prefix}log2(x)` for x > 0, and `@{prefix}exp2(v)`. The bits are then no longer those of Python:
+both self-tests say so, and the difference that the first one prints is yours to judge.
+"""
 _FAULTS = """\
 A sample that is NaN or infinite, or that overflows inside, is answered with the last output; the
 memory it did not reach stays as it was, and `@{name}_fault` gives `@{NAME}_NOT_FINITE` until

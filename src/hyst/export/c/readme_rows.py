@@ -48,17 +48,19 @@ def signal_rows(block: Block, about: ModelDescription, variable: dict[str, str])
 
 def error_rows(about: ModelDescription) -> dict[str, str]:
     """Give a row for every record the model was compared with, as far as ``about`` tells."""
-    unit = f" {plain_text(about.output_unit)}" if about.output_unit else ""
+    told = about.input_unit if about.is_inverse else about.output_unit
+    unit = f" {plain_text(told)}" if told else ""
+    of = " of the model it inverts" if about.is_inverse else ""
     rows = {}
     for record, errors in about.errors.items():
         said = []
         if "rms" in errors:
             said.append(f"rms {errors['rms']:.3g}{unit}")
         if "rms_percent" in errors:
-            said.append(f"{errors['rms_percent']:.3g} % of the output's range")
+            said.append(f"{errors['rms_percent']:.3g} % of the range")
         if "max_abs" in errors:
             said.append(f"at most {errors['max_abs']:.3g}{unit}")
-        rows[f"error, {plain_text(record)}"] = ", ".join(said) or "not known"
+        rows[f"error{of}, {plain_text(record)}"] = ", ".join(said) or "not known"
     return rows
 
 

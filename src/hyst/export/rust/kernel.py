@@ -51,7 +51,7 @@ def _parts(places: Places) -> Iterator[str]:
         yield _structure(places, name)
     write = Expressions(places, None)
     for table in places.program.tables.values():
-        word = "const" if isinstance(table.type, Scalar) else "static"
+        word = "pub const" if isinstance(table.type, Scalar) else "static"
         kind = places.value_type(table.type, "'static")
         yield f"{word} {constant_name(table.name)}: {kind} = {write.value(table.value)};\n"
     for function in places.program.functions.values():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from hyst.export.c.block import Block
 from hyst.export.c.c_sources import header, places, source
 from hyst.export.c.core_sources import core_files
@@ -12,14 +14,17 @@ from hyst.export.translate.reading import read_program
 from hyst.operators import ModelDescription
 
 
-def entries_of(block: Block, name: str) -> tuple[str, ...]:
-    """Give the functions of an export called ``name`` that are translated.
+_ENTRIES = ("init", "init_after", "step", "update", "command", "reset")
+
+
+def entries_of(text: str, name: str) -> tuple[str, ...]:
+    """Give the functions of an export called ``name`` that are translated, as far as it has them.
 
     Saving and loading a state is left to every language, for it is about bytes.
     """
-    steps = ("update", "command") if block.is_estimator else ("step",)
-    more = ("reset",) if block.forgets else ()
-    return tuple(f"{name}_{each}" for each in ("init", *steps, *more))
+    return tuple(
+        f"{name}_{each}" for each in _ENTRIES if re.search(rf"\b{name}_{each}\(.*;", text)
+    )
 
 
 def c_text(block: Block, name: str, precision: Precision, about: ModelDescription) -> str:
@@ -56,4 +61,4 @@ def program_of(block: Block, name: str, precision: Precision, about: ModelDescri
     """
     text = c_text(block, name, precision, about)
     defined = "#define HYST_SINGLE\n" if precision == "single" else ""
-    return read_program(defined + text, entries_of(block, name))
+    return read_program(defined + text, entries_of(text, name))

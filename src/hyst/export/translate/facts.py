@@ -79,7 +79,9 @@ def facts_of(program: Program) -> Facts:
     for entry in program.entries:
         for each in program.functions[entry].parameters:
             if isinstance(each.type, Pointer):
-                facts.lies[entry, each.name] = {MEMORY}
+                # What is read only, as a history, is the caller's.
+                is_state = isinstance(each.type.to, Named)
+                facts.lies[entry, each.name] = {MEMORY if is_state else LOCAL}
     before = -1
     while before != _known(facts):
         before = _known(facts)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from hyst.export.translate.conversions import converted
 from hyst.export.translate.declared import Declared
 from hyst.export.translate.expressions import Expressions, moved, stored
 from hyst.export.translate.program import (
@@ -33,7 +34,6 @@ from hyst.export.translate.program import (
     Statement,
     Table,
 )
-from hyst.export.translate.conversions import converted
 from hyst.export.translate.refusal import refused
 from hyst.export.translate.scope import Scope
 
