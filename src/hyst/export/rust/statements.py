@@ -8,6 +8,8 @@ from typing import Any
 from hyst.export.rust.expressions import Expressions
 from hyst.export.rust.names import rust_name
 from hyst.export.rust.places import Places
+from hyst.export.translate.facts import Slot
+from hyst.export.translate.pointers import split
 from hyst.export.translate.program import (
     AddressOf,
     Array,
@@ -15,15 +17,18 @@ from hyst.export.translate.program import (
     Block,
     Break,
     Call,
+    CType,
     Decay,
     Declare,
     Element,
     Evaluate,
     Function,
     If,
+    Initialiser,
     Loop,
     Member,
     Name,
+    Named,
     Number,
     Pointer,
     Return,
@@ -41,7 +46,7 @@ class Statements:
         self.places = places
         self.expressions = Expressions(places, function)
         self.function = function
-        self.changed = set(_changed(function))
+        self.changed = set(_changed(places, function))
 
     def all(self, body: tuple[Statement, ...]) -> Iterator[str]:
         """Give lines of Rust; the formatter indents them."""
@@ -134,17 +139,36 @@ class Statements:
         return f"slices::put(&mut {place}, {write.value(index)}, {text});"
 
 
-def _changed(function: Function) -> Iterator[str]:
+def _changed(places: Places, function: Function) -> Iterator[str]:
     """Give the variables that do not keep their first value, or are lent to be changed."""
     for statement in statements_in(function.body):
         if isinstance(statement, Assign):
             yield from _holder(statement.place)
+            if isinstance(statement.place, Member) and isinstance(statement.place.of.type, Named):
+                slot = (statement.place.of.type.name, statement.place.name)
+                yield from _lent(places, slot, statement.place.type, statement.value)
     for each in all_expressions(function.body):
         if isinstance(each, Call):
-            for argument in each.arguments:
-                for part in inside(argument):
-                    if isinstance(part, AddressOf | Decay):
-                        yield from _holder(part.of)
+            parameters = places.program.functions[each.function].parameters
+            for parameter, argument in zip(parameters, each.arguments, strict=True):
+                yield from _lent(places, (each.function, parameter.name), parameter.type, argument)
+        elif isinstance(each, Initialiser) and isinstance(each.type, Named):
+            members = places.program.structures[each.type.name].members
+            for (name, kind), value in zip(members.items(), each.values, strict=True):
+                yield from _lent(places, (each.type.name, name), kind, value)
+
+
+def _lent(places: Places, slot: Slot, kind: CType, value: Any) -> Iterator[str]:
+    """Give the variable that a pointer lets somebody change, if it does."""
+    if not isinstance(kind, Pointer):
+        return
+    if isinstance(kind.to, Named):
+        is_lent = slot[0] in places.program.functions and places.is_changed(slot)
+    else:
+        is_lent = places.is_cell(slot, kind)
+    root, _ = split(value)
+    if is_lent and isinstance(root, AddressOf | Decay):
+        yield from _holder(root.of)
 
 
 def _holder(place: Any) -> Iterator[str]:
