@@ -103,7 +103,7 @@ def _as_single(digits: str, value: float) -> float:
     exact = Fraction(digits)
     bits = struct.unpack("I", struct.pack("f", nearest))[0]
     near = [
-        struct.unpack("f", struct.pack("I", bits + by))[0] for by in (-1, 0, 1) if bits + by > 0
+        struct.unpack("f", struct.pack("I", bits + by))[0] for by in (-1, 0, 1) if bits + by >= 0
     ]
     # A tie goes to the even one, which is what double has chosen unless it was no tie.
     return min(near, key=lambda each: (abs(Fraction(each) - exact), each != nearest))  # type: ignore[no-any-return]
