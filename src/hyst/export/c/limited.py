@@ -205,11 +205,7 @@ class LimitedStages:
         ]
 
 
-def limits_stage(
-    limits: tuple[float, float, float],
-    choices: dict[str, int],
-    reach: tuple[float, float] | None = None,
-) -> CoreStage:
+def limits_stage(limits: tuple[float, float, float], choices: dict[str, int]) -> CoreStage:
     """Give the limits of a drive as a stage.
 
     Parameters
@@ -218,17 +214,43 @@ def limits_stage(
         Lowest and highest drive, and most change in a sample, in numbers of the target.
     choices
         What the twin in single precision is told beside them.
-    reach
-        What a bank of plays at the end of an inverse can be asked for; None for anything else.
     """
-    numbers = dict(zip(("low", "high", "change"), limits, strict=True))
-    header, structure = "hyst/drive_limits.h", "hyst_drive_limits $model = {$low, $high, $change};"
-    if reach is not None:
-        numbers |= {"v_low": reach[0], "v_high": reach[1]}
-        header = "hyst/limited_bank.h"
-        structure = "hyst_bank_limits $model = {{$low, $high, $change}, $v_low, $v_high};"
+    return _as_stage(
+        "drive_limits",
+        dict(zip(("low", "high", "change"), limits, strict=True)),
+        choices,
+        "hyst_drive_limits $model = {$low, $high, $change};",
+        "$signal = hyst_limited_drive(&$model, $memory, $signal);",
+    )
+
+
+def bank_limits_stage(limits: dict[str, float | int]) -> CoreStage:
+    """Give the limits of a bank of plays at the end of an inverse as a stage.
+
+    Parameters
+    ----------
+    limits
+        As ``LimitedDrive.bank_limits`` gives them.
+    """
+    choices = {name: int(value) for name, value in limits.items() if name.startswith("moved")}
+    ends = ", ".join(
+        f"{{$moved_{end}u, $slope_{end}, $constant_{end}, $from_{end}, $least_{end}}}"
+        for end in ("low", "high")
+    )
+    return _as_stage(
+        "bank_limits",
+        {name: float(value) for name, value in limits.items() if name not in choices},
+        choices,
+        f"hyst_bank_limits $model = {{$low, $high, {ends}}};",
+        "",
+    )
+
+
+def _as_stage(
+    kind: str, numbers: dict[str, float], choices: dict[str, int], structure: str, call: str
+) -> CoreStage:
     return CoreStage(
-        kind="drive_limits",
+        kind=kind,
         numbers=numbers,
         tables={},
         choices=choices,
@@ -236,9 +258,9 @@ def limits_stage(
         state_length=1,
         offers=dict.fromkeys(numbers, (0, "")),
         feeds_through=True,
-        header=header,
+        header="hyst/drive_limits.h" if kind == "drive_limits" else "hyst/limited_bank.h",
         structure=structure,
-        call="$signal = hyst_limited_drive(&$model, $memory, $signal);",
+        call=call,
     )
 
 
