@@ -68,9 +68,9 @@ def example_of(
         "#include <stdio.h>",
         f'#include "{name}.h"',
         f"static {name}_state {name}; /* its memory: one for each actuator */",
-        *_swept(block, name, number, about),
+        *_swept(block, name, number),
         "int main(void) {",
-        f"    {_started(block, name, about)}",
+        f"    {_started(block, name)}",
         f"    {loop} /* every sample */",
         *(f"        {line}" for line in _sample(block, name, number, named)),
         "    }",
@@ -84,6 +84,13 @@ def meanings(block: Block, about: ModelDescription) -> dict[str, tuple[str, str]
     """Give name and unit of every signal of a ``block`` by what its functions call it.
 
     One whose name is empty is called what the functions call it.
+
+    Parameters
+    ----------
+    block
+        What is exported.
+    about
+        What its numbers mean.
     """
     into, out = (about.input_name, about.input_unit), (about.output_name, about.output_unit)
     roles, meant = (*block.inputs, block.output), [("", "")] * (len(block.inputs) + 1)
@@ -104,37 +111,30 @@ def starts_from_extremes(block: Block) -> bool:
     return known and block.chain.dt is None
 
 
-def swept_name(block: Block, name: str, about: ModelDescription) -> str:
+def swept_name(block: Block, name: str) -> str:
     """Give what the example calls the drives at which the sweep turned.
 
     Parameters
     ----------
-    block, name, about
-        As of ``example_of``.
+    block, name
+        What is exported, and its prefix.
     """
-    unit = identifier(drive_unit(block, about))
+    unit = identifier(block.drive.unit)
     return f"{name}_swept_{unit}" if unit else f"{name}_swept"
 
 
-def drive_unit(block: Block, about: ModelDescription) -> str:
-    """Give the unit of the actuator's drive, where it is known."""
-    meant = meanings(block, about)
-    role = {"input": block.inputs[0], "output": block.output, "command": "u"}.get(block.drive.side)
-    return meant.get(role or "", ("", ""))[1]
-
-
-def _swept(block: Block, name: str, number: str, about: ModelDescription) -> list[str]:
+def _swept(block: Block, name: str, number: str) -> list[str]:
     if not starts_from_extremes(block):
         return []
     drives = f"{{{name.upper()}_U_MAX, {name.upper()}_U_MIN}}"
-    swept = swept_name(block, name, about)
+    swept = swept_name(block, name)
     return [f"static const {number} {swept}[] = {drives}; /* where the sweep turned */"]
 
 
-def _started(block: Block, name: str, about: ModelDescription) -> str:
+def _started(block: Block, name: str) -> str:
     if not starts_from_extremes(block):
         return f"{name}_init(&{name}); /* once */"
-    call = f"{name}_init_after(&{name}, {swept_name(block, name, about)}, 2u)"
+    call = f"{name}_init_after(&{name}, {swept_name(block, name)}, 2u)"
     return f"if ({call} != 0) {{ return 1; }} /* once, after it */"
 
 

@@ -49,7 +49,7 @@ def readme(
     precision = places["precision"]
     example = example_of(block, places["name"], precision, about, test)
     rows = signal_rows(block, about, example.variable)
-    rows |= drive_rows(block, places["name"], about)
+    rows |= drive_rows(block, places["name"])
     rows |= {"sample time": "any" if block.dt is None else f"{block.dt!r} s, and no other"}
     if precision == "single":
         rows["away from double"] = (
@@ -61,7 +61,7 @@ def readme(
     more = {
         "rows": "\n".join(f"| {key} | {value} |" for key, value in rows.items()),
         "program": example.program,
-        "start_section": start_section(block, places["name"], about),
+        "start_section": start_section(block, places["name"]),
         "power_section": _power_section(places["core_prefix"]) if takes_power else "",
         "faults": _faults(block),
         "in_precision": " in single precision" if precision == "single" else "",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hyst.export.c.block import Block
-from hyst.export.c.example import drive_unit, meanings
+from hyst.export.c.example import meanings
 from hyst.export.c.names import plain_text
 from hyst.operators import ModelDescription
 
@@ -46,17 +46,15 @@ def signal_rows(block: Block, about: ModelDescription, variable: dict[str, str])
     return rows
 
 
-def drive_rows(block: Block, name: str, about: ModelDescription) -> dict[str, str]:
+def drive_rows(block: Block, name: str) -> dict[str, str]:
     """Give the rows that say what the drive may be, and which drives the memory comes after.
 
     Parameters
     ----------
     block, name
         What is exported, and its prefix.
-    about
-        What its numbers mean.
     """
-    said = plain_text(block.drive.said(plain_text(drive_unit(block, about))), _LONGEST_SENTENCE)
+    said = plain_text(block.drive.said(), _LONGEST_SENTENCE)
     if block.drive.limits is not None:
         said = f"`{name.upper()}_U_MIN` to `{name.upper()}_U_MAX`: {said}"
     rows = {"limits of the drive": said}

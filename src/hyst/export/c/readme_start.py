@@ -5,20 +5,17 @@ from __future__ import annotations
 from hyst.export.c.block import Block
 from hyst.export.c.example import starts_from_extremes, swept_name
 from hyst.export.c.names import plain_text
-from hyst.operators import ModelDescription
 
 _LONGEST_REASON = 300
 
 
-def start_section(block: Block, name: str, about: ModelDescription) -> str:
+def start_section(block: Block, name: str) -> str:
     """Give the section on the start of the actuator.
 
     Parameters
     ----------
     block, name
         What is exported, and its prefix.
-    about
-        What its numbers mean.
 
     Returns
     -------
@@ -33,7 +30,7 @@ def start_section(block: Block, name: str, about: ModelDescription) -> str:
     ends = "the highest drive it may have and then to the lowest"
     if block.drive.limits is not None:
         ends = f"`{name.upper()}_U_MAX` and then to `{name.upper()}_U_MIN`"
-    drives = f"{swept_name(block, name, about)}, 2u" if starts_from_extremes(block) else "..."
+    drives = f"{swept_name(block, name)}, 2u" if starts_from_extremes(block) else "..."
     told = f"Call `{name}_init_after(&{name}, {drives})` with the drives at which it turned."
     if block.chain.dt is not None:
         told = (
