@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 from c_builds import AS_C, AS_CXX, STRICT, compiled, compiler
 from fmu_runs import CONTROLLER, LIMITED_CONTROLLER, estimation
-from readme_programs import pasted, program_of, readme_of, run_readme
+from readme_programs import program_of, readme_of, run_readme
 
 import hyst
 from hyst.export import c_project
+from hyst.export.c.layout import LAYOUTS
 from hyst.export.c.signal_names import variables
 from hyst.operators import ModelDescription
 from hyst.operators.provenance import Provenance
@@ -56,13 +57,14 @@ def columns(printed: str) -> np.ndarray:
     return np.array(found, dtype=float)
 
 
-@pytest.mark.parametrize("flat", [False, True])
+@pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_the_program_prints_what_python_computes(
-    precision: str, flat: bool, tmp_path: Path
+    precision: str, layout: str, tmp_path: Path
 ) -> None:
     inverse = MODEL.inverse()
-    folder = c_project(inverse, tmp_path / "out", precision=precision, name="lens", flat=flat).path
+    options = {"precision": precision, "name": "lens", "layout": layout}
+    folder = c_project(inverse, tmp_path / "out", **options).path
     program = program_of(folder)
     assert "voltage_V = lens_step(&lens, position_um);" in program
     printed = columns(run_readme(folder, "example", program, *STRICTLY))
@@ -74,10 +76,15 @@ def test_the_program_prints_what_python_computes(
     )
 
 
-@pytest.mark.parametrize("flat", [False, True])
-def test_the_command_of_the_test_is_true(flat: bool, tmp_path: Path) -> None:
-    folder = c_project(MODEL, tmp_path / "out", name="lens", flat=flat).path
-    assert run_readme(folder, "test") == "10000 samples, max difference 0\n"
+@pytest.mark.parametrize("shared_core", [False, True])
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_the_command_of_the_test_is_true(layout: str, shared_core: bool, tmp_path: Path) -> None:
+    if shared_core and layout == "single-file":
+        pytest.skip("a single file has its core within it")
+    project = c_project(
+        MODEL, tmp_path / "out", name="lens", layout=layout, shared_core=shared_core
+    )
+    assert run_readme(project.path, "test") == "10000 samples, max difference 0\n"
 
 
 OTHERS = {
@@ -97,23 +104,8 @@ def test_programs_of_other_blocks_compile_as_printed(name: str, tmp_path: Path) 
     assert "&lens" in program
     assert len(columns(run_readme(folder, "example", program, *STRICTLY))) > 1
     (folder / "example.cpp").write_text(program)
-    flags = [*AS_CXX, *STRICT, "-fsyntax-only", "-I.", "-Icore/include"]
+    flags = [*AS_CXX, *STRICT, "-fsyntax-only"]
     compiled([compiler("clang++"), *flags, "example.cpp"], folder)
-
-
-def test_two_exports_make_one_program_of_twenty_lines(tmp_path: Path) -> None:
-    folders = [
-        c_project(each, tmp_path / name, name=name).path
-        for name, each in (("lens", MODEL.inverse()), ("mirror", MODEL.inverse()))
-    ]
-    program = pasted([program_of(each) for each in folders])
-    assert len(program.splitlines()) <= 20
-    (tmp_path / "both.c").write_text(program)
-    include = [f"-I{folder}" for folder in folders] + [f"-I{folders[0]}/core/include"]
-    core = folders[0].glob("core/src/*.c")
-    sources = [*(str(each / f"{each.name}.c") for each in folders), *map(str, core)]
-    build = [compiler("gcc"), *AS_C, *STRICT, *include, "both.c", *sources, "-o", "both"]
-    compiled(build, tmp_path)
 
 
 def test_the_table_says_what_is_known(tmp_path: Path) -> None:
@@ -158,7 +150,7 @@ def test_any_name_makes_a_program_that_compiles(name: str, unit: str, tmp_path: 
     folder = c_project(MODEL, tmp_path / "out", name="lens", description=about).path
     (folder / "example.c").write_text(program_of(folder))
     for driver, language in (("gcc", AS_C), ("g++", AS_CXX), ("gcc", ["-std=gnu99"])):
-        flags = [*language, *STRICT, "-fsyntax-only", "-I.", "-Icore/include"]
+        flags = [*language, *STRICT, "-fsyntax-only"]
         compiled([compiler(driver), *flags, "example.c"], folder)
 
 
@@ -184,15 +176,14 @@ def test_the_short_test_finds_one_bit_of_one_constant(precision: str, tmp_path: 
     """The last bit of the inverse's gain: the first sample away from 0 is another."""
     folder = c_project(MODEL.inverse(), tmp_path / "out", name="lens", precision=precision).path
     source = (folder / "lens.c").read_text()
-    (gain,) = re.findall(r"hyst_pi pi_1 = \{2u, ([^,f]*)", source)
+    (gain,) = re.findall(r"lens_core_pi pi_1 = \{2u, ([^,f]*)", source)
     number = np.float64 if precision == "double" else np.float32
     beside = float(np.nextafter(number(float.fromhex(gain)), number(np.inf))).hex()
     (folder / "main.c").write_text(
         '#include "lens.h"\nint main(void) { return lens_selftest(); }\n'
     )
-    define = ["-DHYST_SINGLE"] if precision == "single" else []
-    build = [compiler("gcc"), *AS_C, *STRICT, *define, "-I.", "-Icore/include", "main.c", "lens.c"]
-    core = [str(each) for each in folder.glob("core/src/*.c")]
+    build = [compiler("gcc"), *AS_C, *STRICT, "main.c", "lens.c"]
+    core = [str(each) for each in folder.glob("core/*.c")]
     results = []
     for text in (source, source.replace(gain, beside)):
         (folder / "lens.c").write_text(text)

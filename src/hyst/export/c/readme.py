@@ -23,7 +23,6 @@ def readme(
     places: dict[str, str],
     about: ModelDescription,
     test: SelfTest,
-    commands: dict[str, str],
     takes_power: bool,
 ) -> str:
     """Give the README.
@@ -33,14 +32,11 @@ def readme(
     block
         What is exported.
     places
-        What the templates have in common.
+        What the templates have in common, those of the layout among them.
     about
         What the numbers mean.
     test
         The self-test.
-    commands
-        How the layout is compiled: ``build_test`` and ``build_example``, options and files after
-        the compiler; ``own_files``, what goes into another project.
     takes_power
         Whether the sources of the core take powers, which may be another's.
 
@@ -70,7 +66,7 @@ def readme(
     }
     for key in ("name", "NAME"):
         more["faults"] = more["faults"].replace(f"@{{{key}}}", places[key])
-    return filled("README.md", places | commands | more)
+    return filled("README.md", places | more)
 
 
 def _size_rows(block: Block, places: dict[str, str]) -> dict[str, str]:
