@@ -238,7 +238,7 @@ def test_bad_samples_hold_the_last_drive_and_move_nothing(bad: float) -> None:
         u, before = step(2.0), step.state.copy()
         assert step(bad) == u
         assert np.array_equal(step.state, before)
-        with pytest.raises(InputError, match="x is .* at index 1"):
+        with pytest.raises(InputError, match=r"x is .* at index 1"):
             LimitedDrive(STAGE.inverse(), (1.0, 3.0), rate, dt=0.01).run([1.0, bad])
 
 
@@ -340,7 +340,7 @@ def test_refusals(arguments: dict[str, Any], message: str) -> None:
 def test_limits_within_which_a_branch_turns_back_are_refused() -> None:
     # y = z + z^2 with z = u here, which falls below -1/2 and rises above.
     bent = hyst.Butterfly(hyst.Affine(1.0), [[0.0, 1.0, 1.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
-    with pytest.raises(NotInvertibleError, match="between the drives -0.5 and -0.48"):
+    with pytest.raises(NotInvertibleError, match=r"between the drives -0\.5 and -0\.48"):
         require_monotone(bent, (-3.0, 1.0))
     require_monotone(bent, (-0.5, 1.0))
     require_monotone(bent, (-3.0, -0.5))

@@ -84,7 +84,7 @@ def run_selftest(project: Path, objects: Objects) -> subprocess.CompletedProcess
     build = [compiler("gcc"), *AS_C, "-O1", *flags]
     sources = sorted((project / "core").glob("src/*.c"))
     parts = [str(objects.of(each, project, build)) for each in sources]
-    own = [f"{project_name(project)}.c", "selftest.c"]
+    own = sorted(each.name for each in project.glob("*.c"))
     compiled([*build, *own, *parts, "-o", "selftest"], project)
     return subprocess.run(
         [str(project / "selftest")], cwd=project, capture_output=True, text=True, check=False

@@ -72,7 +72,7 @@ def test_one_command_builds_and_tests_a_zip(tmp_path: Path) -> None:
         archive.extractall(tmp_path)
     compiler("cc")
     readme = (tmp_path / "stage" / "README.md").read_text().splitlines()
-    (command,) = [line.strip() for line in readme if line.strip().startswith("cc ")]
+    command = next(line for line in readme if line.startswith("cc ") and "_test && " in line)
     finished = subprocess.run(
         command, shell=True, cwd=tmp_path / "stage", capture_output=True, text=True, check=True
     )

@@ -50,7 +50,7 @@ def test_the_readme_and_cmake_name_no_folder_that_is_not_there(tmp_path: Path) -
     for text in ("README.md", "CMakeLists.txt"):
         assert "core/" not in (folder / text).read_text()
     readme = (folder / "README.md").read_text()
-    command = next(line.strip() for line in readme.splitlines() if line.strip().startswith("cc "))
+    command = next(line for line in readme.splitlines() if "_test && " in line)
     compiler("cc")
     subprocess.run(command, shell=True, cwd=folder, check=True, capture_output=True)
 

@@ -335,6 +335,27 @@ def test_names_that_cannot_be(name: str, tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+@needs_octave
+@pytest.mark.parametrize("name", ["", " ", "end", "1st", "a'b", "%{", "x\ny", "...", "u: y"])
+def test_any_name_of_a_signal(name: str, tmp_path: Path) -> None:
+    """No name, words of MATLAB, marks that begin a comment, and both alike: none reaches code."""
+    about = ModelDescription(input_name=name, input_unit=name, output_name=name, output_unit=name)
+    folder = compiled(hyst.export.mex(PI.with_description(about), tmp_path / "a"))
+    printed = octave(folder, "help stage\nprintf('%.17g\\n', stage([0.25 0.5]))")
+    assert "y = stage(u)" in printed
+    # 17 digits are a double exactly.
+    assert [float(each) for each in printed.split()[-2:]] == PI(np.array([0.25, 0.5])).tolist()
+
+
+def test_a_signal_without_a_name_is_called_as_in_the_call(tmp_path: Path) -> None:
+    about = ModelDescription(input_name="", output_name="", output_unit="V")
+    folder = hyst.export.mex(PI.with_description(about), tmp_path / "a").path
+    readme = (folder / "README.md").read_text()
+    assert "| u | u |" in readme
+    assert "| y | y in V |" in readme
+    assert "y: y in V" in (folder / "stage.m").read_text()
+
+
 def test_a_folder_that_exists(tmp_path: Path) -> None:
     hyst.export.mex(PI, tmp_path / "a")
     with pytest.raises(hyst.InputError, match="exists"):

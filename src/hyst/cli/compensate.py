@@ -21,6 +21,7 @@ from hyst.cli.arguments import (
 )
 from hyst.cli.command_over import compensate_over, tell_virgin, write_command
 from hyst.cli.console import note, progress_bar, show_files, show_table
+from hyst.cli.driver_option import DriverOfCommand, driver_for, range_of_codes
 from hyst.cli.reading_options import reads_columns
 from hyst.cli.relevant_options import refuse_irrelevant
 from hyst.cli.scheduled import (
@@ -147,6 +148,7 @@ def compensate(
     allow_unconverged: AllowUnconverged = False,
     despite_verdict: DespiteVerdict = False,
     with_delay: WithDelay = False,
+    driver: DriverOfCommand = None,
     schedule_column: ScheduleColumn = None,
     schedule_value: ScheduleValue = None,
 ) -> None:
@@ -157,15 +159,17 @@ def compensate(
     about = model.description
     y_ref, _, unit = hyst.io.read_column(reference, column, **how)
     require_same_unit(unit, about.output_unit, "the reference")
-    input_range = _input_range(limits, no_limits, about)
+    table = driver_for(driver, about)
+    input_range = range_of_codes(_input_range(limits, no_limits, about), table)
     known = sample_time_known(model_at_rest(model), reference, rate, "the reference", **how)
     if isinstance(model, hyst.Scheduled):
         refuse_what_is_fixed(_FIXED, (method != "exact", outside == "clip", with_delay))
         s = read_signal(model, reference, str(schedule_column), y_ref.size, how)
         time = time_column(reference, rate, model.dt, y_ref.size, **how)
-        compensate_over(model, y_ref, s, history, input_range, despite_verdict, out, time)
+        compensate_over(model, y_ref, s, history, input_range, despite_verdict, out, time, table)
         return
     _require_method_for(model, method)
+    turns = None if history is None else history_of(history)
     ahead: dict[str, Any] = {"rate_limit": rate_limit, "preview": preview, "band": band}
     with progress_bar("inverting") as progress:
         done = hyst.compensation.invert_trajectory(
@@ -174,7 +178,7 @@ def compensate(
             method,
             input_range=input_range,
             outside=outside,
-            history=None if history is None else history_of(history),
+            history=turns,
             objective=objective,
             roughness=roughness,
             **ahead,
@@ -184,8 +188,15 @@ def compensate(
         )
     _note_times(known, history, model)
     time = time_column(reference, rate, model.dt, done.u.size, **how)
-    write_command(out, about, time, _signals(done, about, y_ref if with_delay else None))
+    coded = None
+    if table is not None:
+        coded = hyst.compensation.in_codes(model, done, table, limits=input_range, history=turns)
+    late = y_ref if with_delay else None
+    codes = None if coded is None else coded.codes
+    write_command(out, about, time, _signals(done, about, late, coded), codes)
     _tell(done, about, input_range, with_delay, history is None and model.initial_state().size > 0)
+    if coded is not None:
+        print(coded.told(about.input_unit, about.output_unit))
     show_files([out])
 
 
@@ -205,11 +216,13 @@ def _signals(
     done: hyst.compensation.Compensation,
     about: ModelDescription,
     late_reference: NDArray[np.float64] | None,
+    coded: hyst.compensation.CodedCommand | None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Give reference, command and predicted output, later by the delay where it is as asked for."""
+    predicted = done.y_predicted if coded is None else coded.y_predicted
     if late_reference is None:
-        return done.y_ref, done.u, done.y_predicted
-    late = hyst.identification.earlier(done.y_predicted, -about.delay)
+        return done.y_ref, done.u, predicted
+    late = hyst.identification.earlier(predicted, -about.delay)
     return late_reference, done.u, late
 
 

@@ -59,6 +59,8 @@ class HowToRead:
         Columns of validation records that are called otherwise, by role; None where they are not.
     labels
         What input and output are to be called, with their units; None as in the file.
+    driver
+        Of the converter, where the input is in its codes; the records then are in volts.
     sources
         Where each record that was read comes from, in the order of reading.
     """
@@ -66,6 +68,7 @@ class HowToRead:
     columns: dict[str, Any]
     validation_columns: dict[str, str | None]
     labels: tuple[str | None, str | None]
+    driver: hyst.Driver | None = None
     sources: list[str] = field(default_factory=list)
 
     def records(self, paths: Sequence[Path]) -> list[hyst.Record]:
@@ -83,7 +86,7 @@ class HowToRead:
         return [
             each
             for path in paths
-            for each in self._named(path, _read(path, self.columns, self.labels))
+            for each in self._named(path, _read(path, self.columns, self.labels, self.driver))
         ]
 
     def validation(self, paths: Sequence[Path] | None) -> list[hyst.Record]:
@@ -93,7 +96,7 @@ class HowToRead:
         return [
             each
             for path in paths or []
-            for each in self._named(path, _read_validation(path, how, self.labels))
+            for each in self._named(path, _read_validation(path, how, self.labels, self.driver))
         ]
 
     def _named(self, path: Path, records: list[hyst.Record]) -> list[hyst.Record]:
@@ -106,9 +109,17 @@ class HowToRead:
 
 
 def _read(
-    path: Path, how: dict[str, Any], labels: tuple[str | None, str | None]
+    path: Path,
+    how: dict[str, Any],
+    labels: tuple[str | None, str | None],
+    driver: hyst.Driver | None,
 ) -> list[hyst.Record]:
-    return [_labelled(each, *labels) for each in read_told(path, **how)]
+    records = read_told(path, **how)
+    try:
+        records = tuple(hyst.identification.in_volts(each, driver) for each in records)
+    except hyst.InputError as refusal:
+        raise hyst.InputError(f"{path.name}: {refusal}") from None
+    return [_labelled(each, *labels, driver) for each in records]
 
 
 def _otherwise(
@@ -125,10 +136,13 @@ def _otherwise(
 
 
 def _read_validation(
-    path: Path, how: dict[str, Any], labels: tuple[str | None, str | None]
+    path: Path,
+    how: dict[str, Any],
+    labels: tuple[str | None, str | None],
+    driver: hyst.Driver | None,
 ) -> list[hyst.Record]:
     try:
-        return _read(path, how, labels)
+        return _read(path, how, labels, driver)
     except hyst.InputError as error:
         if "has no column" not in str(error):
             raise
@@ -193,10 +207,19 @@ def named_by_files(found: hyst.Identified, sources: Sequence[str]) -> hyst.Ident
 
 
 def _labelled(
-    record: hyst.Record, input_label: str | None, output_label: str | None
+    record: hyst.Record,
+    input_label: str | None,
+    output_label: str | None,
+    driver: hyst.Driver | None,
 ) -> hyst.Record:
     if input_label is not None:
         name, unit = hyst.io.split_unit(input_label)
+        if driver is not None and hyst.signals.units_differ(unit, driver.unit):
+            raise hyst.InputError(
+                f"--input-label says {unit!r} and the driver gives {driver.unit!r}; say the unit "
+                "of the volts, in the header of the driver's table"
+            )
+        unit = unit if driver is None else driver.unit
         record = replace(record, input_name=name, input_unit=unit)
     if output_label is not None:
         name, unit = hyst.io.split_unit(output_label)

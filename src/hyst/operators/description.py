@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any, ClassVar, Self, final
 
 from hyst.errors import InputError
+from hyst.operators.driver.driver import Driver
 from hyst.operators.dynamics_errors import DynamicsErrors
 from hyst.operators.plain_data import (
     as_finite,
@@ -46,7 +47,8 @@ class ModelDescription:
         Family the model was identified in.
     errors
         How good the model is, by record: ``training``, ``validation``, ... Each has ``rms`` and
-        ``max_abs`` in output units, and ``rms_percent`` of the output's range.
+        ``max_abs`` in output units, and ``rms_percent`` of the output's range. Those of an inverse
+        are of the model that it inverts, whose output is the inverse's input.
     provenance
         Where the model comes from, if it was identified.
     verdict
@@ -58,6 +60,8 @@ class ModelDescription:
         show nothing.
     dynamics_errors
         How well linear dynamics behind a hysteresis are known, if they were identified.
+    driver
+        Which volts the codes of the drive's converter give, if the record's input was in codes.
     is_inverse
         Whether the output is the drive of an actuator and the input what it shall do.
 
@@ -85,6 +89,7 @@ class ModelDescription:
     delay_interval: tuple[float, float] | None = None
     smallest_swing: float | None = None
     dynamics_errors: DynamicsErrors | None = None
+    driver: Driver | None = None
     is_inverse: bool = False
 
     # Of the file format: entries that files of a version may have are those of it and before.
@@ -95,6 +100,7 @@ class ModelDescription:
         "delay_interval": 3,
         "smallest_swing": 3,
         "dynamics_errors": 4,
+        "driver": 5,
         "is_inverse": 5,
     }
 
@@ -127,7 +133,7 @@ class ModelDescription:
     def to_dict(self) -> dict[str, Any]:
         """Give what there is to say as values of JSON; what is not known is left out."""
         plain = asdict(self)
-        for name in ("verdict", "dynamics_errors"):
+        for name in ("verdict", "dynamics_errors", "driver"):
             given = getattr(self, name)
             plain[name] = None if given is None else given.to_dict()
         if self.delay_interval is not None:
@@ -147,7 +153,7 @@ class ModelDescription:
         version
             Of the description: 1 has neither errors nor provenance, 2 neither verdict nor what
             records leave open, and both know whole delays from 0 only; 3 has no errors of
-            dynamics, 4 does not say what is an inverse.
+            dynamics, 4 no driver and not what is an inverse.
 
         Raises
         ------
@@ -176,7 +182,9 @@ class ModelDescription:
         return about
 
     def of_inverse(self) -> ModelDescription:
-        """Give that of the inverse: input and output change places, without errors and swing.
+        """Give that of the inverse: input and output change places, without swing.
+
+        The errors stay those of the model: the inverse has none of its own but the rounding.
 
         The verdict stays, for the inverse of a model that is not fit is not fit either. Where
         nothing is known of the signals, all that is said is that it is an inverse.
@@ -193,7 +201,6 @@ class ModelDescription:
             output_unit=self.input_unit,
             output_low=self.input_low,
             output_high=self.input_high,
-            errors={},
             smallest_swing=None,
             dynamics_errors=None,
             is_inverse=not self.is_inverse,
@@ -296,6 +303,10 @@ def _as_dynamics_errors(name: str, value: Any) -> DynamicsErrors | None:
     return value if known else DynamicsErrors.from_dict(value)
 
 
+def _as_driver(name: str, value: Any) -> Driver | None:
+    return value if value is None or isinstance(value, Driver) else Driver.from_dict(value)
+
+
 def _as_yes_or_no(name: str, value: Any) -> bool:
     if not isinstance(value, bool):
         raise InputError(f"{name} is {value!r}; give true or false")
@@ -314,6 +325,7 @@ _CHECKS: dict[str, Callable[[str, Any], Any]] = {
     "delay_interval": as_finite_pair_or_none,
     "smallest_swing": as_finite_or_none,
     "dynamics_errors": _as_dynamics_errors,
+    "driver": _as_driver,
     "is_inverse": _as_yes_or_no,
 }
 _ANY_DELAY = 3  # the version from which on a delay may be a fraction or negative

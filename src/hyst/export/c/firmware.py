@@ -9,20 +9,25 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, final
 
+from numpy.typing import ArrayLike
+
 from hyst import __version__
-from hyst.export.c.any_estimator import any_estimator_block
-from hyst.export.c.block import Block, Model, block_of, described, refuse_unfit
+from hyst.control.drive_limits import Limits
+from hyst.export.c.any_block import any_block
+from hyst.export.c.block import Block, Model, described, refuse_unfit
 from hyst.export.c.c_sources import WORD_BYTES, header, places, selftest_source, source, vectors
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.drive import SAMPLES
+from hyst.export.c.drive_options import AUTO, DriveOptions
+from hyst.export.c.drive_range import DriveRange
 from hyst.export.c.flat import flattened
 from hyst.export.c.names import as_c_name
 from hyst.export.c.numbers import Precision, as_precision
 from hyst.export.c.readme import readme
 from hyst.export.c.selftest import SelfTest
+from hyst.export.c.short_test import short_test_source
 from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, MANIFEST, write_export
-from hyst.online import JointEstimator, ScaleEstimator
 from hyst.operators import ModelDescription
 
 
@@ -49,6 +54,12 @@ class CProject:
         Of a saved state.
     away_from_double
         Largest difference of the self-test's outputs from those in double: 0 in double.
+    drive
+        Limits of the drive, and where they come from.
+    history
+        The drives it starts after.
+    has_start
+        Whether ``NAME_init_after`` starts it after others.
     """
 
     path: Path
@@ -59,6 +70,9 @@ class CProject:
     state_bytes: int
     saved_bytes: int
     away_from_double: float
+    drive: DriveRange
+    history: tuple[float, ...]
+    has_start: bool
 
 
 def c_project(
@@ -71,6 +85,9 @@ def c_project(
     description: ModelDescription | None = None,
     despite_verdict: bool = False,
     flat: bool = False,
+    limits: Limits | str | None = AUTO,
+    rate_limit: float | None = None,
+    history: ArrayLike | None = None,
 ) -> CProject:
     """Write a model as C99 for firmware, with the core's sources it needs and a self-test.
 
@@ -96,6 +113,15 @@ def c_project(
     flat
         Whether all code lies in one folder and needs no path of includes, as an Arduino library
         does; the self-test is then in a folder of its own.
+    limits
+        Of the drive, the output of an inverse or the input of a model: ``"auto"`` for its range in
+        the record, None or ``"none"`` for none, or lowest and highest. Where it is held at them,
+        the memory follows what the actuator really does; see ``hyst.control.LimitedDrive``.
+    rate_limit
+        The most the drive moves in a second; any if left out.
+    history
+        What drove the actuator before, in time order, where the start shall be after it: where the
+        drive turned is enough, unless time counts.
 
     Returns
     -------
@@ -104,8 +130,11 @@ def c_project(
     Raises
     ------
     InputError
-        If the model, the name or the precision cannot be used, the path exists, or the verdict on
-        the model is ``unfit``.
+        If the model, the name or the precision cannot be used, the path exists, the verdict on the
+        model is ``unfit``, the limits are upside down or not for this model, or the history is
+        beyond them.
+    NotInvertibleError
+        If the output of the model in front of an inverse turns back within the limits.
 
     Examples
     --------
@@ -120,10 +149,8 @@ def c_project(
     as_c_name(name)
     refuse_unfit(model, description, despite_verdict)
     exact = as_precision(precision)
-    if isinstance(model, JointEstimator | ScaleEstimator):
-        block = any_estimator_block(model, exact)
-    else:
-        block = block_of(model, exact)
+    options = DriveOptions(limits, rate_limit, history)
+    block = any_block(model, exact, options, description)
     about = described(model, description)
     test = SelfTest.of(block, exact, about)
     files = project_files(block, test, name, exact, about, flat)
@@ -138,6 +165,9 @@ def c_project(
         state_bytes=WORD_BYTES[exact] * (length + 1) + 8,
         saved_bytes=WORD_BYTES[exact] * (length + 1) + 12,
         away_from_double=test.away_from_double,
+        drive=block.drive,
+        history=block.history,
+        has_start=block.following is not None,
     )
 
 
@@ -174,7 +204,8 @@ def project_files(
     common = places(block, name, precision, about)
     head, main = header(block, common), source(block, common, precision)
     core = {f"core/{path}": text for path, text in core_files(main + head).items()}
-    sources = [f"{name}.c", *(path for path in core if path.endswith(".c"))]
+    own = [f"{name}.c", f"{name}_step_response.c"]
+    sources = [*own, *(path for path in core if path.endswith(".c"))]
     cmake = {
         "sources": "\n".join(f"  {each}" for each in sources),
         "definitions": f"target_compile_definitions({name} PUBLIC HYST_SINGLE)\n"
@@ -184,15 +215,41 @@ def project_files(
     texts = {
         f"{name}.h": head,
         f"{name}.c": main,
+        f"{name}_step_response.c": short_test_source(block, test, common, precision),
         "selftest.c": selftest_source(block, common),
         "selftest_vectors.h": vectors(block, test, common, precision),
         "CMakeLists.txt": filled("CMakeLists.txt", common | cmake),
         "LICENSE": filled("LICENSE", {}),
-        "README.md": readme(block, common, about, test, len(sources) > 1),
+        "README.md": readme(
+            block,
+            common,
+            about,
+            test,
+            _commands(common, sources, flat),
+            any(path.endswith("power.h") for path in core),
+        ),
     }
     files = {path: text.encode("ascii") for path, text in texts.items()} | core
     files = flattened(files, name) if flat else files
     return files | {MANIFEST: _manifest(block, name, precision, files, test)}
+
+
+def _commands(common: dict[str, str], sources: list[str], flat: bool) -> dict[str, str]:
+    """Give what the README tells of compiling: options and files, and what goes elsewhere."""
+    name, define = common["name"], common["define"]
+    if flat:
+        return {
+            "build_test": f"{define}*.c selftest/*.c",
+            "build_example": f"{define}*.c",
+            "own_files": "The `.c` and `.h` files of this folder are all it takes",
+        }
+    own, core = f"{name}.c {name}_step_response.c", " core/src/*.c" if len(sources) > 2 else ""
+    paths = f"{define}-I. -Icore/include "
+    return {
+        "build_test": f"{paths}selftest.c {own}{core}",
+        "build_example": f"{paths}example.c {own}{core}",
+        "own_files": f"`{name}.c`, `{name}.h` and `core/` are all it takes",
+    }
 
 
 def _manifest(
@@ -206,6 +263,8 @@ def _manifest(
         "name": name,
         "precision": precision,
         "model": {"kind": block.kind, "sha256": block.sha256()},
+        "drive": block.drive.told(),
+        "history": list(block.history),
         "selftest": {"samples": SAMPLES, "away_from_double": test.away_from_double},
         "files": {path: hashlib.sha256(files[path]).hexdigest() for path in sorted(files)},
     }

@@ -54,12 +54,6 @@ def flattened(files: dict[str, bytes], name: str) -> dict[str, bytes]:
 
 # What the texts of a project say of its folders, and what is true of a flat one.
 _TEXTS = {
-    "README.md": (
-        ("-I. -Icore/include *.c core/src/*.c", "*.c selftest/*.c"),
-        ("-I. -Icore/include *.c", "*.c selftest/*.c"),
-        ("-o selftest && ./selftest", "-o {name}_selftest && ./{name}_selftest"),
-        ("`{name}.c`, `{name}.h` and `core/`", "the `.c` and `.h` files of this folder"),
-    ),
     "CMakeLists.txt": (
         ("${{CMAKE_CURRENT_SOURCE_DIR}}/core/include", "${{CMAKE_CURRENT_SOURCE_DIR}}/selftest"),
         ("{name}_selftest selftest.c", "{name}_selftest selftest/selftest.c"),

@@ -3,8 +3,17 @@
 from __future__ import annotations
 
 from hyst.export.c.block import Block
+from hyst.export.c.example import example_of
 from hyst.export.c.names import plain_text
+from hyst.export.c.readme_rows import (
+    error_rows,
+    lag_row,
+    provenance_row,
+    signal_rows,
+    verdict_row,
+)
 from hyst.export.c.selftest import SelfTest
+from hyst.export.c.short_test import short_test_bytes
 from hyst.export.c.templating import filled
 from hyst.operators import ModelDescription
 
@@ -14,7 +23,8 @@ def readme(
     places: dict[str, str],
     about: ModelDescription,
     test: SelfTest,
-    has_core: bool,
+    commands: dict[str, str],
+    takes_power: bool,
 ) -> str:
     """Give the README.
 
@@ -28,96 +38,77 @@ def readme(
         What the numbers mean.
     test
         The self-test.
-    has_core
-        Whether there are sources of the core.
+    commands
+        How the layout is compiled: ``build_test`` and ``build_example``, options and files after
+        the compiler; ``own_files``, what goes into another project.
+    takes_power
+        Whether the sources of the core take powers, which may be another's.
 
     Returns
     -------
     str
     """
-    length = max(len(block.start), 1)
-    word = int(places["word_bytes"])
-    rows = {
-        "model": plain_text(block.kind),
-        "precision": places["precision"],
-        "state": f"{word * (length + 1) + 8} bytes, {len(block.start)} numbers of memory",
-        "saved state": f"{places['saved_bytes']} bytes",
-        "sample time": "any" if block.dt is None else f"{block.dt!r} s, and no other",
-    }
-    if places["precision"] == "single":
+    precision = places["precision"]
+    example = example_of(block, places["name"], precision, about, test)
+    rows = signal_rows(block, about, example.variable)
+    rows |= {"sample time": "any" if block.dt is None else f"{block.dt!r} s, and no other"}
+    if precision == "single":
         rows["away from double"] = (
             f"at most {test.away_from_double:.3g} over the self-test, whose input goes "
             f"from {test.drive.low * test.drive.unit:.6g} to {test.drive.high:.6g}"
         )
-    rows |= {signal: _signal(*meant) for signal, meant in signals(block, about).items()}
-    rows |= verdict_row(about) | lag_row(about)
+    rows |= error_rows(about) | verdict_row(about, all_levels=True) | lag_row(about)
+    rows |= provenance_row(about) | _size_rows(block, places)
     more = {
         "rows": "\n".join(f"| {key} | {value} |" for key, value in rows.items()),
-        "usage": _ESTIMATOR_USAGE if block.is_estimator else _USAGE,
-        "faults": _ESTIMATOR_FAULTS
-        if block.is_estimator
-        else _FAULTS
+        "program": example.program,
+        "start_section": "",
+        "power_section": _power_section(places["core_prefix"]) if takes_power else "",
+        "faults": _faults(block),
+        "in_precision": " in single precision" if precision == "single" else "",
+        "test_bytes": str(short_test_bytes(block, precision)),
+    }
+    for key in ("name", "NAME"):
+        more["faults"] = more["faults"].replace(f"@{{{key}}}", places[key])
+    return filled("README.md", places | commands | more)
+
+
+def _size_rows(block: Block, places: dict[str, str]) -> dict[str, str]:
+    length = max(len(block.start), 1)
+    size = int(places["word_bytes"]) * (length + 1) + 8
+    return {
+        "model": f"{plain_text(block.kind)}, SHA-256 {block.sha256()[:16]}...",
+        "precision": places["precision"],
+        "state": f"{size} bytes, {len(block.start)} numbers of memory",
+        "saved state": f"{places['saved_bytes']} bytes",
+    }
+
+
+def _power_section(prefix: str) -> str:
+    """Give what is told of powers, whose function in the core starts with ``prefix``."""
+    return _POWER.replace("@{prefix}", prefix).replace("@{PREFIX}", prefix.upper())
+
+
+def _faults(block: Block) -> str:
+    if block.is_estimator:
+        return _ESTIMATOR_FAULTS
+    return (
+        _FAULTS
         + (_SCHEDULE_FAULTS if block.second else "")
         + (_LIMIT_FAULTS if block.limits is not None else "")
         + (_REPETITIVE if block.forgets else "")
-        + (_CHANGED if "REFERENCE_CHANGED" in block.tells else ""),
-        "in_precision": " in single precision" if places["precision"] == "single" else "",
-        "elements": ", ".join(block.inputs),
-    }
-    for part in ("usage", "faults"):
-        for key in ("name", "NAME", "output", "elements"):
-            more[part] = more[part].replace(f"@{{{key}}}", (places | more)[key])
-    text = filled("README.md", places | more)
-    return text if has_core else text.replace(" core/src/*.c", "")
+        + (_CHANGED if "REFERENCE_CHANGED" in block.tells else "")
+    )
 
 
-def signals(block: Block, about: ModelDescription) -> dict[str, tuple[str, str]]:
-    """Give name and unit of the signals of a ``block`` by what C calls them, if ``about`` tells."""
-    named = (about.input_name, about.input_unit), (about.output_name, about.output_unit)
-    if block.is_estimator:
-        return dict(zip(block.inputs, named, strict=True))
-    if len(block.inputs) == 1:
-        return dict(zip((block.inputs[0], block.output), named, strict=True))
-    if block.second:
-        meant = (named[0], block.second_meaning, named[1])
-        return dict(zip((*block.inputs, block.output), meant, strict=True))
-    return {}
+_POWER = """
+## A power function of your own
 
-
-def verdict_row(about: ModelDescription) -> dict[str, str]:
-    """Give the row of a table that says that no command should come from what ``about`` tells of.
-
-    Parameters
-    ----------
-    about
-        Of the model.
-    """
-    if about.verdict is None or not about.is_unfit:
-        return {}
-    return {"verdict": f"{about.verdict.level}: {plain_text(about.verdict.sentences[0])}"}
-
-
-def lag_row(about: ModelDescription) -> dict[str, str]:
-    """Give the row of a table that says what lag ``about`` tells of, which no code contains."""
-    if about.delay == 0:
-        return {}
-    time = "" if about.dt is None else f" of {about.dt!r} s"
-    if about.delay < 0:
-        ahead = f"the recorded output was {-about.delay} sample(s){time} ahead of the input, which"
-        return {"lag": f"{ahead} no actuator is: its channels were not aligned"}
-    low, _ = about.delay_interval or (about.delay, about.delay)
-    if low <= 0.0:
-        return {}  # the records would bear none
-    return {"lag": f"the recorded output lagged {about.delay} sample(s){time}; this code does not"}
-
-
-def _signal(name: str, unit: str) -> str:
-    return f"{plain_text(name)} in {plain_text(unit)}" if unit else plain_text(name)
-
-
-_USAGE = """\
-    @{output} = @{name}_step(&state, @{elements});    /* every sample */
-    if (@{name}_fault(&state)) { ... }                /* since when a sample was not finite */
+The step takes powers, in plain arithmetic that gives the same bits everywhere. If your target has a
+better function, compile every file with `-D@{PREFIX}POWER_HEADER='"my_power.h"'`. That header
+defines, for this precision and as `static inline`, `@{prefix}power(x, e)` for x >= 0,
+`@{prefix}log2(x)` for x > 0, and `@{prefix}exp2(v)`. The bits are then no longer those of Python:
+both self-tests say so, and the difference that the first one prints is yours to judge.
 """
 _FAULTS = """\
 A sample that is NaN or infinite, or that overflows inside, is answered with the last output; the
@@ -142,11 +133,6 @@ reference; what is known of the actuator's memory stays.
 _CHANGED = """\
 Where the reference is another one than a period before, the block forgets by itself, and
 `@{name}_fault` gives `@{NAME}_REFERENCE_CHANGED` too.
-"""
-_ESTIMATOR_USAGE = """\
-    u = @{name}_command(&state, y_ref);               /* the input for the output that is wanted */
-    (void)@{name}_update(&state, u, y);               /* with the output that was measured then */
-    if (@{name}_fault(&state)) { ... }                /* since when a sample was not finite */
 """
 _ESTIMATOR_FAULTS = """\
 A sample that is NaN or infinite, or that would overflow, changes no parameter; `@{name}_fault`

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
 
 from hyst.errors import InputError
-from hyst.export.c.block import Model
+from hyst.export.c.block import Block, Model
 from hyst.export.c.c_sources import header, places, source, told
 from hyst.export.c.core_sources import core_files
+from hyst.export.c.core_stage import CoreStage
+from hyst.export.c.drive_options import DriveOptions
 from hyst.export.c.numbers import table
 from hyst.export.c.one_file import renamed, shared_names
 from hyst.export.c.stage_code import StageCode
@@ -19,6 +22,7 @@ from hyst.export.c.templating import filled, indented
 from hyst.export.fmi.description import FmiVersion
 from hyst.export.fmi.variables import (
     ParameterVariable,
+    Rule,
     constant_rules,
     direct_inputs,
     parameter_variables,
@@ -68,13 +72,19 @@ class FmuModel:
         return tuple(value for each in self.code.constants() for value in each.values)
 
 
-def fmu_model(model: Model) -> FmuModel:
+def fmu_model(
+    model: Model, options: DriveOptions, description: ModelDescription | None = None
+) -> FmuModel:
     """Give a model as an FMU runs it.
 
     Parameters
     ----------
     model
         What ``c_project`` takes.
+    options
+        What it is told of the drive.
+    description
+        As given to the export; None for that of the model.
 
     Returns
     -------
@@ -90,10 +100,12 @@ def fmu_model(model: Model) -> FmuModel:
             "a scheduled model is no FMU yet: its constants follow a second input, where an FMU "
             "offers them as parameters; export it as C or MEX, or the model at(value) as an FMU"
         )
-    tool = tool_block(model)
-    block = tool.block
+    tool = tool_block(model, options, description)
+    # It starts as it was exported: whoever runs it sets no memory.
+    block = replace(tool.block, following=None, before=None)
+    tool = replace(tool, block=block)
     fixed = StageCode(block.stages, "double").calls(block.signal)
-    code = StageCode(block.stages, "double", _HELD_BY)
+    code = StageCode(_offered(block), "double", _HELD_BY)
     if block.is_estimator:
         return FmuModel(tool, code)
     body = (
@@ -102,6 +114,36 @@ def fmu_model(model: Model) -> FmuModel:
         else block.written(code)
     )
     return FmuModel(replace(tool, block=replace(block, head="", body=body)), code)
+
+
+def _offered(block: Block) -> tuple[CoreStage, ...]:
+    """Give the stages with those constants as parameters that may change one by one.
+
+    A memory after a history belongs to constants, and so does a model kept beside its inverse.
+    """
+    stages = tuple(_without_reach(each) for each in block.stages)
+    is_kept = any(each.choices.get("forward", 0) and "way" in each.choices for each in stages)
+    if is_kept:
+        return tuple(_held(each, {Rule.FIXED, Rule.THRESHOLD, Rule.TUNABLE}) for each in stages)
+    if block.history:
+        return tuple(_held(each, {Rule.FIXED, Rule.THRESHOLD}) for each in stages)
+    return stages
+
+
+def _held(stage: CoreStage, rules: set[Rule]) -> CoreStage:
+    offers = {
+        name: (Rule.CONSTANT.value if Rule(rule) in rules else rule, meaning)
+        for name, (rule, meaning) in stage.offers.items()
+    }
+    return replace(stage, offers=offers)
+
+
+def _without_reach(stage: CoreStage) -> CoreStage:
+    """Give limits of a bank that hold whatever its parameters are."""
+    if "v_low" not in stage.numbers:
+        return stage
+    most = sys.float_info.max
+    return replace(stage, numbers={**stage.numbers, "v_low": -most, "v_high": most})
 
 
 def fmu_sources(

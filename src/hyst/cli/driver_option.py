@@ -1,0 +1,116 @@
+"""The option --driver: the table of a converter that is commanded in codes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import hyst
+
+_HOW = "FILE|linear:VOLTS_PER_CODE,OFFSET,LOW,HIGH"
+_LINEAR = "linear:"
+
+DriverOfInput = Annotated[
+    str | None,
+    typer.Option(
+        "--driver",
+        metavar=_HOW,
+        show_default=False,
+        help="The input is in codes: its driver's table (columns code and volt), or scale, volts "
+        "of code 0, lowest and highest code.",
+    ),
+]
+DriverOfCommand = Annotated[
+    str | None,
+    typer.Option(
+        "--driver",
+        metavar=_HOW,
+        show_default="that of the model file, if it has one",
+        help="Give the command in codes too: the driver's table (columns code and volt), or scale, "
+        "volts of code 0, lowest and highest code.",
+    ),
+]
+
+
+def driver_of(text: str | None) -> hyst.Driver | None:
+    """Read a driver as it was typed.
+
+    Parameters
+    ----------
+    text
+        A file, or ``linear:`` and four numbers with commas between them; None for no driver.
+
+    Raises
+    ------
+    InputError
+        If it is neither, or no driver has such a table.
+    """
+    if text is None:
+        return None
+    if not text.startswith(_LINEAR):
+        return hyst.io.read_driver(Path(text))
+    given = text.removeprefix(_LINEAR).split(",")
+    try:
+        scale, offset = (float(each) for each in given[:2])
+        low, high = (int(each) for each in given[2:])
+    except ValueError:
+        raise hyst.InputError(
+            f"--driver is {text!r}; give a file, or linear: with volts a code, volts of code 0, "
+            "lowest and highest code, as linear:0.0366,0,0,4095"
+        ) from None
+    return hyst.Driver.linear(scale, offset, low, high)
+
+
+def driver_for(text: str | None, about: hyst.ModelDescription) -> hyst.Driver | None:
+    """Give the driver that was typed, or else that of the model.
+
+    Parameters
+    ----------
+    text
+        As typed.
+    about
+        Of the model, whose input the driver gives.
+
+    Raises
+    ------
+    InputError
+        As ``driver_of``, or if the driver gives another unit than the model takes.
+    """
+    driver = driver_of(text) or about.driver
+    if driver is not None and hyst.signals.units_differ(driver.unit, about.input_unit):
+        if text is not None and text.startswith(_LINEAR):  # says no unit
+            return replace(driver, unit=about.input_unit)
+        raise hyst.InputError(
+            f"the driver gives {driver.unit!r} but the model takes {about.input_unit!r}; hyst "
+            "converts no units, so convert the table, or correct its header"
+        )
+    return driver
+
+
+def range_of_codes(
+    input_range: tuple[float, float] | None, driver: hyst.Driver | None
+) -> tuple[float, float] | None:
+    """Give the range that a command may have: of its limits what a driver's codes reach.
+
+    Parameters
+    ----------
+    input_range
+        The limits; None for none.
+    driver
+        None for a drive that takes any volts.
+
+    Raises
+    ------
+    InputError
+        If no code is within the limits.
+    """
+    if driver is None:
+        return input_range
+    low, high = driver.volt_range
+    if input_range is None:
+        return low, high
+    driver.codes_within(*input_range)
+    return max(low, input_range[0]), min(high, input_range[1])
