@@ -234,7 +234,7 @@ def bank_limits_stage(limits: dict[str, float | int]) -> CoreStage:
     """
     choices = {name: int(value) for name, value in limits.items() if name.startswith("moved")}
     ends = ", ".join(
-        f"{{$moved_{end}u, $slope_{end}, $constant_{end}, $from_{end}, $least_{end}}}"
+        f"{{#moved_{end}, $slope_{end}, $constant_{end}, $from_{end}, $least_{end}}}"
         for end in ("low", "high")
     )
     return _as_stage(
