@@ -28,7 +28,7 @@ static int bank_held(const hyst_pi *bank, hyst_real *z, hyst_real side, hyst_rea
     const size_t count = bank->count;
     hyst_real way = side;
     size_t moved = known->moved;
-    hyst_real slope = known->slope;
+    hyst_real slope = moved > 0u ? known->slope : bank->p0;
     hyst_real rest = drive - known->constant - bank_resting(bank, z, moved);
     hyst_real end = rest / slope;
     if (moved > 0u && way * (end - z[moved - 1u]) < known->least) {
@@ -58,30 +58,23 @@ hyst_real hyst_limited_bank_step(const hyst_pi *bank, const hyst_bank_limits *li
                                  hyst_real *state, int *held, hyst_real v)
 {
     hyst_real *const last = state + bank->count;
-    hyst_real drive = limits->high;
-    hyst_real side = HYST_REAL(1.0);
-    const hyst_bank_end *end = &limits->up;
-    int is_held = 0;
-    if (!(v > end->from)) {
-        drive = limits->low;
-        side = -side;
-        end = &limits->down;
-    }
-    if (side * v > side * end->from) {
-        is_held = bank_held(bank, state, side, drive, end, v);
-    }
-    if (is_held == 0) {
-        const hyst_real u = hyst_pi_step(bank, state, v);
-        drive = u;
-        if (!(u >= limits->low && u <= limits->high)) {
-            /* Beyond by rounding; or nothing that is a number, which the last drive answers. */
-            drive = u > limits->high ? limits->high : *last;
-            drive = u < limits->low ? limits->low : drive;
-            is_held = 1;
-        }
-    }
-    if (is_held != 0) {
+    hyst_real drive;
+    if (v > limits->up.from &&
+        bank_held(bank, state, HYST_REAL(1.0), limits->high, &limits->up, v) != 0) {
+        drive = limits->high;
         *held = 1;
+    } else if (v < limits->down.from &&
+               bank_held(bank, state, -HYST_REAL(1.0), limits->low, &limits->down, v) != 0) {
+        drive = limits->low;
+        *held = 1;
+    } else {
+        drive = hyst_pi_step(bank, state, v);
+        if (!(drive >= limits->low && drive <= limits->high)) {
+            /* Beyond by rounding; or nothing that is a number, which the last drive answers. */
+            const hyst_real not_above = drive > limits->high ? limits->high : *last;
+            drive = drive < limits->low ? limits->low : not_above;
+            *held = 1;
+        }
     }
     *last = drive;
     return drive;

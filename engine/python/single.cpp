@@ -63,7 +63,7 @@ public:
                 limited_.inverse.limits = {limits.number("low"), limits.number("high"),
                                            limits.number("change")};
                 forward = limits.choice("forward");
-                is_model_ = limits.has_choice("model") && limits.choice("model") != 0;
+                is_model_ = limits.has_choice("way") && limits.choice("way") == 0;
                 length += 1;
                 is_limited_ = true;
             } else if (name == "bank_limits") {

@@ -24,14 +24,14 @@ extern "C" {
  * they do not, it takes longer; and `from` holds for all memories. */
 typedef struct {
     size_t moved;       /* how many they are, the narrowest ones; */
-    hyst_real slope;    /* p0 + the sum of their p; */
+    hyst_real slope;    /* p0 + the sum of their p; without any, that of the bank counts; */
     hyst_real constant; /* the sum of their p r, taken negative on the way up; */
     hyst_real from;     /* the end can be met by v beyond this one only; */
     hyst_real least;    /* the radius of the widest of them, less what rounding may take from it */
 } hyst_bank_end;
 
 typedef struct {
-    hyst_real low, high; /* low < high, and down.from < up.from */
+    hyst_real low, high; /* low < high */
     hyst_bank_end down, up;
 } hyst_bank_limits;
 

@@ -141,11 +141,7 @@ class LimitedDrive(InModelFile):
             return None
         chain = _engine.Chain(self.operator.stages())
         stages = [chain.constants(i) for i in range(len(chain))]
-        bank = bank_of(stages, self.operator.initial_state(), dtype)
-        low, high = self.limits
-        # The core looks at one end at a time: limits narrower than the loop need the model.
-        apart = bank is not None and bank.end(low, -1).start < bank.end(high, 1).start
-        return bank if apart else None
+        return bank_of(stages, self.operator.initial_state(), dtype)
 
     def bank_limits(
         self, low: float, high: float, dtype: Any = np.float64

@@ -92,12 +92,12 @@ def _parts(
     """Give the stages in the order of their memory, and what writes the step with them."""
     own = core_stages(model.operator)
     if model.drive == "input":
-        told = limits_stage(limits, {"forward": 0, "model": 1})
+        told = limits_stage(limits, {"forward": 0, "way": 0})
         return (*own, told), _model_body
     if model.bank is not None:
-        numbers = np.float64 if precision == "double" else np.float32
-        told = bank_limits_stage(model.bank_limits(*limits[:2], numbers))
-        return (*own, told), _bank_body
+        dtype = np.float32 if precision == "single" else np.float64
+        told = model.bank_limits(limits[0], limits[1], dtype)
+        return (*own, bank_limits_stage(told)), _bank_body
     forward = () if model.forward is None else core_stages(model.forward)
     held = LimitedStages(None, own, forward, limits, ())
     return held.all, held.body

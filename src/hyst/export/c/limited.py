@@ -215,42 +215,9 @@ def limits_stage(limits: tuple[float, float, float], choices: dict[str, int]) ->
     choices
         What the twin in single precision is told beside them.
     """
-    return _as_stage(
-        "drive_limits",
-        dict(zip(("low", "high", "change"), limits, strict=True)),
-        choices,
-        "hyst_drive_limits $model = {$low, $high, $change};",
-        "$signal = hyst_limited_drive(&$model, $memory, $signal);",
-    )
-
-
-def bank_limits_stage(limits: dict[str, float | int]) -> CoreStage:
-    """Give the limits of a bank of plays at the end of an inverse as a stage.
-
-    Parameters
-    ----------
-    limits
-        As ``LimitedDrive.bank_limits`` gives them.
-    """
-    choices = {name: int(value) for name, value in limits.items() if name.startswith("moved")}
-    ends = ", ".join(
-        f"{{#moved_{end}, $slope_{end}, $constant_{end}, $from_{end}, $least_{end}}}"
-        for end in ("low", "high")
-    )
-    return _as_stage(
-        "bank_limits",
-        {name: float(value) for name, value in limits.items() if name not in choices},
-        choices,
-        f"hyst_bank_limits $model = {{$low, $high, {ends}}};",
-        "",
-    )
-
-
-def _as_stage(
-    kind: str, numbers: dict[str, float], choices: dict[str, int], structure: str, call: str
-) -> CoreStage:
+    numbers = dict(zip(("low", "high", "change"), limits, strict=True))
     return CoreStage(
-        kind=kind,
+        kind="drive_limits",
         numbers=numbers,
         tables={},
         choices=choices,
@@ -258,9 +225,37 @@ def _as_stage(
         state_length=1,
         offers=dict.fromkeys(numbers, (0, "")),
         feeds_through=True,
-        header="hyst/drive_limits.h" if kind == "drive_limits" else "hyst/limited_bank.h",
-        structure=structure,
-        call=call,
+        header="hyst/drive_limits.h",
+        structure="hyst_drive_limits $model = {$low, $high, $change};",
+        call="$signal = hyst_limited_drive(&$model, $memory, $signal);",
+    )
+
+
+def bank_limits_stage(told: dict[str, float | int]) -> CoreStage:
+    """Give the limits of a bank of plays at the end of an inverse as a stage.
+
+    Parameters
+    ----------
+    told
+        As ``LimitedDrive.bank_limits`` gives them.
+    """
+    choices = {name: int(told[name]) for name in ("moved_low", "moved_high")}
+    numbers = {name: float(value) for name, value in told.items() if name not in choices}
+    low, high = (
+        f"{{#moved_{k}, $slope_{k}, $constant_{k}, $from_{k}, $least_{k}}}" for k in ("low", "high")
+    )
+    return CoreStage(
+        kind="bank_limits",
+        numbers=numbers,
+        tables={},
+        choices=choices,
+        form="",
+        state_length=1,
+        offers=dict.fromkeys(numbers, (0, "")),
+        feeds_through=True,
+        header="hyst/limited_bank.h",
+        structure=f"hyst_bank_limits $model = {{$low, $high, {low}, {high}}};",
+        call="",
     )
 
 
