@@ -16,9 +16,13 @@ KEYWORDS = frozenset(_WORDS.split()) | _NEVER_RAW
 
 # Crates that the compiler brings, and names every module sees or the crate uses itself.
 _CRATES = frozenset(["alloc", "core", "proc_macro", "std", "test"])
-_TAKEN_TYPES = frozenset(
-    ["AsMut", "AsRef", "BadHistory", "BadState", "Box", "Cell", "Clone", "Copy", "Debug", "Default", "DoubleEndedIterator", "Drop", "Eq", "Err", "ExactSizeIterator", "Extend", "Fn", "FnMut", "FnOnce", "From", "FromIterator", "Into", "IntoIterator", "Iterator", "None", "Ok", "Option", "Ord", "PartialEq", "PartialOrd", "Result", "Self", "Send", "Sized", "Some", "String", "Sync", "ToOwned", "ToString", "TryFrom", "TryInto", "Unpin", "Vec"]
-)
+_TYPES = """
+    AsMut AsRef BadHistory BadState Box Cell Clone Copy Debug Default DoubleEndedIterator
+    Drop Eq Err ExactSizeIterator Extend Fn FnMut FnOnce From FromIterator Into
+    IntoIterator Iterator None Ok Option Ord PartialEq PartialOrd Real Result Self Send
+    Sized Some String Sync ToOwned ToString TryFrom TryInto Unpin Vec
+"""
+_TAKEN_TYPES = frozenset(_TYPES.split())
 
 
 def rust_name(name: str) -> str:
@@ -55,8 +59,8 @@ def refuse_for_rust(name: str) -> None:
     Raises
     ------
     InputError
-        If it is a word of Rust, the name of a crate of the compiler, or its type would hide one that
-        every module sees.
+        If it is a word of Rust, the name of a crate of the compiler, or its type would hide one
+        that every module sees.
     """
     reason = ""
     if name in KEYWORDS or name.lower() in KEYWORDS:

@@ -27,7 +27,7 @@ from hyst.export.translate.program import (
 )
 from hyst.export.translate.refusal import refused
 
-_RANK = [INT, UNSIGNED, SIZE, WIDE, FLOAT, DOUBLE]
+_RANK: list[CType] = [INT, UNSIGNED, SIZE, WIDE, FLOAT, DOUBLE]
 _MOST = {"int32": 2**31 - 1, "uint32": 2**32 - 1, "size": 2**32 - 1, "uint64": 2**64 - 1}
 
 
@@ -36,14 +36,13 @@ def promoted(value: Expression) -> Expression:
     return converted(value, INT) if value.type == BYTE else value
 
 
-def common(left: Expression, right: Expression) -> tuple[Expression, Expression, Scalar]:
+def common(left: Expression, right: Expression) -> tuple[Expression, Expression, CType]:
     """Give two numbers in the type that C computes with them in."""
     left, right = promoted(left), promoted(right)
-    for each in (left, right):
-        if each.type not in _RANK:
-            raise refused("arithmetic with something that is no number")
-    to = max((left.type, right.type), key=_RANK.index)
-    return converted(left, to), converted(right, to), to  # type: ignore[return-value]
+    if left.type not in _RANK or right.type not in _RANK:
+        raise refused("arithmetic with something that is no number")
+    to = _RANK[max(_RANK.index(left.type), _RANK.index(right.type))]
+    return converted(left, to), converted(right, to), to
 
 
 def converted(value: Expression, to: CType) -> Expression:
