@@ -19,6 +19,7 @@ def c(order: Order) -> Done:
         despite_verdict=order.despite_verdict,
         **order.drive,
         flat=order.flat,
+        driver=order.driver,
     )
     own = [each for each in project.files if "/" not in each and not each.startswith("hyst_")]
     folder, there = into_folder(order)
@@ -30,6 +31,7 @@ def c(order: Order) -> Done:
         ("state", f"{project.state_bytes} bytes, {project.state_length} numbers of memory"),
         ("saved state", f"{project.saved_bytes} bytes"),
         *drive_rows(project.drive, project.history, start),
+        *([("codes", project.codes)] if project.codes else []),
     )
     return Done(
         rows,

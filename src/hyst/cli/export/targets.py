@@ -21,7 +21,7 @@ class Target:
 
 
 TARGETS = {
-    "c": Target(c, "for firmware", ("precision", "flat")),
+    "c": Target(c, "for firmware", ("precision", "flat", "driver")),
     "fmu": Target(fmu, "for simulation tools", ("fmi", "binary")),
     "mex": Target(mex, "for MATLAB and Octave"),
 }

@@ -20,6 +20,7 @@ from hyst.export.c.core_sources import core_files
 from hyst.export.c.drive import SAMPLES
 from hyst.export.c.drive_options import AUTO, DriveOptions
 from hyst.export.c.drive_range import DriveRange
+from hyst.export.c.driver_codes import driver_codes
 from hyst.export.c.flat import flattened
 from hyst.export.c.names import as_c_name
 from hyst.export.c.numbers import Precision, as_precision
@@ -28,7 +29,7 @@ from hyst.export.c.selftest import SelfTest
 from hyst.export.c.short_test import short_test_source
 from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, MANIFEST, write_export
-from hyst.operators import ModelDescription
+from hyst.operators import Driver, ModelDescription
 
 
 @final
@@ -60,6 +61,8 @@ class CProject:
         The drives it starts after.
     has_start
         Whether ``NAME_init_after`` starts it after others.
+    codes
+        What is to be told of the driver's codes; "" without a driver.
     """
 
     path: Path
@@ -73,6 +76,7 @@ class CProject:
     drive: DriveRange
     history: tuple[float, ...]
     has_start: bool
+    codes: str = ""
 
 
 def c_project(
@@ -88,6 +92,7 @@ def c_project(
     limits: Limits | str | None = AUTO,
     rate_limit: float | None = None,
     history: ArrayLike | None = None,
+    driver: Driver | str | None = AUTO,
 ) -> CProject:
     """Write a model as C99 for firmware, with the core's sources it needs and a self-test.
 
@@ -122,6 +127,9 @@ def c_project(
     history
         What drove the actuator before, in time order, where the start shall be after it: where the
         drive turned is enough, unless time counts.
+    driver
+        Table of the drive's converter: the step gives, or takes, its codes too, and the limits are
+        volts of codes. ``"auto"`` for that of the description, None or ``"none"`` for none.
 
     Returns
     -------
@@ -149,9 +157,10 @@ def c_project(
     as_c_name(name)
     refuse_unfit(model, description, despite_verdict)
     exact = as_precision(precision)
-    options = DriveOptions(limits, rate_limit, history)
-    block = any_block(model, exact, options, description)
     about = described(model, description)
+    codes = driver_codes(driver, about, exact)
+    options = DriveOptions(limits, rate_limit, history, codes)
+    block = any_block(model, exact, options, description)
     test = SelfTest.of(block, exact, about)
     files = project_files(block, test, name, exact, about, flat)
     length = max(len(block.start), 1)
@@ -168,6 +177,7 @@ def c_project(
         drive=block.drive,
         history=block.history,
         has_start=block.following is not None,
+        codes="" if block.codes is None else block.codes.row(),
     )
 
 
@@ -264,6 +274,7 @@ def _manifest(
         "precision": precision,
         "model": {"kind": block.kind, "sha256": block.sha256()},
         "drive": block.drive.told(),
+        **({} if block.codes is None else {"driver": block.codes.told()}),
         "history": list(block.history),
         "selftest": {"samples": SAMPLES, "away_from_double": test.away_from_double},
         "files": {path: hashlib.sha256(files[path]).hexdigest() for path in sorted(files)},
