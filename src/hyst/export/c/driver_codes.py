@@ -158,7 +158,7 @@ def with_codes(block: Block, codes: DriverCodes | None) -> Block:
 
 
 def declared(block: Block, name: str) -> str:
-    """Give what the header of an export called ``name`` says of codes."""
+    """Give what the header of an export of a ``block`` called ``name`` says of codes."""
     codes: DriverCodes | None = block.codes
     if codes is None:
         return ""
@@ -197,7 +197,7 @@ def tables(block: Block) -> str:
 
 
 def defined(block: Block, name: str) -> str:
-    """Give the functions of codes of an export called ``name``."""
+    """Give the functions of codes of an export of a ``block`` called ``name``."""
     if block.codes is None:
         return ""
     arguments = ", ".join(block.inputs)
