@@ -33,6 +33,15 @@ DriverOfCommand = Annotated[
         "linear:VOLTS_PER_CODE,VOLTS_OF_0,LOW,HIGH.",
     ),
 ]
+DriverOfDrive = Annotated[
+    str,
+    typer.Option(
+        "--driver",
+        metavar=f"auto|none|{_HOW}",
+        help="Of C: step in codes too. auto: by the driver of the model file; or the driver's "
+        "table (columns code and volt), or linear:VOLTS_PER_CODE,VOLTS_OF_0,LOW,HIGH.",
+    ),
+]
 
 
 def driver_of(text: str | None) -> hyst.Driver | None:
@@ -88,6 +97,23 @@ def driver_for(text: str | None, about: hyst.ModelDescription) -> hyst.Driver | 
             "converts no units, so convert the table, or correct its header"
         )
     return driver
+
+
+def driver_or_word(text: str, about: hyst.ModelDescription) -> hyst.Driver | str:
+    """Give the driver that was typed for a model or an inverse, or the word auto or none.
+
+    Parameters
+    ----------
+    text
+        As typed.
+    about
+        Of what is exported.
+    """
+    driver = None if text in ("auto", "none") else driver_of(text)
+    if driver is None:
+        return text
+    unit = about.output_unit if about.is_inverse else about.input_unit
+    return replace(driver, unit=unit) if text.startswith(_LINEAR) else driver
 
 
 def range_of_codes(
