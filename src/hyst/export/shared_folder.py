@@ -92,6 +92,8 @@ class _Exports:
                 )
         for path, content in files.items():
             file = self.target / path
+            if os.path.lexists(file.parent) and not file.parent.is_dir():
+                raise InputError(f"{file.parent} is a file where a folder is needed; move it")
             if os.path.lexists(file) and not _holds(file, content):
                 self._refuse_unless_own(path)
 
