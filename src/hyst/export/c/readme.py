@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hyst.export.c.block import Block
+from hyst.export.c.driver_codes import words
 from hyst.export.c.example import example_of
 from hyst.export.c.names import plain_text
 from hyst.export.c.readme_rows import (
@@ -56,6 +57,8 @@ def readme(
             f"at most {test.away_from_double:.3g} over the self-test, whose input goes "
             f"from {test.drive.low * test.drive.unit:.6g} to {test.drive.high:.6g}"
         )
+    if block.codes is not None:
+        rows["codes"] = plain_text(block.codes.row())
     rows |= error_rows(about) | verdict_row(about, all_levels=True) | lag_row(about)
     rows |= provenance_row(about) | _size_rows(block, places)
     more = {
@@ -63,7 +66,7 @@ def readme(
         "program": example.program,
         "start_section": start_section(block, places["name"]),
         "power_section": _power_section(places["core_prefix"]) if takes_power else "",
-        "faults": _faults(block),
+        "faults": _faults(block) + words(block),
         "in_precision": " in single precision" if precision == "single" else "",
         "test_bytes": short_test_cost(block, places),
     }
