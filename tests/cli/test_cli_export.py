@@ -26,7 +26,7 @@ def test_writes_what_python_writes(run: Run, folder: Path, model_file: Path) -> 
     ended = run("export", model_file, "--inverse", "-o", "out", "--name", "lens")
     assert ended.code == 0
     assert "inverse of model.json as c: out" in ended.out
-    assert "48 bytes" in ended.out or "bytes, 2 numbers of memory" in ended.out
+    assert "bytes, 3 numbers of memory" in ended.out  # two plays and the last drive
     assert "next: cd out && cmake" in ended.out
     header = (folder / "out" / "lens.h").read_text()
     # Input and output have changed places with their names and units.

@@ -7,7 +7,7 @@ import hashlib
 import json
 import shutil
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -127,6 +127,14 @@ class Exported:
         state = self._new()
         self._function("init")(ctypes.byref(state))
         return state
+
+    def state_after(self, drives: Sequence[float] | np.ndarray) -> tuple[Any, int]:
+        """A state after a history of the drive, and what the call gave."""
+        state, count = self._new(), len(drives)
+        kept = np.ascontiguousarray(drives, dtype=np.float64)
+        start = self._function("init_after")
+        place = ctypes.c_void_p(kept.ctypes.data)
+        return state, int(start(ctypes.byref(state), place, ctypes.c_size_t(count)))
 
     def step(self, state: Any, *u: float) -> float:
         return float(self._function("step")(ctypes.byref(state), *u))

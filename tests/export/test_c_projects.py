@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -19,10 +20,11 @@ from c_builds import (
 )
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from limited_examples import history_of, limited_example, with_drive
 
 from hyst import InputError, Operator, PrandtlIshlinskii
 from hyst.control.tracking_controller import TrackingController
-from hyst.export import c_project
+from hyst.export import CProject, c_project
 from hyst.export.c.block import block_of, stepper_of
 from hyst.models import LinearDynamics
 from hyst.models.stable_inverse import StableInverse
@@ -38,26 +40,50 @@ SLOW = {"inverse ramberg-osgood": 20_000}
 def test_every_example_gives_the_bits_of_python(
     name: str, tmp_path: Path, objects: Objects
 ) -> None:
-    model = EXAMPLES[name]
-    project = c_project(model, tmp_path / "out")
+    """As it is by one compiler; by the other with limits and a start, where it can have them."""
+    model, drive = EXAMPLES[name], limited_example(name)
     u = wandering(SLOW.get(name, SAMPLES))
-    half = u.size // 3
-    in_python = model.stepper()
+    as_it_is = c_project(model, tmp_path / "out", limits=None)
+    assert compared(as_it_is, model.stepper(), u, objects, "gcc", AS_C) == 1
+    if drive is None:
+        assert compared(as_it_is, model.stepper(), u, objects, "clang++", AS_CXX) == 1
+        return
+    limited = c_project(model, tmp_path / "limited", **with_drive(name))
+    start = drive.state_after(history_of(drive))
+    # The drives were chosen so that it is beyond its limits now and then.
+    some = u[: u.size // 5]
+    found = compared(limited, drive.stepper(start), some, objects, "clang++", AS_CXX)
+    assert found == 1 | 16
+    code = Exported(limited.path / "libstage-clang++.so", start.size, limited.saved_bytes)
+    after, answer = code.state_after(history_of(drive))
+    assert answer == 0
+    assert same_bits(code.memory(after), start)
+
+
+def compared(
+    project: CProject,
+    in_python: Callable[..., float],
+    u: np.ndarray,
+    objects: Objects,
+    driver: str,
+    language: list[str],
+) -> int:
+    """Compare bits, with the state saved and loaded on the way, and give the fault."""
+    half, start = u.size // 3, np.array(in_python.state)  # type: ignore[attr-defined]
     y = stepped(in_python, u)
     assert np.isfinite(y).all()
-    for driver, language in (("gcc", AS_C), ("clang++", AS_CXX)):
-        library = build_library(project.path, objects, driver, language)
-        code = Exported(library, project.state_length, project.saved_bytes)
-        assert code.state_size == project.state_bytes
-        state = code.initial_state()
-        assert same_bits(code.memory(state), model.initial_state())
-        first = code.run(state, u[:half])
-        other = code.unset_state()
-        assert code.load(other, code.save(state)) == 0
-        second = code.run(other, u[half:])
-        assert same_bits(np.concatenate([first, second]), y)
-        assert same_bits(code.memory(other), np.asarray(in_python.state))
-        assert code.fault(other) == 1
+    library = build_library(project.path, objects, driver, language)
+    code = Exported(library, project.state_length, project.saved_bytes)
+    assert code.state_size == project.state_bytes
+    state = code.initial_state()
+    assert same_bits(code.memory(state), start)
+    first = code.run(state, u[:half])
+    other = code.unset_state()
+    assert code.load(other, code.save(state)) == 0
+    second = code.run(other, u[half:])
+    assert same_bits(np.concatenate([first, second]), y)
+    assert same_bits(code.memory(other), np.asarray(in_python.state))  # type: ignore[attr-defined]
+    return code.fault(other)
 
 
 @pytest.mark.parametrize("precision", ["double", "single"])
@@ -65,7 +91,9 @@ def test_every_example_gives_the_bits_of_python(
 def test_every_self_test_finds_no_difference(
     name: str, precision: str, tmp_path: Path, objects: Objects
 ) -> None:
-    project = c_project(EXAMPLES[name], tmp_path / "out", precision=precision)
+    # In single with limits and a start; what an example without them runs is part of that.
+    told = with_drive(name) if precision == "single" else {"limits": None}
+    project = c_project(EXAMPLES[name], tmp_path / "out", precision=precision, **told)
     finished = run_selftest(project.path, objects)
     assert finished.stdout == "10000 samples, max difference 0\n"
     assert finished.returncode == 0

@@ -26,6 +26,7 @@ from hyst.export.c.one_file import in_one_file
 from hyst.export.c.readme_rows import lag_row, verdict_row
 from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, MANIFEST, write_export
+from hyst.export.mex_start import start_texts
 from hyst.export.tool_block import ToolBlock, tool_block
 from hyst.operators import ModelDescription
 
@@ -186,6 +187,7 @@ def mex_files(tool: ToolBlock, name: str, about: ModelDescription) -> dict[str, 
         if tool.estimates
         else "is answered with the last output, leaves the memory as it is",
         **(_estimates(tool, name) if tool.estimates else _limited(block, name)),
+        **start_texts(block, name),
         "bad": bad_samples(block, name, "state"),
         "bad_here": bad_samples(block, name, "&state"),
         "license": _commented(_LICENSE.read_text(encoding="utf-8"), " *"),

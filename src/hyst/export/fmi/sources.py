@@ -139,10 +139,11 @@ def _held(stage: CoreStage, rules: set[Rule]) -> CoreStage:
 
 def _without_reach(stage: CoreStage) -> CoreStage:
     """Give limits of a bank that hold whatever its parameters are."""
-    if "v_low" not in stage.numbers:
+    if stage.kind != "bank_limits":
         return stage
     most = sys.float_info.max
-    return replace(stage, numbers={**stage.numbers, "v_low": -most, "v_high": most})
+    numbers = {**stage.numbers, "from_low": most, "from_high": -most}
+    return replace(stage, numbers=numbers, choices={"moved_low": 0, "moved_high": 0})
 
 
 def fmu_sources(
