@@ -14,6 +14,7 @@ from fmu_runs import CONTROLLER, LIMITED_CONTROLLER, estimation
 from readme_programs import program_of, readme_of, run_readme
 
 import hyst
+from hyst.control import LimitedDrive
 from hyst.export import c_project
 from hyst.export.c.layout import LAYOUTS
 from hyst.export.c.signal_names import variables
@@ -63,17 +64,44 @@ def test_the_program_prints_what_python_computes(
     precision: str, layout: str, tmp_path: Path
 ) -> None:
     inverse = MODEL.inverse()
-    options = {"precision": precision, "name": "lens", "layout": layout}
-    folder = c_project(inverse, tmp_path / "out", **options).path
+    folder = c_project(
+        inverse, tmp_path / "out", precision=precision, name="lens", layout=layout, limits=None
+    ).path
     program = program_of(folder)
     assert "voltage_V = lens_step(&lens, position_um);" in program
+    assert "lens_init(&lens);" in program
     printed = columns(run_readme(folder, "example", program, *STRICTLY))
     np.testing.assert_array_equal(printed[:, 0], np.arange(0.0, 41.0, 5.0))
     # "%g" prints six digits, and single precision has seven.
-    # The drive ends at 150 V, where the record ended.
-    np.testing.assert_allclose(
-        printed[:, 1], np.minimum(inverse(printed[:, 0]), 150.0), rtol=1.1e-5
-    )
+    np.testing.assert_allclose(printed[:, 1], inverse(printed[:, 0]), rtol=1.1e-5)
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_the_program_starts_after_the_sweep_it_tells_of(precision: str, tmp_path: Path) -> None:
+    drive = LimitedDrive(MODEL.inverse())
+    folder = c_project(MODEL.inverse(), tmp_path / "out", precision=precision, name="lens").path
+    told = readme_of(folder)
+    assert "## How to start the actuator" in told
+    assert "| limits of the drive | `LENS_U_MIN` to `LENS_U_MAX`: 0 to 150 V" in told
+    printed = columns(run_readme(folder, "example", program_of(folder), *STRICTLY))
+    # Up from the lowest drive after the highest: not what it would be without a history.
+    expected = drive.run(printed[:, 0], drive.state_after([150.0, 0.0]))[0]
+    assert abs(expected[1] - drive(printed[:, 0])[1]) > 1.0
+    # "%g" prints six digits, and single precision has seven.
+    np.testing.assert_allclose(printed[:, 1], expected, rtol=1.1e-5)
+
+
+def test_where_time_counts_the_start_takes_every_sample(tmp_path: Path) -> None:
+    creeping = hyst.Creep([0.1], [0.5], 1e-3) @ MODEL
+    told = readme_of(c_project(creeping.inverse(), tmp_path / "out", name="lens").path)
+    assert "at every sample" in told
+
+
+def test_what_cannot_be_told_a_history_says_so(tmp_path: Path) -> None:
+    model = hyst.Delay(2.7, 1e-3).inverse(preview=4)
+    told = readme_of(c_project(model, tmp_path / "out", name="lens").path)
+    assert "This code can be told no history: the model in front of it is not known" in told
+    assert "init_after" not in told
 
 
 @pytest.mark.parametrize("shared_core", [False, True])
@@ -115,7 +143,7 @@ def test_the_table_says_what_is_known(tmp_path: Path) -> None:
         "| y, `position_um` | Position in um, 0 to 40 in the record |",
         "| error, training | rms 0.0123 um, 0.031 % of the range, at most 0.05 um |",
         "| error, validation | rms 0.02 um |",
-        "| verdict | good: What is left is the record_s own noise. |",
+        "| verdict | good: What is left is the record's own noise. |",
         "| sample time | any |",
     ):
         assert row in readme
@@ -174,7 +202,8 @@ def test_variables_are_called_by_name_and_unit(
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_the_short_test_finds_one_bit_of_one_constant(precision: str, tmp_path: Path) -> None:
     """The last bit of the inverse's gain: the first sample away from 0 is another."""
-    folder = c_project(MODEL.inverse(), tmp_path / "out", name="lens", precision=precision).path
+    inverse, place = MODEL.inverse(), tmp_path / "out"
+    folder = c_project(inverse, place, name="lens", precision=precision, limits=None).path
     source = (folder / "lens.c").read_text()
     (gain,) = re.findall(r"lens_core_pi pi_1 = \{2u, ([^,f]*)", source)
     number = np.float64 if precision == "double" else np.float32
@@ -211,5 +240,6 @@ def test_a_long_delay_is_waited_for(tmp_path: Path) -> None:
 def test_ranges_between_which_single_precision_has_no_number(tmp_path: Path) -> None:
     """The loop of the program ends nevertheless."""
     about = replace(ABOUT, input_low=1e8, input_high=1e8 + 1.0)
-    folder = c_project(MODEL, tmp_path / "o", precision="single", description=about).path
+    model, place = MODEL.with_description(about), tmp_path / "out"
+    folder = c_project(model, place, precision="single", limits=None).path
     assert len(columns(run_readme(folder, "example", program_of(folder)))) >= 1

@@ -22,6 +22,7 @@ def c(order: Order) -> Done:
         layout=order.layout,
         shared_core=order.shared_core,
         **order.drive,
+        driver=order.driver,
     )
     of_the_core = re.compile(rf"(core/)?({order.name}_core|hystf?)_\w+\.[ch]")
     own = [each for each in project.files if not of_the_core.fullmatch(each)]
@@ -34,6 +35,7 @@ def c(order: Order) -> Done:
         ("state", f"{project.state_bytes} bytes, {project.state_length} numbers of memory"),
         ("saved state", f"{project.saved_bytes} bytes"),
         *drive_rows(project.drive, project.history, start),
+        *([("codes", project.codes)] if project.codes else []),
     )
     alone = order.layout == "folder" and not order.shared_core
     test = _WITH_CMAKE if alone else project.test_command

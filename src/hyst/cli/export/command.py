@@ -10,6 +10,7 @@ import typer
 import hyst
 from hyst.cli.arguments import DespiteVerdict, ModelFile, history_of, numbers
 from hyst.cli.console import show_table
+from hyst.cli.driver_option import DriverOfDrive, driver_or_word
 from hyst.cli.export.order import Order
 from hyst.cli.export.targets import TARGETS, takers
 from hyst.cli.relevant_options import refuse_irrelevant
@@ -98,7 +99,7 @@ def export(
         ),
     ] = False,
     preview: Preview = None,
-    precision: Annotated[str, typer.Option(help="Of C: double or single.")] = "double",
+    precision: Annotated[str, typer.Option(help="Of C or Rust: double or single.")] = "double",
     name: Annotated[
         str, typer.Option(metavar="NAME", help="Prefix of files, functions and types.")
     ] = "stage",
@@ -118,6 +119,7 @@ def export(
     limits: Limits = "auto",
     rate_limit: RateLimit = None,
     history: History = None,
+    driver: DriverOfDrive = "auto",
     schedule_value: ScheduleValue = None,
 ) -> None:
     """Write a model as code for other tools: the numbers of Python, bit for bit in double."""
@@ -143,6 +145,7 @@ def export(
         _ends(limits),
         rate_limit,
         None if history is None else history_of(history),
+        driver_or_word(driver, model.description),
     )
     done = TARGETS[target].write(order)
     what = "inverse of " if inverse or explicit else ""

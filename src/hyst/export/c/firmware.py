@@ -22,6 +22,7 @@ from hyst.export.c.core_sources import core_files
 from hyst.export.c.drive import SAMPLES
 from hyst.export.c.drive_options import AUTO, DriveOptions
 from hyst.export.c.drive_range import DriveRange
+from hyst.export.c.driver_codes import driver_codes
 from hyst.export.c.layout import Layout
 from hyst.export.c.names import as_c_name
 from hyst.export.c.numbers import as_precision
@@ -32,7 +33,7 @@ from hyst.export.c.short_test import short_test_source
 from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, write_export
 from hyst.export.shared_folder import add_to_folder
-from hyst.operators import ModelDescription
+from hyst.operators import Driver, ModelDescription
 
 
 @final
@@ -68,6 +69,8 @@ class CProject:
         The drives it starts after.
     has_start
         Whether ``NAME_init_after`` starts it after others.
+    codes
+        What is to be told of the driver's codes; "" without a driver.
     """
 
     path: Path
@@ -83,6 +86,7 @@ class CProject:
     drive: DriveRange
     history: tuple[float, ...]
     has_start: bool
+    codes: str = ""
 
 
 def c_project(
@@ -99,6 +103,7 @@ def c_project(
     limits: Limits | str | None = AUTO,
     rate_limit: float | None = None,
     history: ArrayLike | None = None,
+    driver: Driver | str | None = AUTO,
 ) -> CProject:
     """Write a model as C99 for firmware, with the core's sources it needs and a self-test.
 
@@ -138,6 +143,9 @@ def c_project(
     history
         What drove the actuator before, in time order, where the start shall be after it: where the
         drive turned is enough, unless time counts.
+    driver
+        Table of the drive's converter: the step gives, or takes, its codes too, and the limits are
+        volts of codes. ``"auto"`` for that of the description, None or ``"none"`` for none.
 
     Returns
     -------
@@ -159,16 +167,17 @@ def c_project(
     >>> model = PrandtlIshlinskii(p=[0.5, 0.2], r=[0.1, 0.3], p0=1.0)
     >>> with tempfile.TemporaryDirectory() as parent:
     ...     project = c_project(model.inverse(), f"{parent}/inverse", name="inverse")
-    >>> [file for file in project.files if file.endswith(".c")]
-    ['core/inverse_core_prandtl_ishlinskii.c', 'inverse.c', 'inverse_selftest.c']
+    >>> [file for file in project.files if file.endswith(".c") and "core" not in file]
+    ['inverse.c', 'inverse_selftest.c', 'inverse_step_response.c']
     """
     as_c_name(name)
     refuse_unfit(model, description, despite_verdict)
     exact = as_precision(precision)
     where = Layout(layout, shared_core, name, exact)
-    options = DriveOptions(limits, rate_limit, history)
-    block = any_block(model, exact, options, description)
     about = described(model, description)
+    codes = driver_codes(driver, about, exact)
+    options = DriveOptions(limits, rate_limit, history, codes)
+    block = any_block(model, exact, options, description)
     test = SelfTest.of(block, exact, about)
     files = project_files(block, test, about, where)
     length = max(len(block.start), 1)
@@ -190,6 +199,7 @@ def c_project(
         drive=block.drive,
         history=block.history,
         has_start=block.following is not None,
+        codes="" if block.codes is None else block.codes.row(),
     )
 
 
@@ -261,6 +271,7 @@ def _manifest(
         "layout": layout.form,
         "model": {"kind": block.kind, "sha256": block.sha256()},
         "drive": block.drive.told(),
+        **({} if block.codes is None else {"driver": block.codes.told()}),
         "history": list(block.history),
         "selftest": {"samples": SAMPLES, "away_from_double": test.away_from_double},
         # The core's own files, before their names became those of the copy.

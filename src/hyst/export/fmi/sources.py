@@ -37,8 +37,7 @@ _OF_VERSION = {
     "3.0": ("hyst_fmi3.c", "hyst_fmi3.h", "hyst_fmi3_absent.c", "hyst_fmi3_other_kinds.c"),
 }
 _HELD_BY = "constants->of."
-# How a drive is limited, as the twin in single precision is told it.
-_BESIDE_ITS_MODEL, _OF_A_BANK = 1, 2
+_BESIDE_ITS_MODEL = 1  # how a drive is limited, as the twin in single precision is told it
 
 
 @final
@@ -127,7 +126,7 @@ def _offered(block: Block) -> tuple[CoreStage, ...]:
     for index, stage in enumerate(block.stages):
         if stage.choices.get("way") == _BESIDE_ITS_MODEL:
             held = dict.fromkeys(range(len(block.stages)), everything)
-        elif stage.choices.get("way") == _OF_A_BANK:
+        elif stage.kind == "bank_limits":
             held[index - 1] = everything
     if block.history:
         memory = {Rule.FIXED, Rule.THRESHOLD}

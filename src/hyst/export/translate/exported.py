@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import re
 
-from hyst.export.c.block import Block
 from hyst.export.c.c_sources import header, places, source
 from hyst.export.c.core_copy import CoreCopy
 from hyst.export.c.core_sources import core_files
+from hyst.export.c.exported import Block
 from hyst.export.c.numbers import Precision
 from hyst.export.c.one_file import in_one_file
 from hyst.export.translate.program import Program
 from hyst.export.translate.reading import read_program
 from hyst.operators import ModelDescription
-
 
 _ENTRIES = ("init", "init_after", "step", "update", "command", "reset")
 
@@ -23,9 +22,7 @@ def entries_of(text: str, name: str) -> tuple[str, ...]:
 
     Saving and loading a state is left to every language, for it is about bytes.
     """
-    return tuple(
-        f"{name}_{each}" for each in _ENTRIES if re.search(rf"\b{name}_{each}\(.*;", text)
-    )
+    return tuple(f"{name}_{each}" for each in _ENTRIES if re.search(rf"\b{name}_{each}\(.*;", text))
 
 
 def c_text(block: Block, name: str, precision: Precision, about: ModelDescription) -> str:
