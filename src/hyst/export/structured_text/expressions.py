@@ -75,7 +75,11 @@ class Expressions:
         self.temporaries: list[tuple[str, str]] = []
         self.aliases: dict[str, str] = {}
         self.roles = dict(
-            zip((p.name for p in function.parameters), plan.usage.roles.get(function.name, ()), strict=True)
+            zip(
+                (p.name for p in function.parameters),
+                plan.usage.roles.get(function.name, ()),
+                strict=True,
+            )
         )
         self.stored = plan.usage.stored.get(function.name, frozenset())
 
@@ -316,7 +320,9 @@ class Expressions:
             case Name(kind="table", name=name):
                 return str(self.plan.numbers.table(name)), None
             case Name(name=name) if isinstance(of.type, Array):
-                return str(self.plan.numbers.place(self.function.name, name, size_of(of.type))), None
+                return str(
+                    self.plan.numbers.place(self.function.name, name, size_of(of.type))
+                ), None
             case Name(name=name):
                 return self.aliases.get(name) or self.names.of(name), None
             case AddressOf(of=Name(name=name)) if name in self.stored:
@@ -407,7 +413,9 @@ class Expressions:
             self._choose(
                 pointer.condition,
                 lambda: self.lines.append(f"{held} := {self._whether_there(plain(pointer.then))};"),
-                lambda: self.lines.append(f"{held} := {self._whether_there(plain(pointer.other))};"),
+                lambda: self.lines.append(
+                    f"{held} := {self._whether_there(plain(pointer.other))};"
+                ),
             )
             return held
         return "TRUE"

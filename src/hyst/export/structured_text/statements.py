@@ -199,7 +199,9 @@ class Statements(Expressions):
 
     def _has_a_place_elsewhere(self, variable: Any) -> bool:
         kind = variable.type
-        return is_array_of_numbers(kind) or points_to_structure(kind) or variable.name in self.stored
+        return (
+            is_array_of_numbers(kind) or points_to_structure(kind) or variable.name in self.stored
+        )
 
     def _parameters(self) -> tuple[list[Any], list[Any], list[str]]:
         """Give inputs, references and the statements that copy inputs which change."""

@@ -78,7 +78,9 @@ def _types(plan: Plan) -> str:
             if plan.is_member_kept(name, member)
         ]
         parts.append(
-            "\n".join([f"TYPE {plan.type_text(Named(name))} : STRUCT", *fields, "END_STRUCT; END_TYPE"])
+            "\n".join(
+                [f"TYPE {plan.type_text(Named(name))} : STRUCT", *fields, "END_STRUCT; END_TYPE"]
+            )
         )
     return "\n".join(parts)
 
@@ -117,7 +119,9 @@ def _initial(plan: Plan, value: object) -> str:
 
 
 def _block(block: Block, plan: Plan, tables: list[tuple[str, str]]) -> str:
-    names = Names(frozenset({plan.name, "numbers", "state", "ignored", *(name for name, _ in tables)}))
+    names = Names(
+        frozenset({plan.name, "numbers", "state", "ignored", *(name for name, _ in tables)})
+    )
     inputs = [names.of(each) for each in block.inputs]
     output, restart, clear, began = (
         names.of(each) for each in (block.output, "restart", "clear_fault", "began")
@@ -135,9 +139,17 @@ def _block(block: Block, plan: Plan, tables: list[tuple[str, str]]) -> str:
         f"{output} := {_entry(plan, step, inputs)};",
         f"{fault} := state.{plan.field(Named(plan.state), 'fault')};",
     ]
-    kept = [("state", plan.type_text(Named(plan.state))), ("numbers", f"{plan.name}_numbers := {plan.numbers.initial()}"), *tables, (began, "BOOL"), ("ignored", "BOOL")]
+    kept = [
+        ("state", plan.type_text(Named(plan.state))),
+        ("numbers", f"{plan.name}_numbers := {plan.numbers.initial()}"),
+        *tables,
+        (began, "BOOL"),
+        ("ignored", "BOOL"),
+    ]
     parts = [f"FUNCTION_BLOCK {plan.name}"]
-    parts += section("VAR_INPUT", [(each, plan.real) for each in inputs] + [(restart, "BOOL"), (clear, "BOOL")])
+    parts += section(
+        "VAR_INPUT", [(each, plan.real) for each in inputs] + [(restart, "BOOL"), (clear, "BOOL")]
+    )
     parts += section("VAR_OUTPUT", [(output, plan.real), (fault, "DWORD")])
     parts += folded(section("VAR", kept))
     return "\n".join([*parts, *folded(lines), "END_FUNCTION_BLOCK"])
