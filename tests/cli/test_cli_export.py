@@ -120,7 +120,7 @@ def test_a_tracking_controller_is_exported_from_its_file(run: Run, folder: Path)
         (["--name", "int"], "a word of C or C++"),
         (["--name", "../x"], "C identifier"),
         (["--precision", "half"], "double or single"),
-        (["--target", "rust"], "--target is 'rust'"),
+        (["--target", "ada"], "--target is 'ada'"),
         (["-o", "model.json/out"], "is a file"),
     ],
 )

@@ -11,56 +11,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import final
 
-
-@final
-@dataclass(frozen=True)
-class Scalar:
-    """A number: double, float, int32, uint32, uint64, uint8 or size; or void."""
-
-    name: str
-
-    @property
-    def is_real(self) -> bool:
-        """Whether it is a floating-point number."""
-        return self.name in ("double", "float")
-
-
-@final
-@dataclass(frozen=True)
-class Pointer:
-    """A pointer to one or more of a type."""
-
-    to: CType
-    is_const: bool
-
-
-@final
-@dataclass(frozen=True)
-class Array:
-    """So many of a type."""
-
-    of: CType
-    count: int
-
-
-@final
-@dataclass(frozen=True)
-class Named:
-    """A structure, by its name."""
-
-    name: str
-
-
-@final
-@dataclass(frozen=True)
-class FunctionPointer:
-    """A pointer to a function; one target is known for each, so calls of it are ordinary ones."""
-
-
-CType = Scalar | Pointer | Array | Named | FunctionPointer
-
-VOID, INT, UNSIGNED, SIZE = Scalar("void"), Scalar("int32"), Scalar("uint32"), Scalar("size")
-BYTE, WIDE, DOUBLE, FLOAT = Scalar("uint8"), Scalar("uint64"), Scalar("double"), Scalar("float")
+from hyst.export.translate.types import (
+    BYTE,
+    DOUBLE,
+    FLOAT,
+    INT,
+    SIZE,
+    UNSIGNED,
+    VOID,
+    WIDE,
+    Array,
+    CType,
+    FunctionPointer,
+    Named,
+    Pointer,
+    Scalar,
+)
 
 
 @final
@@ -447,3 +413,56 @@ class Program:
     tables: Mapping[str, Table]
     constants: Mapping[str, int]
     entries: tuple[str, ...]
+
+
+__all__ = [
+    "BYTE",
+    "DOUBLE",
+    "FLOAT",
+    "INT",
+    "SIZE",
+    "UNSIGNED",
+    "VOID",
+    "WIDE",
+    "AddressOf",
+    "Array",
+    "Assign",
+    "Binary",
+    "Block",
+    "Break",
+    "CType",
+    "Call",
+    "Comparison",
+    "Conditional",
+    "Convert",
+    "Decay",
+    "Declare",
+    "Element",
+    "Evaluate",
+    "Expression",
+    "FromBits",
+    "Function",
+    "FunctionName",
+    "FunctionPointer",
+    "If",
+    "Initialiser",
+    "Logical",
+    "Loop",
+    "Member",
+    "Name",
+    "Named",
+    "Not",
+    "Null",
+    "Number",
+    "Offset",
+    "Pointer",
+    "Program",
+    "Return",
+    "Scalar",
+    "Statement",
+    "Structure",
+    "Table",
+    "ToBits",
+    "Unary",
+    "Variable",
+]
