@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -214,6 +216,22 @@ def test_a_start_is_that_of_python_and_a_saved_state_that_of_c(
     # Also the crate's own self-test, and what clippy finds.
     cargo(crates.folder, "test", "--offline", "-q", "-p", "held")
     cargo(crates.folder, "clippy", "--offline", "-q", "-p", "held", "-p", "estimator")
+
+
+@needs_cargo
+@pytest.mark.skipif(shutil.which("nm") is None, reason="nm is not installed")
+def test_nothing_in_an_optimised_crate_can_panic(crates: Crates) -> None:
+    names = ("held", "planned", "preisach")
+    cargo(crates.folder, "build", "--offline", "-q", "--release", *_packages(names))
+    for name in names:
+        (library,) = (crates.folder / "target" / "release" / "deps").glob(f"lib{name}-*.rlib")
+        listed = subprocess.run(["nm", "-C", library], capture_output=True, text=True, check=False)
+        assert f"{name}::kernel::" in listed.stdout  # the code is there
+        assert "panic" not in listed.stdout
+
+
+def _packages(names: tuple[str, ...]) -> list[str]:
+    return [word for name in names for word in ("-p", name)]
 
 
 @needs_cargo
