@@ -22,7 +22,7 @@ class Target:
 
 
 TARGETS = {
-    "c": Target(c, "for firmware", ("precision", "flat")),
+    "c": Target(c, "for firmware", ("precision", "layout", "shared_core", "driver")),
     "fmu": Target(fmu, "for simulation tools", ("fmi", "binary")),
     "mex": Target(mex, "for MATLAB and Octave"),
     "rust": Target(rust, "a crate", ("precision",)),

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from hyst import _engine
 from hyst.checks.arrays import finite_vector
-from hyst.control.limited_drive.checked import reach_of_bank
+from hyst.control.limited_drive.bank_limits import bank_of
 from hyst.errors import InputError, NotInvertibleError
 from hyst.export.c.core_stage import core_stages
 from hyst.export.c.drive_range import DriveRange
@@ -28,7 +28,9 @@ def moved_bank(inverse: Operator) -> bool:
 
     The bank is solved for what belongs to the drive, and what is before it has no memory.
     """
-    return reach_of_bank(_engine.Chain(inverse.stages()), -1.0, 1.0) is not None
+    chain = _engine.Chain(inverse.stages())
+    stages = [chain.constants(i) for i in range(len(chain))]
+    return bank_of(stages, inverse.initial_state()) is not None
 
 
 def bank_passed(inverse: Operator, first: int, place: int) -> Passed:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 from hyst.export.c.c_sources import header, places, source
+from hyst.export.c.core_copy import CoreCopy
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.exported import Block
 from hyst.export.c.numbers import Precision
@@ -28,7 +29,9 @@ def c_text(block: Block, name: str, precision: Precision, about: ModelDescriptio
     """Give all C of an export, the core's part included, as one text."""
     common = places(block, name, precision, about)
     declared, stage = header(block, common), source(block, common, precision)
-    return in_one_file(core_files(stage + declared), {f"{name}.h": declared, f"{name}.c": stage})
+    copy = CoreCopy("hyst", precision)
+    own = {f"{name}.h": copy.renamed(declared), f"{name}.c": copy.renamed(stage)}
+    return in_one_file(copy.files(core_files(stage + declared)), own)
 
 
 def program_of(block: Block, name: str, precision: Precision, about: ModelDescription) -> Program:
@@ -57,5 +60,4 @@ def program_of(block: Block, name: str, precision: Precision, about: ModelDescri
         If pycparser is not installed.
     """
     text = c_text(block, name, precision, about)
-    defined = "#define HYST_SINGLE\n" if precision == "single" else ""
-    return read_program(defined + text, entries_of(text, name))
+    return read_program(text, entries_of(text, name))
