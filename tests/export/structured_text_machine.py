@@ -122,7 +122,9 @@ class Compiler:
             self.types[low] = self.resolved(unit.result)
             return
         if unit.kind == "STRUCT":
-            fields = "".join(f"{self.c_variable(f.type, self.c_name(f.name))};" for f in unit.variables)
+            fields = "".join(
+                f"{self.c_variable(f.type, self.c_name(f.name))};" for f in unit.variables
+            )
             self.types[low] = unit
             self.lines.append(f"typedef struct {{{fields}}} t_{low};")
             return
@@ -179,7 +181,9 @@ class Compiler:
 
     def _block(self, unit: Unit) -> None:
         low = unit.name.lower()
-        fields = "".join(f"{self.c_variable(v.type, self.c_name(v.name))};\n" for v in unit.variables)
+        fields = "".join(
+            f"{self.c_variable(v.type, self.c_name(v.name))};\n" for v in unit.variables
+        )
         starts = ", ".join(self.started(v) for v in unit.variables)
         self.lines.append(f"typedef struct {{{fields}}} t_{low};")
         self.lines.append(f"const t_{low} start_{low} = {{{starts}}};")
@@ -199,7 +203,9 @@ class Compiler:
             return "{" + (", ".join(self.initial(v, of.of, what) for v in items) or "0") + "}"
         if isinstance(of, Unit):
             given = {} if value is None else dict(value[1])
-            parts = [self.initial(given.pop(f.name.lower(), None), f.type, what) for f in of.variables]
+            parts = [
+                self.initial(given.pop(f.name.lower(), None), f.type, what) for f in of.variables
+            ]
             if given:
                 raise StructuredTextError(f"{what} has no {', '.join(given)}")
             return "{" + ", ".join(parts) + "}"

@@ -9,6 +9,7 @@ from hyst.cli.export.c import c
 from hyst.cli.export.fmu import fmu
 from hyst.cli.export.mex import mex
 from hyst.cli.export.order import Done, Order
+from hyst.cli.export.structured_text import structured_text
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,7 @@ TARGETS = {
     "c": Target(c, "for firmware", ("precision", "flat")),
     "fmu": Target(fmu, "for simulation tools", ("fmi", "binary")),
     "mex": Target(mex, "for MATLAB and Octave"),
+    "st": Target(structured_text, "IEC 61131-3 for PLCs", ("precision",)),
 }
 
 

@@ -131,8 +131,12 @@ def _halvings(top: int) -> list[int]:
 def _powers(top: int, text: Any) -> str:
     lines = []
     for each in [top, *_halvings(top)]:
-        lines += _scaled("left_over >= " + str(each), "power", text(2.0**each), "left_over", f"- {each}")
-        lines += _scaled("left_over <= " + str(-each), "power", text(2.0**-each), "left_over", f"+ {each}")
+        lines += _scaled(
+            "left_over >= " + str(each), "power", text(2.0**each), "left_over", f"- {each}"
+        )
+        lines += _scaled(
+            "left_over <= " + str(-each), "power", text(2.0**-each), "left_over", f"+ {each}"
+        )
     return "\n".join(lines)
 
 

@@ -75,7 +75,11 @@ class Expressions:
         self.temporaries: list[tuple[str, str]] = []
         self.aliases: dict[str, str] = {}
         self.roles = dict(
-            zip((p.name for p in function.parameters), plan.usage.roles.get(function.name, ()), strict=True)
+            zip(
+                (p.name for p in function.parameters),
+                plan.usage.roles.get(function.name, ()),
+                strict=True,
+            )
         )
         self.stored = plan.usage.stored.get(function.name, frozenset())
 
@@ -270,7 +274,7 @@ class Expressions:
             of = of.of
         if isinstance(of.type, Array):
             if not is_array_of_numbers(of.type) or self.plan.is_inline(of):
-                return f"{self.place(of)}[{self.value(index)}]"
+                return f"{self.place(of)}[{bare(self.value(index))}]"
             return f"numbers[{self.index(of, index)}]"
         if points_to_number(of.type):
             if isinstance(of, Name) and self._is_reference(of):
@@ -316,7 +320,9 @@ class Expressions:
             case Name(kind="table", name=name):
                 return str(self.plan.numbers.table(name)), None
             case Name(name=name) if isinstance(of.type, Array):
-                return str(self.plan.numbers.place(self.function.name, name, size_of(of.type))), None
+                return str(
+                    self.plan.numbers.place(self.function.name, name, size_of(of.type))
+                ), None
             case Name(name=name):
                 return self.aliases.get(name) or self.names.of(name), None
             case AddressOf(of=Name(name=name)) if name in self.stored:
@@ -376,7 +382,7 @@ class Expressions:
         for parameter, role, given in zip(function.parameters, roles, of.arguments, strict=True):
             name = names.of(parameter.name)
             if role.way == "value":
-                values.append(f"{name} := {self._argument(given)}")
+                values.append(f"{name} := {bare(self._argument(given))}")
             elif role.way == "index":
                 values.append(f"{name} := {self.index(given)}")
             elif role.way == "reference":
@@ -407,7 +413,9 @@ class Expressions:
             self._choose(
                 pointer.condition,
                 lambda: self.lines.append(f"{held} := {self._whether_there(plain(pointer.then))};"),
-                lambda: self.lines.append(f"{held} := {self._whether_there(plain(pointer.other))};"),
+                lambda: self.lines.append(
+                    f"{held} := {self._whether_there(plain(pointer.other))};"
+                ),
             )
             return held
         return "TRUE"
@@ -431,7 +439,7 @@ class Expressions:
             self._choose(value.condition, lambda: self.assign(target, kind, value.then),
                          lambda: self.assign(target, kind, value.other))  # fmt: skip
         elif not self.plan.is_left_out(kind):
-            self.lines.append(f"{target} := {self.value(value)};")
+            self.lines.append(f"{target} := {bare(self.value(value))};")
 
     def _assign_all(self, target: str, kind: CType, value: Initialiser) -> None:
         if isinstance(kind, Array):
@@ -442,6 +450,18 @@ class Expressions:
         members = self.plan.program.structures[kind.name].members
         for (name, of), each in zip(members.items(), value.values, strict=True):
             self.assign(f"{target}.{self.plan.field(kind, name)}", of, each)
+
+
+def bare(text: str) -> str:
+    """Give a text without parentheses around all of it."""
+    if not (text.startswith("(") and text.endswith(")")):
+        return text
+    depth = 0
+    for place, letter in enumerate(text):
+        depth += {"(": 1, ")": -1}.get(letter, 0)
+        if depth == 0 and place < len(text) - 1:
+            return text
+    return text[1:-1]
 
 
 def _in_parentheses(text: str) -> str:

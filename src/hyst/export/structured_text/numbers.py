@@ -77,7 +77,9 @@ class Numbers:
     def initial(self) -> str:
         """Give the initial values as structured text, equal ones counted."""
         parts = []
-        for text, run in groupby(real_text(each, self.precision).strip("()") for each in self.starts):
+        for text, run in groupby(
+            real_text(each, self.precision).strip("()") for each in self.starts
+        ):
             count = len(list(run))
             parts += [f"{count}({text})"] if count > 2 else [text] * count
         return "[" + ", ".join(parts) + "]"

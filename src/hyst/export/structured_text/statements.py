@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from textwrap import wrap
 from typing import Any
 
@@ -199,7 +200,9 @@ class Statements(Expressions):
 
     def _has_a_place_elsewhere(self, variable: Any) -> bool:
         kind = variable.type
-        return is_array_of_numbers(kind) or points_to_structure(kind) or variable.name in self.stored
+        return (
+            is_array_of_numbers(kind) or points_to_structure(kind) or variable.name in self.stored
+        )
 
     def _parameters(self) -> tuple[list[Any], list[Any], list[str]]:
         """Give inputs, references and the statements that copy inputs which change."""
@@ -259,11 +262,15 @@ def _changed(body: tuple[Any, ...]) -> list[str]:
     return found
 
 
-def section(word: str, variables: list[tuple[str, str]]) -> list[str]:
-    """Give a section of declarations; nothing where there are none."""
+def section(word: str, variables: Sequence[tuple[str, ...]]) -> list[str]:
+    """Give a section of declarations, with comments if any; nothing where there are none."""
     if not variables:
         return []
-    return [word, *(f"    {name} : {kind};" for name, kind in variables), "END_VAR"]
+    lines = []
+    for name, kind, *comment in variables:
+        behind = f" (* {comment[0]} *)" if comment and comment[0] else ""
+        lines.append(f"    {name} : {kind};{behind}")
+    return [word, *lines, "END_VAR"]
 
 
 def folded(lines: list[str]) -> list[str]:

@@ -176,7 +176,11 @@ def _stored(function: Function, body: list[Any], usage: Usage) -> frozenset[str]
 def _tables(program: Program, body: list[Any], usage: Usage) -> tuple[str, ...]:
     found: dict[str, None] = {}
     for each in body:
-        if isinstance(each, Name) and each.kind == "table" and is_structure_table(program, each.name):
+        if (
+            isinstance(each, Name)
+            and each.kind == "table"
+            and is_structure_table(program, each.name)
+        ):
             found[each.name] = None
         if isinstance(each, Call):
             found |= dict.fromkeys(usage.tables[each.function])
