@@ -27,5 +27,5 @@ def structured_text(order: Order) -> Done:
     )
     folder, _ = into_folder(order)
     return Done(
-        rows, f"import {order.name}.st into the PLC's tool; {folder}/README.md says the rest"
+        rows, f"import {order.name}.st into the tool of the PLC; {folder}/README.md tells how"
     )

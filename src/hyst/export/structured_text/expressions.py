@@ -135,12 +135,15 @@ class Expressions:
         return f"{left} {mark} {right}"
 
     def _is_there(self, pointer: Any) -> str:
-        if isinstance(pointer, Name) and pointer.name in self.roles:
-            if self.roles[pointer.name].may_be_null:
-                return self.names.of(f"{pointer.name}_given")
+        if self._may_be_null(pointer):
+            return self.names.of(f"{pointer.name}_given")
         if points_to_number(pointer.type):
             return f"({self.index(pointer)} >= 0)"
         raise refused("a comparison of a pointer with NULL")
+
+    def _may_be_null(self, pointer: Any) -> bool:
+        role = self.roles.get(pointer.name) if isinstance(pointer, Name) else None
+        return role is not None and role.may_be_null
 
     def _logical(self, of: Logical) -> str:
         left = self.condition(of.left)
@@ -405,9 +408,8 @@ class Expressions:
     def _whether_there(self, pointer: Any) -> str:
         if isinstance(pointer, Null):
             return "FALSE"
-        if isinstance(pointer, Name) and pointer.name in self.roles:
-            if self.roles[pointer.name].may_be_null:
-                return self.names.of(f"{pointer.name}_given")
+        if self._may_be_null(pointer):
+            return self.names.of(f"{pointer.name}_given")
         if isinstance(pointer, Conditional):
             held = self.temporary("BOOL", "holds")
             self._choose(

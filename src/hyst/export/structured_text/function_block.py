@@ -48,16 +48,23 @@ class BlockNames:
         """Give names that nothing else in the block has."""
         names = Names(taken)
         # One letter alone would be "the" signal, which says nothing.
-        inputs = tuple(
-            names.fresh("scheduled_by" if each == "s" else each) for each in block.inputs
-        )
+        wanted = ("scheduled_by" if each == "s" else each for each in block.inputs)
+        inputs = tuple(names.fresh(each) for each in wanted)
         others = ("restart", "clear_fault", "history", "history_count", "fault", "history_refused")
         return cls(inputs, names.fresh(block.output), *(names.fresh(each) for each in others))
 
 
-def function_block(
-    block: Block, plan: Plan, tables: list[tuple[str, str]], meanings: dict[str, str]
-) -> str:
+@final
+@dataclass(frozen=True)
+class Table:
+    """A structure of constants: its name, its type, and the statements that fill it."""
+
+    name: str
+    type: str
+    filled: tuple[str, ...]
+
+
+def function_block(block: Block, plan: Plan, tables: list[Table], meanings: dict[str, str]) -> str:
     """Give the text of the function block.
 
     Parameters
@@ -67,7 +74,7 @@ def function_block(
     plan
         Of its program; the functions have been written.
     tables
-        Structures of constants: name, and type with value.
+        Structures of constants.
     meanings
         What its signals mean, by their names in C.
     """
@@ -85,15 +92,18 @@ def function_block(
         (names.fault, "DWORD", "bits: 1 not finite, 2 never; README.md tells the others"),
     ]
     kept = [("state", plan.type_text(Named(plan.state)))]
-    lines = _restart(plan, names)
+    filled = [f"    {line}" for each in tables for line in each.filled]
+    lines = ["IF NOT began THEN", *filled, "END_IF;"] if filled else []
     if f"{plan.name}_init_after" in plan.program.functions:
         inputs += [
             (names.history_count, "DINT", "with restart: so many drives of history came before"),
             (names.history, f"ARRAY [0..{HISTORY - 1}] OF {plan.real}", "in time order"),
         ]
         outputs.append((names.history_refused, "BOOL", "it was not finite or out of the limits"))
-        lines = _restart_after(plan, names)
+        lines += _restart_after(plan, names)
         kept.append(("i", "DINT"))
+    else:
+        lines += _restart(plan, names)
     state_fault = f"state.{plan.field(Named(plan.state), 'fault')}"
     lines += [
         f"IF {names.clear_fault} THEN",
@@ -104,7 +114,7 @@ def function_block(
     ]
     kept += [
         ("numbers", f"{plan.name}_numbers := {plan.numbers.initial()}"),
-        *tables,
+        *((each.name, each.type) for each in tables),
         ("began", "BOOL"),
         ("ignored", "BOOL"),
     ]
@@ -114,10 +124,10 @@ def function_block(
     return "\n".join(parts)
 
 
-def taken_by(plan: Plan, tables: list[tuple[str, str]]) -> frozenset[str]:
+def taken_by(plan: Plan, tables: list[Table]) -> frozenset[str]:
     """Give the names that a block has for itself."""
     return frozenset(
-        {plan.name, "numbers", "state", "ignored", "began", "i", *(name for name, _ in tables)}
+        {plan.name, "numbers", "state", "ignored", "began", "i", *(each.name for each in tables)}
     )
 
 
@@ -154,7 +164,8 @@ def _call(plan: Plan, name: str, given: tuple[str, ...]) -> str:
     names = plan.parameter_names(name)
     parameters = plan.program.functions[name].parameters
     roles = plan.usage.roles[name]
-    values, references = [], []
+    values: list[str] = []
+    references: list[str] = []
     for parameter, role, text in zip(parameters, roles, ("state", *given), strict=True):
         target = references if role.way == "reference" else values
         target.append(f"{names.of(parameter.name)} := {text}")

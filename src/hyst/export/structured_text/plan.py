@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hyst.export.structured_text.numbers import Numbers
-from hyst.export.structured_text.usage import Usage, innermost, nodes_in, plain, usage_of
+from hyst.export.structured_text.usage import Usage, nodes_in, plain, usage_of
 from hyst.export.structured_text.words import Names
 from hyst.export.translate.program import (
     INT,
@@ -126,6 +126,7 @@ class Plan:
 
     @property
     def whole_part_name(self) -> str:
+        """Name of what cuts off the fraction of a number."""
         return f"{self.name}_whole_part"
 
     def whole_part(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from textwrap import wrap
 from typing import Any
@@ -53,9 +54,8 @@ class Statements(Expressions):
             case Declare(variable=variable, value=value):
                 self._declared(variable, value)
             case Assign(place=place, value=value):
-                if isinstance(place.type, Pointer) and points_to_structure(place.type):
-                    if isinstance(place, Name):
-                        raise refused("a pointer to a structure that moves")
+                if isinstance(place, Name) and points_to_structure(place.type):
+                    raise refused("a pointer to a structure that moves")
                 self.assign(self.place(place), place.type, value)
             case Evaluate(call=call):
                 self._evaluated(call)
@@ -106,7 +106,7 @@ class Statements(Expressions):
             self.all(of.then)
         other = of.other
         while len(other) == 1 and isinstance(other[0], If):
-            needed, text = self.apart(lambda inner=other[0]: self.condition(inner.condition))
+            needed, text = self.apart(functools.partial(self.condition, other[0].condition))
             if needed:
                 break
             with self.inside(f"ELSIF {text} THEN"):

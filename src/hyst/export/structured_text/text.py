@@ -11,11 +11,11 @@ from hyst.export.c.block import Block
 from hyst.export.c.names import plain_text
 from hyst.export.structured_text.bit_functions import bit_functions, whole_part
 from hyst.export.structured_text.expressions import Expressions
-from hyst.export.structured_text.function_block import BlockNames, function_block, taken_by
+from hyst.export.structured_text.function_block import BlockNames, Table, function_block, taken_by
 from hyst.export.structured_text.plan import Plan
 from hyst.export.structured_text.statements import Statements
 from hyst.export.structured_text.usage import is_structure_table
-from hyst.export.translate.program import Function, Initialiser, Named, Pointer, Program
+from hyst.export.translate.program import Function, Named, Pointer, Program
 
 
 @final
@@ -83,7 +83,8 @@ def _head(block: Block, plan: Plan) -> str:
     return (
         f"(* {plain_text(block.kind)} as structured text, {plan.precision} precision\n\n"
         f"   Written by hyst {plain_text(__version__)}; write it anew rather than edit it. "
-        f"README.md says how it is used.\n   limits of the drive: {plain_text(block.drive.said())} *)"
+        "README.md says how it is used.\n"
+        f"   limits of the drive: {plain_text(block.drive.said())} *)"
     )
 
 
@@ -104,34 +105,14 @@ def _types(plan: Plan) -> str:
     return "\n".join(parts)
 
 
-def _tables(plan: Plan) -> list[tuple[str, str]]:
-    """Give the structures of constants, with the types and values of their declarations."""
+def _tables(plan: Plan) -> list[Table]:
+    """Give the structures of constants that the entry points need."""
     used = {each for entry in plan.program.entries for each in plan.usage.tables[entry]}
     result = []
     for name, table in plan.program.tables.items():
         if name in used and is_structure_table(plan.program, name):
-            start = _initial(plan, table.value)
-            result.append((plan.name_of_table(name), f"{plan.type_text(table.type)} := {start}"))
+            own = plan.name_of_table(name)
+            writer = Expressions(plan, Function("", (), plan.program.real, (), ()))
+            writer.assign(own, table.type, table.value)
+            result.append(Table(own, plan.type_text(table.type), tuple(writer.lines)))
     return result
-
-
-def _initial(plan: Plan, value: object) -> str:
-    """Give the initial value of a structure or an array of them."""
-    writer = Expressions(plan, Function("", (), plan.program.real, (), ()))
-    if not isinstance(value, Initialiser):
-        if getattr(value, "type", None) is not None and writer.plan.is_left_out(value.type):  # type: ignore[attr-defined]
-            return ""
-        target: list[str] = writer.lines
-        writer.assign("x", value.type, value)  # type: ignore[attr-defined]
-        if not target:
-            return ""
-        return target[0].removeprefix("x := ").removesuffix(";").strip("()")
-    if not isinstance(value.type, Named):
-        return "[" + ", ".join(_initial(plan, each) for each in value.values) + "]"
-    members = plan.program.structures[value.type.name].members
-    parts = []
-    for member, each in zip(members, value.values, strict=True):
-        text = _initial(plan, each)
-        if text:
-            parts.append(f"{plan.field(value.type, member)} := {text}")
-    return f"({', '.join(parts)})"

@@ -8,13 +8,13 @@ from hyst.errors import InputError
 
 # Keywords of the third edition, and of the vendors that are told apart from names by no prefix.
 _KEYWORDS = """
-    abstract action and any array at begin by case class configuration constant continue do else elsif
-    end end_action end_case end_class end_configuration end_for end_function end_function_block
+    abstract action and any array at begin by case class configuration constant continue do else
+    elsif end end_action end_case end_class end_configuration end_for end_function end_function_block
     end_if end_interface end_method end_namespace end_program end_property end_repeat end_resource
     end_step end_struct end_transition end_type end_union end_var end_while en eno exit extends
     f_edge false final for from function function_block get global goto if implements initial_step
-    interface internal interval jmp method mod namespace non_retain not null of on or overlap override
-    pointer priority private program property protected public r_edge read_only read_write ref
+    interface internal interval jmp method mod namespace non_retain not null of on or overlap
+    override pointer priority private program property protected public r_edge read_only read_write ref
     reference repeat resource retain return set single step struct super task then this to
     transition true type union until using var var_access var_config var_external var_global
     var_in_out var_inst var_input var_output var_stat var_temp volatile while with xor
