@@ -1,9 +1,9 @@
 """Turn structured text into C: strict types, arrays with bounds, no lazy operators.
 
 A function block becomes a C structure and a function. The rules are those of a compiler that
-forgives nothing: no conversion is implied, every name is declared before it is used and differs from
-its neighbours by more than case, AND and OR evaluate both sides, an index out of bounds or a loop
-without an end stops the run.
+forgives nothing: no conversion is implied, every name is declared before it is used and differs
+from its neighbours by more than case, AND and OR evaluate both sides, an index out of bounds or a
+loop without an end stops the run.
 """
 
 from __future__ import annotations
@@ -19,62 +19,7 @@ from structured_text_parser import (
     Variable,
     units_of,
 )
-
-C_TYPES = {"BOOL": "int8_t", "DINT": "int32_t", "UDINT": "uint32_t", "DWORD": "uint32_t",
-           "REAL": "float", "LREAL": "double"}  # fmt: skip
-# name: argument, result, C. To a whole number is to the nearest, halves to the even one.
-CONVERSIONS = {
-    f"{a}_TO_{b}": (a, b, code)
-    for a, b, code in [
-        ("BOOL", "DINT", "(int32_t)({0})"),
-        ("DINT", "LREAL", "(double)({0})"),
-        ("DINT", "REAL", "(float)({0})"),
-        ("REAL", "LREAL", "(double)({0})"),
-        ("LREAL", "REAL", "(float)({0})"),
-        ("LREAL", "DINT", "(int32_t)rint({0})"),
-        ("REAL", "DINT", "(int32_t)rintf({0})"),
-        ("DWORD", "UDINT", "({0})"),
-        ("UDINT", "DWORD", "({0})"),
-        ("DINT", "UDINT", "(uint32_t)({0})"),
-        ("UDINT", "DINT", "(int32_t)({0})"),
-    ]
-}
-# Functions and operators of other languages of the standard, which compilers know by these names.
-_STANDARD = """
-    abs acos add and asin atan cal calc calcn concat cos ctd ctu ctud delete div eq exp expt
-    f_trig find ge gt insert jmp jmpc jmpcn ld ldn le left len limit ln log lt max mid min mod
-    move mul mux ne not or r r_trig replace ret retc retcn right rol ror rs s sel shl shr sin
-    sqrt sr st stn sub tan tof ton tp trunc xor time date tod dt string wstring bool byte word
-    dword lword sint int dint lint usint uint udint ulint real lreal any on with to from end
-"""
-STANDARD_NAMES = {*_STANDARD.split(), *(name.lower() for name in CONVERSIONS)}
-_BITWISE = {"OR": "|", "XOR": "^", "AND": "&", "&": "&"}
-_PRELUDE = """
-#include <math.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <stddef.h>
-#include <string.h>
-#define TURNS 100000 /* of loops in one call; more is a loop without an end */
-static jmp_buf stopped;
-static int stopped_at;
-static int32_t at(int32_t i, int32_t low, int32_t high, int line)
-{
-    if (i < low || i > high) { stopped_at = line; longjmp(stopped, 1); }
-    return i - low;
-}
-static int64_t fuel;
-static int burn(int line)
-{
-    if (--fuel < 0) { stopped_at = line; longjmp(stopped, 1); }
-    return 1;
-}
-static int32_t divisor(int32_t i, int line)
-{
-    if (i == 0) { stopped_at = line; longjmp(stopped, 1); }
-    return i;
-}
-"""
+from structured_text_standard import BITWISE, C_TYPES, CONVERSIONS, PRELUDE, STANDARD_NAMES
 
 
 @dataclass(frozen=True)
@@ -91,7 +36,7 @@ class Compiler:
         self.types: dict[str, Any] = {}
         self.functions: dict[str, Unit] = {}
         self.blocks: dict[str, Unit] = {}
-        self.lines: list[str] = [_PRELUDE]
+        self.lines: list[str] = [PRELUDE]
         self.scope: dict[str, Variable] = {}
         self.unit: Unit | None = None
         self.loops = 0
@@ -395,7 +340,7 @@ class Compiler:
         if mark in ("AND", "&", "OR", "XOR"):
             if of not in ("BOOL", "DWORD"):
                 raise StructuredTextError(f"line {line}: {mark} of {of}")
-            return f"({left} {_BITWISE[mark]} {right})", of
+            return f"({left} {BITWISE[mark]} {right})", of
         if of in ("BOOL", "DWORD") or (mark == "MOD" and of in ("REAL", "LREAL")):
             raise StructuredTextError(f"line {line}: {mark} of {of}")
         if mark in ("/", "MOD") and of in ("DINT", "UDINT"):

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from structured_text_compiler import C_TYPES, Compiler
+from structured_text_compiler import Compiler
 from structured_text_parser import ArrayOf, StructuredTextError
+from structured_text_standard import C_TYPES
 
 NUMPY = {"BOOL": np.int8, "DINT": np.int32, "UDINT": np.uint32, "DWORD": np.uint32,
          "REAL": np.float32, "LREAL": np.float64}  # fmt: skip

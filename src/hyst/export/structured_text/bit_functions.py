@@ -50,7 +50,7 @@ n := {real}_TO_DINT(size - {half});
 IF DINT_TO_{real}(n) > size THEN
     n := n - 1;
 END_IF;
-IF DINT_TO_{real}(n) <= size - {one} THEN
+IF size - DINT_TO_{real}(n) >= {one} THEN
     n := n + 1;
 END_IF;
 IF x < {zero} THEN

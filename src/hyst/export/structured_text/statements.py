@@ -8,7 +8,6 @@ from textwrap import wrap
 from typing import Any
 
 from hyst.export.structured_text.expressions import Expressions
-from hyst.export.structured_text.plan import Plan
 from hyst.export.structured_text.usage import (
     is_array_of_numbers,
     nodes_in,
@@ -28,7 +27,6 @@ from hyst.export.translate.program import (
     Declare,
     Element,
     Evaluate,
-    Function,
     If,
     Initialiser,
     Loop,
