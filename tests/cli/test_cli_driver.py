@@ -162,3 +162,21 @@ def test_python_takes_codes_as_the_command_line_does() -> None:
     # Simulated without noise: what is left is where radii fall between two samples.
     assert np.abs(found.model(DRIVER.volts(codes)) - record.y)[500:].max() < 0.01
     assert found.description.input_high == DRIVER.volts(codes).max()
+
+
+def test_exports_step_in_codes(run: Run, folder: Path, measured: Path) -> None:
+    run("identify", measured, *ASKED, "--driver", "driver.csv", "-o", "out")
+    asked = ("export", "out/model.json", "--inverse", "--name", "lens")
+    ended = run(*asked, "-o", "lens")
+    assert ended.code == 0, ended.err
+    assert "codes 0 to 4095 give -0.4 to 150.3 V" in ended.out
+    assert "lens_step_code(lens_state *state" in (folder / "lens" / "lens.h").read_text()
+    ended = run(*asked, "--driver", "linear:0.1,0,0,1200", "-o", "other")
+    assert ended.code == 0, ended.err
+    assert "#define LENS_CODE_MAX 1200" in (folder / "other" / "lens.h").read_text()
+    ended = run(*asked, "--driver", "none", "-o", "plain")
+    assert ended.code == 0, ended.err
+    assert "step_code" not in (folder / "plain" / "lens.h").read_text()
+    ended = run(*asked, "--target", "fmu", "--driver", "driver.csv", "-o", "lens.fmu")
+    assert ended.code == 2
+    assert "--driver" in ended.err

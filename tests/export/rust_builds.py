@@ -79,7 +79,7 @@ class Crates:
         self.written: dict[str, RustCrate] = {}
         arms = []
         for name, (model, precision) in models.items():
-            crate = rust(model, folder / name, precision, name=name)
+            crate = rust(model, folder / name, precision=precision, name=name)
             self.written[name] = crate
             arms.append(_arm(name, folder / name / "src" / "lib.rs"))
         members = ", ".join(f'"{name}"' for name in (*models, "runner"))

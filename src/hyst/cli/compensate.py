@@ -22,7 +22,7 @@ from hyst.cli.arguments import (
 from hyst.cli.command_over import compensate_over, tell_virgin, write_command
 from hyst.cli.console import note, progress_bar, show_files, show_table
 from hyst.cli.driver_option import DriverOfCommand, driver_for, range_of_codes
-from hyst.cli.reading_options import reads_columns
+from hyst.cli.reading_options import Verb, reads_columns, with_options
 from hyst.cli.relevant_options import refuse_irrelevant
 from hyst.cli.scheduled import (
     ScheduleColumn,
@@ -126,7 +126,24 @@ WithDelay = Annotated[
 ]
 
 
+# How the methods go about it, which they are handed as it was typed.
+_SOLVING: dict[str, tuple[Any, Any]] = {
+    "preview": (Preview, 20),
+    "band": (Band, None),
+    "rate_limit": (RateLimit, None),
+    "objective": (Objective, "rms"),
+    "roughness": (Roughness, None),
+    "allow_unconverged": (AllowUnconverged, False),
+}
+
+
+def _solves(verb: Verb) -> Verb:
+    """Give a verb the options of the methods, as ``solving``."""
+    return with_options(verb, _SOLVING, "solving")
+
+
 @reads_columns
+@_solves
 def compensate(
     context: typer.Context,
     model_file: ModelFile,
@@ -134,18 +151,13 @@ def compensate(
     column: Column,
     out: Out,
     how: dict[str, Any],
+    solving: dict[str, Any],
     method: Method = "exact",
     outside: Outside = "refuse",
     limits: Limits = None,
     no_limits: NoLimits = False,
     history: History = None,
-    preview: Preview = 20,
-    band: Band = None,
-    rate_limit: RateLimit = None,
-    objective: Objective = "rms",
-    roughness: Roughness = None,
     rate: SampleRate = None,
-    allow_unconverged: AllowUnconverged = False,
     despite_verdict: DespiteVerdict = False,
     with_delay: WithDelay = False,
     driver: DriverOfCommand = None,
@@ -170,7 +182,6 @@ def compensate(
         return
     _require_method_for(model, method)
     turns = None if history is None else history_of(history)
-    ahead: dict[str, Any] = {"rate_limit": rate_limit, "preview": preview, "band": band}
     with progress_bar("inverting") as progress:
         done = hyst.compensation.invert_trajectory(
             model,
@@ -179,10 +190,7 @@ def compensate(
             input_range=input_range,
             outside=outside,
             history=turns,
-            objective=objective,
-            roughness=roughness,
-            **ahead,
-            allow_unconverged=allow_unconverged,
+            **solving,
             despite_verdict=despite_verdict,
             progress=progress,
         )
@@ -192,8 +200,7 @@ def compensate(
     if table is not None:
         coded = hyst.compensation.in_codes(model, done, table, limits=input_range, history=turns)
     late = y_ref if with_delay else None
-    codes = None if coded is None else coded.codes
-    write_command(out, about, time, _signals(done, about, late, coded), codes)
+    write_command(out, about, time, _signals(done, about, late, coded), coded and coded.codes)
     _tell(done, about, input_range, with_delay, history is None and model.initial_state().size > 0)
     if coded is not None:
         print(coded.told(about.input_unit, about.output_unit))

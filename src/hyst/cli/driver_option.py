@@ -10,7 +10,7 @@ import typer
 
 import hyst
 
-_HOW = "FILE|linear:VOLTS_PER_CODE,OFFSET,LOW,HIGH"
+_HOW = "FILE|linear:.."
 _LINEAR = "linear:"
 
 DriverOfInput = Annotated[
@@ -19,8 +19,8 @@ DriverOfInput = Annotated[
         "--driver",
         metavar=_HOW,
         show_default=False,
-        help="The input is in codes: its driver's table (columns code and volt), or scale, volts "
-        "of code 0, lowest and highest code.",
+        help="The input is in codes: its driver's table (columns code and volt), or "
+        "linear:VOLTS_PER_CODE,VOLTS_OF_0,LOW,HIGH.",
     ),
 ]
 DriverOfCommand = Annotated[
@@ -29,8 +29,17 @@ DriverOfCommand = Annotated[
         "--driver",
         metavar=_HOW,
         show_default="that of the model file, if it has one",
-        help="Give the command in codes too: the driver's table (columns code and volt), or scale, "
-        "volts of code 0, lowest and highest code.",
+        help="Give the command in codes too: the driver's table (columns code and volt), or "
+        "linear:VOLTS_PER_CODE,VOLTS_OF_0,LOW,HIGH.",
+    ),
+]
+DriverOfDrive = Annotated[
+    str,
+    typer.Option(
+        "--driver",
+        metavar=f"auto|none|{_HOW}",
+        help="Of C: step in codes too. auto: by the driver of the model file; or the driver's "
+        "table (columns code and volt), or linear:VOLTS_PER_CODE,VOLTS_OF_0,LOW,HIGH.",
     ),
 ]
 
@@ -88,6 +97,23 @@ def driver_for(text: str | None, about: hyst.ModelDescription) -> hyst.Driver | 
             "converts no units, so convert the table, or correct its header"
         )
     return driver
+
+
+def driver_or_word(text: str, about: hyst.ModelDescription) -> hyst.Driver | str:
+    """Give the driver that was typed for a model or an inverse, or the word auto or none.
+
+    Parameters
+    ----------
+    text
+        As typed.
+    about
+        Of what is exported.
+    """
+    driver = None if text in ("auto", "none") else driver_of(text)
+    if driver is None:
+        return text
+    unit = about.output_unit if about.is_inverse else about.input_unit
+    return replace(driver, unit=unit) if text.startswith(_LINEAR) else driver
 
 
 def range_of_codes(

@@ -123,7 +123,7 @@ def in_codes(
     >>> done = invert_trajectory(model, [0.0, 4.0, 2.5])
     >>> coded = in_codes(model, done, Driver.linear(0.25, 0.0, 0, 40))
     >>> coded.codes, coded.max_abs
-    (array([ 0, 12,  8]), 0.0)
+    (array([ 0, 12,  6]), 0.0)
     """
     table = driver or model.description.driver
     if table is None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from hyst.export.c.block import Model
     from hyst.export.c.drive_range import DriveRange
+    from hyst.operators import Driver
 
 _SHOWN = 6  # drives of a history
 
@@ -26,10 +27,12 @@ class Order:
     fmi: str
     binary: bool
     despite_verdict: bool
-    flat: bool
+    layout: str
+    shared_core: bool
     limits: tuple[float, float] | str
     rate_limit: float | None
     history: list[float] | None
+    driver: Driver | str = "auto"
 
     @property
     def drive(self) -> dict[str, Any]:

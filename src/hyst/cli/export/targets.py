@@ -9,6 +9,7 @@ from hyst.cli.export.c import c
 from hyst.cli.export.fmu import fmu
 from hyst.cli.export.mex import mex
 from hyst.cli.export.order import Done, Order
+from hyst.cli.export.rust import rust
 from hyst.cli.export.structured_text import structured_text
 
 
@@ -22,9 +23,10 @@ class Target:
 
 
 TARGETS = {
-    "c": Target(c, "for firmware", ("precision", "flat")),
+    "c": Target(c, "for firmware", ("precision", "layout", "shared_core", "driver")),
     "fmu": Target(fmu, "for simulation tools", ("fmi", "binary")),
     "mex": Target(mex, "for MATLAB and Octave"),
+    "rust": Target(rust, "a crate", ("precision",)),
     "st": Target(structured_text, "IEC 61131-3 for PLCs", ("precision",)),
 }
 

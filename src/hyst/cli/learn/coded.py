@@ -6,12 +6,11 @@ import numpy as np
 
 import hyst
 from hyst.cli.learn.replay import Replayed, Wish
-from hyst.compensation import CodedCommand, change_of_output
 
 
 def in_codes_of(
     driver: hyst.Driver | None, done: Replayed, model: hyst.Operator, wish: Wish
-) -> CodedCommand | None:
+) -> hyst.compensation.CodedCommand | None:
     """Give the command as codes; what is expected changes by what the model says of their volts.
 
     Parameters
@@ -32,6 +31,8 @@ def in_codes_of(
     volts = driver.volts(codes)
     before = list(wish.history or ())
     wanted, given = (np.concatenate([each, each]) if wish.periodic else each for each in (u, volts))
-    change = change_of_output(model, wanted, given, before)[-u.size :]
+    change = hyst.compensation.change_of_output(model, wanted, given, before)[-u.size :]
     off = float(np.abs(volts - u).max())
-    return CodedCommand(driver, codes, volts, done.learner.y_ref, done.expected + change, off)
+    return hyst.compensation.CodedCommand(
+        driver, codes, volts, done.learner.y_ref, done.expected + change, off
+    )

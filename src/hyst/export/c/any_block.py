@@ -16,6 +16,7 @@ from hyst.export.c.block import Block, Model, block_of, described
 from hyst.export.c.drive_block import limited_block
 from hyst.export.c.drive_options import DriveOptions, ends_of, limited
 from hyst.export.c.drive_range import DriveRange
+from hyst.export.c.driver_codes import with_codes
 from hyst.export.c.names import plain_text
 from hyst.export.c.numbers import Precision
 from hyst.export.c.start import after_history
@@ -58,7 +59,7 @@ def any_block(
     block = _block(model, precision, options, about)
     unit = about.output_unit if block.drive.side == "output" else about.input_unit
     block = replace(block, drive=replace(block.drive, unit=plain_text(unit)))
-    return after_history(block, options.history, precision)
+    return with_codes(after_history(block, options.history, precision), options.codes)
 
 
 def _block(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hyst import __version__
+from hyst.export.c import driver_codes
 from hyst.export.c.block import Block
 from hyst.export.c.drive import PERIOD, SAMPLES
 from hyst.export.c.names import plain_text
@@ -46,7 +47,6 @@ def places(
         "version": plain_text(__version__),
         "title": f"{plain_text(block.kind)} as C, {precision} precision",
         "precision": precision,
-        "core_prefix": "hyst_",
         "state_length": str(len(block.start)),
         "memory_length": str(length),
         "saved_bytes": str(12 + WORD_BYTES[precision] * (length + 1)),
@@ -57,11 +57,6 @@ def places(
         "fault_there": _fault(block, name, "state"),
         "fault_here": _fault(block, name, "&state"),
         "identity": f"0x{block.identity(precision):08x}",
-        "wrong_precision": "ifndef" if single else "ifdef",
-        "how_to_compile": "compile every file with -DHYST_SINGLE"
-        if single
-        else "compile without HYST_SINGLE",
-        "define": "-DHYST_SINGLE " if single else "",
         "output": block.output,
         "first": block.inputs[0],
         "arguments": ", ".join(f"hyst_real {each}" for each in block.inputs),
@@ -76,6 +71,7 @@ def places(
         "sample_time": _sample_time(block, name) + block.drive.defined(name),
         "answered": _answered(block, name),
         "start_declared": start_declared(block, name),
+        "codes_declared": driver_codes.declared(block, name),
         # What a refused sample leaves in an estimator's scratch area is of no use.
         "saved_number": "hyst_is_finite(state->memory[i]) ? state->memory[i] : HYST_REAL(0.0)"
         if block.is_estimator
@@ -92,18 +88,20 @@ def header(block: Block, places: dict[str, str]) -> str:
 def source(block: Block, places: dict[str, str], precision: Precision) -> str:
     """Give the source file of a ``block`` in a ``precision``, filled with ``places``."""
     uses_memory = "memory" in block.body
+    coded = () if block.codes is None else (driver_codes.HEADER,)
     more = {
         "includes": "".join(
-            f'#include "{each}"\n' for each in sorted({"hyst/finite.h", *block.headers})
+            f'#include "{each}"\n' for each in sorted({"hyst/finite.h", *block.headers, *coded})
         ),
-        "declarations": start_tables(block, precision) + block.head,
+        "declarations": start_tables(block, precision) + block.head + driver_codes.tables(block),
         "beginning": beginning(block, places["name"], precision),
         "memory": "    hyst_real *const memory = state->memory;\n" if uses_memory else "",
         "calls": indented(block.body.replace("@{NAME}", places["NAME"])),
         "signal": block.signal,
     }
     template = block.source_template or _template(block)
-    return filled(f"{template}.c", places | more) + filled("state.c", places)
+    text = filled(f"{template}.c", places | more) + filled("state.c", places)
+    return text + driver_codes.defined(block, places["name"])
 
 
 def selftest_source(block: Block, places: dict[str, str]) -> str:

@@ -12,6 +12,7 @@ from hyst.control.limited_drive.checked import Drive, as_drive
 from hyst.control.limited_drive.drive import LimitedDrive
 from hyst.errors import InputError, NotInvertibleError
 from hyst.export.c.drive_range import NO_RANGE
+from hyst.export.c.driver_codes import DriverCodes
 from hyst.operators import ModelDescription, Operator
 
 AUTO, NONE = "auto", "none"
@@ -32,11 +33,14 @@ class DriveOptions:
         The most the drive moves in a second; None for any.
     history
         What drove the actuator before the start; None for nothing.
+    codes
+        Of a driver, whose volts the limits then are; None for a drive in volts.
     """
 
     limits: Any = AUTO
     rate: float | None = None
     history: ArrayLike | None = None
+    codes: DriverCodes | None = None
 
     def __post_init__(self) -> None:
         limits = NONE if self.limits is None else self.limits
@@ -135,6 +139,13 @@ def ends_of(
     """
     if options.limits == NONE:
         return None, "none: as asked for"
+    ends, source = _ends_known(options, side, *told)
+    return (ends, source) if options.codes is None else options.codes.within(ends, source)
+
+
+def _ends_known(
+    options: DriveOptions, side: Drive, *told: ModelDescription
+) -> tuple[Limits | None, str]:
     if options.limits != AUTO:
         return options.limits, "as given"
     for about in told:

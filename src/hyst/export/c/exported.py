@@ -91,6 +91,8 @@ class Block:
         The drives the memory comes after.
     tested
         Lowest and highest input of the self-test; None for that of the record, or what passes all.
+    codes
+        The ``DriverCodes`` of a driver that is commanded in codes; None without one.
     """
 
     kind: str
@@ -123,6 +125,7 @@ class Block:
     before: tuple[Memory, float] | None = None
     history: Memory = ()
     tested: tuple[float, float] | None = None
+    codes: Any = None
 
     @property
     def limits(self) -> tuple[float, float] | None:

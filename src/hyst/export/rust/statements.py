@@ -11,6 +11,7 @@ from hyst.export.rust.places import Places
 from hyst.export.translate.facts import Slot
 from hyst.export.translate.pointers import split
 from hyst.export.translate.program import (
+    VOID,
     AddressOf,
     Array,
     Assign,
@@ -64,7 +65,7 @@ class Statements:
             case Assign(place, value):
                 yield self._assign(place, value)
             case Evaluate(call):
-                discarded = "" if call.type == self._void() else "let _ = "
+                discarded = "" if call.type == VOID else "let _ = "
                 yield f"{discarded}{write.value(call)};"
             case If(condition, then, other):
                 yield f"if {write.condition(condition)} {{"
@@ -90,14 +91,13 @@ class Statements:
                 yield from self.all(inner)
                 yield "}"
 
-    def _void(self) -> Any:
-        from hyst.export.translate.program import VOID
-
-        return VOID
-
     def _assign(self, place: Any, value: Any) -> str:
         write = self.expressions
-        if isinstance(place, Member) and isinstance(place.type, Pointer):
+        if (
+            isinstance(place, Member)
+            and isinstance(place.type, Pointer)
+            and isinstance(place.of.type, Named)
+        ):
             slot = (place.of.type.name, place.name)
             given = write.given(slot, place.type, value)
             return f"{self._inside(place.of)}.{rust_name(place.name)} = {given};"
@@ -109,7 +109,9 @@ class Statements:
                 of, Decay
             ):
                 if isinstance(of.type.to, Scalar):
-                    return f"slices::set_cell({write.slice(of, True)}, {write.value(index)}, {text});"
+                    return (
+                        f"slices::set_cell({write.slice(of, True)}, {write.value(index)}, {text});"
+                    )
                 return f"*{write.whole(place)} = {text};"
             case Element(of=of, index=index):
                 array = of.of if isinstance(of, Decay) else of

@@ -39,7 +39,20 @@ class Kept:
     repeat: bool
 
     def require_points(self, count: int, dt: float) -> None:
-        """Refuse more points than the controller has."""
+        """Refuse more points than the controller has.
+
+        Parameters
+        ----------
+        count
+            Of the table.
+        dt
+            From point to point, s.
+
+        Raises
+        ------
+        InputError
+            If there are more.
+        """
         if self.points is None or count <= self.points:
             return
         steps = count if self.repeat else count - 1
@@ -50,7 +63,22 @@ class Kept:
         )
 
     def within(self, u: Array, dt: float, unit: str) -> Array:
-        """Give a wave within the limits; one that leaves them by more than rounding is refused."""
+        """Give a wave within the limits.
+
+        Parameters
+        ----------
+        u
+            Drive, shape (N,).
+        dt
+            From point to point, s.
+        unit
+            Of the drive, with a blank before it.
+
+        Raises
+        ------
+        InputError
+            If it leaves them by more than rounding; the first point is named.
+        """
         low, high = self.limits
         slack = _ROUNDING * (high - low)
         wrong = (u < low - slack) | (u > high + slack)
@@ -64,7 +92,22 @@ class Kept:
         return np.clip(u, low, high)
 
     def require_slew(self, u: Array, dt: float, unit: str) -> None:
-        """Refuse a wave that is too fast, or that does not close where it repeats."""
+        """Refuse a wave that is too fast, or that does not close where it repeats.
+
+        Parameters
+        ----------
+        u
+            Drive, shape (N,).
+        dt
+            From point to point, s.
+        unit
+            Of the drive, with a blank before it.
+
+        Raises
+        ------
+        InputError
+            If it is; the first point is named.
+        """
         steps = np.abs(np.diff(u))
         if self.slew is not None:
             wrong = steps > self.slew * dt * (1.0 + _ROUNDING)

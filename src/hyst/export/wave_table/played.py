@@ -39,7 +39,15 @@ class HeldError:
 
     @classmethod
     def of(cls, given: Array, wanted: Array, repeat: bool) -> HeldError:
-        """Give the error of points held against a signal that is wanted at the same points."""
+        """Give the error of points held against a signal that is wanted at the same points.
+
+        Parameters
+        ----------
+        given, wanted
+            At the points, shape (N,).
+        repeat
+            Whether the first point follows the last.
+        """
         at_once = given - wanted
         later = given - np.append(wanted[1:], wanted[0] if repeat else wanted[-1])
         squares = (at_once**2 + at_once * later + later**2) / 3.0  # mean along a straight line

@@ -14,7 +14,7 @@ from hyst.checks.numbers import as_number, as_positive, as_sample_time, whole_nu
 from hyst.errors import InputError
 from hyst.export.wave_table.kept import Kept
 from hyst.export.wave_table.played import HeldError, command_of, output_of
-from hyst.export.wave_table.resampling import resampled
+from hyst.export.wave_table.resampling import Resampled, resampled
 from hyst.operators import Driver, ModelDescription, Operator
 from hyst.operators.verdict import refuse_if_unfit
 
@@ -165,8 +165,7 @@ def waveform(
     >>> table.u, table.codes
     (array([ 0.,  2.,  4.,  6.,  8., 10.]), array([  0,  51, 102, 153, 204, 255]))
     """
-    given = one_record(signal, "signal")
-    step = as_sample_time(dt)
+    given, step = one_record(signal, "signal"), as_sample_time(dt)
     wanted = step
     if controller_rate is not None:
         wanted = 1.0 / as_positive(controller_rate, "controller_rate", "points per second")
@@ -177,47 +176,62 @@ def waveform(
     if bits is not None:
         table = _even(bits, ends, driver, about.input_unit)
     kept = Kept(ends, _slew(slew), _points(points), repeat)
-    if model is not None and model.dt is not None:
-        model.require_sample_time(wanted, "the controller")
-    name, of = (
-        ("the command", about.input_unit)
-        if model is None
-        else ("the wanted output", about.output_unit)
-    )
-    even = resampled(given, step, wanted, repeat, name, of)
+    even = _at_points(given, (step, wanted), repeat, model)
     kept.require_points(even.values.size, wanted)
-    before = None if history is None else one_record(history, "history").tolist()
+    before = _history(history, model)
+    u = even.values
+    if model is not None:
+        u = command_of(model, u, ends, repeat, before, despite_verdict)
+    found = _checked(u, wanted, kept, table, about)
+    found = replace(found, sentences=(even.sentence, *_notes(given, found, kept)))
+    return found if model is None else _predicted(found, model, even.values, repeat, before)
+
+
+def _at_points(
+    given: Array, times: tuple[float, float], repeat: bool, model: Operator | None
+) -> Resampled:
+    """Give a signal at the controller's sample time, which must be the model's if it has one."""
     if model is None:
-        if before is not None:
-            raise InputError("history is of a model's memory, and there is no model; leave it out")
-        u = even.values
-    else:
-        u = command_of(model, even.values, ends, repeat, before, despite_verdict)
-    behind = f" {about.input_unit}" if about.input_unit else ""
-    u = kept.within(u, wanted, behind)
-    kept.require_slew(u, wanted, behind)
-    codes = None if table is None else table.codes(u, ends)
+        return resampled(given, *times, repeat, "the command", "")
+    if model.dt is not None:
+        model.require_sample_time(times[1], "the controller")
+    return resampled(given, *times, repeat, "the wanted output", model.description.output_unit)
+
+
+def _checked(
+    u: Array, dt: float, kept: Kept, table: Driver | None, about: ModelDescription
+) -> Waveform:
+    """Give the table of a drive that keeps what it must."""
+    unit = f" {about.input_unit}" if about.input_unit else ""
+    u = kept.within(u, dt, unit)
+    kept.require_slew(u, dt, unit)
+    codes = None if table is None else table.codes(u, kept.limits)
     played = u if codes is None or table is None else table.volts(codes)
-    found = Waveform(
-        u,
-        codes,
-        played,
-        wanted,
-        table,
-        ends,
-        HeldError.of(played, u, repeat),
-        sentences=(even.sentence, *_notes(given, u, played, wanted, kept)),
-    )
-    if model is None:
-        return found
-    first, steady = output_of(model, played, repeat, before)
+    off = HeldError.of(played, u, kept.repeat)
+    return Waveform(u, codes, played, dt, table, kept.limits, off, ())
+
+
+def _predicted(
+    found: Waveform, model: Operator, y_ref: Array, repeat: bool, history: list[float] | None
+) -> Waveform:
+    """Give a table with the output that the model predicts of what is played."""
+    first, steady = output_of(model, found.played, repeat, history)
     return replace(
         found,
-        y_ref=even.values,
+        y_ref=y_ref,
         y_predicted=steady,
-        error=_error(steady, even.values, repeat, model.dt),
-        first_error=_error(first, even.values, repeat, model.dt),
+        error=_error(steady, y_ref, repeat, model.dt),
+        first_error=_error(first, y_ref, repeat, model.dt),
     )
+
+
+def _history(history: Sequence[float] | None, model: Operator | None) -> list[float] | None:
+    if history is None:
+        return None
+    if model is None:
+        raise InputError("history is of a model's memory, and there is no model; leave it out")
+    before: list[float] = one_record(history, "history").tolist()
+    return before
 
 
 def _error(y: Array, y_ref: Array, repeat: bool, dt: float | None) -> HeldError:
@@ -264,9 +278,9 @@ def _points(points: int | None) -> int | None:
     return None if points is None else whole_number(points, "points", 1)
 
 
-def _notes(given: Array, u: Array, played: Array, dt: float, kept: Kept) -> tuple[str, ...]:
+def _notes(given: Array, found: Waveform, kept: Kept) -> tuple[str, ...]:
     """Say what a user would want to know and no check refuses."""
-    told = []
+    told, u = [], found.u
     # A rest on both sides of the end is one rest.
     moves = given.size > 2 and given[1] != given[0] and given[-2] != given[-1]
     if kept.repeat and moves and given[-1] == given[0]:
@@ -280,7 +294,7 @@ def _notes(given: Array, u: Array, played: Array, dt: float, kept: Kept) -> tupl
             "wave that repeats to have that checked"
         )
     if kept.slew is not None:
-        fastest = float(np.abs(np.diff(played)).max(initial=0.0)) / dt
+        fastest = float(np.abs(np.diff(found.played)).max(initial=0.0)) / found.dt
         if fastest > kept.slew * (1.0 + 1e-9):
             told.append(
                 f"the drive wanted keeps the slew, its codes move by up to {fastest:.6g} per "

@@ -62,7 +62,7 @@ def in_volts(record: Record, driver: Driver | None, name: str = _DRIVE) -> Recor
 
 
 def all_in_volts(records: Iterable[Record], driver: Driver | None) -> tuple[Record, ...]:
-    """Give records in ``in_volts`` one by one."""
+    """Give ``records`` as ``in_volts`` gives each with a ``driver``."""
     return tuple(in_volts(each, driver) for each in records)
 
 

@@ -215,7 +215,13 @@ class Driver:
     def quantized(
         self, volts: ArrayLike, limits: tuple[float, float] | None = None
     ) -> NDArray[np.float64]:
-        """Give the volts that the nearest codes give; parameters and refusals are of ``codes``."""
+        """Give the volts of the nearest codes.
+
+        Parameters
+        ----------
+        volts, limits
+            As of ``codes``, which also says what is refused.
+        """
         return self.volts(self.codes(volts, limits))
 
     def codes_within(self, low: float, high: float, *, single: bool = False) -> tuple[int, int]:

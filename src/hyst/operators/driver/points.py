@@ -33,7 +33,15 @@ class Points:
 
     @classmethod
     def of(cls, codes: tuple[int, ...], volts: tuple[float, ...], single: bool = False) -> Points:
-        """Give the points with slopes formed in double, and then rounded with the volts."""
+        """Give the points with slopes formed in double, then rounded with the volts.
+
+        Parameters
+        ----------
+        codes, volts
+            Of a table that was checked.
+        single
+            Whether they are kept in single precision.
+        """
         whole, real = np.array(codes, dtype=np.int64), np.array(volts)
         slopes = np.diff(real) / np.diff(whole).astype(np.float64)
         kind = np.float32 if single else np.float64
@@ -52,7 +60,7 @@ class Points:
         return self._in_piece(piece, inside - self.codes[piece])
 
     def codes_of(self, volts: Reals, lowest: int, highest: int) -> Codes:
-        """Give the nearest codes from ``lowest`` to ``highest``, of two as near the lower one."""
+        """Give codes nearest to ``volts``, ``lowest`` to ``highest``, of two the lower one."""
         volts = np.asarray(volts, dtype=self.volts.dtype)
         piece = self._piece_of(volts)
         first: Codes = self.codes[piece]
