@@ -16,6 +16,7 @@ from hyst.export.structured_text.forms import (
     counted,
     in_parentheses,
     may_always_be_evaluated,
+    number_text,
 )
 from hyst.export.structured_text.numbers import constant, real_text
 from hyst.export.structured_text.usage import (
@@ -50,7 +51,6 @@ from hyst.export.translate.program import (
     Number,
     Offset,
     Pointer,
-    Scalar,
     Unary,
 )
 from hyst.export.translate.refusal import refused
@@ -135,13 +135,7 @@ class Expressions(Writer):
 
     def number(self, of: Number) -> str:
         """Give a constant."""
-        if isinstance(of.type, Scalar) and of.type.is_real:
-            return real_text(float(of.value), self.plan.precision)
-        if of.type == UNSIGNED:
-            return f"DWORD#16#{of.value:08X}"
-        if of.type not in WHOLE or of.value > 2**31 - 1:
-            raise refused(f"the number {of.value}")
-        return str(of.value)
+        return number_text(of, self.plan.precision)
 
     def _constant(self, name: str) -> str:
         table = self.plan.program.tables[name]
@@ -340,6 +334,9 @@ class Expressions(Writer):
                 if role.may_be_null:
                     there = self._whether_there(plain(given))
                     values.append(f"{names.of(f'{parameter.name}_given')} := {there}")
+                is_const = isinstance(parameter.type, Pointer) and parameter.type.is_const
+                if isinstance(plain(given), Conditional) and not is_const:
+                    raise refused(f"a choice of what {of.function} changes")  # a copy here
                 references.append(f"{name} := {self._reference(given)}")
         if of.function in self.plan.usage.numbers:
             references.append("numbers := numbers")

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from hyst.export.structured_text.numbers import real_text
 from hyst.export.structured_text.usage import nodes_in
 from hyst.export.translate.program import (
     INT,
     SIZE,
+    UNSIGNED,
     Binary,
     Call,
     Conditional,
@@ -15,10 +17,22 @@ from hyst.export.translate.program import (
     Element,
     Number,
     Pointer,
+    Scalar,
 )
 from hyst.export.translate.refusal import refused
 
 WHOLE = (INT, SIZE)
+
+
+def number_text(of: Number, precision: str) -> str:
+    """Give a constant."""
+    if isinstance(of.type, Scalar) and of.type.is_real:
+        return real_text(float(of.value), precision)
+    if of.type == UNSIGNED:
+        return f"DWORD#16#{of.value:08X}"
+    if of.type not in WHOLE or of.value > 2**31 - 1:
+        raise refused(f"the number {of.value}")
+    return str(of.value)
 
 
 def bare(text: str) -> str:

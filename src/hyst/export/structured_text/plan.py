@@ -141,7 +141,7 @@ class Plan:
         if isinstance(kind, Named):
             return self._global("_type", kind.name)
         if isinstance(kind, Pointer):
-            if isinstance(kind.to, Named):
+            if isinstance(kind.to, Named) and kind.is_const:
                 return self.type_text(kind.to)
             if isinstance(kind.to, Scalar) and kind.to.is_real:
                 return "DINT"

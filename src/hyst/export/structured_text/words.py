@@ -14,10 +14,10 @@ _KEYWORDS = """
     end_repeat end_resource end_step end_struct end_transition end_type end_union end_var
     end_while en eno exit extends f_edge false final for from function function_block get global
     goto if implements initial_step interface internal interval jmp method mod namespace
-    non_retain not null of on or overlap override pointer priority private program property
-    protected public r_edge read_only read_write ref reference repeat resource retain return set
-    single step struct super task then this to transition true type union until using var
-    var_access var_config var_external var_global var_in_out var_inst var_input var_output
+    non_retain not null of on or overlap override persistent pointer priority private program
+    property protected public r_edge read_only read_write ref reference repeat resource retain
+    return set single step struct super task then this to transition true type union until using
+    var var_access var_config var_external var_global var_in_out var_inst var_input var_output
     var_stat var_temp volatile while with xor bit bool byte char date date_and_time dint dt
     dword ldate ldt lint lreal ltime ltod lword real sint string tod time time_of_day udint uint
     ulint usint wchar word wstring int
