@@ -56,7 +56,7 @@ class Numbers:
     _places: dict[tuple[str, str], int] = field(default_factory=dict)
 
     def place(self, function: str, name: str, count: int) -> int:
-        """Give where the array of a function begins; no function calls itself, so one place does."""
+        """Give where the array of a function begins; one does, for no function calls itself."""
         key = (function, name)
         if key not in self._places:
             self._places[key] = len(self.starts)
