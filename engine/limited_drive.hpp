@@ -19,9 +19,11 @@ public:
     // kept; or that of an inverse whose last stage is a bank of plays and whose others have no memory.
     enum class Way : std::size_t { model, forward, bank };
 
-    LimitedDrive(Way way, hyst_chain chain, hyst_chain forward, hyst_bank_limits limits)
-        : way_(way), limits_(limits), inverse_{chain, forward, limits.drive} {
-        if (way != Way::bank) return;
+    LimitedDrive(Way way, hyst_chain chain, hyst_chain forward, hyst_drive_limits limits)
+        : way_(way), inverse_{chain, forward, limits} {}
+
+    LimitedDrive(hyst_chain chain, hyst_bank_limits limits)
+        : way_(Way::bank), ends_(limits), inverse_{chain, {}, {limits.low, limits.high, 0}} {
         if (chain.count == 0 || chain.stage[chain.count - 1].kind->step != hyst_pi_kind.step) {
             throw std::invalid_argument("the last stage is no bank of plays");
         }
@@ -44,7 +46,7 @@ public:
     // One sample of anything; before: room for a state.
     hyst_real step(hyst_real *state, hyst_real *before, hyst_limited_guard *guard, hyst_real x) const {
         if (way_ == Way::model) return step_model(state, guard, x);
-        if (way_ == Way::bank) return step_bank(state, before, guard, x);
+        if (way_ == Way::bank) return step_bank(state, guard, x);
         return hyst_limited_inverse_step(&inverse_, state, before, guard, &x);
     }
 
@@ -72,13 +74,12 @@ private:
             return guard->guard.y_last;
         }
         const hyst_real drive =
-            hyst_limited_drive(&limits_.drive, state + (state_length() - 1), u);
+            hyst_limited_drive(&inverse_.limits, state + (state_length() - 1), u);
         if (drive < u || drive > u) guard->limited = 1;
         return hyst_guarded_step(&inverse_.inverse, state, &guard->guard, drive);
     }
 
-    hyst_real step_bank(hyst_real *state, hyst_real *before, hyst_limited_guard *guard,
-                        hyst_real v) const {
+    hyst_real step_bank(hyst_real *state, hyst_limited_guard *guard, hyst_real v) const {
         if (!hyst_is_finite(v)) {
             guard->guard.fault = 1;
             return guard->guard.y_last;
@@ -90,11 +91,11 @@ private:
             return guard->guard.y_last = state[bank_->count];
         }
         return guard->guard.y_last =
-                   hyst_limited_bank_step(bank_, &limits_, state, before, &guard->limited, inner);
+                   hyst_limited_bank_step(bank_, &ends_, state, &guard->limited, inner);
     }
 
     Way way_;
-    hyst_bank_limits limits_;
+    hyst_bank_limits ends_{};
     hyst_limited_inverse inverse_;
     hyst_chain front_{};
     const hyst_pi *bank_ = nullptr;

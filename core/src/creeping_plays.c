@@ -1,8 +1,8 @@
 /* Plays whose outputs creep, one sample at a time. */
 #include "hyst/creeping_plays.h"
 
+#include "hyst/bank.h"
 #include "hyst/finite.h"
-#include "hyst/play.h"
 
 /* The sum of what all lags answer. */
 static hyst_real crept_of_plays(const hyst_creeping_plays *model, const hyst_real *lag)
@@ -14,11 +14,21 @@ static hyst_real crept_of_plays(const hyst_creeping_plays *model, const hyst_rea
     return crept;
 }
 
-/* What a bank will answer, its plays left where they are. */
+/* What a bank will answer, its plays left where they are; summed in the bank's order. */
 static hyst_real answer_of_plays(const hyst_pi *pi, const hyst_real *z, hyst_real u)
 {
+    const size_t fours = pi->count >= HYST_WIDE_BANK ? pi->count - pi->count % 4u : 0u;
     hyst_real y = pi->p0 * u;
-    for (size_t i = 0; i < pi->count; ++i) {
+    size_t i = 0;
+    if (fours > 0u) {
+        const hyst_real zero = HYST_REAL(0.0);
+        hyst_real sum[4] = {zero, zero, zero, zero};
+        for (; i < fours; ++i) {
+            sum[i % 4u] += pi->p[i] * hyst_play(u, pi->r[i], z[i]);
+        }
+        y += (sum[0] + sum[2]) + (sum[1] + sum[3]);
+    }
+    for (; i < pi->count; ++i) {
         y += pi->p[i] * hyst_play(u, pi->r[i], z[i]);
     }
     return y;

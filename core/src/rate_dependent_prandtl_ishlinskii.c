@@ -1,7 +1,7 @@
 /* Rate-dependent Prandtl-Ishlinskii operator, one sample at a time. */
 #include "hyst/rate_dependent_prandtl_ishlinskii.h"
 
-#include "hyst/play.h"
+#include "hyst/bank.h"
 
 hyst_real hyst_widening(const hyst_rate_dependent_pi *model, hyst_real x)
 {
@@ -23,15 +23,7 @@ hyst_real hyst_rate_dependent_pi_step(const hyst_rate_dependent_pi *model, hyst_
     const hyst_real widening = hyst_widening(model, change < HYST_REAL(0.0) ? -change : change);
     const hyst_real low = u - widening;
     const hyst_real high = u + widening;
-    const size_t count = pi->count;
-    const hyst_real *p = pi->p;
-    const hyst_real *r = pi->r;
-    hyst_real y = pi->p0 * u;
-    for (size_t i = 0; i < count; ++i) {
-        const hyst_real moved = hyst_clamp(low - r[i], high + r[i], state[i]);
-        state[i] = moved;
-        y += p[i] * moved;
-    }
+    const hyst_real y = hyst_bank_step(pi, state, low, high, pi->p0 * u);
     last[0] = u;
     last[1] = HYST_REAL(1.0);
     return y;

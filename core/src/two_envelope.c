@@ -1,8 +1,8 @@
 /* Generalized plays between two envelopes, one sample at a time. */
 #include "hyst/two_envelope.h"
 
+#include "hyst/bank.h"
 #include "hyst/finite.h"
-#include "hyst/play.h"
 
 /* Equal envelopes give their value itself. */
 static hyst_real mean_of_envelopes(hyst_real up, hyst_real down)
@@ -12,18 +12,10 @@ static hyst_real mean_of_envelopes(hyst_real up, hyst_real down)
 
 static hyst_real two_envelope_forward(const hyst_two_envelope *model, hyst_real *z, hyst_real u)
 {
-    const size_t count = model->count;
-    const hyst_real *p = model->p;
-    const hyst_real *r = model->r;
     const hyst_real up = hyst_dead_zone_step(&model->up, u);
     const hyst_real down = hyst_dead_zone_step(&model->down, u);
-    hyst_real y = model->p0 * mean_of_envelopes(up, down);
-    for (size_t i = 0; i < count; ++i) {
-        const hyst_real moved = hyst_clamp(up - r[i], down + r[i], z[i]);
-        z[i] = moved;
-        y += p[i] * moved;
-    }
-    return y;
+    const hyst_pi plays = {model->count, model->p0, model->p, model->r};
+    return hyst_bank_step(&plays, z, up, down, plays.p0 * mean_of_envelopes(up, down));
 }
 
 /* Where a play goes on the way up from the last u, or on the way down. */

@@ -35,6 +35,62 @@ static void thresholds_may_repeat_and_come_in_any_order(void)
     CHECK_EQUAL(hyst_pi_step(&pi, z, R(2.0)), R(11.0)); /* 2 3 + 2 + 3: both wide plays rest */
 }
 
+/* Plays of threshold 0 pass the input on, so at u = 1 the output is the sum of the weights. */
+static hyst_real sum_of_weights(size_t count, hyst_real p0, const hyst_real *p)
+{
+    const hyst_real r[19] = {R(0.0)};
+    const hyst_pi pi = {count, p0, p, r};
+    hyst_real z[19] = {R(0.0)};
+    return hyst_pi_step(&pi, z, R(1.0));
+}
+
+/* huge + 1 and huge - 1 round to huge, huge + 4 is a number; so a sum tells its order. */
+static void plays_are_summed_in_their_order(void)
+{
+    const hyst_real huge = R(4.0) / REAL_EPSILON;
+    hyst_real p[19];
+    for (size_t i = 0; i < COUNT(p); ++i) {
+        p[i] = R(1.0);
+    }
+    CHECK_EQUAL(sum_of_weights(15, huge, p), huge);           /* one by one */
+    CHECK_EQUAL(sum_of_weights(16, huge, p), huge + R(16.0)); /* 4 in each sum, then huge + 16 */
+    CHECK_EQUAL(sum_of_weights(19, huge, p), huge + R(16.0)); /* the last three one by one */
+    for (size_t i = 0; i < COUNT(p); ++i) {
+        p[i] = R(0.0);
+    }
+    p[0] = huge, p[1] = R(1.0), p[2] = -huge, p[3] = R(1.0); /* (huge - huge) + (1 + 1) */
+    CHECK_EQUAL(sum_of_weights(16, R(0.0), p), R(2.0));
+    p[0] = huge, p[1] = R(0.0), p[2] = R(0.0), p[3] = R(0.0);
+    p[4] = R(1.0), p[8] = -huge, p[12] = R(1.0); /* ((huge + 1) - huge) + 1, all in s_0 */
+    CHECK_EQUAL(sum_of_weights(16, R(0.0), p), R(1.0));
+    p[16] = huge, p[17] = R(1.0), p[18] = -huge; /* ((1 + huge) + 1) - huge */
+    CHECK_EQUAL(sum_of_weights(19, R(0.0), p), R(0.0));
+}
+
+/* Every play of a wide bank, against a bank of that play alone. */
+static void wide_banks_move_every_play(void)
+{
+    hyst_real p[19], r[19], z[19], alone[19];
+    for (size_t i = 0; i < COUNT(p); ++i) {
+        p[i] = R(0.0);
+        r[i] = R(0.25) * (hyst_real)i;
+        z[i] = alone[i] = R(0.0);
+    }
+    const hyst_pi wide = {COUNT(p), R(0.5), p, r};
+    hyst_real u[200];
+    fill_with_noise(u, COUNT(u), R(6.0));
+    for (size_t k = 0; k < COUNT(u); ++k) {
+        p[k % COUNT(p)] = R(1.0);
+        const hyst_real y = hyst_pi_step(&wide, z, u[k]);
+        p[k % COUNT(p)] = R(0.0);
+        for (size_t i = 0; i < COUNT(p); ++i) {
+            (void)hyst_play_step(r[i], &alone[i], u[k]);
+        }
+        CHECK_SAME_BITS(z, alone, COUNT(z));
+        CHECK_EQUAL(y, R(0.5) * u[k] + alone[k % COUNT(p)]);
+    }
+}
+
 /* The example of S1 sec. 5.2 with its inverse by S1 eqs. 7-8, calculated here. The expected digits
  * are those the equations give from the printed p; the paper's own last two weights and last
  * threshold come from unrounded p. */
@@ -97,6 +153,8 @@ int main(void)
     follows_hand_calculation();
     no_plays_leave_the_linear_part();
     thresholds_may_repeat_and_come_in_any_order();
+    plays_are_summed_in_their_order();
+    wide_banks_move_every_play();
     inverse_gives_the_input_back();
     return check_result();
 }

@@ -3,6 +3,7 @@
 #include "limited_drive_binding.hpp"
 
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/vector.h>
 
 #include <stdexcept>
 #include <utility>
@@ -23,12 +24,9 @@ void demand(bool holds, const char *message) {
     if (!holds) throw std::invalid_argument(message);
 }
 
-LimitedDrive made(std::size_t way, const Chain &chain, const Chain &forward, double low, double high,
-                  double change, double v_low, double v_high) {
-    demand(way <= 2, "there is no such way");
-    demand(low <= high && change >= 0.0 && v_low <= v_high, "the limits cannot be used");
-    return {static_cast<LimitedDrive::Way>(way), chain.view(), forward.view(),
-            {{low, high, change}, v_low, v_high}};
+hyst_bank_end end_of(std::size_t moved, const std::vector<double> &numbers) {
+    demand(numbers.size() == 4, "an end of a bank has four numbers");
+    return {moved, numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
 // Index of the first sample that could not be answered, or -1; and how many were held. y may be x.
@@ -88,14 +86,28 @@ private:
 void bind_limited_drive(nb::module_ &module) {
     nb::class_<LimitedDrive>(module, "LimitedDrive")
         .def("__init__",
-             [](LimitedDrive *self, std::size_t way, const Chain &chain, const Chain &forward,
-                double low, double high, double change, double v_low, double v_high) {
-                 new (self) LimitedDrive(
-                     made(way, chain, forward, low, high, change, v_low, v_high));
+             [](LimitedDrive *self, bool is_inverse, const Chain &chain, const Chain &forward,
+                double low, double high, double change) {
+                 demand(low <= high && change >= 0.0, "the limits cannot be used");
+                 const auto way = is_inverse ? LimitedDrive::Way::forward : LimitedDrive::Way::model;
+                 new (self) LimitedDrive(way, chain.view(), forward.view(), {low, high, change});
              },
-             nb::arg("way"), nb::arg("chain"), nb::arg("forward"), nb::arg("low"),
-             nb::arg("high"), nb::arg("change"), nb::arg("v_low"), nb::arg("v_high"),
-             nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>())
+             nb::arg("is_inverse"), nb::arg("chain"), nb::arg("forward"), nb::arg("low"),
+             nb::arg("high"), nb::arg("change"), nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>())
+        .def("__init__",
+             [](LimitedDrive *self, const Chain &chain, double low, double high,
+                std::size_t moved_down, const std::vector<double> &down, std::size_t moved_up,
+                const std::vector<double> &up) {
+                 demand(low <= high, "the limits cannot be used");
+                 const hyst_chain view = chain.view();
+                 demand(moved_down < hyst_chain_state_length(&view) + 1 &&
+                            moved_up < hyst_chain_state_length(&view) + 1,
+                        "more plays move than there are");
+                 new (self) LimitedDrive(
+                     view, {low, high, end_of(moved_down, down), end_of(moved_up, up)});
+             },
+             nb::arg("chain"), nb::arg("low"), nb::arg("high"), nb::arg("moved_down"),
+             nb::arg("down"), nb::arg("moved_up"), nb::arg("up"), nb::keep_alive<1, 2>())
         .def_prop_ro("state_length", &LimitedDrive::state_length)
         .def("run", &run, nb::arg("state").noconvert(), nb::arg("x").noconvert(),
              nb::arg("y").noconvert())

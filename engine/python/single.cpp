@@ -63,10 +63,21 @@ public:
                 limited_.inverse.limits = {limits.number("low"), limits.number("high"),
                                            limits.number("change")};
                 forward = limits.choice("forward");
-                if (limits.has_choice("way")) way_ = static_cast<Way>(limits.choice("way"));
-                if (way_ == Way::bank) reach_ = {limits.number("v_low"), limits.number("v_high")};
+                is_model_ = limits.has_choice("way") && limits.choice("way") == 0;
                 length += 1;
                 is_limited_ = true;
+            } else if (name == "bank_limits") {
+                const hyst::kinds::Constants of = rounded(each);
+                const auto end = [&](const std::string &side) {
+                    const auto number = [&](const char *what) {
+                        return of.number((what + side).c_str());
+                    };
+                    return hyst_bank_end{of.choice(("moved_" + side).c_str()), number("slope_"),
+                                         number("constant_"), number("from_"), number("least_")};
+                };
+                ends_ = {of.number("low"), of.number("high"), end("low"), end("high")};
+                length += 1;
+                is_limited_ = is_bank_ = true;
             } else if (name == "anti_windup") {
                 controls_.push_back(rounded(each));
                 limited_.w = controls_.back().table("w");
@@ -142,10 +153,12 @@ private:
         before_.resize(state_.size());
         limited_guard_.guard.y_last = state_.back();
         if (has_two_inputs_) return;
-        const hyst_drive_limits &limits = limited_.inverse.limits;
-        drive_ = std::make_unique<hyst::LimitedDrive>(
-            way_, limited_.inverse.inverse, limited_.inverse.forward,
-            hyst_bank_limits{limits, reach_.first, reach_.second});
+        using Way = hyst::LimitedDrive::Way;
+        const hyst_limited_inverse &of = limited_.inverse;
+        drive_ = is_bank_
+                     ? std::make_unique<hyst::LimitedDrive>(of.inverse, ends_)
+                     : std::make_unique<hyst::LimitedDrive>(is_model_ ? Way::model : Way::forward,
+                                                            of.inverse, of.forward, of.limits);
         limited_guard_.guard.y_last = drive_->start(state_.data());
     }
 
@@ -205,9 +218,8 @@ private:
     hyst_limited_guard limited_guard_{};
     std::vector<float> before_;
     float v_ = 0.0f, excess_ = 0.0f;
-    using Way = hyst::LimitedDrive::Way;
-    Way way_ = Way::forward;
-    std::pair<float, float> reach_{};
+    bool is_bank_ = false, is_model_ = false;
+    hyst_bank_limits ends_{};
     std::unique_ptr<hyst::LimitedDrive> drive_;
 };
 

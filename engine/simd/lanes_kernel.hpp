@@ -1,9 +1,10 @@
 // kWidth records side by side, one in each lane, through the same bank of plays.
 //
 // Invariant: every lane does the operations of hyst_pi_step (or its rate-dependent sibling) in the
-// same order, none of them contracted, so z and y get the core's bits.
+// order of hyst/bank.h, none of them contracted, so z and y get the core's bits.
 #pragma once
 
+#include "hyst/bank.h"
 #include "pack.hpp"
 #include "widening_kernel.hpp"
 
@@ -38,10 +39,11 @@ struct RateDependentThreshold {
     Pack high(std::size_t t, const Pack *) const { return high_[t]; }
 };
 
-// `together` plays from the i-th on, through kWidth samples of all lanes.
-template <std::size_t together, class Threshold>
+// `together` plays from the i-th on, through kWidth samples of all lanes. Their products are added to
+// sums that lie `apart` packs apart, the first of them at `sum`: all to one where that is 0.
+template <std::size_t together, std::size_t apart, class Threshold>
 inline void pass_plays(const hyst_pi &pi, std::size_t i, const Threshold &threshold, const Pack *u,
-                       Pack *y, double *z) {
+                       Pack *sum, double *z) {
     Pack r[together], p[together], memory[together];
 #pragma GCC unroll 2
     for (std::size_t a = 0; a < together; ++a) {
@@ -55,11 +57,25 @@ inline void pass_plays(const hyst_pi &pi, std::size_t i, const Threshold &thresh
 #pragma GCC unroll 2
         for (std::size_t a = 0; a < together; ++a) {
             memory[a] = clamp(minus(low, r[a]), plus(high, r[a]), memory[a]);
-            y[t] += p[a] * memory[a];
+            sum[a * apart + t] += p[a] * memory[a];
         }
     }
 #pragma GCC unroll 2
     for (std::size_t a = 0; a < together; ++a) store(z + (i + a) * kWidth, memory[a]);
+}
+
+// What the first `fours` plays of a wide bank add to y: two of their four sums at a time, or they would
+// not stay in registers. A function of its own, or narrow banks would have fewer of them.
+template <class Threshold>
+[[gnu::noinline]] void add_fours(const hyst_pi &pi, std::size_t fours, const Threshold &threshold,
+                                 const Pack *u, Pack *y, double *z) {
+    Pack s01[2 * kWidth] = {}, s23[2 * kWidth] = {};
+    for (std::size_t i = 0; i < fours; i += 4) pass_plays<2, kWidth>(pi, i, threshold, u, s01, z);
+    for (std::size_t i = 2; i < fours; i += 4) pass_plays<2, kWidth>(pi, i, threshold, u, s23, z);
+#pragma GCC unroll 8
+    for (std::size_t t = 0; t < kWidth; ++t) {
+        y[t] += (s01[t] + s23[t]) + (s01[kWidth + t] + s23[kWidth + t]);
+    }
 }
 
 // kWidth samples of all lanes. u: in time order; y: out. z: count packs, one for each play.
@@ -69,10 +85,11 @@ inline void square(const hyst_pi &pi, Threshold &threshold, const Pack *u, Pack 
     const Pack p0 = broadcast(pi.p0);
 #pragma GCC unroll 8
     for (std::size_t t = 0; t < kWidth; ++t) y[t] = p0 * u[t];
+    std::size_t i = pi.count < HYST_WIDE_BANK ? 0 : pi.count - pi.count % 4;
+    if (i > 0) add_fours(pi, i, threshold, u, y, z);
     // Two at a time: the min and the max of one play wait for each other, those of two do not.
-    std::size_t i = 0;
-    for (; i + 2 <= pi.count; i += 2) pass_plays<2>(pi, i, threshold, u, y, z);
-    if (i < pi.count) pass_plays<1>(pi, i, threshold, u, y, z);
+    for (; i + 2 <= pi.count; i += 2) pass_plays<2, 0>(pi, i, threshold, u, y, z);
+    if (i < pi.count) pass_plays<1, 0>(pi, i, threshold, u, y, z);
 }
 
 template <class Threshold>

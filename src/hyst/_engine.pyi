@@ -1,7 +1,7 @@
 """Types of the compiled engine."""
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -137,16 +137,26 @@ class TrackingStepper:
     def __call__(self, y_ref: float, y: float) -> float: ...
 
 class LimitedDrive:
+    @overload
     def __init__(
         self,
-        way: int,
+        is_inverse: bool,
         chain: Chain,
         forward: Chain,
         low: float,
         high: float,
         change: float,
-        v_low: float,
-        v_high: float,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        chain: Chain,
+        low: float,
+        high: float,
+        moved_down: int,
+        down: Sequence[float],
+        moved_up: int,
+        up: Sequence[float],
     ) -> None: ...
     @property
     def state_length(self) -> int: ...

@@ -7,6 +7,7 @@ So the engine must agree with them to the last bit.
 from __future__ import annotations
 
 import functools
+import operator
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -38,12 +39,19 @@ def prandtl_ishlinskii(p0: float, p: list[float], r: list[float]) -> Step:
     plays = [play(threshold) for threshold in r]
 
     def step(u: float) -> float:
-        y = p0 * u
-        for weight, memory in zip(p, plays, strict=True):
-            y += weight * memory(u)
-        return y
+        return bank_sum(
+            p0 * u, [weight * memory(u) for weight, memory in zip(p, plays, strict=True)]
+        )
 
     return step
+
+
+def bank_sum(first: float, products: list[float]) -> float:
+    """Add the products of a bank in the order of hyst/bank.h."""
+    fours = len(products) // 4 * 4 if len(products) >= 16 else 0
+    sums = [functools.reduce(operator.add, products[j:fours:4], 0.0) for j in range(4)]
+    y = first + ((sums[0] + sums[2]) + (sums[1] + sums[3])) if fours else first
+    return functools.reduce(operator.add, products[fours:], y)
 
 
 def dead_zone_term(u: float, rho: float) -> float:

@@ -11,9 +11,9 @@ from c_builds import compiler
 MAIN, END = "int main(void) {", "    return 0;\n}"
 
 
-def program_of(folder: Path) -> str:
-    """The program of the README."""
-    (program,) = re.findall(r"```c\n(.*?)\n```", readme_of(folder), re.DOTALL)
+def program_of(folder: Path, name: str = "") -> str:
+    """The program of the README, of the export called `name` where there are several."""
+    (program,) = re.findall(r"```c\n(.*?)\n```", readme_of(folder, name), re.DOTALL)
     return str(program)
 
 
@@ -25,9 +25,9 @@ def pasted(programs: list[str]) -> str:
     return "\n".join([*dict.fromkeys(heads), MAIN, bodies + END])
 
 
-def readme_of(folder: Path) -> str:
-    """The text of the README."""
-    (file,) = folder.glob("*README.md")
+def readme_of(folder: Path, name: str = "") -> str:
+    """The text of the README, of the export called `name` where there are several."""
+    (file,) = folder.glob(f"{name}*README.md")
     return file.read_text()
 
 

@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 from c_builds import AS_C, AS_CXX, STRICT, compiled, compiler
 from fmu_runs import CONTROLLER, LIMITED_CONTROLLER, estimation
-from readme_programs import pasted, program_of, readme_of, run_readme
+from readme_programs import program_of, readme_of, run_readme
 
 import hyst
+from hyst.control import LimitedDrive
 from hyst.export import c_project
+from hyst.export.c.layout import LAYOUTS
 from hyst.export.c.signal_names import variables
 from hyst.operators import ModelDescription
 from hyst.operators.provenance import Provenance
@@ -56,25 +58,61 @@ def columns(printed: str) -> np.ndarray:
     return np.array(found, dtype=float)
 
 
-@pytest.mark.parametrize("flat", [False, True])
+@pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_the_program_prints_what_python_computes(
-    precision: str, flat: bool, tmp_path: Path
+    precision: str, layout: str, tmp_path: Path
 ) -> None:
     inverse = MODEL.inverse()
-    folder = c_project(inverse, tmp_path / "out", precision=precision, name="lens", flat=flat).path
+    folder = c_project(
+        inverse, tmp_path / "out", precision=precision, name="lens", layout=layout, limits=None
+    ).path
     program = program_of(folder)
     assert "voltage_V = lens_step(&lens, position_um);" in program
+    assert "lens_init(&lens);" in program
     printed = columns(run_readme(folder, "example", program, *STRICTLY))
     np.testing.assert_array_equal(printed[:, 0], np.arange(0.0, 41.0, 5.0))
     # "%g" prints six digits, and single precision has seven.
     np.testing.assert_allclose(printed[:, 1], inverse(printed[:, 0]), rtol=1.1e-5)
 
 
-@pytest.mark.parametrize("flat", [False, True])
-def test_the_command_of_the_test_is_true(flat: bool, tmp_path: Path) -> None:
-    folder = c_project(MODEL, tmp_path / "out", name="lens", flat=flat).path
-    assert run_readme(folder, "test") == "10000 samples, max difference 0\n"
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_the_program_starts_after_the_sweep_it_tells_of(precision: str, tmp_path: Path) -> None:
+    drive = LimitedDrive(MODEL.inverse())
+    folder = c_project(MODEL.inverse(), tmp_path / "out", precision=precision, name="lens").path
+    told = readme_of(folder)
+    assert "## How to start the actuator" in told
+    assert "| limits of the drive | `LENS_U_MIN` to `LENS_U_MAX`: 0 to 150 V" in told
+    printed = columns(run_readme(folder, "example", program_of(folder), *STRICTLY))
+    # Up from the lowest drive after the highest: not what it would be without a history.
+    expected = drive.run(printed[:, 0], drive.state_after([150.0, 0.0]))[0]
+    assert abs(expected[1] - drive(printed[:, 0])[1]) > 1.0
+    # "%g" prints six digits, and single precision has seven.
+    np.testing.assert_allclose(printed[:, 1], expected, rtol=1.1e-5)
+
+
+def test_where_time_counts_the_start_takes_every_sample(tmp_path: Path) -> None:
+    creeping = hyst.Creep([0.1], [0.5], 1e-3) @ MODEL
+    told = readme_of(c_project(creeping.inverse(), tmp_path / "out", name="lens").path)
+    assert "at every sample" in told
+
+
+def test_what_cannot_be_told_a_history_says_so(tmp_path: Path) -> None:
+    model = hyst.Delay(2.7, 1e-3).inverse(preview=4)
+    told = readme_of(c_project(model, tmp_path / "out", name="lens").path)
+    assert "This code can be told no history: the model in front of it is not known" in told
+    assert "init_after" not in told
+
+
+@pytest.mark.parametrize("shared_core", [False, True])
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_the_command_of_the_test_is_true(layout: str, shared_core: bool, tmp_path: Path) -> None:
+    if shared_core and layout == "single-file":
+        pytest.skip("a single file has its core within it")
+    project = c_project(
+        MODEL, tmp_path / "out", name="lens", layout=layout, shared_core=shared_core
+    )
+    assert run_readme(project.path, "test") == "10000 samples, max difference 0\n"
 
 
 OTHERS = {
@@ -94,23 +132,8 @@ def test_programs_of_other_blocks_compile_as_printed(name: str, tmp_path: Path) 
     assert "&lens" in program
     assert len(columns(run_readme(folder, "example", program, *STRICTLY))) > 1
     (folder / "example.cpp").write_text(program)
-    flags = [*AS_CXX, *STRICT, "-fsyntax-only", "-I.", "-Icore/include"]
+    flags = [*AS_CXX, *STRICT, "-fsyntax-only"]
     compiled([compiler("clang++"), *flags, "example.cpp"], folder)
-
-
-def test_two_exports_make_one_program_of_twenty_lines(tmp_path: Path) -> None:
-    folders = [
-        c_project(each, tmp_path / name, name=name).path
-        for name, each in (("lens", MODEL.inverse()), ("mirror", MODEL.inverse()))
-    ]
-    program = pasted([program_of(each) for each in folders])
-    assert len(program.splitlines()) <= 20
-    (tmp_path / "both.c").write_text(program)
-    include = [f"-I{folder}" for folder in folders] + [f"-I{folders[0]}/core/include"]
-    core = folders[0].glob("core/src/*.c")
-    sources = [*(str(each / f"{each.name}.c") for each in folders), *map(str, core)]
-    build = [compiler("gcc"), *AS_C, *STRICT, *include, "both.c", *sources, "-o", "both"]
-    compiled(build, tmp_path)
 
 
 def test_the_table_says_what_is_known(tmp_path: Path) -> None:
@@ -120,7 +143,7 @@ def test_the_table_says_what_is_known(tmp_path: Path) -> None:
         "| y, `position_um` | Position in um, 0 to 40 in the record |",
         "| error, training | rms 0.0123 um, 0.031 % of the range, at most 0.05 um |",
         "| error, validation | rms 0.02 um |",
-        "| verdict | good: What is left is the record_s own noise. |",
+        "| verdict | good: What is left is the record's own noise. |",
         "| sample time | any |",
     ):
         assert row in readme
@@ -155,7 +178,7 @@ def test_any_name_makes_a_program_that_compiles(name: str, unit: str, tmp_path: 
     folder = c_project(MODEL, tmp_path / "out", name="lens", description=about).path
     (folder / "example.c").write_text(program_of(folder))
     for driver, language in (("gcc", AS_C), ("g++", AS_CXX), ("gcc", ["-std=gnu99"])):
-        flags = [*language, *STRICT, "-fsyntax-only", "-I.", "-Icore/include"]
+        flags = [*language, *STRICT, "-fsyntax-only"]
         compiled([compiler(driver), *flags, "example.c"], folder)
 
 
@@ -179,17 +202,17 @@ def test_variables_are_called_by_name_and_unit(
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_the_short_test_finds_one_bit_of_one_constant(precision: str, tmp_path: Path) -> None:
     """The last bit of the inverse's gain: the first sample away from 0 is another."""
-    folder = c_project(MODEL.inverse(), tmp_path / "out", name="lens", precision=precision).path
+    inverse, place = MODEL.inverse(), tmp_path / "out"
+    folder = c_project(inverse, place, name="lens", precision=precision, limits=None).path
     source = (folder / "lens.c").read_text()
-    (gain,) = re.findall(r"hyst_pi pi_1 = \{2u, ([^,f]*)", source)
+    (gain,) = re.findall(r"lens_core_pi pi_1 = \{2u, ([^,f]*)", source)
     number = np.float64 if precision == "double" else np.float32
     beside = float(np.nextafter(number(float.fromhex(gain)), number(np.inf))).hex()
     (folder / "main.c").write_text(
         '#include "lens.h"\nint main(void) { return lens_selftest(); }\n'
     )
-    define = ["-DHYST_SINGLE"] if precision == "single" else []
-    build = [compiler("gcc"), *AS_C, *STRICT, *define, "-I.", "-Icore/include", "main.c", "lens.c"]
-    core = [str(each) for each in folder.glob("core/src/*.c")]
+    build = [compiler("gcc"), *AS_C, *STRICT, "main.c", "lens.c"]
+    core = [str(each) for each in folder.glob("core/*.c")]
     results = []
     for text in (source, source.replace(gain, beside)):
         (folder / "lens.c").write_text(text)
@@ -217,5 +240,6 @@ def test_a_long_delay_is_waited_for(tmp_path: Path) -> None:
 def test_ranges_between_which_single_precision_has_no_number(tmp_path: Path) -> None:
     """The loop of the program ends nevertheless."""
     about = replace(ABOUT, input_low=1e8, input_high=1e8 + 1.0)
-    folder = c_project(MODEL, tmp_path / "o", precision="single", description=about).path
+    model, place = MODEL.with_description(about), tmp_path / "out"
+    folder = c_project(model, place, precision="single", limits=None).path
     assert len(columns(run_readme(folder, "example", program_of(folder)))) >= 1

@@ -82,6 +82,9 @@ PLAYS_AND_MAPS: dict[str, Operator] = {
     "pi": PI,
     "pi wavy": WAVY,
     "pi with memory": PrandtlIshlinskii([0.5, 0.3], [1.0, 3.0], p0=0.2, z0=[0.5, -1.25]),
+    "pi wide": PrandtlIshlinskii(
+        [0.4 / (1 + i) for i in range(19)], [0.3 * i for i in range(19)], p0=0.2
+    ),
     "pi tied": PrandtlIshlinskii([0.5, 0.3, 0.2], [1.0, 1.0, 2.0], p0=0.2),
     "pi with an ideal play": PrandtlIshlinskii([0.5, 0.3], [0.0, 2.0], p0=0.2),
     "pi with idle plays": PrandtlIshlinskii([0.0, 0.3, 0.0], [1.0, 2.0, 50.0], p0=0.2),

@@ -17,7 +17,7 @@ typedef struct {
     const hyst_real *r; /* their thresholds, >= 0, in units of u */
 } hyst_pi;
 
-/* One sample. z holds the count play outputs; the sum starts at p0 u and follows the order of i. */
+/* One sample. z holds the count play outputs; hyst/bank.h says in which order they are summed. */
 hyst_real hyst_pi_step(const hyst_pi *pi, hyst_real *z, hyst_real u);
 
 extern const hyst_kind hyst_pi_kind; /* of a hyst_pi */

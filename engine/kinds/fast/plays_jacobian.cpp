@@ -6,6 +6,7 @@
 
 #include "../../records/evaluation.hpp"
 #include "../../simd/kernels.hpp"
+#include "bank_sum.hpp"
 #include "hyst/play.h"
 #include "plays.hpp"
 
@@ -74,11 +75,9 @@ void pi_jacobian(const void *bank, double, const double *start, const Tangents &
     for (std::size_t k = 0; k < t.samples; ++k) {
         const double u = t.signal[k];
         double *own = t.own(k);
-        double y = pi.p0 * u;
         own[0] = u;
         for (std::size_t i = 0; i < pi.count; ++i) {
             plays[i].step(u, pi.r[i], t.row(k));
-            y += pi.p[i] * plays[i].z;
             own[1 + i] = plays[i].z;
             own[1 + pi.count + i] = pi.p[i] * plays[i].by_r;
         }
@@ -86,7 +85,8 @@ void pi_jacobian(const void *bank, double, const double *start, const Tangents &
         for (std::size_t c = 0; c < t.incoming; ++c) {
             for (std::size_t i = 0; i < pi.count; ++i) t.row(k)[c] += pi.p[i] * plays[i].by_input[c];
         }
-        t.signal[k] = y;
+        const auto product = [&](std::size_t i) { return pi.p[i] * plays[i].z; };
+        t.signal[k] = bank_sum(pi.count, pi.p0 * u, product);
     }
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "bank_sum.hpp"
 #include "hyst/play.h"
 #include "hyst/rate_dependent_prandtl_ishlinskii.h"
 #include "plays.hpp"
@@ -82,14 +83,12 @@ void rate_dependent_pi_jacobian(const void *of, double dt, const double *start, 
         now.assign(t.row(k), t.row(k) + t.incoming);
         widening.at(model, u - previous, dt);
         previous = u;
-        double y = pi.p0 * u;
         own[0] = u;
         double *by_basis = own + 1 + 2 * pi.count;
         std::fill(by_basis, by_basis + basis, 0.0);
         t.scale(k, pi.p0);
         for (std::size_t i = 0; i < pi.count; ++i) {
             plays[i].step(u, pi.r[i], widening, now.data(), before.data());
-            y += pi.p[i] * plays[i].z;
             own[1 + i] = plays[i].z;
             own[1 + pi.count + i] = pi.p[i] * plays[i].by_r;
             for (std::size_t b = 0; b < basis; ++b) by_basis[b] += pi.p[i] * plays[i].by_basis[b];
@@ -98,7 +97,8 @@ void rate_dependent_pi_jacobian(const void *of, double dt, const double *start, 
             }
         }
         before.swap(now);
-        t.signal[k] = y;
+        const auto product = [&](std::size_t i) { return pi.p[i] * plays[i].z; };
+        t.signal[k] = bank_sum(pi.count, pi.p0 * u, product);
     }
 }
 

@@ -17,6 +17,7 @@ from hyst.control.drive_limits import Limits
 from hyst.errors import InputError
 from hyst.export.c.block import Block, Model, described, refuse_unfit
 from hyst.export.c.c_sources import bad_samples, header, places, source
+from hyst.export.c.core_copy import CoreCopy
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.drive_options import AUTO, DriveOptions
 from hyst.export.c.drive_range import DriveRange
@@ -25,6 +26,7 @@ from hyst.export.c.one_file import in_one_file
 from hyst.export.c.readme_rows import lag_row, verdict_row
 from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, MANIFEST, write_export
+from hyst.export.mex_start import start_texts
 from hyst.export.tool_block import ToolBlock, tool_block
 from hyst.operators import ModelDescription
 
@@ -180,11 +182,12 @@ def mex_files(tool: ToolBlock, name: str, about: ModelDescription) -> dict[str, 
         "inputs": str(len(tool.inputs)),
         "with_state": str(len(tool.inputs) + 1),
         "quoted": ", ".join(f'"{each}"' for each in tool.inputs),
-        "step": tool.step(name, "state", elements),
+        "step": CoreCopy(f"{name}_core", "double").own(tool.step(name, "state", elements)),
         "bad_sample": "changes no parameter"
         if tool.estimates
         else "is answered with the last output, leaves the memory as it is",
         **(_estimates(tool, name) if tool.estimates else _limited(block, name)),
+        **start_texts(block, name),
         "bad": bad_samples(block, name, "state"),
         "bad_here": bad_samples(block, name, "&state"),
         "license": _commented(_LICENSE.read_text(encoding="utf-8"), " *"),
@@ -247,10 +250,11 @@ def _as_function_name(name: str) -> str:
 
 def _c_file(block: Block, common: dict[str, str], about: ModelDescription) -> str:
     name = common["name"]
-    own = places(block, name, "double", about)
-    stage, declared = source(block, own, "double"), header(block, own)
-    core = core_files(stage + declared)
-    everything = in_one_file(core, {f"{name}.h": declared, f"{name}.c": stage})
+    plain = places(block, name, "double", about)
+    stage, declared = source(block, plain, "double"), header(block, plain)
+    copy = CoreCopy(f"{name}_core", "double")
+    own = {f"{name}.h": copy.own(declared), f"{name}.c": copy.own(stage)}
+    everything = in_one_file(copy.files(core_files(stage + declared)), own)
     return filled("mex/head.c", common) + everything + "\n" + filled("mex/gateway.c", common)
 
 

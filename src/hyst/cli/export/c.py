@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 import hyst
 from hyst.cli.export.order import Done, Order, drive_rows, into_folder
 
-_OF_THE_CORE = ("core/", "hyst_")
+_WITH_CMAKE = "cmake -S . -B build && cmake --build build && ctest --test-dir build"
 
 
 def c(order: Order) -> Done:
@@ -17,24 +19,24 @@ def c(order: Order) -> Done:
         name=order.name,
         force=order.force,
         despite_verdict=order.despite_verdict,
+        layout=order.layout,
+        shared_core=order.shared_core,
         **order.drive,
-        flat=order.flat,
         driver=order.driver,
     )
-    own = [each for each in project.files if "/" not in each and not each.startswith("hyst_")]
+    of_the_core = re.compile(rf"(core/)?({order.name}_core|hystf?)_\w+\.[ch]")
+    own = [each for each in project.files if not of_the_core.fullmatch(each)]
     folder, there = into_folder(order)
     start = f"{order.name}_init_after" if project.has_start else ""
     rows = (
         ("files", ", ".join(own)),
-        ("files of the core", str(sum(each.startswith(_OF_THE_CORE) for each in project.files))),
+        ("files of the core", str(len(project.files) - len(own))),
         ("precision", project.precision),
         ("state", f"{project.state_bytes} bytes, {project.state_length} numbers of memory"),
         ("saved state", f"{project.saved_bytes} bytes"),
         *drive_rows(project.drive, project.history, start),
         *([("codes", project.codes)] if project.codes else []),
     )
-    return Done(
-        rows,
-        f"{there} && cmake -S . -B build && cmake --build build && "
-        f"ctest --test-dir build; {folder}/README.md says the rest",
-    )
+    alone = order.layout == "folder" and not order.shared_core
+    test = _WITH_CMAKE if alone else project.test_command
+    return Done(rows, f"{there} && {test}; {folder}/{project.readme} says the rest")

@@ -16,10 +16,19 @@ from hyst.cli.export.targets import TARGETS, takers
 from hyst.cli.relevant_options import refuse_irrelevant
 from hyst.cli.scheduled import ScheduleValue, loaded_at
 
-Flat = Annotated[
+Layout = Annotated[
+    str,
+    typer.Option(
+        help="Of C: folder; flat, all that is compiled in one folder, as for Arduino; or "
+        "single-file, one header and one source."
+    ),
+]
+
+SharedCore = Annotated[
     bool,
     typer.Option(
-        "--flat", help="C in one folder without paths of includes, as an Arduino library."
+        "--shared-core",
+        help="Of C: exports of one folder share one copy of the core in each precision.",
     ),
 ]
 
@@ -90,7 +99,7 @@ def export(
         ),
     ] = False,
     preview: Preview = None,
-    precision: Annotated[str, typer.Option(help="Of C: double or single.")] = "double",
+    precision: Annotated[str, typer.Option(help="Of C or Rust: double or single.")] = "double",
     name: Annotated[
         str, typer.Option(metavar="NAME", help="Prefix of files, functions and types.")
     ] = "stage",
@@ -105,7 +114,8 @@ def export(
         ),
     ] = True,
     despite_verdict: DespiteVerdict = False,
-    flat: Flat = False,
+    layout: Layout = "folder",
+    shared_core: SharedCore = False,
     limits: Limits = "auto",
     rate_limit: RateLimit = None,
     history: History = None,
@@ -130,7 +140,8 @@ def export(
         fmi,
         binary,
         despite_verdict,
-        flat,
+        layout,
+        shared_core,
         _ends(limits),
         rate_limit,
         None if history is None else history_of(history),

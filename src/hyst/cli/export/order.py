@@ -27,7 +27,8 @@ class Order:
     fmi: str
     binary: bool
     despite_verdict: bool
-    flat: bool
+    layout: str
+    shared_core: bool
     limits: tuple[float, float] | str
     rate_limit: float | None
     history: list[float] | None

@@ -9,6 +9,7 @@ from hyst.cli.export.c import c
 from hyst.cli.export.fmu import fmu
 from hyst.cli.export.mex import mex
 from hyst.cli.export.order import Done, Order
+from hyst.cli.export.rust import rust
 
 
 @dataclass(frozen=True)
@@ -21,9 +22,10 @@ class Target:
 
 
 TARGETS = {
-    "c": Target(c, "for firmware", ("precision", "flat", "driver")),
+    "c": Target(c, "for firmware", ("precision", "layout", "shared_core", "driver")),
     "fmu": Target(fmu, "for simulation tools", ("fmi", "binary")),
     "mex": Target(mex, "for MATLAB and Octave"),
+    "rust": Target(rust, "a crate", ("precision",)),
 }
 
 

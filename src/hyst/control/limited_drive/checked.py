@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any, Literal
 
-import numpy as np
-
-from hyst import _engine
 from hyst.checks.numbers import as_sample_time
 from hyst.control.drive_limits import Limits, as_limits
 from hyst.errors import InputError
@@ -17,9 +13,6 @@ from hyst.operators.composition import leaves_of
 Drive = Literal["input", "output"]
 
 NO_LIMITS = "none"
-
-# By how much the ends of what can be asked of a bank are set too far: far more than rounding.
-_SPARE = 1e-3
 
 
 def as_drive(drive: Any, operator: Operator, forward: Any) -> Drive:
@@ -125,40 +118,3 @@ def sample_time(operator: Operator, dt: Any, rate: float | None) -> float | None
     if rate is not None and operator.description.dt is None:
         raise InputError("a rate is counted in samples, whose time is not known; give dt, seconds")
     return operator.description.dt if rate is not None else None
-
-
-def reach_of_bank(chain: _engine.Chain, low: float, high: float) -> tuple[float, float] | None:
-    """Give what an inverse's last stage, a bank of plays, can be asked for within limits.
-
-    Below and above it the drive is beyond the limits, whatever the memory, for plays are no farther
-    from v than their radii: ``u >= s v - sum_i |p_i| r_i``, s all weights together.
-
-    Parameters
-    ----------
-    chain
-        Of the inverse.
-    low, high
-        Of the drive; the largest numbers there are for none.
-
-    Returns
-    -------
-    tuple of float, or None
-        Lowest and highest input of the bank, with much more to spare than rounding needs. None
-        where the last stage is no bank that rises however many plays move, narrowest first, or
-        another one has a memory: then the memory of the model is needed.
-    """
-    stages = [chain.constants(i) for i in range(len(chain))]
-    if not stages or stages[-1]["call"] != "$signal = hyst_pi_step(&$model, $memory, $signal);":
-        return None
-    if any(each["state_length"] for each in stages[:-1]):
-        return None
-    bank = stages[-1]
-    p, r = np.array(bank["tables"]["p"]), np.array(bank["tables"]["r"])
-    slopes = bank["numbers"]["p0"] + np.concatenate([[0.0], np.cumsum(p)])
-    if (slopes <= 0.0).any() or (np.diff(r) < 0.0).any():
-        return None
-    most = sys.float_info.max
-    with np.errstate(over="ignore", invalid="ignore"):
-        width = (1.0 + _SPARE) * float(np.abs(p) @ r) + _SPARE * (0.5 * high - 0.5 * low)
-        ends = (low - width) / slopes[-1], (high + width) / slopes[-1]
-    return float(np.clip(ends[0], -most, most)), float(np.clip(ends[1], -most, most))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import math
-import sys
 from dataclasses import dataclass
 from typing import Any, ClassVar, final
 
@@ -15,12 +14,12 @@ from hyst import _engine
 from hyst.checks.arrays import as_state, finite_vector
 from hyst.control.block_file import InModelFile
 from hyst.control.drive_limits import Limits, as_rate, forward_operator, stated, within
+from hyst.control.limited_drive.bank_limits import Bank, bank_of
 from hyst.control.limited_drive.checked import (
     NO_LIMITS,
     Drive,
     as_drive,
     range_of_drive,
-    reach_of_bank,
     sample_time,
 )
 from hyst.control.limited_drive.monotone import require_monotone
@@ -133,19 +132,54 @@ class LimitedDrive(InModelFile):
         return stated(self.limits, self.rate, 1.0 if self.dt is None else self.dt)
 
     @functools.cached_property
-    def reach(self) -> tuple[float, float] | None:
-        """What can be asked of an inverse's last stage, a bank of plays, and no more; or None.
+    def bank(self) -> Bank | None:
+        """The bank of plays that ends an inverse which needs no model beside it, or None."""
+        return self._bank_in(np.float64)
 
-        With it no memory of the model is kept beside that of the inverse.
-        """
-        if self.drive == "input":
+    def _bank_in(self, dtype: Any) -> Bank | None:
+        if self.drive == "input" or self.limits is None or self.rate is not None:
             return None
-        return reach_of_bank(_engine.Chain(self.operator.stages()), *self.numbers[:2])
+        chain = _engine.Chain(self.operator.stages())
+        stages = [chain.constants(i) for i in range(len(chain))]
+        return bank_of(stages, self.operator.initial_state(), dtype)
+
+    def bank_limits(
+        self, low: float, high: float, dtype: Any = np.float64
+    ) -> dict[str, float | int]:
+        """Give the limits of ``bank`` as the core has them.
+
+        Parameters
+        ----------
+        low, high
+            Lowest and highest drive in numbers of the target.
+        dtype
+            Its numbers, ``numpy.float64`` or ``numpy.float32``.
+
+        Returns
+        -------
+        dict
+            ``low`` and ``high``, and of each of them ``moved``, ``slope``, ``constant``, ``from``
+            and ``least``, as ``moved_low``.
+
+        Raises
+        ------
+        InputError
+            If there is no such bank.
+        """
+        bank = self._bank_in(dtype)
+        if bank is None:
+            raise InputError("the inverse keeps the model beside it and has no limits of a bank")
+        told: dict[str, float | int] = {"low": low, "high": high}
+        for name, end in (("low", bank.end(low, -1)), ("high", bank.end(high, 1))):
+            told |= {f"moved_{name}": end.moved, f"slope_{name}": end.slope}
+            told |= {f"constant_{name}": end.constant, f"from_{name}": end.start}
+            told |= {f"least_{name}": end.least}
+        return told
 
     @property
     def keeps_forward(self) -> bool:
         """Whether the memory of the model is kept beside that of its inverse."""
-        return self.drive == "output" and self.reach is None
+        return self.drive == "output" and self.bank is None
 
     def initial_state(self) -> Array:
         """Give the state before the first sample, a fresh array.
@@ -265,12 +299,13 @@ class LimitedDrive(InModelFile):
     def compiled(self) -> _engine.LimitedDrive:
         """The block in the engine."""
         chain = _engine.Chain(self.operator.stages())
-        keeps = self.keeps_forward
-        forward = self.forward.stages() if self.forward is not None and keeps else ()
-        most = sys.float_info.max
-        way = 0 if self.drive == "input" else 1 if keeps else 2
-        reach = (-most, most) if self.reach is None else self.reach
-        return _engine.LimitedDrive(way, chain, _engine.Chain(forward), *self.numbers, *reach)
+        if self.bank is not None and self.limits is not None:
+            down, up = self.bank.end(self.limits[0], -1), self.bank.end(self.limits[1], 1)
+            ends = down.moved, down.numbers, up.moved, up.numbers
+            return _engine.LimitedDrive(chain, *self.limits, *ends)
+        forward = () if self.forward is None else self.forward.stages()
+        is_inverse = self.drive == "output"
+        return _engine.LimitedDrive(is_inverse, chain, _engine.Chain(forward), *self.numbers)
 
     def to_dict(self) -> dict[str, Any]:
         """Give a dictionary of plain numbers, lists and text that ``from_dict`` understands."""

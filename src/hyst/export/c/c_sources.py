@@ -47,7 +47,6 @@ def places(
         "version": plain_text(__version__),
         "title": f"{plain_text(block.kind)} as C, {precision} precision",
         "precision": precision,
-        "core_prefix": "hyst_",
         "state_length": str(len(block.start)),
         "memory_length": str(length),
         "saved_bytes": str(12 + WORD_BYTES[precision] * (length + 1)),
@@ -58,11 +57,6 @@ def places(
         "fault_there": _fault(block, name, "state"),
         "fault_here": _fault(block, name, "&state"),
         "identity": f"0x{block.identity(precision):08x}",
-        "wrong_precision": "ifndef" if single else "ifdef",
-        "how_to_compile": "compile every file with -DHYST_SINGLE"
-        if single
-        else "compile without HYST_SINGLE",
-        "define": "-DHYST_SINGLE " if single else "",
         "output": block.output,
         "first": block.inputs[0],
         "arguments": ", ".join(f"hyst_real {each}" for each in block.inputs),

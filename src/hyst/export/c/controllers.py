@@ -139,7 +139,7 @@ def _started(
         last = len(block.start) - 1 if model.is_limited else None
         return replace(block, following=Following.of(code, (), last))
     if not model.is_limited or model.forward is None:
-        return with_start(block, code, model.inverse, place)
+        return with_start(block, code, model.inverse, place, 1)
     count, length = len(core_stages(model.inverse)), model.inverse.initial_state().size
     passed = [
         Passed(model.forward.stages(), 1 + count, place + length),

@@ -15,6 +15,7 @@ from hyst.export.c.following import Following, Passed
 from hyst.export.c.limited import (
     OUT_OF_RANGE,
     LimitedStages,
+    bank_limits_stage,
     limits_in,
     limits_stage,
 )
@@ -53,7 +54,7 @@ def limited_block(model: LimitedDrive, precision: Precision, source: str = "as g
         If a constant cannot be written in that precision, or no number is left between the limits.
     """
     limits = limits_in(precision, *model.numbers)
-    stages, body = _parts(model, limits)
+    stages, body = _parts(model, limits, precision)
     code = StageCode(stages, precision)
     start = model.initial_state()
     start[-1] = within(limits[:2], float(start[-1]))
@@ -86,16 +87,17 @@ Body = Callable[[StageCode], str]
 
 
 def _parts(
-    model: LimitedDrive, limits: tuple[float, float, float]
+    model: LimitedDrive, limits: tuple[float, float, float], precision: Precision
 ) -> tuple[tuple[CoreStage, ...], Body]:
     """Give the stages in the order of their memory, and what writes the step with them."""
     own = core_stages(model.operator)
     if model.drive == "input":
         told = limits_stage(limits, {"forward": 0, "way": 0})
         return (*own, told), _model_body
-    if model.reach is not None:
-        told = limits_stage(limits, {"forward": 0, "way": 2}, model.reach)
-        return (*own, told), _bank_body
+    if model.bank is not None:
+        dtype = np.float32 if precision == "single" else np.float64
+        told = model.bank_limits(limits[0], limits[1], dtype)
+        return (*own, bank_limits_stage(told)), _bank_body
     forward = () if model.forward is None else core_stages(model.forward)
     held = LimitedStages(None, own, forward, limits, ())
     return held.all, held.body
@@ -118,11 +120,10 @@ def _bank_body(code: StageCode) -> str:
     bank, limits = len(code.stages) - 2, len(code.stages) - 1
     count = code.stages[bank].state_length
     call = (
-        f"v = hyst_limited_bank_step(&{code.name(bank)}, &{code.name(limits)}, memory, before, "
-        "&held, v);"
+        f"v = hyst_limited_bank_step(&{code.name(bank)}, &{code.name(limits)}, memory, &held, v);"
     )
     step = (
-        f"hyst_real before[{max(count, 1)}];\nint held = 0;\n"
+        "int held = 0;\n"
         + code.local(bank)
         + code.local(limits)
         + f"{call}\nif (held != 0) {{\n    {_RAISED}\n}}\n"
@@ -143,7 +144,7 @@ def _following(model: LimitedDrive, code: StageCode) -> Following:
     length = model.operator.initial_state().size
     if model.drive == "input":
         return Following.of(code, [Passed(own, 0, 0)], length, "signal")
-    if model.reach is not None:
+    if model.bank is not None:
         return Following.of(code, [bank_passed(model.operator, 0, 0)], length)
     if model.forward is None:
         return Following.of(code, [], length)
@@ -153,7 +154,7 @@ def _following(model: LimitedDrive, code: StageCode) -> Following:
 
 
 def _start_headers(model: LimitedDrive) -> tuple[str, ...]:
-    return (SOLVED_HEADER,) if model.reach is not None else ()
+    return (SOLVED_HEADER,) if model.bank is not None else ()
 
 
 def _tested(model: LimitedDrive) -> tuple[float, float] | None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from hyst.export.c.block import Block
 from hyst.export.c.selftest import SelfTest
-from hyst.export.c.signal_names import variables
+from hyst.export.c.signal_names import identifier, variables
 from hyst.operators import ModelDescription
 
 _STEPS = 8
@@ -68,8 +68,9 @@ def example_of(
         "#include <stdio.h>",
         f'#include "{name}.h"',
         f"static {name}_state {name}; /* its memory: one for each actuator */",
+        *_swept(block, name, number),
         "int main(void) {",
-        f"    {name}_init(&{name}); /* once */",
+        f"    {_started(block, name)}",
         f"    {loop} /* every sample */",
         *(f"        {line}" for line in _sample(block, name, number, named)),
         "    }",
@@ -83,6 +84,13 @@ def meanings(block: Block, about: ModelDescription) -> dict[str, tuple[str, str]
     """Give name and unit of every signal of a ``block`` by what its functions call it.
 
     One whose name is empty is called what the functions call it.
+
+    Parameters
+    ----------
+    block
+        What is exported.
+    about
+        What its numbers mean.
     """
     into, out = (about.input_name, about.input_unit), (about.output_name, about.output_unit)
     roles, meant = (*block.inputs, block.output), [("", "")] * (len(block.inputs) + 1)
@@ -95,6 +103,39 @@ def meanings(block: Block, about: ModelDescription) -> dict[str, tuple[str, str]
         meant = [into, out]
     pairs = zip(roles, meant, strict=True)
     return {role: (name if name.strip() else role, unit) for role, (name, unit) in pairs}
+
+
+def starts_from_extremes(block: Block) -> bool:
+    """Tell whether a sweep over the limits of the drive says all that the start needs to know."""
+    known = block.following is not None and block.drive.limits is not None
+    return known and block.chain.dt is None
+
+
+def swept_name(block: Block, name: str) -> str:
+    """Give what the example calls the drives at which the sweep turned.
+
+    Parameters
+    ----------
+    block, name
+        What is exported, and its prefix.
+    """
+    unit = identifier(block.drive.unit)
+    return f"{name}_swept_{unit}" if unit else f"{name}_swept"
+
+
+def _swept(block: Block, name: str, number: str) -> list[str]:
+    if not starts_from_extremes(block):
+        return []
+    drives = f"{{{name.upper()}_U_MAX, {name.upper()}_U_MIN}}"
+    swept = swept_name(block, name)
+    return [f"static const {number} {swept}[] = {drives}; /* where the sweep turned */"]
+
+
+def _started(block: Block, name: str) -> str:
+    if not starts_from_extremes(block):
+        return f"{name}_init(&{name}); /* once */"
+    call = f"{name}_init_after(&{name}, {swept_name(block, name)}, 2u)"
+    return f"if ({call} != 0) {{ return 1; }} /* once, after it */"
 
 
 def _driven(block: Block) -> str:

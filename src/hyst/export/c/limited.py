@@ -205,11 +205,7 @@ class LimitedStages:
         ]
 
 
-def limits_stage(
-    limits: tuple[float, float, float],
-    choices: dict[str, int],
-    reach: tuple[float, float] | None = None,
-) -> CoreStage:
+def limits_stage(limits: tuple[float, float, float], choices: dict[str, int]) -> CoreStage:
     """Give the limits of a drive as a stage.
 
     Parameters
@@ -218,15 +214,8 @@ def limits_stage(
         Lowest and highest drive, and most change in a sample, in numbers of the target.
     choices
         What the twin in single precision is told beside them.
-    reach
-        What a bank of plays at the end of an inverse can be asked for; None for anything else.
     """
     numbers = dict(zip(("low", "high", "change"), limits, strict=True))
-    header, structure = "hyst/drive_limits.h", "hyst_drive_limits $model = {$low, $high, $change};"
-    if reach is not None:
-        numbers |= {"v_low": reach[0], "v_high": reach[1]}
-        header = "hyst/limited_bank.h"
-        structure = "hyst_bank_limits $model = {{$low, $high, $change}, $v_low, $v_high};"
     return CoreStage(
         kind="drive_limits",
         numbers=numbers,
@@ -236,9 +225,37 @@ def limits_stage(
         state_length=1,
         offers=dict.fromkeys(numbers, (0, "")),
         feeds_through=True,
-        header=header,
-        structure=structure,
+        header="hyst/drive_limits.h",
+        structure="hyst_drive_limits $model = {$low, $high, $change};",
         call="$signal = hyst_limited_drive(&$model, $memory, $signal);",
+    )
+
+
+def bank_limits_stage(told: dict[str, float | int]) -> CoreStage:
+    """Give the limits of a bank of plays at the end of an inverse as a stage.
+
+    Parameters
+    ----------
+    told
+        As ``LimitedDrive.bank_limits`` gives them.
+    """
+    choices = {name: int(told[name]) for name in ("moved_low", "moved_high")}
+    numbers = {name: float(value) for name, value in told.items() if name not in choices}
+    low, high = (
+        f"{{#moved_{k}, $slope_{k}, $constant_{k}, $from_{k}, $least_{k}}}" for k in ("low", "high")
+    )
+    return CoreStage(
+        kind="bank_limits",
+        numbers=numbers,
+        tables={},
+        choices=choices,
+        form="",
+        state_length=1,
+        offers=dict.fromkeys(numbers, (0, "")),
+        feeds_through=True,
+        header="hyst/limited_bank.h",
+        structure=f"hyst_bank_limits $model = {{$low, $high, {low}, {high}}};",
+        call="",
     )
 
 

@@ -35,9 +35,13 @@ _TAKEN = """
     rebuild_cache test
     aux com1 com2 com3 com4 com5 com6 com7 com8 com9 con lpt1 lpt2 lpt3 lpt4 lpt5 lpt6 lpt7 lpt8
     lpt9 nul prn
-    core selftest selftest_vectors
+    core selftest
 """
 _KEYWORDS = frozenset((_C_KEYWORDS + _CXX_KEYWORDS).split())
+# What another export may define: lens has lens_core_..., lens_selftest and lens_clear_fault.
+_OF_ANOTHER = re.compile(
+    r"_core(_|$)|_(clear|selftest|selftest_vectors|step_response)$", re.IGNORECASE
+)
 _FILES = frozenset((_HEADERS + _TAKEN).split())
 
 
@@ -58,7 +62,7 @@ def as_c_name(name: str) -> str:
     ------
     InputError
         If it is no C identifier, is a word of C or C++ or reserved there, starts with "hyst", or
-        would name a file or a target that something else needs.
+        would name a file, a target or a function that something else has.
 
     Examples
     --------
@@ -87,6 +91,9 @@ def _objection(name: str) -> str:
         return "but names that start with hyst are those of the core"
     if name.lower() in _FILES:
         return "which a standard header, CMake, Windows or another file of the export has"
+    part = _OF_ANOTHER.search(name)
+    if part:
+        return f"but an export named {name[: part.start()]} may define the same with {part[0]}"
     return ""
 
 

@@ -7,12 +7,14 @@ from hyst.export.c.driver_codes import words
 from hyst.export.c.example import example_of
 from hyst.export.c.names import plain_text
 from hyst.export.c.readme_rows import (
+    drive_rows,
     error_rows,
     lag_row,
     provenance_row,
     signal_rows,
     verdict_row,
 )
+from hyst.export.c.readme_start import start_section
 from hyst.export.c.selftest import SelfTest
 from hyst.export.c.short_test import short_test_bytes
 from hyst.export.c.templating import filled
@@ -24,7 +26,6 @@ def readme(
     places: dict[str, str],
     about: ModelDescription,
     test: SelfTest,
-    commands: dict[str, str],
     takes_power: bool,
 ) -> str:
     """Give the README.
@@ -34,14 +35,11 @@ def readme(
     block
         What is exported.
     places
-        What the templates have in common.
+        What the templates have in common, those of the layout among them.
     about
         What the numbers mean.
     test
         The self-test.
-    commands
-        How the layout is compiled: ``build_test`` and ``build_example``, options and files after
-        the compiler; ``own_files``, what goes into another project.
     takes_power
         Whether the sources of the core take powers, which may be another's.
 
@@ -52,6 +50,7 @@ def readme(
     precision = places["precision"]
     example = example_of(block, places["name"], precision, about, test)
     rows = signal_rows(block, about, example.variable)
+    rows |= drive_rows(block, places["name"])
     rows |= {"sample time": "any" if block.dt is None else f"{block.dt!r} s, and no other"}
     if precision == "single":
         rows["away from double"] = (
@@ -65,15 +64,15 @@ def readme(
     more = {
         "rows": "\n".join(f"| {key} | {value} |" for key, value in rows.items()),
         "program": example.program,
-        "start_section": "",
+        "start_section": start_section(block, places["name"]),
         "power_section": _power_section(places["core_prefix"]) if takes_power else "",
         "faults": _faults(block) + words(block),
         "in_precision": " in single precision" if precision == "single" else "",
         "test_bytes": str(short_test_bytes(block, precision)),
     }
-    for key in ("name", "NAME"):
-        more["faults"] = more["faults"].replace(f"@{{{key}}}", places[key])
-    return filled("README.md", places | commands | more)
+    for key, word in {**places, "rest": f"{block.virgin[1]:.6g}"}.items():
+        more["faults"] = more["faults"].replace(f"@{{{key}}}", word)
+    return filled("README.md", places | more)
 
 
 def _size_rows(block: Block, places: dict[str, str]) -> dict[str, str]:
@@ -98,7 +97,7 @@ def _faults(block: Block) -> str:
     return (
         _FAULTS
         + (_SCHEDULE_FAULTS if block.second else "")
-        + (_LIMIT_FAULTS if block.limits is not None else "")
+        + _LIMIT_FAULTS.get(block.drive.side if block.drive.is_limited else "", "")
         + (_REPETITIVE if block.forgets else "")
         + (_CHANGED if "REFERENCE_CHANGED" in block.tells else "")
     )
@@ -116,17 +115,27 @@ both self-tests say so, and the difference that the first one prints is yours to
 _FAULTS = """\
 A sample that is NaN or infinite, or that overflows inside, is answered with the last output; the
 memory it did not reach stays as it was, and `@{name}_fault` gives `@{NAME}_NOT_FINITE` until
-`@{name}_clear_fault`. A step before `@{name}_init` gives 0 and `@{NAME}_NOT_READY`.
+`@{name}_clear_fault`. A step before `@{name}_init` gives @{rest} and `@{NAME}_NOT_READY`.
 """
 _SCHEDULE_FAULTS = """\
 Constants follow the second signal by straight lines; outside the values they are known at they are
 held at the nearer end, and `@{name}_fault` gives `@{NAME}_OFF_SCHEDULE` too.
 """
-_LIMIT_FAULTS = """\
-The drive never leaves its limits, before `@{name}_init` and after bad samples neither; where more
+_HELD = """\
 was asked for it is held there, and `@{name}_fault` gives `@{NAME}_OUT_OF_RANGE` too. That is no
-error: the controller goes on with what was applied.
+error: the memory goes on with what was applied.
 """
+_LIMIT_FAULTS = {
+    "output": f"""\
+The drive never leaves its limits, before `@{{name}}_init` and after bad samples neither; where more
+{_HELD}""",
+    "command": f"""\
+The command never leaves its limits; where more
+{_HELD}""",
+    "input": f"""\
+What drives the actuator is held to its limits before it enters the model; where more
+{_HELD}""",
+}
 _REPETITIVE = """\
 
 The step must be called at every sample, for what is learned belongs to a place in the period: a

@@ -46,6 +46,23 @@ def signal_rows(block: Block, about: ModelDescription, variable: dict[str, str])
     return rows
 
 
+def drive_rows(block: Block, name: str) -> dict[str, str]:
+    """Give the rows that say what the drive may be, and which drives the memory comes after.
+
+    Parameters
+    ----------
+    block, name
+        What is exported, and its prefix.
+    """
+    said = plain_text(block.drive.said(), _LONGEST_SENTENCE)
+    if block.drive.limits is not None:
+        said = f"`{name.upper()}_U_MIN` to `{name.upper()}_U_MAX`: {said}"
+    rows = {"limits of the drive": said}
+    if block.history:
+        rows["start"] = f"after drives of {', '.join(f'{each:.6g}' for each in block.history)}"
+    return rows
+
+
 def error_rows(about: ModelDescription) -> dict[str, str]:
     """Give a row for every record the model was compared with, as far as ``about`` tells."""
     told = about.input_unit if about.is_inverse else about.output_unit
@@ -76,7 +93,8 @@ def verdict_row(about: ModelDescription, *, all_levels: bool = False) -> dict[st
     """
     if about.verdict is None or not (about.is_unfit or all_levels):
         return {}
-    said = plain_text(about.verdict.sentences[0], _LONGEST_SENTENCE)
+    parts = about.verdict.sentences[0][:_LONGEST_SENTENCE].split("'")
+    said = "'".join(plain_text(each, _LONGEST_SENTENCE) for each in parts)
     return {"verdict": f"{about.verdict.level}: {said}"}
 
 

@@ -204,12 +204,12 @@ class StageCode:
     ) -> str:
         """Give the C of a row of ``engine/kinds``, its places filled."""
         fixed = {
+            **{name: str(choice) for name, choice in stage.choices.items()},
             "signal": signal,
             "memory": place,
             "model": _name(stage, index),
             "form": stage.form,
             "input": _input(stage, index),
-            **{name: str(choice) for name, choice in stage.choices.items()},
         }
         reference = self._reference(stage, index)
 

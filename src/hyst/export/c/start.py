@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from hyst import _engine
 from hyst.checks.arrays import finite_vector
-from hyst.control.limited_drive.checked import reach_of_bank
+from hyst.control.limited_drive.bank_limits import bank_of
 from hyst.errors import InputError, NotInvertibleError
 from hyst.export.c.core_stage import core_stages
 from hyst.export.c.drive_range import DriveRange
@@ -28,7 +28,9 @@ def moved_bank(inverse: Operator) -> bool:
 
     The bank is solved for what belongs to the drive, and what is before it has no memory.
     """
-    return reach_of_bank(_engine.Chain(inverse.stages()), -1.0, 1.0) is not None
+    chain = _engine.Chain(inverse.stages())
+    stages = [chain.constants(i) for i in range(len(chain))]
+    return bank_of(stages, inverse.initial_state()) is not None
 
 
 def bank_passed(inverse: Operator, first: int, place: int) -> Passed:
@@ -49,20 +51,26 @@ def bank_passed(inverse: Operator, first: int, place: int) -> Passed:
 
 
 def inverse_following(
-    inverse: Operator, before: StageCode, place: int, last: int | None = None
+    inverse: Operator,
+    before: StageCode,
+    place: int,
+    last: int | None = None,
+    first: int | None = None,
 ) -> tuple[StageCode, Following]:
     """Give what moves the memory of an inverse beside which no model is kept.
 
     Parameters
     ----------
     inverse
-        Its stages are the last of ``before``.
+        Its stages are the last of ``before``, if not told otherwise.
     before
         The stages of the step.
     place
         Of the memory of the inverse in that of the block.
     last
         Place of the last drive.
+    first
+        Of its stages among those of ``before``.
 
     Returns
     -------
@@ -77,7 +85,8 @@ def inverse_following(
     InputError
         If its constants cannot be written in this precision.
     """
-    first = len(before.stages) - len(core_stages(inverse))
+    if first is None:
+        first = len(before.stages) - len(core_stages(inverse))
     if moved_bank(inverse):
         return before, Following.of(before, [bank_passed(inverse, first, place)], last)
     forward = inverse.inverse()
@@ -90,8 +99,10 @@ def inverse_following(
     return code, Following.of(code, passed, last)
 
 
-def with_start(block: Block, code: StageCode, inverse: Operator, place: int) -> Block:
-    """Give a ``block`` with the start of the ``inverse`` at its end, or with why it has none.
+def with_start(
+    block: Block, code: StageCode, inverse: Operator, place: int, first: int | None = None
+) -> Block:
+    """Give a ``block`` with the start of the ``inverse`` in it, or with why it has none.
 
     Parameters
     ----------
@@ -99,11 +110,11 @@ def with_start(block: Block, code: StageCode, inverse: Operator, place: int) -> 
         What is exported.
     code
         The stages of its step.
-    inverse, place
+    inverse, place, first
         As of ``inverse_following``.
     """
     try:
-        whole, following = inverse_following(inverse, code, place)
+        whole, following = inverse_following(inverse, code, place, first=first)
     except (NotInvertibleError, InputError) as reason:
         return replace(block, no_start=f"the model in front of it is not known: {reason}")
     headers = tuple(sorted({*whole.headers(), *([SOLVED_HEADER] * moved_bank(inverse))}))

@@ -62,20 +62,17 @@ def declared(block: Block, name: str) -> str:
 def _setting(
     signature: str, memory: Memory, rest: float, table_name: str, name: str, precision: Precision
 ) -> str:
+    memory_set = indented(_set("state->memory", memory, table_name))
     return (
-        f"{signature}({name}_state *state)\n{{\n{indented(_filled(memory, table_name))}\n"
+        f"{signature}({name}_state *state)\n{{\n{memory_set}\n"
         f"    state->y_last = {answer(rest, precision)};\n"
         "    state->fault = 0u;\n    state->ready = model_identity;\n}\n"
     )
 
 
-def _filled(memory: Memory, table_name: str) -> str:
+def _set(target: str, memory: Memory, table_name: str) -> str:
     if not memory:
-        return "state->memory[0] = HYST_REAL(0.0);"
-    return _loop("state->memory", memory, table_name)
-
-
-def _loop(target: str, memory: Memory, table_name: str) -> str:
+        return f"{target}[0] = HYST_REAL(0.0);"
     value = f"{table_name}[i]" if any(memory) else "HYST_REAL(0.0)"
     return f"size_t i;\nfor (i = 0; i < {len(memory)}u; ++i) {{\n    {target}[i] = {value};\n}}"
 
@@ -86,14 +83,15 @@ def _init_after(block: Block, following: Following, name: str, virgin: str) -> s
     if block.drive.limits is not None:
         outside += [f"(drive < {prefix}_U_MIN)", f"(drive > {prefix}_U_MAX)"]
     apart, last = following.apart, following.last
+    uses_actuator = re.search(r"\bactuator\b", following.statements) is not None
     uses_memory = last is not None or re.search(r"\bmemory\b", following.statements) is not None
     lines = [
         f"int {name}_init_after({name}_state *state, const hyst_real *extremes, size_t count)",
         "{",
         *["    hyst_real *const memory = state->memory;"] * uses_memory,
-        *[f"    hyst_real actuator[{len(apart)}]; /* its memory */"] * bool(apart),
+        *[f"    hyst_real actuator[{max(len(apart), 1)}]; /* its memory */"] * uses_actuator,
         "    size_t k;",
-        *([indented(_loop("actuator", apart, "actuator_memory"))] if apart else []),
+        *([indented(_set("actuator", apart, "actuator_memory"))] if uses_actuator else []),
         f"    {virgin}(state);",
         "    for (k = 0; k < count; ++k) {",
         "        const hyst_real drive = extremes[k];",

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
@@ -12,11 +11,12 @@ from typing import final
 from hyst.errors import InputError
 from hyst.export.c.block import Block, Model
 from hyst.export.c.c_sources import header, places, source, told
+from hyst.export.c.core_copy import CoreCopy
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.core_stage import CoreStage
 from hyst.export.c.drive_options import DriveOptions
 from hyst.export.c.numbers import table
-from hyst.export.c.one_file import renamed, shared_names
+from hyst.export.c.one_file import with_own_names
 from hyst.export.c.stage_code import StageCode
 from hyst.export.c.templating import filled, indented
 from hyst.export.fmi.description import FmiVersion
@@ -38,7 +38,6 @@ _OF_VERSION = {
     "3.0": ("hyst_fmi3.c", "hyst_fmi3.h", "hyst_fmi3_absent.c", "hyst_fmi3_other_kinds.c"),
 }
 _HELD_BY = "constants->of."
-_SHARED = re.compile(r"^(?!static)[a-z][\w \*]*?\b(hyst_\w+)(?:\(| = )", re.MULTILINE)
 
 
 @final
@@ -140,10 +139,11 @@ def _held(stage: CoreStage, rules: set[Rule]) -> CoreStage:
 
 def _without_reach(stage: CoreStage) -> CoreStage:
     """Give limits of a bank that hold whatever its parameters are."""
-    if "v_low" not in stage.numbers:
+    if stage.kind != "bank_limits":
         return stage
     most = sys.float_info.max
-    return replace(stage, numbers={**stage.numbers, "v_low": -most, "v_high": most})
+    numbers = {**stage.numbers, "from_low": most, "from_high": -most}
+    return replace(stage, numbers=numbers, choices={"moved_low": 0, "moved_high": 0})
 
 
 def fmu_sources(
@@ -172,8 +172,8 @@ def fmu_sources(
     block = model.tool.block
     common = places(block, name, "double", about)
     held = {
-        "arguments": f"const hyst_fmu_constants *constants, {common['arguments']}",
-        "records": f"const hyst_fmu_constants *constants, {common['records']}",
+        "arguments": f"const fmu_constants *constants, {common['arguments']}",
+        "records": f"const fmu_constants *constants, {common['records']}",
         "elements": f"constants, {common['elements']}",
     }
     stage = source(block, common | held, "double")
@@ -181,25 +181,25 @@ def fmu_sources(
         stage = stage.replace(
             "    if (state->ready", "    (void)constants;\n    if (state->ready", 1
         )
+    copy = CoreCopy(f"{name}_core", "double")
     core = {
-        path.replace("include/", "").replace("src/", "hyst_core_"): text
-        for path, text in core_files(stage + header(block, common)).items()
+        path: text.decode("ascii")
+        for path, text in copy.files(core_files(stage + header(block, common))).items()
     }
-    files = (*_COMMON, *_OF_VERSION[version])
-    return core | {file: (_TEMPLATES / file).read_bytes() for file in files} | {
-        f"{name}.h": header(block, common | held).encode("ascii"),
-        f"{name}.c": stage.encode("ascii"),
-        "hyst_model.h": _model_header(model, common, token).encode("ascii"),
-        "hyst_names.h": _names(name, core).encode("ascii"),
-        "hyst_all.c": _all(core, common, version).encode("ascii"),
-    }  # fmt: skip
+    texts = with_own_names(core | {f"{name}.c": copy.own(stage)}) | {
+        f"{name}.h": copy.own(header(block, common | held)),
+        "hyst_model.h": _model_header(model, common, copy, token),
+        "hyst_all.c": _all(core, common, version),
+    }
+    files = {file: (_TEMPLATES / file).read_bytes() for file in (*_COMMON, *_OF_VERSION[version])}
+    return files | {path: text.encode("ascii") for path, text in texts.items()}
 
 
-def _model_header(model: FmuModel, common: dict[str, str], token: str) -> str:
+def _model_header(model: FmuModel, common: dict[str, str], copy: CoreCopy, token: str) -> str:
     tool, values = model.tool, model.values()
     dt = tool.block.dt
     rules = [rule.value for rule in constant_rules(model.code)]
-    members = model.code.declarations() or "hyst_real none;\n"
+    members = model.code.declarations() or "double none;\n"
     signals = tuple(f"(input)[{k}]" for k in range(len(tool.inputs)))
     more = {
         "token": token,
@@ -207,15 +207,15 @@ def _model_header(model: FmuModel, common: dict[str, str], token: str) -> str:
         "estimates": str(len(tool.estimates)),
         "estimate": f"(state)->memory[{common['NAME']}_THETA + (place)]"
         if tool.estimates
-        else "HYST_REAL(0.0)",
+        else "0.0",
         "out_of_range": f"({' | '.join(told(tool.block, common['name']))})"
         if tool.block.tells
         else "0u",
         "count": str(len(values)),
         "size": str(max(len(values), 1)),
         "sample_time": "" if dt is None else f"#define HYST_FMU_DT {dt!r} /* seconds */\n",
-        "members": indented(members, 8),
-        "evaluate": tool.step(common["name"], "state", signals, "constants, "),
+        "members": indented(copy.own(members), 8),
+        "evaluate": copy.own(tool.step(common["name"], "state", signals, "constants, ")),
         "defaults": table(values or (0.0,), "double", "constants"),
         "rules": f"{{{_in_rows(rules or [0])}}}",
     }
@@ -227,31 +227,11 @@ def _in_rows(numbers: Sequence[int], length: int = 24) -> str:
     return ",\n    ".join(", ".join(map(str, row)) for row in rows)
 
 
-def _names(name: str, core: dict[str, bytes]) -> str:
-    """Rename what the core's files share, so that several FMUs can be linked into one program."""
-    found = {
-        shared
-        for path, content in core.items()
-        if path.endswith(".c")
-        for shared in _SHARED.findall(content.decode("ascii"))
-    }
-    lines = [f"#define {each} {name}_{each}" for each in sorted(found)]
-    return (
-        "/* The core's functions and tables under names of this FMU's own. */\n"
-        + "\n".join(lines)
-        + "\n"
-    )
-
-
-def _all(core: dict[str, bytes], common: dict[str, str], version: FmiVersion) -> str:
+def _all(core: Mapping[str, str], common: dict[str, str], version: FmiVersion) -> str:
     interface = _OF_VERSION[version]
-    texts = {path: text.decode("ascii") for path, text in core.items() if path.endswith(".c")}
-    shared = shared_names(texts)
     more = {
         "api": interface[0].removesuffix(".c").removeprefix("hyst_"),
-        "core": "".join(
-            renamed(each, shared.get(each, ()), f'#include "{each}"\n') for each in texts
-        ),
+        "core": "".join(f'#include "{each}"\n' for each in core if each.endswith(".c")),
         "interface": "".join(f'#include "{each}"\n' for each in interface if each.endswith(".c")),
     }
     return filled("fmu/hyst_all.c", common | more)

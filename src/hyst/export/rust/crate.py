@@ -9,11 +9,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, final
 
+from numpy.typing import ArrayLike
+
 from hyst import __version__
-from hyst.export.c.any_estimator import any_estimator_block
-from hyst.export.c.block import Block, Model, block_of, described, refuse_unfit
+from hyst.control.drive_limits import Limits
+from hyst.export.c.any_block import any_block
+from hyst.export.c.block import Model, described, refuse_unfit
 from hyst.export.c.c_sources import header, places
 from hyst.export.c.drive import SAMPLES
+from hyst.export.c.drive_options import AUTO, DriveOptions
+from hyst.export.c.drive_range import DriveRange
+from hyst.export.c.exported import Block
 from hyst.export.c.names import as_c_name, plain_text
 from hyst.export.c.numbers import Precision, as_precision
 from hyst.export.c.readme_rows import error_rows, lag_row, provenance_row, signals, verdict_row
@@ -26,7 +32,6 @@ from hyst.export.rust.layout import laid_out
 from hyst.export.rust.names import refuse_for_rust
 from hyst.export.rust.selftest import selftest_source, vectors
 from hyst.export.translate.exported import program_of
-from hyst.online import JointEstimator, ScaleEstimator
 from hyst.operators import ModelDescription
 
 
@@ -51,6 +56,12 @@ class RustCrate:
         Of a state.
     away_from_double
         Largest difference over the self-test from the output in double; 0 in double.
+    drive
+        What the drive may be.
+    history
+        The drives it starts after.
+    has_start
+        Whether ``init_after`` starts it after others.
     """
 
     path: Path
@@ -60,17 +71,23 @@ class RustCrate:
     state_length: int
     saved_bytes: int
     away_from_double: float
+    drive: DriveRange
+    history: tuple[float, ...]
+    has_start: bool
 
 
 def rust(
     model: Model,
     folder: str | os.PathLike[str],
-    precision: str = "double",
     *,
+    precision: str = "double",
     name: str = "stage",
     force: bool = False,
     description: ModelDescription | None = None,
     despite_verdict: bool = False,
+    limits: Limits | str | None = AUTO,
+    rate_limit: float | None = None,
+    history: ArrayLike | None = None,
 ) -> RustCrate:
     """Write a model as a Rust crate without the standard library that gives the bits of Python.
 
@@ -90,6 +107,8 @@ def rust(
         Names and units of input and output; that of the model itself if left out.
     despite_verdict
         Export also a model whose verdict is ``unfit``.
+    limits, rate_limit, history
+        Of the drive, as ``c_project`` takes them.
 
     Returns
     -------
@@ -98,8 +117,11 @@ def rust(
     Raises
     ------
     InputError
-        If the model, the name or the precision cannot be used, the path exists, or the verdict on
-        the model is ``unfit``.
+        If the model, the name or the precision cannot be used, the path exists, the verdict on the
+        model is ``unfit``, the limits are upside down or not for this model, or the history is
+        beyond them.
+    NotInvertibleError
+        If the output of the model in front of an inverse turns back within the limits.
     MissingExtraError
         If pycparser is not installed.
 
@@ -117,10 +139,7 @@ def rust(
     refuse_for_rust(name)
     refuse_unfit(model, description, despite_verdict)
     exact = as_precision(precision)
-    if isinstance(model, JointEstimator | ScaleEstimator):
-        block = any_estimator_block(model, exact)
-    else:
-        block = block_of(model, exact)
+    block = any_block(model, exact, DriveOptions(limits, rate_limit, history), description)
     about = described(model, description)
     test = SelfTest.of(block, exact, about)
     files = crate_files(block, test, name, exact, about)
@@ -132,6 +151,9 @@ def rust(
         state_length=len(block.start),
         saved_bytes=int(places(block, name, exact, about)["saved_bytes"]),
         away_from_double=test.away_from_double,
+        drive=block.drive,
+        history=block.history,
+        has_start=block.following is not None,
     )
 
 
@@ -198,9 +220,7 @@ def _signals(in_c: str) -> str:
     return "//!\n" + "".join(f"//! * {line}\n" for line in lines) if lines else ""
 
 
-def _readme(
-    block: Block, common: dict[str, str], about: ModelDescription, test: SelfTest
-) -> str:
+def _readme(block: Block, common: dict[str, str], about: ModelDescription, test: SelfTest) -> str:
     own = common["name"]
     rows = {
         "model": f"{plain_text(block.kind)}, SHA-256 {block.sha256()[:16]}...",
@@ -208,6 +228,9 @@ def _readme(
         "memory": f"{len(block.start)} numbers; saved in {common['saved_bytes']} bytes",
         "sample time": "any" if block.dt is None else f"{block.dt!r} s, and no other",
     }
+    rows["limits"] = block.drive.said()
+    if block.history:
+        rows["start"] = f"after {len(block.history)} drives"
     for role, (meaning, unit) in signals(block, about).items():
         said = f" in {plain_text(unit)}" if unit else ""
         rows[f"`{role}`"] = plain_text(meaning) + said

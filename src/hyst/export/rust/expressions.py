@@ -45,7 +45,7 @@ _WRAPPING = {"+": "wrapping_add", "-": "wrapping_sub", "*": "wrapping_mul"}
 Written = tuple[str, int]
 
 
-class Mismatch(Exception):
+class MismatchError(Exception):
     """Constant numbers are passed on as cells: the slot must be one of cells."""
 
     def __init__(self, slot: tuple[str, str]) -> None:
@@ -120,6 +120,10 @@ class Expressions:
                 return f"if {self.condition(condition)} {{ {first} }} else {{ {second} }}", _OTHER
             case Convert(operand, kind):
                 return f"{self.value(operand, _ATOM)} as {self.places.number(kind)}", _OTHER
+        return self._write_place(expression)
+
+    def _write_place(self, expression: Any) -> Written:
+        match expression:
             case ToBits(operand):
                 return f"{self.value(operand, _ATOM)}.to_bits()", _ATOM
             case FromBits(operand, kind):
@@ -256,7 +260,7 @@ class Expressions:
         if wants_cells and not self.is_cells(root) and self.function is not None:
             slot = slot_of(self.function, root)
             if slot is not None:
-                raise Mismatch(slot)
+                raise MismatchError(slot)
         return self.value(root, _ATOM)
 
     def _call(self, call: Call) -> str:

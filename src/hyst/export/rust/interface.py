@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from hyst.errors import HystError
-from hyst.export.c.block import Block
+from hyst.export.c.exported import Block
 from hyst.export.c.numbers import Precision
 from hyst.export.c.templating import filled
 from hyst.export.rust.expressions import real_text

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hyst.export.rust.expressions import Expressions, Mismatch
+from hyst.export.rust.expressions import Expressions, MismatchError
 from hyst.export.rust.names import constant_name, rust_name, type_name
 from hyst.export.rust.places import Places
 from hyst.export.rust.statements import Statements
 from hyst.export.translate.facts import facts_of
 from hyst.export.translate.program import VOID, Function, Pointer, Program, Scalar
 from hyst.export.translate.refusal import UntranslatableError
+
 
 def kernel(program: Program, head: str) -> str:
     """Give the module of a program.
@@ -36,7 +37,7 @@ def kernel(program: Program, head: str) -> str:
     while True:
         try:
             body = "\n".join(_parts(places))
-        except Mismatch as mismatch:
+        except MismatchError as mismatch:
             if mismatch.slot in places.forced:
                 raise
             places.forced.add(mismatch.slot)
@@ -72,7 +73,9 @@ def _structure(places: Places, name: str) -> str:
         f"pub {rust_name(each)}: {places.member_type(name, each, kind)},\n"
         for each, kind in members
     )
-    blank = ", ".join(f"{rust_name(each)}: {places.blank(kind, (name, each))}" for each, kind in members)
+    blank = ", ".join(
+        f"{rust_name(each)}: {places.blank(kind, (name, each))}" for each, kind in members
+    )
     own = type_name(name)
     return (
         f"#[derive(Clone, Copy)]\npub struct {own}{of} {{\n{declared}}}\n\n"
@@ -82,7 +85,7 @@ def _structure(places: Places, name: str) -> str:
 
 def _function(places: Places, function: Function) -> str:
     statements = Statements(places, function)
-    moved = {name for name in statements.changed}
+    moved = statements.changed
     parameters = ", ".join(
         f"{'mut ' if each.name in moved and not isinstance(each.type, Pointer) else ''}"
         f"{rust_name(each.name)}: {places.parameter_type(function, each.name, each.type)}"

@@ -8,7 +8,7 @@ _WIDTH = 100
 
 
 def laid_out(code: str) -> str:
-    """Give code whose lines are indented by the braces around them.
+    r"""Give code whose lines are indented by the braces around them.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ def laid_out(code: str) -> str:
 
     Examples
     --------
-    >>> print(laid_out("fn f() {\\nreturn;\\n}"))
+    >>> print(laid_out("fn f() {\nreturn;\n}"))
     fn f() {
         return;
     }

@@ -11,19 +11,18 @@ _WORDS = """
     abstract become box do final gen macro override priv try typeof unsized virtual yield
     union macro_rules raw safe
 """
-_NEVER_RAW = frozenset("crate self super Self _".split())
+_NEVER_RAW = frozenset(["crate", "self", "super", "Self", "_"])
 KEYWORDS = frozenset(_WORDS.split()) | _NEVER_RAW
 
 # Crates that the compiler brings, and names every module sees or the crate uses itself.
-_CRATES = frozenset("alloc core proc_macro std test".split())
-_TAKEN_TYPES = frozenset(
-    """
-    AsMut AsRef BadHistory BadState Box Cell Clone Copy Debug Default DoubleEndedIterator Drop Eq Err
-    ExactSizeIterator Extend Fn FnMut FnOnce From FromIterator Into IntoIterator Iterator None Ok
-    Option Ord PartialEq PartialOrd Result Self Send Sized Some String Sync ToOwned ToString TryFrom
-    TryInto Unpin Vec
-    """.split()
-)
+_CRATES = frozenset(["alloc", "core", "proc_macro", "std", "test"])
+_TYPES = """
+    AsMut AsRef BadHistory BadState Box Cell Clone Copy Debug Default DoubleEndedIterator
+    Drop Eq Err ExactSizeIterator Extend Fn FnMut FnOnce From FromIterator Into
+    IntoIterator Iterator None Ok Option Ord PartialEq PartialOrd Real Result Self Send
+    Sized Some String Sync ToOwned ToString TryFrom TryInto Unpin Vec
+"""
+_TAKEN_TYPES = frozenset(_TYPES.split())
 
 
 def rust_name(name: str) -> str:
@@ -60,8 +59,8 @@ def refuse_for_rust(name: str) -> None:
     Raises
     ------
     InputError
-        If it is a word of Rust, the name of a crate of the compiler, or its type would hide one that
-        every module sees.
+        If it is a word of Rust, the name of a crate of the compiler, or its type would hide one
+        that every module sees.
     """
     reason = ""
     if name in KEYWORDS or name.lower() in KEYWORDS:

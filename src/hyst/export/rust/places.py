@@ -1,7 +1,8 @@
 """How Rust holds what the pointers of a program point to.
 
-Numbers that change lie in slices of cells, which may be shared and need no ``unsafe``; constants lie
-in plain slices. Every pointer of the program points to one of the two, never now to this, now to that.
+Numbers that change lie in slices of cells, which may be shared and need no ``unsafe``; constants
+lie in plain slices. Every pointer of the program points to one of the two, never now to this, now
+to that.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ from hyst.export.translate.program import (
     CType,
     Function,
     FunctionPointer,
+    Member,
+    Name,
     Named,
     Pointer,
     Program,
@@ -158,8 +161,6 @@ class Places:
 
 def slot_of(function: Function, pointer: Any) -> Slot | None:
     """Give the parameter or member that a pointer is read from; None if it is neither."""
-    from hyst.export.translate.program import Member, Name
-
     if isinstance(pointer, Name) and pointer.kind == "parameter":
         return (function.name, pointer.name)
     if isinstance(pointer, Member) and isinstance(pointer.of.type, Named):

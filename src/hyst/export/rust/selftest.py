@@ -5,8 +5,8 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterable
 
-from hyst.export.c.block import Block
 from hyst.export.c.drive import PERIOD
+from hyst.export.c.exported import Block
 from hyst.export.c.numbers import Precision
 from hyst.export.c.selftest import BAD, SECOND_RESTS, SEEDS, SelfTest
 from hyst.export.c.templating import filled, indented

@@ -8,22 +8,28 @@ from typing import Any
 from hyst.export.rust.expressions import Expressions
 from hyst.export.rust.names import rust_name
 from hyst.export.rust.places import Places
+from hyst.export.translate.facts import Slot
+from hyst.export.translate.pointers import split
 from hyst.export.translate.program import (
+    VOID,
     AddressOf,
     Array,
     Assign,
     Block,
     Break,
     Call,
+    CType,
     Decay,
     Declare,
     Element,
     Evaluate,
     Function,
     If,
+    Initialiser,
     Loop,
     Member,
     Name,
+    Named,
     Number,
     Pointer,
     Return,
@@ -41,7 +47,7 @@ class Statements:
         self.places = places
         self.expressions = Expressions(places, function)
         self.function = function
-        self.changed = set(_changed(function))
+        self.changed = set(_changed(places, function))
 
     def all(self, body: tuple[Statement, ...]) -> Iterator[str]:
         """Give lines of Rust; the formatter indents them."""
@@ -59,7 +65,7 @@ class Statements:
             case Assign(place, value):
                 yield self._assign(place, value)
             case Evaluate(call):
-                discarded = "" if call.type == self._void() else "let _ = "
+                discarded = "" if call.type == VOID else "let _ = "
                 yield f"{discarded}{write.value(call)};"
             case If(condition, then, other):
                 yield f"if {write.condition(condition)} {{"
@@ -85,14 +91,13 @@ class Statements:
                 yield from self.all(inner)
                 yield "}"
 
-    def _void(self) -> Any:
-        from hyst.export.translate.program import VOID
-
-        return VOID
-
     def _assign(self, place: Any, value: Any) -> str:
         write = self.expressions
-        if isinstance(place, Member) and isinstance(place.type, Pointer):
+        if (
+            isinstance(place, Member)
+            and isinstance(place.type, Pointer)
+            and isinstance(place.of.type, Named)
+        ):
             slot = (place.of.type.name, place.name)
             given = write.given(slot, place.type, value)
             return f"{self._inside(place.of)}.{rust_name(place.name)} = {given};"
@@ -104,7 +109,9 @@ class Statements:
                 of, Decay
             ):
                 if isinstance(of.type.to, Scalar):
-                    return f"slices::set_cell({write.slice(of, True)}, {write.value(index)}, {text});"
+                    return (
+                        f"slices::set_cell({write.slice(of, True)}, {write.value(index)}, {text});"
+                    )
                 return f"*{write.whole(place)} = {text};"
             case Element(of=of, index=index):
                 array = of.of if isinstance(of, Decay) else of
@@ -134,17 +141,36 @@ class Statements:
         return f"slices::put(&mut {place}, {write.value(index)}, {text});"
 
 
-def _changed(function: Function) -> Iterator[str]:
+def _changed(places: Places, function: Function) -> Iterator[str]:
     """Give the variables that do not keep their first value, or are lent to be changed."""
     for statement in statements_in(function.body):
         if isinstance(statement, Assign):
             yield from _holder(statement.place)
+            if isinstance(statement.place, Member) and isinstance(statement.place.of.type, Named):
+                slot = (statement.place.of.type.name, statement.place.name)
+                yield from _lent(places, slot, statement.place.type, statement.value)
     for each in all_expressions(function.body):
         if isinstance(each, Call):
-            for argument in each.arguments:
-                for part in inside(argument):
-                    if isinstance(part, AddressOf | Decay):
-                        yield from _holder(part.of)
+            parameters = places.program.functions[each.function].parameters
+            for parameter, argument in zip(parameters, each.arguments, strict=True):
+                yield from _lent(places, (each.function, parameter.name), parameter.type, argument)
+        elif isinstance(each, Initialiser) and isinstance(each.type, Named):
+            members = places.program.structures[each.type.name].members
+            for (name, kind), value in zip(members.items(), each.values, strict=True):
+                yield from _lent(places, (each.type.name, name), kind, value)
+
+
+def _lent(places: Places, slot: Slot, kind: CType, value: Any) -> Iterator[str]:
+    """Give the variable that a pointer lets somebody change, if it does."""
+    if not isinstance(kind, Pointer):
+        return
+    if isinstance(kind.to, Named):
+        is_lent = slot[0] in places.program.functions and places.is_changed(slot)
+    else:
+        is_lent = places.is_cell(slot, kind)
+    root, _ = split(value)
+    if is_lent and isinstance(root, AddressOf | Decay):
+        yield from _holder(root.of)
 
 
 def _holder(place: Any) -> Iterator[str]:

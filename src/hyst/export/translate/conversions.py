@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 from fractions import Fraction
 
@@ -26,7 +27,7 @@ from hyst.export.translate.program import (
 )
 from hyst.export.translate.refusal import refused
 
-_RANK = [INT, UNSIGNED, SIZE, WIDE, FLOAT, DOUBLE]
+_RANK: list[CType] = [INT, UNSIGNED, SIZE, WIDE, FLOAT, DOUBLE]
 _MOST = {"int32": 2**31 - 1, "uint32": 2**32 - 1, "size": 2**32 - 1, "uint64": 2**64 - 1}
 
 
@@ -35,14 +36,13 @@ def promoted(value: Expression) -> Expression:
     return converted(value, INT) if value.type == BYTE else value
 
 
-def common(left: Expression, right: Expression) -> tuple[Expression, Expression, Scalar]:
+def common(left: Expression, right: Expression) -> tuple[Expression, Expression, CType]:
     """Give two numbers in the type that C computes with them in."""
     left, right = promoted(left), promoted(right)
-    for each in (left, right):
-        if each.type not in _RANK:
-            raise refused("arithmetic with something that is no number")
-    to = max((left.type, right.type), key=_RANK.index)
-    return converted(left, to), converted(right, to), to  # type: ignore[return-value]
+    if left.type not in _RANK or right.type not in _RANK:
+        raise refused("arithmetic with something that is no number")
+    to = _RANK[max(_RANK.index(left.type), _RANK.index(right.type))]
+    return converted(left, to), converted(right, to), to
 
 
 def converted(value: Expression, to: CType) -> Expression:
@@ -102,11 +102,13 @@ def _as_single(digits: str, value: float) -> float:
         return nearest  # type: ignore[no-any-return]
     exact = Fraction(digits)
     bits = struct.unpack("I", struct.pack("f", nearest))[0]
-    near = [
-        struct.unpack("f", struct.pack("I", bits + by))[0] for by in (-1, 0, 1) if bits + by > 0
-    ]
+    around = range(max(bits - 1, 0), bits + 2)
+    near = [struct.unpack("f", struct.pack("I", each))[0] for each in around]
     # A tie goes to the even one, which is what double has chosen unless it was no tie.
-    return min(near, key=lambda each: (abs(Fraction(each) - exact), each != nearest))  # type: ignore[no-any-return]
+    return min(  # type: ignore[no-any-return]
+        (each for each in near if math.isfinite(each)),
+        key=lambda each: (abs(Fraction(each) - exact), each != nearest),
+    )
 
 
 def _pointer(value: Expression, to: Pointer) -> Expression:

@@ -141,7 +141,7 @@ class Declared:
             case "BinaryOp":
                 left, right = self.constant(node.left), self.constant(node.right)
                 if node.op in _ARITHMETIC:
-                    return _ARITHMETIC[node.op](left, right)
+                    return int(_ARITHMETIC[node.op](left, right))
         raise refused("a constant that is not made of whole numbers", node)
 
 

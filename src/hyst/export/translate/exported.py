@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import re
 
-from hyst.export.c.block import Block
 from hyst.export.c.c_sources import header, places, source
+from hyst.export.c.core_copy import CoreCopy
 from hyst.export.c.core_sources import core_files
+from hyst.export.c.exported import Block
 from hyst.export.c.numbers import Precision
 from hyst.export.c.one_file import in_one_file
 from hyst.export.translate.program import Program
 from hyst.export.translate.reading import read_program
 from hyst.operators import ModelDescription
-
 
 _ENTRIES = ("init", "init_after", "step", "update", "command", "reset")
 
@@ -22,16 +22,16 @@ def entries_of(text: str, name: str) -> tuple[str, ...]:
 
     Saving and loading a state is left to every language, for it is about bytes.
     """
-    return tuple(
-        f"{name}_{each}" for each in _ENTRIES if re.search(rf"\b{name}_{each}\(.*;", text)
-    )
+    return tuple(f"{name}_{each}" for each in _ENTRIES if re.search(rf"\b{name}_{each}\(.*;", text))
 
 
 def c_text(block: Block, name: str, precision: Precision, about: ModelDescription) -> str:
     """Give all C of an export, the core's part included, as one text."""
     common = places(block, name, precision, about)
     declared, stage = header(block, common), source(block, common, precision)
-    return in_one_file(core_files(stage + declared), {f"{name}.h": declared, f"{name}.c": stage})
+    copy = CoreCopy("hyst", precision)
+    own = {f"{name}.h": copy.renamed(declared), f"{name}.c": copy.renamed(stage)}
+    return in_one_file(copy.files(core_files(stage + declared)), own)
 
 
 def program_of(block: Block, name: str, precision: Precision, about: ModelDescription) -> Program:
@@ -60,5 +60,4 @@ def program_of(block: Block, name: str, precision: Precision, about: ModelDescri
         If pycparser is not installed.
     """
     text = c_text(block, name, precision, about)
-    defined = "#define HYST_SINGLE\n" if precision == "single" else ""
-    return read_program(defined + text, entries_of(text, name))
+    return read_program(text, entries_of(text, name))

@@ -15,6 +15,8 @@ from hyst.export.translate.conversions import (
 )
 from hyst.export.translate.declared import Declared, Pattern
 from hyst.export.translate.program import (
+    DOUBLE,
+    FLOAT,
     INT,
     SIZE,
     VOID,
@@ -160,9 +162,9 @@ class Expressions:
         """Give the number of elements, as ``sizeof row / sizeof row[0]`` says it."""
         whole = self.value(node.left.expr)
         part = node.right.expr
-        if isinstance(whole.type, Array) and type(part).__name__ == "ArrayRef":
-            if self.value(part.name) == whole:
-                return Number(whole.type.count, SIZE)
+        is_element = type(part).__name__ == "ArrayRef" and self.value(part.name) == whole
+        if isinstance(whole.type, Array) and is_element:
+            return Number(whole.type.count, SIZE)
         raise refused("sizeof", node)
 
     def arithmetic(self, operator: str, left: Expression, right: Expression) -> Expression:
@@ -173,7 +175,7 @@ class Expressions:
         left, right, kind = common(left, right)
         if operator in _COMPARED:
             return Comparison(operator, left, right)
-        if kind.is_real and operator not in "+-*/":
+        if kind in (FLOAT, DOUBLE) and operator not in "+-*/":
             raise refused(f"{operator} of real numbers")
         return Binary(operator, left, right, kind)
 

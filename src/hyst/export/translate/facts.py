@@ -108,7 +108,7 @@ def _take_function(facts: Facts, program: Program, function: Function) -> None:
             _take_values(facts, program, function, statement.value)
     for each in all_expressions(function.body):
         if isinstance(each, Comparison) and isinstance(each.right, Null):
-            facts.nullable |= {slot for slot in _slots(function, each.left)}
+            facts.nullable |= set(_slots(function, each.left))
         if isinstance(each, Call):
             for name, argument in _passed(program, each):
                 slot = (each.function, name)
@@ -140,9 +140,10 @@ def _flow(facts: Facts, function: Function | None, slot: Slot, value: Any) -> No
         _flow(facts, function, slot, root.other)
         return
     facts.lies.setdefault(slot, set()).update(_home(facts, function, root))
-    if isinstance(root, Name | Member) and function is not None:
-        if any(each in facts.nullable for each in _slots(function, root)):
-            facts.nullable.add(slot)
+    if function is None or not isinstance(root, Name | Member):
+        return
+    if any(each in facts.nullable for each in _slots(function, root)):
+        facts.nullable.add(slot)
 
 
 def _home(facts: Facts, function: Function | None, root: Any) -> set[str]:

@@ -50,7 +50,7 @@ def without_local_pointers(function: Function, functions: dict[str, Function]) -
     function
         As read.
     functions
-        Those it calls, done already: one that only gives a pointer is written out where it is called.
+        Those it calls, done already: one that only gives a pointer is written out at the call.
 
     Returns
     -------

@@ -1,8 +1,8 @@
 """The typed program that other languages are written from.
 
 Conversions that C does silently are ``Convert`` nodes, so that both operands of arithmetic have the
-type of the result. Pointers have one form: a place is ``Element(pointer, index)``, a pointer into the
-middle ``Offset(pointer, index)``; ``p[i]``, ``*p``, ``&p[i]`` and ``p + i`` are written so.
+type of the result. Pointers have one form: a place is ``Element(pointer, index)``, a pointer into
+the middle ``Offset(pointer, index)``; ``p[i]``, ``*p``, ``&p[i]`` and ``p + i`` are written so.
 """
 
 from __future__ import annotations

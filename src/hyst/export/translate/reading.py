@@ -136,7 +136,7 @@ class _Reading:
                 self._point_to_model(name, member, next(iter(targets)))
 
     def _point_to_model(self, name: str, member: str, target: str) -> None:
-        """Give ``void`` pointers beside a pointer to a function the type that this casts them to."""
+        """Give ``void`` pointers beside one to a function the type that this casts them to."""
         if target not in self.definitions:
             return
         kind = self._cast_of(self.definitions[target])
