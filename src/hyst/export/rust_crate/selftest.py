@@ -10,7 +10,7 @@ from hyst.export.c.exported import Block
 from hyst.export.c.numbers import Precision
 from hyst.export.c.selftest import BAD, SECOND_RESTS, SEEDS, SelfTest
 from hyst.export.c.templating import filled, indented
-from hyst.export.rust.names import rust_name
+from hyst.export.rust_crate.names import rust_name
 
 
 def selftest_source(block: Block, places: dict[str, str]) -> str:

@@ -8,8 +8,8 @@ from hyst.errors import HystError
 from hyst.export.c.exported import Block
 from hyst.export.c.numbers import Precision
 from hyst.export.c.templating import filled
-from hyst.export.rust.expressions import real_text
-from hyst.export.rust.names import rust_name, type_name
+from hyst.export.rust_crate.expressions import real_text
+from hyst.export.rust_crate.names import rust_name, type_name
 from hyst.export.translate.conversions import real_literal
 from hyst.export.translate.program import Program
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import struct
 from typing import Any
 
-from hyst.export.rust.names import constant_name, rust_name, type_name
-from hyst.export.rust.places import Places, slot_of
+from hyst.export.rust_crate.names import constant_name, rust_name, type_name
+from hyst.export.rust_crate.places import Places, slot_of
 from hyst.export.translate.pointers import split
 from hyst.export.translate.program import (
     AddressOf,

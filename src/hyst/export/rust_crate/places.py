@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, final
 
-from hyst.export.rust.names import type_name
+from hyst.export.rust_crate.names import type_name
 from hyst.export.translate.facts import MEMORY, TABLE, Facts, Slot
 from hyst.export.translate.program import (
     VOID,
