@@ -44,7 +44,17 @@ def selftest_source(block: Block, places: dict[str, str]) -> str:
 
 
 def vectors(block: Block, test: SelfTest, precision: Precision) -> str:
-    """Give the input and what Python makes of it, numbers as their bits."""
+    """Give the input and what Python makes of it, numbers as their bits.
+
+    Parameters
+    ----------
+    block
+        What is exported.
+    test
+        The self-test.
+    precision
+        Of the target.
+    """
     drive = test.drive
     word = "u32" if precision == "single" else "u64"
     lines = [
