@@ -86,7 +86,8 @@ def run_of(project: CProject, u: NDArray[np.float64]) -> Callable[[], object]:
     y = np.empty_like(signal)
     pointers = ctypes.c_void_p(signal.ctypes.data), ctypes.c_void_p(y.ctypes.data)
     code.stage_init(state)
-    return lambda: code.stage_run(state, *pointers, ctypes.c_size_t(signal.size))
+    # Both arrays are named, so that they live as long as what points to them.
+    return lambda: code.stage_run(state, *pointers, ctypes.c_size_t(min(signal.size, y.size)))
 
 
 if __name__ == "__main__":

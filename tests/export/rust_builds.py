@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 from pathlib import Path
@@ -21,7 +22,7 @@ _WORKSPACE = """\
 resolver = "2"
 members = [{members}]
 [profile.dev]
-opt-level = 1
+opt-level = 0
 debug = false
 incremental = false
 """
@@ -111,16 +112,10 @@ def cargo(folder: Path, *arguments: str) -> str:
         cwd=folder,
         capture_output=True,
         text=True,
-        env={**_environment(), "RUSTFLAGS": "-D warnings"},
+        env={**os.environ, "RUSTFLAGS": "-D warnings"},
     )
-    assert done.returncode == 0, done.stderr[-3000:]
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     return done.stdout
-
-
-def _environment() -> dict[str, str]:
-    import os
-
-    return dict(os.environ)
 
 
 def _arm(name: str, library: Path) -> str:

@@ -27,6 +27,7 @@ from hyst.export.translate.program import (
     Scalar,
 )
 from hyst.export.translate.refusal import refused
+from hyst.export.translate.types import said
 
 _NUMBERS = {
     "double": "f64",
@@ -58,7 +59,7 @@ class Places:
     def number(self, kind: CType) -> str:
         """Give the name of a type of numbers."""
         if not isinstance(kind, Scalar) or kind.name not in _NUMBERS:
-            raise refused(f"the type {kind}")
+            raise refused(f"the type {said(kind)}")
         return _NUMBERS[kind.name]
 
     def is_cell(self, slot: Slot, kind: Pointer) -> bool:
@@ -142,7 +143,7 @@ class Places:
         if isinstance(kind.to, Named):
             text = f"&{before}{self.value_type(kind.to, inner)}"
             return f"Option<{text}>" if self.is_optional(slot, kind) else text
-        raise refused(f"{'.'.join(slot)}, a pointer to {kind.to},")
+        raise refused(f"{'.'.join(slot)}, a pointer to {said(kind.to)},")
 
     def blank(self, kind: CType, slot: Slot = ("", "")) -> str:
         """Give a value for what is set later."""
@@ -156,7 +157,7 @@ class Places:
             if self.is_optional(slot, kind):
                 return "None"
             return f"&{self.blank(kind.to)}" if isinstance(kind.to, Named) else "&[]"
-        raise refused(f"a value of {kind}")
+        raise refused(f"a value of {said(kind)}")
 
 
 def slot_of(function: Function, pointer: Any) -> Slot | None:

@@ -26,6 +26,7 @@ from hyst.export.translate.program import (
     Scalar,
 )
 from hyst.export.translate.refusal import refused
+from hyst.export.translate.types import said
 
 _RANK: list[CType] = [INT, UNSIGNED, SIZE, WIDE, FLOAT, DOUBLE]
 _MOST = {"int32": 2**31 - 1, "uint32": 2**32 - 1, "size": 2**32 - 1, "uint64": 2**64 - 1}
@@ -63,7 +64,7 @@ def converted(value: Expression, to: CType) -> Expression:
             value.type.name,
         )
     ):
-        raise refused(f"a conversion of {value.type} to {to}")
+        raise refused(f"a conversion of {said(value.type)} to {said(to)}")
     if isinstance(value, Number) and _holds(value.value, to):
         return Number(float(value.value) if to.is_real else value.value, to)
     return Convert(value, to)
@@ -115,7 +116,7 @@ def _pointer(value: Expression, to: Pointer) -> Expression:
     """Let a pointer to something be one to something constant."""
     of = value.type
     if not isinstance(of, Pointer) or of.to != to.to or (of.is_const and not to.is_const):
-        raise refused(f"a conversion of {of} to {to}")
+        raise refused(f"a conversion of {said(of)} to {said(to)}")
     if isinstance(value, Decay):
         return Decay(value.of, to)
     if isinstance(value, Offset):
