@@ -87,7 +87,7 @@ def run_of(project: CProject, u: NDArray[np.float64]) -> Callable[[], object]:
     y = np.empty_like(signal)
     pointers = ctypes.c_void_p(signal.ctypes.data), ctypes.c_void_p(y.ctypes.data)
     code.stage_init(state)
-    return lambda: code.stage_run(state, *pointers, ctypes.c_size_t(signal.size))
+    return lambda: (y, code.stage_run(state, *pointers, ctypes.c_size_t(signal.size)))
 
 
 if __name__ == "__main__":
