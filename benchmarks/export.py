@@ -76,10 +76,9 @@ def run_of(project: CProject, u: NDArray[np.float64]) -> Callable[[], object]:
     """Compile a project and give what runs a record through it."""
     single = project.precision == "single"
     library = project.path / "stage.so"
-    sources = [each for each in project.files if each.endswith(".c") and each != "selftest.c"]
-    flags = ["-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared", "-I.", "-Icore/include"]
-    single_flag = ["-DHYST_SINGLE"] if single else []
-    command = ["cc", *flags, *single_flag, *sources, "-o", library.name]
+    sources = [f for f in project.files if f.endswith(".c") and not f.endswith("_selftest.c")]
+    flags = ["-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared"]
+    command = ["cc", *flags, *sources, "-o", library.name]
     subprocess.run(command, cwd=project.path, check=True)
     code = ctypes.CDLL(str(library))
     state = ctypes.create_string_buffer(project.state_bytes)
@@ -87,7 +86,8 @@ def run_of(project: CProject, u: NDArray[np.float64]) -> Callable[[], object]:
     y = np.empty_like(signal)
     pointers = ctypes.c_void_p(signal.ctypes.data), ctypes.c_void_p(y.ctypes.data)
     code.stage_init(state)
-    return lambda: (y, code.stage_run(state, *pointers, ctypes.c_size_t(signal.size)))
+    # Both arrays are named, so that they live as long as what points to them.
+    return lambda: code.stage_run(state, *pointers, ctypes.c_size_t(min(signal.size, y.size)))
 
 
 if __name__ == "__main__":

@@ -48,6 +48,7 @@ def print_records() -> None:
     for name, each in times.items():
         median = float(np.median(each)) / SAMPLES
         print(f"  {name:24s} {1e9 * median:8.2f} ns a sample  {1e-6 / median:8.1f} M samples/s")
+    print(f"  inverse record / record {ratio(times, 'inverse record', 'record'):.2f}")
     print(f"  numpy power / record {ratio(times, 'numpy power alone', 'record'):.2f}")
 
 

@@ -38,10 +38,10 @@ class ObjectStore:
         self._locks: defaultdict[Path, threading.Lock] = defaultdict(threading.Lock)
         self._lock = threading.Lock()
 
-    def object_of(self, source: Path, includes: tuple[Path, ...], build: Build) -> Path:
+    def object_of(self, source: Path, build: Build) -> Path:
         """Give the object of a source of the core; equal sources and headers share one."""
         content = [source.name.encode(), source.read_bytes()]
-        content += [each.read_bytes() for each in sorted(includes[0].rglob("*.h"))]
+        content += [each.read_bytes() for each in sorted(source.parent.glob("*.h"))]
         key = hashlib.sha256(b"\0".join(content)).hexdigest()[:16]
         made = self._folder / build.name.replace(" ", "-") / f"{source.stem}-{key}.o"
         with self._lock:
@@ -49,7 +49,7 @@ class ObjectStore:
         with lock:
             if not made.exists():
                 made.parent.mkdir(parents=True, exist_ok=True)
-                compile_source(source, made, includes, build)
+                compile_source(source, made, (), build)
         return made
 
 
@@ -77,17 +77,16 @@ class Objects:
 def compile_model(project: Path, work: Path, store: ObjectStore, build: Build) -> Objects:
     """Compile an exported project."""
     work.mkdir(parents=True, exist_ok=True)
-    includes = (project / "core" / "include", project)
     own = work / "stage.o"
-    compile_source(project / "stage.c", own, includes, build)
-    sources = sorted((project / "core" / "src").glob("*.c"))
-    return Objects(own, tuple(store.object_of(each, includes, build) for each in sources))
+    compile_source(project / "stage.c", own, (), build)
+    sources = sorted((project / "core").glob("*.c"))
+    return Objects(own, tuple(store.object_of(each, build) for each in sources))
 
 
 def link_program(objects: Objects, project: Path, work: Path, build: Build) -> Path:
     """Link a model with the program that measures it; that one is always compiled alike."""
     plain = Build(build.processor, build.precision, MAIN.level)
-    includes = (work, FIRMWARE, project / "core" / "include", project)
+    includes = (work, FIRMWARE, project)
     own = [work / "measure.o", work / "cortex_m.o"]
     for made in own:
         more = ("-fno-tree-loop-distribute-patterns",)  # its memcpy must not call memcpy

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from embedded.rounding_bound import NoBoundError, controller_bound, single_precision_bound
 from hyst import ModifiedPrandtlIshlinskii, Operator, PrandtlIshlinskii, Preisach
-from hyst.control import RepetitiveController, TrackingController
+from hyst.control import LimitedDrive, RepetitiveController, TrackingController
 from hyst.export.c.block import Block, block_of, stepper_of
 from hyst.export.c.estimator import estimator_block
 from hyst.export.c.numbers import Precision
@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 
 SAMPLES = 300
 HEADLINE = "inverse mpi of 10 plays"
+LIMITED = "inverse mpi of 10 plays, limited"
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class Case:
     """A model and the record it is given, shape (N, inputs); some samples are not finite."""
 
     name: str
-    model: Operator | TrackingController | RepetitiveController | JointEstimator
+    model: Operator | LimitedDrive | TrackingController | RepetitiveController | JointEstimator
     inputs: Array
 
     @property
@@ -64,6 +65,8 @@ class Case:
             raise NoBoundError("an estimate feeds on its own rounding")
         if isinstance(self.model, RepetitiveController):
             raise NoBoundError("what is learned feeds on its own rounding")
+        if isinstance(self.model, LimitedDrive):
+            raise NoBoundError("which samples are held hangs on rounding")
         finite = self.inputs[np.isfinite(self.inputs).all(axis=1)]
         if isinstance(self.model, TrackingController):
             return controller_bound(self.model, finite)
@@ -143,7 +146,16 @@ def estimator() -> tuple[JointEstimator, Array]:
 
 def cases() -> Iterator[Case]:
     """Give every case, the ones with a goal first."""
-    models = {HEADLINE: ten_plays(), "pi of 31 plays": thirty_one_plays(), **EXAMPLES}
+    models: dict[str, Operator | LimitedDrive] = {
+        HEADLINE: ten_plays(),
+        # Narrower than the record, wider than every play.
+        LIMITED: LimitedDrive(ten_plays(), (-3.0, 3.5)),
+        "inverse mpi of 10 plays, limited by rate": LimitedDrive(
+            ten_plays(), (-3.0, 3.5), 2000.0, dt=1e-3
+        ),
+        "pi of 31 plays": thirty_one_plays(),
+        **EXAMPLES,
+    }
     relays = forty_cells_a_side()
     models |= {"preisach 40 x 40": relays, "inverse preisach 40 x 40": relays.inverse()}
     for name, model in models.items():

@@ -64,12 +64,14 @@ def write_vectors(inputs: Array, precision: str, step: str, file: Path) -> None:
     single = precision == "single"
     bits = inputs.astype(np.float32).view(np.uint32) if single else inputs.view(np.uint64)
     suffix = "u" if single else "ull"
+    word, number = ("uint32_t", "float") if single else ("uint64_t", "double")
     numbers = ",\n    ".join(f"0x{each:x}{suffix}" for each in bits.ravel().tolist())
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(
+        f"typedef {word} word;\ntypedef {number} number;\n\n"
         f"enum {{ SAMPLES = {inputs.shape[0]}, INPUTS = {inputs.shape[1]} }};\n\n"
         f"static const word input_bits[] = {{\n    {numbers}}};\n\n"
-        "static hyst_real step(stage_state *model, const hyst_real *u)\n"
+        "static number step(stage_state *model, const number *u)\n"
         f"{{\n    {step}\n}}\n"
     )
 

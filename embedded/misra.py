@@ -32,22 +32,25 @@ ROW = re.compile(
 
 Place = tuple[str, int]
 
-PRECISIONS = ("-UHYST_SINGLE", "-DHYST_SINGLE")
+# C++ is not what MISRA C speaks of, and a header of the user's is the user's.
+UNDEFINED = ("POWER_HEADER", "ROOT_HEADER", "REAL_HEADER", "EXTERN_C")
+OF_THE_CORE = tuple(
+    (f"-I{INCLUDE}", precision, *(f"-UHYST_{each}" for each in UNDEFINED))
+    for precision in ("-UHYST_SINGLE", "-DHYST_SINGLE")
+)
+OF_AN_EXPORT = (tuple(f"-USTAGE_CORE_{each}" for each in UNDEFINED),)
 
 
 def report(
-    sources: Iterable[Path], includes: Iterable[Path], precisions: tuple[str, ...] = PRECISIONS
+    sources: Iterable[Path], configurations: Iterable[tuple[str, ...]]
 ) -> dict[str, set[Place]]:
     """Give where cppcheck finds what, by its names, as misra-c2012-15.5."""
     found: defaultdict[str, set[Place]] = defaultdict(set)
-    for precision in precisions:
+    for options in configurations:
         command = ["cppcheck", "--addon=misra", "--std=c99", "--quiet", "--inline-suppr"]
         command += ["--enable=warning,style,performance,portability", "--platform=unix32"]
-        command += ["--template={file}:{line}:{id}", precision]
-        command += ["-UHYST_POWER_HEADER", "-UHYST_ROOT_HEADER"]
-        # C++ is not what MISRA C speaks of.
-        command += ["-UHYST_REAL_HEADER", "-UHYST_EXTERN_C", "-U__cplusplus"]
-        command += [*(f"-I{each}" for each in includes), *map(str, sources)]
+        command += ["--template={file}:{line}:{id}", "-U__cplusplus", *options]
+        command += map(str, sources)
         for each in FINDING.finditer(run(command, seconds=300.0)):
             found[each["what"]].add((each["file"], int(each["line"])))
     return dict(found)
@@ -95,10 +98,9 @@ def exported_sources(folder: Path) -> list[Path]:
 
 def findings_of_export(source: Path) -> dict[str, set[Place]]:
     """Give what is found in an export itself, not in the headers of the core."""
-    includes = [INCLUDE, source.parent]
-    found = report([source], includes, PRECISIONS[1:])
+    found = report([source], OF_AN_EXPORT)
     return {
-        what: {place for place in places if not place[0].startswith(str(INCLUDE))}
+        what: {place for place in places if Path(place[0]).parent == source.parent}
         for what, places in found.items()
     }
 
@@ -111,7 +113,7 @@ def main() -> int:
         return 0 if skipped else 1
     page = PAGE.read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
-        of_core = pool.submit(report, sorted(CORE.glob("*.c")), [INCLUDE])
+        of_core = pool.submit(report, sorted(CORE.glob("*.c")), OF_THE_CORE)
         of_exports = pool.map(findings_of_export, exported_sources(Path(folder)))
         problems = unseen(of_core.result()) + excess(of_core.result(), accepted(page, "core"))
         for found in of_exports:

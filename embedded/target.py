@@ -61,7 +61,7 @@ class Build:
 
     @property
     def options(self) -> tuple[str, ...]:
-        single = ("-DHYST_SINGLE", "-Wdouble-promotion") if self.precision == "single" else ()
+        single = ("-Wdouble-promotion",) if self.precision == "single" else ()
         return (*self.processor.options, "-mthumb", "-mfloat-abi=hard", self.level, *single)
 
 

@@ -1,33 +1,27 @@
 /* Runs an exported model over a record and reports its outputs, instructions, stack and state.
  *
- * vectors.h, which the runner writes, gives SAMPLES, INPUTS for each of them, their bits, and `step`:
- * how they enter the model. Every line of the report is a word and a number, in hexadecimal. */
+ * vectors.h, which the runner writes, gives the model's `number` and a `word` of as many bits, SAMPLES,
+ * INPUTS for each of them, their bits, and `step`: how they enter the model. Every line of the report is a word and a number, in hexadecimal. */
 #include "board.h"
 #include "stage.h"
 
-#ifdef HYST_SINGLE
-typedef uint32_t word;
-#else
-typedef uint64_t word;
-#endif
+#include "vectors.h"
 
 typedef union {
     word bits;
-    hyst_real value;
+    number value;
 } pattern;
-
-#include "vectors.h"
 
 #define PAINT 0xA5C35A3Cu
 
 /* In static memory, so that all of the stack below is the step's. */
 static stage_state state;
-static hyst_real y[SAMPLES];
-static hyst_real again[SAMPLES];
+static number y[SAMPLES];
+static number again[SAMPLES];
 static uint32_t ticks[SAMPLES];
 static unsigned char saved[STAGE_SAVED_BYTES];
 
-static inline hyst_real input(size_t k, size_t of)
+static inline number input(size_t k, size_t of)
 {
     pattern u;
     u.bits = input_bits[k * INPUTS + of];
@@ -74,7 +68,7 @@ static __attribute__((noinline)) uint32_t run_for_stack(void)
         *place = PAINT;
     }
     for (size_t k = 0; k < SAMPLES; ++k) {
-        hyst_real u[INPUTS];
+        number u[INPUTS];
         for (size_t i = 0; i < INPUTS; ++i) {
             u[i] = input(k, i);
         }
@@ -86,16 +80,16 @@ static __attribute__((noinline)) uint32_t run_for_stack(void)
     return (uint32_t)(sp - (uintptr_t)clean);
 }
 
-typedef hyst_real (*call)(stage_state *, const hyst_real *);
+typedef number (*call)(stage_state *, const number *);
 
-static hyst_real nothing(stage_state *unused, const hyst_real *u)
+static number nothing(stage_state *unused, const number *u)
 {
     (void)unused;
     return u[INPUTS - 1];
 }
 
 /* Ticks of a call, and of what surrounds it. */
-static __attribute__((noinline)) uint32_t ticks_of(call work, const hyst_real *u, hyst_real *result)
+static __attribute__((noinline)) uint32_t ticks_of(call work, const number *u, number *result)
 {
     const uint32_t start = board_ticks();
     *result = work(&state, u);
@@ -112,7 +106,7 @@ static __attribute__((noinline)) uint32_t ticks_of_plain(void (*work)(void))
 static void run_for_ticks(void)
 {
     for (size_t k = 0; k < SAMPLES; ++k) {
-        hyst_real u[INPUTS];
+        number u[INPUTS];
         for (size_t i = 0; i < INPUTS; ++i) {
             u[i] = input(k, i);
         }
@@ -126,7 +120,7 @@ static int differs_after_saving(void)
     int differs = 0;
     stage_init(&state);
     for (size_t k = 0; k < SAMPLES; ++k) {
-        hyst_real u[INPUTS];
+        number u[INPUTS];
         pattern one, two;
         for (size_t i = 0; i < INPUTS; ++i) {
             u[i] = input(k, i);
@@ -145,8 +139,8 @@ static int differs_after_saving(void)
 
 int main(void)
 {
-    hyst_real unused;
-    const hyst_real zeros[INPUTS] = {0};
+    number unused;
+    const number zeros[INPUTS] = {0};
     board_start();
     stage_init(&state);
     report("stack", run_for_stack());

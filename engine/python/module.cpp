@@ -16,6 +16,7 @@
 #include "../records/gradient.hpp"
 #include "../records/gram.hpp"
 #include "../jacobian.hpp"
+#include "limited_drive_binding.hpp"
 #include "moving_binding.hpp"
 #include "online_binding.hpp"
 #include "../parallel.hpp"
@@ -250,6 +251,7 @@ NB_MODULE(_engine, module) {
     module.def("stepper", &stepper, nb::arg("chain"), nb::arg("state"), nb::arg("y_safe"));
     hyst::bind_closed_loop(module);
     hyst::bind_repetitive(module);
+    hyst::bind_limited_drive(module);
     hyst::bind_moving(module);
     hyst::bind_online_estimation(module);
     hyst::bind_rate_dependent_inversion(module);

@@ -9,13 +9,16 @@
 #include <deque>
 #include <limits>
 #include <map>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "hyst/hyst.h"
 #include "../kinds/kind.hpp"
+#include "../limited_drive.hpp"
 #include "../moving.hpp"
 
 namespace nb = nanobind;
@@ -60,8 +63,21 @@ public:
                 limited_.inverse.limits = {limits.number("low"), limits.number("high"),
                                            limits.number("change")};
                 forward = limits.choice("forward");
+                is_model_ = limits.has_choice("way") && limits.choice("way") == 0;
                 length += 1;
                 is_limited_ = true;
+            } else if (name == "bank_limits") {
+                const hyst::kinds::Constants of = rounded(each);
+                const auto end = [&](const std::string &side) {
+                    const auto number = [&](const char *what) {
+                        return of.number((what + side).c_str());
+                    };
+                    return hyst_bank_end{of.choice(("moved_" + side).c_str()), number("slope_"),
+                                         number("constant_"), number("from_"), number("least_")};
+                };
+                ends_ = {of.number("low"), of.number("high"), end("low"), end("high")};
+                length += 1;
+                is_limited_ = is_bank_ = true;
             } else if (name == "anti_windup") {
                 controls_.push_back(rounded(each));
                 limited_.w = controls_.back().table("w");
@@ -83,6 +99,10 @@ public:
 
     double step(double u) {
         if (has_two_inputs_) throw std::invalid_argument("this block takes y_ref and y");
+        if (drive_ != nullptr) {
+            return drive_->step(state_.data(), before_.data(), &limited_guard_,
+                                static_cast<float>(u));
+        }
         return hyst_guarded_step(&controller_.inverse, state_.data(), &guard_,
                                  static_cast<float>(u));
     }
@@ -132,6 +152,14 @@ private:
         limited_.inverse.forward = {forward, stages_.data() + count};
         before_.resize(state_.size());
         limited_guard_.guard.y_last = state_.back();
+        if (has_two_inputs_) return;
+        using Way = hyst::LimitedDrive::Way;
+        const hyst_limited_inverse &of = limited_.inverse;
+        drive_ = is_bank_
+                     ? std::make_unique<hyst::LimitedDrive>(of.inverse, ends_)
+                     : std::make_unique<hyst::LimitedDrive>(is_model_ ? Way::model : Way::forward,
+                                                            of.inverse, of.forward, of.limits);
+        limited_guard_.guard.y_last = drive_->start(state_.data());
     }
 
     void add_controller(const hyst::kinds::Constants &of) {
@@ -190,6 +218,9 @@ private:
     hyst_limited_guard limited_guard_{};
     std::vector<float> before_;
     float v_ = 0.0f, excess_ = 0.0f;
+    bool is_bank_ = false, is_model_ = false;
+    hyst_bank_limits ends_{};
+    std::unique_ptr<hyst::LimitedDrive> drive_;
 };
 
 // Stages whose constants follow a second signal: what each knot has of them.

@@ -5,6 +5,7 @@
 #include "lanes_kernel.hpp"
 #include "memory_curve_kernel.hpp"
 #include "memoryless_kernel.hpp"
+#include "power_law_inverse_kernel.hpp"
 #include "power_law_kernel.hpp"
 #include "rows_kernel.hpp"
 #include "sum_kernels.hpp"
@@ -62,6 +63,7 @@ const Kernels kKernelTable = {HYST_TEXT(HYST_INSTRUCTION_SET),
                               affine,
                               dead_zone,
                               power_law_branch,
+                              inverse_power_law_branch,
                               curve_gradient,
                               finish_curve_gradient,
                               sum_gradient,

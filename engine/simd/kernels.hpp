@@ -106,6 +106,9 @@ struct Kernels {
     // Points of one branch of a power law. u and y may be the same.
     void (*power_law_branch)(const hyst_power_law &f, const Branch &branch, const double *u,
                              double *y, std::size_t count);
+    // The same of its inverse: u holds outputs of the law, y takes inputs.
+    void (*inverse_power_law_branch)(const hyst_power_law &f, const Branch &branch, const double *u,
+                                     double *y, std::size_t count);
 
     // u is finite. y: scratch of `count`. Call the second when the record is over.
     void (*curve_gradient)(CurveGradientData &data, const double *u, const double *target,

@@ -39,6 +39,7 @@ from hyst.models import *
 from hyst.operators import Affine as Affine
 from hyst.operators import Composition as Composition
 from hyst.operators import DeadZone as DeadZone
+from hyst.operators import Driver as Driver
 from hyst.operators import ModelDescription as ModelDescription
 from hyst.operators import Operator as Operator
 from hyst.operators import Play as Play

@@ -1,7 +1,7 @@
 """Types of the compiled engine."""
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -135,6 +135,69 @@ class TrackingStepper:
     def limited(self) -> bool: ...
     def clear_fault(self) -> None: ...
     def __call__(self, y_ref: float, y: float) -> float: ...
+
+class LimitedDrive:
+    @overload
+    def __init__(
+        self,
+        is_inverse: bool,
+        chain: Chain,
+        forward: Chain,
+        low: float,
+        high: float,
+        change: float,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        chain: Chain,
+        low: float,
+        high: float,
+        moved_down: int,
+        down: Sequence[float],
+        moved_up: int,
+        up: Sequence[float],
+    ) -> None: ...
+    @property
+    def state_length(self) -> int: ...
+    def run(self, state: Array, x: Array, y: Array) -> tuple[int, int]: ...
+    def lead(self, state: Array, u: Array) -> int: ...
+
+class LimitedStepper:
+    def __init__(self, drive: LimitedDrive, state: Array) -> None: ...
+    @property
+    def state(self) -> Array: ...
+    @property
+    def fault(self) -> bool: ...
+    @property
+    def limited(self) -> bool: ...
+    def clear_fault(self) -> None: ...
+    def __call__(self, x: float) -> float: ...
+
+class LimitedMovingStepper:
+    def __init__(
+        self,
+        at: Sequence[float],
+        knots: Sequence[Iterable[Stage]],
+        forward: Sequence[Iterable[Stage]],
+        is_inverse: bool,
+        low: float,
+        high: float,
+        change: float,
+        state: Array,
+    ) -> None: ...
+    @property
+    def state(self) -> Array: ...
+    @property
+    def fault(self) -> bool: ...
+    @property
+    def limited(self) -> bool: ...
+    @property
+    def outside(self) -> bool: ...
+    def clear_fault(self) -> None: ...
+    def run(self, x: Array, s: Array, y: Array) -> tuple[int, int]: ...
+    def lead(self, drive: float, s: float) -> bool: ...
+    def __call__(self, x: float, s: float) -> float: ...
 
 class RepetitiveController:
     def __init__(

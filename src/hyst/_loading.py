@@ -9,7 +9,12 @@ from hyst.errors import InputError
 from hyst.operators.description import ModelDescription
 from hyst.operators.model_file import ESTIMATOR, LEARNING, read_file
 
-_TWO_INPUTS = ("tracking-controller", "repetitive-controller")
+_BLOCKS = {
+    "limited-drive": "LimitedDrive",
+    "limited-schedule": "LimitedSchedule",
+    "repetitive-controller": "RepetitiveController",
+    "tracking-controller": "TrackingController",
+}
 
 
 def load(path: str | os.PathLike[str]) -> Any:
@@ -22,8 +27,8 @@ def load(path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    Operator, Scheduled, TrackingController, RepetitiveController, LearningCompensator, or an
-    estimator of hyst.online or its AdaptiveInverse
+    Operator, Scheduled, LimitedDrive, LimitedSchedule, TrackingController,
+    RepetitiveController, LearningCompensator, or an estimator of hyst.online or its AdaptiveInverse
         Equal to the one saved, every double exact; an estimator goes on with the same bits. What
         its numbers mean is its ``description``.
 
@@ -56,12 +61,12 @@ def load(path: str | os.PathLike[str]) -> Any:
 
 
 def _model(data: Any) -> Any:
-    if isinstance(data, dict) and data.get("kind") in _TWO_INPUTS:
-        from hyst.control import RepetitiveController, TrackingController
-
-        is_tracking = data["kind"] == _TWO_INPUTS[0]
-        return (TrackingController if is_tracking else RepetitiveController).from_dict(data)
     import hyst.models  # from here on its classes are known
+
+    if isinstance(data, dict) and str(data.get("kind")) in _BLOCKS:
+        import hyst.control
+
+        return getattr(hyst.control, _BLOCKS[data["kind"]]).from_dict(data)
     from hyst.operators import operator_from_dict
 
     if isinstance(data, dict) and data.get("kind") == hyst.models.Scheduled.kind:

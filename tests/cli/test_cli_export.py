@@ -26,7 +26,7 @@ def test_writes_what_python_writes(run: Run, folder: Path, model_file: Path) -> 
     ended = run("export", model_file, "--inverse", "-o", "out", "--name", "lens")
     assert ended.code == 0
     assert "inverse of model.json as c: out" in ended.out
-    assert "48 bytes" in ended.out or "bytes, 2 numbers of memory" in ended.out
+    assert "bytes, 3 numbers of memory" in ended.out  # two plays and the last drive
     assert "next: cd out && cmake" in ended.out
     header = (folder / "out" / "lens.h").read_text()
     # Input and output have changed places with their names and units.
@@ -47,7 +47,7 @@ def test_a_zip_unpacks_compiles_and_tests_itself(run: Run, folder: Path, model_f
         command, shell=True, cwd=folder, capture_output=True, text=True, check=False
     )
     assert "100% tests passed" in finished.stdout, finished.stderr
-    assert "HYST_SINGLE" in (folder / "stage" / "CMakeLists.txt").read_text()
+    assert "float stage_step(" in (folder / "stage" / "stage.h").read_text()
 
 
 def test_a_lag_of_the_record_is_said_and_paths_are_quoted(run: Run, folder: Path) -> None:
@@ -82,7 +82,7 @@ def test_the_explicit_inverse_of_a_rate_dependent_model(run: Run, folder: Path) 
     assert "beta is 0.01" in refused.err
     assert run("export", "model.json", "--explicit", "-o", "out").code == 0
     python = c_project(explicit_inverse(RATE_DEPENDENT), folder / "python")
-    for file in ("stage.c", "selftest_vectors.h"):
+    for file in ("stage.c", "stage_selftest_vectors.h"):
         assert (folder / "out" / file).read_bytes() == (python.path / file).read_bytes()
     STAGE.save(folder / "stage.json")
     assert "no rate-dependent plays" in run("export", "stage.json", "--explicit", "-o", "x").err
@@ -95,7 +95,7 @@ def test_an_inverse_with_preview_says_how_late_it_is(run: Run, folder: Path) -> 
     assert "the command for sample k - 7" in done.out
     assert "7 samples late" in (folder / "out" / "README.md").read_text()
     python = c_project(RATE_DEPENDENT.inverse(preview=7), folder / "python")
-    for file in ("stage.c", "selftest_vectors.h"):
+    for file in ("stage.c", "stage_selftest_vectors.h"):
         assert (folder / "out" / file).read_bytes() == (python.path / file).read_bytes()
     assert "add --inverse" in run("export", "model.json", "--preview", 7, "-o", "x").err
     both = run("export", "model.json", "--inverse", "--explicit", "--preview", 7, "-o", "x")
@@ -108,7 +108,7 @@ def test_a_tracking_controller_is_exported_from_its_file(run: Run, folder: Path)
     ended = run("export", "loop.json", "-o", "out", "--name", "loop")
     assert ended.code == 0
     assert (
-        "loop_step(loop_state *state, hyst_real y_ref, hyst_real y)"
+        "loop_step(loop_state *state, double y_ref, double y)"
         in (folder / "out" / "loop.h").read_text()
     )
     assert "no inverse" in run("export", "loop.json", "--inverse", "-o", "x").err
@@ -120,7 +120,7 @@ def test_a_tracking_controller_is_exported_from_its_file(run: Run, folder: Path)
         (["--name", "int"], "a word of C or C++"),
         (["--name", "../x"], "C identifier"),
         (["--precision", "half"], "double or single"),
-        (["--target", "rust"], "--target is 'rust'"),
+        (["--target", "cobol"], "--target is 'cobol'"),
         (["-o", "model.json/out"], "is a file"),
     ],
 )
@@ -142,3 +142,56 @@ def test_a_file_that_is_no_model_is_refused(run: Run, folder: Path) -> None:
     assert ended.code == 2
     assert "not a model file" in ended.err
     assert run("export", "missing.json", "-o", "out").code == 2
+
+
+def test_limits_and_start_are_told_in_the_table(run: Run, folder: Path, model_file: Path) -> None:
+    by_itself = run("export", model_file, "--inverse", "-o", "auto", "--name", "lens")
+    assert "0 to 4 V (the range of the record)" in by_itself.out
+    assert "as nothing had ever driven it; or lens_init_after" in by_itself.out
+    told = run(
+        "export", model_file, "--inverse", "-o", "told", "--limits=-1,3.5", "--rate-limit", "20",
+        "--history=3.5,-1,2",
+    )  # fmt: skip
+    assert "-1 to 3.5 V, at most 20 V per second (as given)" in told.out
+    assert "after 3.5, -1, 2; or stage_init_after" in told.out
+    python = c_project(
+        STAGE.inverse(), folder / "python", limits=(-1.0, 3.5), rate_limit=20.0,
+        history=[3.5, -1.0, 2.0], description=describe(STAGE).of_inverse(),
+    )  # fmt: skip
+    assert snapshot(folder / "told") == snapshot(python.path)
+    none = run("export", model_file, "--inverse", "-o", "none", "--limits", "none")
+    assert "none: as asked for" in none.out
+    STAGE.save(folder / "undescribed.json")
+    unknown = run("export", folder / "undescribed.json", "--inverse", "-o", "unknown")
+    assert "none: no range of the drive is known" in unknown.out
+
+
+def test_a_history_can_be_a_column(run: Run, folder: Path, model_file: Path) -> None:
+    (folder / "drive.csv").write_text("V\n" + "\n".join(str(k % 5) for k in range(20)) + "\n")
+    done = run("export", model_file, "--inverse", "-o", "out", "--history", "drive.csv:V")
+    assert "after 0, 1, 2, 3, 4, 0 ... (20 drives)" in done.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--limits", "4,0"], "give the lowest drive first"),
+        (["--limits", "wide"], "--limits is 'wide'; give numbers with commas"),
+        (["--limits", "1"], "--limits is '1'; give auto, none, or the lowest and the highest"),
+        (["--limits", "0,1,2"], "give auto, none, or the lowest and the highest"),
+        (["--rate-limit", "0"], "rate is 0"),
+        (["--history", "0,9"], "history has 9, beyond the limits of the drive, 0 to 4"),
+        (["--history", "nan"], "history is nan at index 0"),
+        (["--history", "first"], "--history is 'first'; give numbers"),
+    ],
+)
+@pytest.mark.parametrize("target", ["c", "mex"])
+def test_limits_and_histories_that_cannot_be(
+    target: str, arguments: list[str], said: str, run: Run, folder: Path, model_file: Path
+) -> None:
+    before = snapshot(folder)
+    ended = run("export", model_file, "--inverse", "-o", "out", "--target", target, *arguments)
+    assert ended.code == 2
+    assert said in ended.err
+    assert ended.err.count("\n") == 1
+    assert snapshot(folder) == before

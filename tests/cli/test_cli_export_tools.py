@@ -11,7 +11,7 @@ import pytest
 from command_runs import STAGE, Run, describe, snapshot
 from fmpy.validation import validate_fmu
 
-from hyst.export import fmu, mex
+from hyst.export import fmu, mex, rust
 
 
 @pytest.fixture
@@ -49,6 +49,16 @@ def test_a_mex_function_is_what_python_writes(run: Run, folder: Path, model_file
     assert snapshot(folder / "out") == snapshot(written.path)
 
 
+def test_a_rust_crate_is_what_python_writes(run: Run, folder: Path, model_file: Path) -> None:
+    options = ("--target", "rust", "--precision", "single", "--name", "lens", "-o", "out")
+    ended = run("export", model_file, *options)
+    assert ended.code == 0
+    assert "cargo test" in ended.out
+    about = describe(STAGE)
+    written = rust(STAGE, folder / "python", precision="single", name="lens", description=about)
+    assert snapshot(folder / "out") == snapshot(written.path)
+
+
 @pytest.mark.skipif(shutil.which("mkoctfile") is None, reason="mkoctfile is not installed")
 def test_the_command_that_mex_prints_compiles(run: Run, folder: Path, model_file: Path) -> None:
     ended = run("export", model_file, "--target", "mex", "-o", "stage.zip")
@@ -66,7 +76,9 @@ def test_the_command_that_mex_prints_compiles(run: Run, folder: Path, model_file
         (("--target", "mex", "--name", "end", "-o", "out"), "MATLAB or Octave"),
         (("--target", "fmu", "--fmi", "1.0", "-o", "a.fmu"), "2.0 or 3.0"),
         (("--target", "fmu", "-o", "nowhere"), "nowhere is no folder"),
-        (("--target", "rust", "-o", "out"), "c or fmu or mex"),
+        (("--target", "ada", "-o", "out"), "c or fmu or mex"),
+        (("--target", "rust", "--flat", "-o", "out"), "--flat is for --target c"),
+        (("--target", "rust", "--name", "match", "-o", "out"), "a word of Rust"),
     ],
 )
 def test_refusals(

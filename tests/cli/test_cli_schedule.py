@@ -94,11 +94,11 @@ def test_simulation_and_command_follow_a_column(run: Callable, folder: Path):
     )
     assert one.code == 0
     assert run("export", model, "--inverse", "-o", "c").code == 0
-    assert "stage_step(stage_state *state, hyst_real u, hyst_real s)" in (
+    assert "stage_step(stage_state *state, double u, double s)" in (
         (folder / "c" / "stage.h").read_text()
     )
     assert run("export", model, "--schedule-value", 30, "--target", "c", "-o", "d").code == 0
-    assert "hyst_real s)" not in (folder / "d" / "stage.h").read_text()
+    assert "double s)" not in (folder / "d" / "stage.h").read_text()
 
 
 def test_outside_the_schedule_is_told(run: Callable, folder: Path):

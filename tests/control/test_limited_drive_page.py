@@ -16,5 +16,5 @@ def test_example_prints_what_the_page_says() -> None:
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
         exec(compile(code, str(PAGE), "exec"), {})
-    assert len(said) == 2
+    assert len(said) == 4
     assert printed.getvalue().splitlines() == said

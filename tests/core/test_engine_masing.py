@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hyst import InputError, MasingOperator, Operator, RambergOsgood, _engine
-from hyst.models import ExponentialCurve, Iwan, PiecewiseLinear, PolynomialCurve
+from hyst.models import ExponentialCurve, Iwan, PiecewiseLinear, PolynomialCurve, PowerLaw
 
 LAW = (0.5, 0.3, 1.3)
 OPERATORS: dict[str, Operator] = {
@@ -20,6 +20,7 @@ OPERATORS: dict[str, Operator] = {
     "saturating": MasingOperator(ExponentialCurve(0.0, -1.0, 0.5)),
     "flat in macro-slip": Iwan(1.0, 2.0, -0.3, 0.5),
     "inverse": RambergOsgood(*LAW).inverse(),
+    "inverse, last reversal": RambergOsgood(0.5, 0.3, 0.4, memory="last-reversal").inverse(),
     "inverse of an exponential": MasingOperator(ExponentialCurve(1.0, 0.7, 0.8)).inverse(),
 }
 
@@ -46,6 +47,26 @@ def test_stretches_are_samples(operator: Operator, seed: int) -> None:
     step = operator.stepper()
     assert np.array([step(value) for value in u.tolist()]).tobytes() == y.tobytes()
     assert step.state.tobytes() == state.tobytes()
+
+
+@pytest.mark.parametrize("c3", [-0.7, -0.05, 0.001, 0.5, 1.3, 6.0, 90.0])
+@pytest.mark.parametrize("c1", [0.0, 1e-9, 1e-3, 1.0, 1e3])
+def test_an_equation_takes_as_many_steps_in_a_pack_as_alone(c1: float, c3: float) -> None:
+    """Samples of all sizes side by side, which take from one to six powers, and 0 among them."""
+    inverse = MasingOperator(PowerLaw(c1, 1.0, c3)).inverse()
+    up = np.sort(np.concatenate([np.geomspace(1e-9, 1e3, 211), np.linspace(0.0, 40.0, 90)]))
+    y = np.concatenate([up, up[::-1][1:], -up, [0.0, 0.0], 0.5 * up])
+    step = inverse.stepper()
+    alone = np.array([step(value) for value in y.tolist()]).tobytes()
+    before = _engine.instruction_set()
+    try:
+        for name in _engine.instruction_sets():
+            _engine.use_instruction_set(name)
+            u, state = inverse.run(y)
+            assert u.tobytes() == alone
+            assert state.tobytes() == step.state.tobytes()
+    finally:
+        _engine.use_instruction_set(before)
 
 
 def test_what_overflows_is_refused_where_the_core_says() -> None:

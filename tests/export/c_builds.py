@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import ctypes
 import hashlib
+import json
 import shutil
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -32,11 +33,6 @@ def compiled(command: list[str], folder: Path) -> None:
     assert finished.returncode == 0, finished.stderr
 
 
-def precision_flags(folder: Path) -> list[str]:
-    readme = (folder / "README.md").read_text()
-    return ["-DHYST_SINGLE"] if "-DHYST_SINGLE" in readme else []
-
-
 class Objects:
     """Objects of core files, compiled once for each content, compiler and precision."""
 
@@ -44,8 +40,11 @@ class Objects:
         self._home = home
 
     def of(self, source: Path, project: Path, build: list[str]) -> Path:
-        # The headers of the core are the same in every export, which a test of its own makes sure.
-        key = hashlib.sha256(repr(build).encode() + source.read_bytes()).hexdigest()
+        # Headers of the same name and precision are the same in every export, which a test of its
+        # own makes sure; real.h tells the precision.
+        (real,) = source.parent.glob("*_real.h")
+        content = repr(build).encode() + source.read_bytes() + real.read_bytes()
+        key = hashlib.sha256(content).hexdigest()
         result = self._home / f"{source.stem}-{key[:16]}.o"
         if not result.exists():
             command = [*build, "-c", str(source), "-o", str(result)]
@@ -57,9 +56,8 @@ def build_library(
     project: Path, objects: Objects, driver: str = "gcc", language: list[str] = AS_C
 ) -> Path:
     """Compile a project into a shared library; by gcc, one that needs nothing from elsewhere."""
-    common = ["-O1", "-fPIC", *STRICT, "-I.", "-Icore/include", *precision_flags(project)]
-    build = [compiler(driver), *language, *common]
-    sources = sorted((project / "core").glob("src/*.c"))
+    build = [compiler(driver), *language, "-O1", "-fPIC", *STRICT]
+    sources = sorted(project.glob("core/*.c"))
     parts = [str(objects.of(each, project, build)) for each in sources]
     name = project_name(project)
     own = project / f"{name}-{driver}.o"
@@ -74,17 +72,16 @@ def build_library(
 
 def check_syntax(project: Path, driver: str, language: list[str]) -> None:
     """Compile the header and the source of a project, without a result."""
-    flags = [*STRICT, "-fsyntax-only", "-I.", "-Icore/include", *precision_flags(project)]
-    compiled([compiler(driver), *language, *flags, f"{project_name(project)}.c"], project)
+    flags = [*STRICT, "-fsyntax-only", f"{project_name(project)}.c"]
+    compiled([compiler(driver), *language, *flags], project)
 
 
 def run_selftest(project: Path, objects: Objects) -> subprocess.CompletedProcess[str]:
     """Compile and run the self-test; the core's objects may come from an earlier project."""
-    flags = [*STRICT, "-I.", "-Icore/include", *precision_flags(project)]
-    build = [compiler("gcc"), *AS_C, "-O1", *flags]
-    sources = sorted((project / "core").glob("src/*.c"))
+    build = [compiler("gcc"), *AS_C, "-O1", *STRICT]
+    sources = sorted(project.glob("core/*.c"))
     parts = [str(objects.of(each, project, build)) for each in sources]
-    own = [f"{project_name(project)}.c", "selftest.c"]
+    own = sorted(each.name for each in project.glob("*.c"))
     compiled([*build, *own, *parts, "-o", "selftest"], project)
     return subprocess.run(
         [str(project / "selftest")], cwd=project, capture_output=True, text=True, check=False
@@ -92,8 +89,7 @@ def run_selftest(project: Path, objects: Objects) -> subprocess.CompletedProcess
 
 
 def project_name(project: Path) -> str:
-    (cmake,) = project.glob("CMakeLists.txt")
-    return cmake.read_text().split("project(")[1].split()[0]
+    return str(json.loads((project / "manifest.json").read_text())["name"])
 
 
 class Exported:
@@ -131,6 +127,14 @@ class Exported:
         state = self._new()
         self._function("init")(ctypes.byref(state))
         return state
+
+    def state_after(self, drives: Sequence[float] | np.ndarray) -> tuple[Any, int]:
+        """A state after a history of the drive, and what the call gave."""
+        state, count = self._new(), len(drives)
+        kept = np.ascontiguousarray(drives, dtype=np.float64)
+        start = self._function("init_after")
+        place = ctypes.c_void_p(kept.ctypes.data)
+        return state, int(start(ctypes.byref(state), place, ctypes.c_size_t(count)))
 
     def step(self, state: Any, *u: float) -> float:
         return float(self._function("step")(ctypes.byref(state), *u))

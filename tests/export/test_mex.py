@@ -270,7 +270,8 @@ def test_the_c_file_stands_alone(tmp_path: Path) -> None:
     assert "#error\n" not in text.replace('#error "', "")
     core = Path(__file__).resolve().parents[2] / "core"
     for line in (core / "src/prandtl_ishlinskii.c").read_text().splitlines():
-        assert line in text or line.startswith("#include")
+        renamed = line.replace("hyst_", "stage_core_").replace("HYST_", "STAGE_CORE_")
+        assert renamed in text or line.startswith("#include")
 
 
 # What MATLAB documents of its C matrix API, as far as it is called, in the form for interleaved
@@ -333,6 +334,27 @@ def test_names_that_cannot_be(name: str, tmp_path: Path) -> None:
     with pytest.raises(hyst.InputError, match="the name is"):
         hyst.export.mex(PI, tmp_path / "a", name=name)
     assert list(tmp_path.iterdir()) == []
+
+
+@needs_octave
+@pytest.mark.parametrize("name", ["", " ", "end", "1st", "a'b", "%{", "x\ny", "...", "u: y"])
+def test_any_name_of_a_signal(name: str, tmp_path: Path) -> None:
+    """No name, words of MATLAB, marks that begin a comment, and both alike: none reaches code."""
+    about = ModelDescription(input_name=name, input_unit=name, output_name=name, output_unit=name)
+    folder = compiled(hyst.export.mex(PI.with_description(about), tmp_path / "a"))
+    printed = octave(folder, "help stage\nprintf('%.17g\\n', stage([0.25 0.5]))")
+    assert "y = stage(u)" in printed
+    # 17 digits are a double exactly.
+    assert [float(each) for each in printed.split()[-2:]] == PI(np.array([0.25, 0.5])).tolist()
+
+
+def test_a_signal_without_a_name_is_called_as_in_the_call(tmp_path: Path) -> None:
+    about = ModelDescription(input_name="", output_name="", output_unit="V")
+    folder = hyst.export.mex(PI.with_description(about), tmp_path / "a").path
+    readme = (folder / "README.md").read_text()
+    assert "| u | u |" in readme
+    assert "| y | y in V |" in readme
+    assert "y: y in V" in (folder / "stage.m").read_text()
 
 
 def test_a_folder_that_exists(tmp_path: Path) -> None:

@@ -90,10 +90,10 @@ def test_the_selftest_finds_no_difference(
     project = c_project(BLOCKS[name], tmp_path / "out", precision=precision)
     assert run_selftest(project.path, objects).stdout == "10000 samples, max difference 0\n"
     code = (project.path / "stage.c").read_text()
-    assert "hyst_repetitive_learn" in code
-    files = {each.name for each in (project.path / "core" / "src").glob("*.c")}
-    assert "repetitive_memory.c" in files
-    assert not files & {"chain.c", "repetitive_controller.c"}
+    assert "stage_core_repetitive_learn" in code
+    files = {each.name for each in (project.path / "core").glob("*.c")}
+    assert "stage_core_repetitive_memory.c" in files
+    assert not files & {"stage_core_chain.c", "stage_core_repetitive_controller.c"}
 
 
 def test_single_precision_follows_double() -> None:

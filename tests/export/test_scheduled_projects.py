@@ -82,8 +82,8 @@ def test_the_self_test_passes_and_can_fail(
     assert project.away_from_double <= (0.0 if precision == "double" else 3e-6)
     source = project.path / "stage.c"
     text = source.read_text()
-    assert "if (!hyst_is_finite(s))" in text
-    source.write_text(text.replace("schedule, s, now", "schedule, s + HYST_REAL(0.5), now"))
+    assert "if (!stage_core_is_finite(s))" in text
+    source.write_text(text.replace("schedule, s, now", "schedule, s + 0.5f, now"))
     failed = run_selftest(project.path, objects)
     assert failed.returncode == 1
     assert "the same numbers as in Python" in failed.stdout
@@ -92,7 +92,7 @@ def test_the_self_test_passes_and_can_fail(
 def test_files_say_what_the_second_input_is(tmp_path: Path) -> None:
     project = c_project(scheduled(), tmp_path / "out")
     header = (project.path / "stage.h").read_text()
-    assert "hyst_real stage_step(stage_state *state, hyst_real u, hyst_real s);" in header
+    assert "double stage_step(stage_state *state, double u, double s);" in header
     assert "STAGE_OFF_SCHEDULE 8u" in header
     assert "temperature in degC" in header
     assert "STAGE_OFF_SCHEDULE" in (project.path / "README.md").read_text()

@@ -117,11 +117,15 @@ def test_an_inverse_means_the_same_with_the_signals_exchanged() -> None:
     assert (about.input_name, about.input_unit) == ("position", "um")
     assert (about.output_name, about.output_low, about.output_high) == ("drive", 0.0, 100.0)
     assert about.provenance == ORIGIN
-    assert about.errors == {}  # they are of the output, which is the input here
+    assert about.is_inverse
+    assert about.errors == ABOUT.errors  # of the model that is inverted, whose output is the input
     assert about.smallest_swing is None  # of what is the output here
     assert about.verdict == UNFIT  # what is wrong about the model is wrong about its inverse
     assert about.delay_interval == (1.75, 2.5)
-    assert PLAYS.inverse().description == ModelDescription()
+    assert about.is_inverse
+    assert not about.of_inverse().is_inverse
+    assert PLAYS.inverse().description == ModelDescription(is_inverse=True)
+    assert PLAYS.inverse().inverse().description == ModelDescription()
 
 
 def test_what_is_estimated_anew_has_neither_the_errors_nor_the_origin_of_its_start() -> None:

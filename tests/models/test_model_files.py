@@ -210,9 +210,9 @@ def entry(*path: str | int, value: Any) -> Callable[[dict[str, Any]], None]:
         (entry("format", value="hyst"), "not a model file"),
         (
             entry("version", value=...),
-            "version None of the model file; this hyst reads versions 1, 2, 3 and 4",
+            "version None of the model file; this hyst reads versions 1, 2, 3, 4 and 5",
         ),
-        (entry("version", value=5), "version 5 of the model file"),
+        (entry("version", value=6), "version 6 of the model file"),
         (entry("version", value="1"), "version '1'"),
         (entry("version", value=1.0), r"version 1\.0"),
         (entry("version", value=True), "version True"),

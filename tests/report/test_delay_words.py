@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import hyst
-from hyst.export.c.readme import lag_row
+from hyst.export.c.readme_rows import lag_row
 from hyst.operators import ModelDescription
 from hyst.report.delay_words import delay_sentence, delay_to_act_on
 

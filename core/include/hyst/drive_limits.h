@@ -13,8 +13,23 @@ typedef struct {
     hyst_real change;    /* from one sample to the next, > 0; or 0 for any */
 } hyst_drive_limits;
 
-/* The drive nearest to u that may be, and the new *last. The limits hold whatever *last is. u must be
- * finite. */
+static inline hyst_real hyst_drive_between(hyst_real u, hyst_real low, hyst_real high)
+{
+    const hyst_real above = u < low ? low : u;
+    return above > high ? high : above;
+}
+
+/* The drive nearest to u that may be, after the drive `last`. */
+static inline hyst_real hyst_allowed_drive(const hyst_drive_limits *limits, hyst_real last,
+                                           hyst_real u)
+{
+    if (limits->change > HYST_REAL(0.0)) {
+        u = hyst_drive_between(u, last - limits->change, last + limits->change);
+    }
+    return hyst_drive_between(u, limits->low, limits->high);
+}
+
+/* The same, and the new *last. The limits hold whatever *last is. u must be finite. */
 hyst_real hyst_limited_drive(const hyst_drive_limits *limits, hyst_real *last, hyst_real u);
 
 #ifdef HYST_EXTERN_C

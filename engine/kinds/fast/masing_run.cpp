@@ -23,8 +23,10 @@ Branch branch_of(const hyst_masing &model, const double *state) {
 
 void stretch(const hyst_masing &model, const Branch &branch, const double *u, double *y,
              std::size_t samples) {
-    if (model.curve.kind == HYST_POWER_LAW && !model.inverse) {
-        kernels().power_law_branch(model.curve.as.power_law, branch, u, y, samples);
+    if (model.curve.kind == HYST_POWER_LAW) {
+        const Kernels &all = kernels();
+        const auto along = model.inverse ? all.inverse_power_law_branch : all.power_law_branch;
+        along(model.curve.as.power_law, branch, u, y, samples);
         return;
     }
     for (std::size_t k = 0; k < samples; ++k) {

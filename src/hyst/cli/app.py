@@ -19,7 +19,7 @@ from hyst.cli.demo import demo
 from hyst.cli.diagnose import diagnose
 from hyst.cli.excite import excite
 from hyst.cli.exit_codes import BAD_INPUT, DONE, FAILURE
-from hyst.cli.export import export
+from hyst.cli.export.command import export
 from hyst.cli.family_options import FamilyCommand
 from hyst.cli.fit import fit
 from hyst.cli.identify import identify
@@ -30,6 +30,7 @@ from hyst.cli.observer.command import observer
 from hyst.cli.reproduce import reproduce
 from hyst.cli.simulate import simulate
 from hyst.cli.watch.command import watch
+from hyst.cli.waveform import waveform
 
 app = typer.Typer(
     add_completion=False,
@@ -54,6 +55,7 @@ VERBS = (
     learn,
     observer,
     export,
+    waveform,
     info,
     reproduce,
     demo,

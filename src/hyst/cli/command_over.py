@@ -24,8 +24,9 @@ def command_over(
     history: Sequence[float],
     input_range: tuple[float, float] | None,
     despite_verdict: bool,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Give the command that makes the output follow a reference, and the output predicted.
+    driver: hyst.Driver | None = None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64] | None]:
+    """Give the command that makes the output follow a reference, the output predicted, and codes.
 
     Parameters
     ----------
@@ -39,6 +40,8 @@ def command_over(
         That the command must keep; None for any.
     despite_verdict
         Whether an unfit model is used nevertheless.
+    driver
+        Whose codes are given and predicted; None for none.
 
     Raises
     ------
@@ -56,7 +59,6 @@ def command_over(
         passed = model.run(history, float(s[0]))
         memory, solved = passed.state, inverse.run(passed.y, float(s[0])).state
     u = inverse.run(y_ref, s, solved).y
-    predicted = model.run(u, s, memory).y
     if input_range is not None:
         beyond = (u < input_range[0]) | (u > input_range[1])
         if beyond.any():
@@ -66,6 +68,7 @@ def command_over(
                 f"{input_range[0]:.6g} to {input_range[1]:.6g}; give a reference within reach, or "
                 "other --limits"
             )
+    predicted = model.run(u, s, memory).y
     rounding = float(abs(predicted - y_ref).max())
     unit = f" {model.description.output_unit}" if model.description.output_unit else ""
     print(
@@ -73,8 +76,26 @@ def command_over(
         "model, hyst info and metrics.json tell at each value"
     )
     print(f"command from {u.min():.6g} to {u.max():.6g}")
+    codes = None
+    if driver is not None:
+        codes = driver.codes(u, input_range)
+        predicted = model.run(driver.volts(codes), s, memory).y
+        print(codes_told(driver, codes, u, predicted - y_ref, model.description))
     tell_virgin(not len(history) and memory.size > 0)
-    return u, predicted
+    return u, predicted, codes
+
+
+def codes_told(
+    driver: hyst.Driver,
+    codes: NDArray[np.int64],
+    u: NDArray[np.float64],
+    error: NDArray[np.float64],
+    about: ModelDescription,
+) -> str:
+    """Say in a sentence what rounding a command to codes costs."""
+    off = float(abs(driver.volts(codes) - u).max())
+    given = hyst.compensation.CodedCommand(driver, codes, u, 0.0 * error, error, off)
+    return given.told(about.input_unit, about.output_unit)
 
 
 def tell_virgin(is_virgin: bool) -> None:
@@ -95,6 +116,7 @@ def compensate_over(
     despite_verdict: bool,
     out: Path,
     time: tuple[list[str], list[Any]],
+    driver: hyst.Driver | None = None,
 ) -> None:
     """Write the command for a reference while the second signal moves.
 
@@ -108,10 +130,12 @@ def compensate_over(
         The file to write.
     time
         Headers and columns that come first.
+    driver
+        Whose codes are written too; None for none.
     """
     turns = () if history is None else history_of(history)
-    done = command_over(model, y_ref, s, turns, input_range, despite_verdict)
-    write_command(out, model.description, time, (y_ref, *done))
+    u, predicted, codes = command_over(model, y_ref, s, turns, input_range, despite_verdict, driver)
+    write_command(out, model.description, time, (y_ref, u, predicted), codes)
     show_files([out])
 
 
@@ -120,8 +144,9 @@ def write_command(
     about: ModelDescription,
     time: tuple[list[str], list[Any]],
     signals: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    codes: NDArray[np.int64] | None = None,
 ) -> None:
-    """Write reference, command and predicted output.
+    """Write reference, command, predicted output, and codes of the command where there are some.
 
     Parameters
     ----------
@@ -133,12 +158,17 @@ def write_command(
         Headers and columns that come first.
     signals
         The three.
+    codes
+        Of a driver; the output predicted is then that of their volts.
     """
     headers, columns = time
-    named = (
-        ("reference", about.output_unit),
-        ("command", about.input_unit),
-        ("predicted", about.output_unit),
-    )
-    headers = [*headers, *(hyst.io.join_unit(*each) for each in named)]
-    hyst.io.write_columns(out, headers, [*columns, *signals])
+    reference, command, predicted = signals
+    named: list[tuple[str, str, NDArray[Any]]] = [
+        ("reference", about.output_unit, reference),
+        ("command", about.input_unit, command),
+    ]
+    if codes is not None:
+        named.append(("code", "", codes))
+    named.append(("predicted", about.output_unit, predicted))
+    headers = [*headers, *(hyst.io.join_unit(name, unit) for name, unit, _ in named)]
+    hyst.io.write_columns(out, headers, [*columns, *(signal for _, _, signal in named)])

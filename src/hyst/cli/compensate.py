@@ -21,7 +21,8 @@ from hyst.cli.arguments import (
 )
 from hyst.cli.command_over import compensate_over, tell_virgin, write_command
 from hyst.cli.console import note, progress_bar, show_files, show_table
-from hyst.cli.reading_options import reads_columns
+from hyst.cli.driver_option import DriverOfCommand, driver_for, range_of_codes
+from hyst.cli.reading_options import Verb, reads_columns, with_options
 from hyst.cli.relevant_options import refuse_irrelevant
 from hyst.cli.scheduled import (
     ScheduleColumn,
@@ -125,7 +126,24 @@ WithDelay = Annotated[
 ]
 
 
+# How the methods go about it, which they are handed as it was typed.
+_SOLVING: dict[str, tuple[Any, Any]] = {
+    "preview": (Preview, 20),
+    "band": (Band, None),
+    "rate_limit": (RateLimit, None),
+    "objective": (Objective, "rms"),
+    "roughness": (Roughness, None),
+    "allow_unconverged": (AllowUnconverged, False),
+}
+
+
+def _solves(verb: Verb) -> Verb:
+    """Give a verb the options of the methods, as ``solving``."""
+    return with_options(verb, _SOLVING, "solving")
+
+
 @reads_columns
+@_solves
 def compensate(
     context: typer.Context,
     model_file: ModelFile,
@@ -133,20 +151,16 @@ def compensate(
     column: Column,
     out: Out,
     how: dict[str, Any],
+    solving: dict[str, Any],
     method: Method = "exact",
     outside: Outside = "refuse",
     limits: Limits = None,
     no_limits: NoLimits = False,
     history: History = None,
-    preview: Preview = 20,
-    band: Band = None,
-    rate_limit: RateLimit = None,
-    objective: Objective = "rms",
-    roughness: Roughness = None,
     rate: SampleRate = None,
-    allow_unconverged: AllowUnconverged = False,
     despite_verdict: DespiteVerdict = False,
     with_delay: WithDelay = False,
+    driver: DriverOfCommand = None,
     schedule_column: ScheduleColumn = None,
     schedule_value: ScheduleValue = None,
 ) -> None:
@@ -157,16 +171,17 @@ def compensate(
     about = model.description
     y_ref, _, unit = hyst.io.read_column(reference, column, **how)
     require_same_unit(unit, about.output_unit, "the reference")
-    input_range = _input_range(limits, no_limits, about)
+    table = driver_for(driver, about)
+    input_range = range_of_codes(_input_range(limits, no_limits, about), table)
     known = sample_time_known(model_at_rest(model), reference, rate, "the reference", **how)
     if isinstance(model, hyst.Scheduled):
         refuse_what_is_fixed(_FIXED, (method != "exact", outside == "clip", with_delay))
         s = read_signal(model, reference, str(schedule_column), y_ref.size, how)
         time = time_column(reference, rate, model.dt, y_ref.size, **how)
-        compensate_over(model, y_ref, s, history, input_range, despite_verdict, out, time)
+        compensate_over(model, y_ref, s, history, input_range, despite_verdict, out, time, table)
         return
     _require_method_for(model, method)
-    ahead: dict[str, Any] = {"rate_limit": rate_limit, "preview": preview, "band": band}
+    turns = None if history is None else history_of(history)
     with progress_bar("inverting") as progress:
         done = hyst.compensation.invert_trajectory(
             model,
@@ -174,18 +189,21 @@ def compensate(
             method,
             input_range=input_range,
             outside=outside,
-            history=None if history is None else history_of(history),
-            objective=objective,
-            roughness=roughness,
-            **ahead,
-            allow_unconverged=allow_unconverged,
+            history=turns,
+            **solving,
             despite_verdict=despite_verdict,
             progress=progress,
         )
     _note_times(known, history, model)
     time = time_column(reference, rate, model.dt, done.u.size, **how)
-    write_command(out, about, time, _signals(done, about, y_ref if with_delay else None))
+    coded = None
+    if table is not None:
+        coded = hyst.compensation.in_codes(model, done, table, limits=input_range, history=turns)
+    late = y_ref if with_delay else None
+    write_command(out, about, time, _signals(done, about, late, coded), coded and coded.codes)
     _tell(done, about, input_range, with_delay, history is None and model.initial_state().size > 0)
+    if coded is not None:
+        print(coded.told(about.input_unit, about.output_unit))
     show_files([out])
 
 
@@ -205,11 +223,13 @@ def _signals(
     done: hyst.compensation.Compensation,
     about: ModelDescription,
     late_reference: NDArray[np.float64] | None,
+    coded: hyst.compensation.CodedCommand | None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Give reference, command and predicted output, later by the delay where it is as asked for."""
+    predicted = done.y_predicted if coded is None else coded.y_predicted
     if late_reference is None:
-        return done.y_ref, done.u, done.y_predicted
-    late = hyst.identification.earlier(done.y_predicted, -about.delay)
+        return done.y_ref, done.u, predicted
+    late = hyst.identification.earlier(predicted, -about.delay)
     return late_reference, done.u, late
 
 

@@ -17,6 +17,7 @@ from hyst.cli.arguments import (
     whole_or_auto,
 )
 from hyst.cli.console import at_work, show_files
+from hyst.cli.driver_option import DriverOfInput, driver_of
 from hyst.cli.fitted import (
     AllowUnconverged,
     Data,
@@ -78,6 +79,7 @@ def fit(
     validate_time: ValidateTime = None,
     input_label: InputLabel = None,
     output_label: OutputLabel = None,
+    driver: DriverOfInput = None,
     allow_unconverged: AllowUnconverged = False,
 ) -> int:
     """Fit the constants of a model to records, from its own values, and report as identify does."""
@@ -85,7 +87,7 @@ def fit(
     guess = load_operator(model)
     bounds = dict(_as_bound(each) for each in bound or [])
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
-    files = HowToRead(how, others, (input_label, output_label))
+    files = HowToRead(how, others, (input_label, output_label), driver_of(driver))
     with at_work("fitting") as say:
         say("reading")
         records = files.records(data)
@@ -105,7 +107,7 @@ def fit(
             progress=say,
         )
         say("report")
-        found = named_by_files(found, files.sources)
+        found = hyst.identification.with_driver(named_by_files(found, files.sources), files.driver)
         written = write_fitted(found, records, validation, folder, files.sources)
     tell_fitted(found, records)
     show_files(written)

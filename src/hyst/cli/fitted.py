@@ -12,6 +12,7 @@ import typer
 
 import hyst
 from hyst.cli.console import show_table
+from hyst.cli.driver_option import volts_of_record
 from hyst.cli.exit_codes import DONE, UNFIT
 from hyst.cli.reading_options import read_told
 
@@ -59,6 +60,10 @@ class HowToRead:
         Columns of validation records that are called otherwise, by role; None where they are not.
     labels
         What input and output are to be called, with their units; None as in the file.
+    driver
+        Of the converter, where the input is in its codes; the records then are in volts.
+    known_driver
+        That of a model: for columns that say that they are codes.
     sources
         Where each record that was read comes from, in the order of reading.
     """
@@ -66,6 +71,8 @@ class HowToRead:
     columns: dict[str, Any]
     validation_columns: dict[str, str | None]
     labels: tuple[str | None, str | None]
+    driver: hyst.Driver | None = None
+    known_driver: hyst.Driver | None = None
     sources: list[str] = field(default_factory=list)
 
     def records(self, paths: Sequence[Path]) -> list[hyst.Record]:
@@ -83,7 +90,7 @@ class HowToRead:
         return [
             each
             for path in paths
-            for each in self._named(path, _read(path, self.columns, self.labels))
+            for each in self._named(path, _read(path, self.columns, self.labels, self._drivers))
         ]
 
     def validation(self, paths: Sequence[Path] | None) -> list[hyst.Record]:
@@ -93,8 +100,12 @@ class HowToRead:
         return [
             each
             for path in paths or []
-            for each in self._named(path, _read_validation(path, how, self.labels))
+            for each in self._named(path, _read_validation(path, how, self.labels, self._drivers))
         ]
+
+    @property
+    def _drivers(self) -> tuple[hyst.Driver | None, hyst.Driver | None]:
+        return self.driver, self.known_driver
 
     def _named(self, path: Path, records: list[hyst.Record]) -> list[hyst.Record]:
         several = len(records) > 1
@@ -106,9 +117,17 @@ class HowToRead:
 
 
 def _read(
-    path: Path, how: dict[str, Any], labels: tuple[str | None, str | None]
+    path: Path,
+    how: dict[str, Any],
+    labels: tuple[str | None, str | None],
+    drivers: tuple[hyst.Driver | None, hyst.Driver | None],
 ) -> list[hyst.Record]:
-    return [_labelled(each, *labels) for each in read_told(path, **how)]
+    records = read_told(path, **how)
+    try:
+        records = tuple(volts_of_record(each, *drivers) for each in records)
+    except hyst.InputError as refusal:
+        raise hyst.InputError(f"{path.name}: {refusal}") from None
+    return [_labelled(each, *labels, drivers[0]) for each in records]
 
 
 def _otherwise(
@@ -125,10 +144,13 @@ def _otherwise(
 
 
 def _read_validation(
-    path: Path, how: dict[str, Any], labels: tuple[str | None, str | None]
+    path: Path,
+    how: dict[str, Any],
+    labels: tuple[str | None, str | None],
+    drivers: tuple[hyst.Driver | None, hyst.Driver | None],
 ) -> list[hyst.Record]:
     try:
-        return _read(path, how, labels)
+        return _read(path, how, labels, drivers)
     except hyst.InputError as error:
         if "has no column" not in str(error):
             raise
@@ -193,10 +215,19 @@ def named_by_files(found: hyst.Identified, sources: Sequence[str]) -> hyst.Ident
 
 
 def _labelled(
-    record: hyst.Record, input_label: str | None, output_label: str | None
+    record: hyst.Record,
+    input_label: str | None,
+    output_label: str | None,
+    driver: hyst.Driver | None,
 ) -> hyst.Record:
     if input_label is not None:
         name, unit = hyst.io.split_unit(input_label)
+        if driver is not None and hyst.signals.units_differ(unit, driver.unit):
+            raise hyst.InputError(
+                f"--input-label says {unit!r} and the driver gives {driver.unit!r}; say the unit "
+                "of the volts, in the header of the driver's table"
+            )
+        unit = unit if driver is None else driver.unit
         record = replace(record, input_name=name, input_unit=unit)
     if output_label is not None:
         name, unit = hyst.io.split_unit(output_label)

@@ -15,6 +15,7 @@ from hyst.cli.arguments import (
     whole_or_auto,
 )
 from hyst.cli.console import at_work, show_files
+from hyst.cli.driver_option import DriverOfInput, driver_of
 from hyst.cli.family_options import options_given
 from hyst.cli.fitted import (
     AllowUnconverged,
@@ -91,6 +92,7 @@ def identify(
     validate_time: ValidateTime = None,
     input_label: InputLabel = None,
     output_label: OutputLabel = None,
+    driver: DriverOfInput = None,
     allow_unconverged: AllowUnconverged = False,
     schedule: Schedule = None,
     schedule_name: ScheduleName = None,
@@ -106,7 +108,7 @@ def identify(
     late, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
     time_constant = None if lag == "none" else number_or_auto(lag, "lag", " or none")
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
-    files = HowToRead(how, others, (input_label, output_label))
+    files = HowToRead(how, others, (input_label, output_label), driver_of(driver))
     asked = {
         "family": family,
         "delay": late,
@@ -127,7 +129,7 @@ def identify(
         validation = files.validation(validate)
         found = hyst.identify(measured, validation=validation, progress=say, **asked)
         say("report")
-        found = named_by_files(found, files.sources)
+        found = hyst.identification.with_driver(named_by_files(found, files.sources), files.driver)
         records = _records_used(found, chosen, measured, first)
         told = hyst.report.distortion_sections(measured, options.get("period"))
         written = write_fitted(found, records, validation, folder, files.sources, told)

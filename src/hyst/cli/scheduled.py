@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -143,10 +143,22 @@ def identify_over(
             **asked,
         )
         say("report")
+        found = with_driver_over(found, files.driver)
         written = _write(found, records, values, folder, files.sources)
     print(found.summary())
     show_files(written)
     return UNFIT if found.verdict.level == hyst.operators.verdict.UNFIT else DONE
+
+
+def with_driver_over(
+    found: hyst.IdentifiedSchedule, driver: hyst.Driver | None
+) -> hyst.IdentifiedSchedule:
+    """Give a result over a second signal whose descriptions keep the ``driver``, if any."""
+    if driver is None:
+        return found
+    results = tuple(hyst.identification.with_driver(each, driver) for each in found.results)
+    about = replace(found.description, driver=driver)
+    return replace(found, model=found.model.with_description(about), results=results)
 
 
 def _write(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hyst.compensation.coded import CodedCommand, change_of_output, in_codes
 from hyst.compensation.error_of_inverse.inverse_error import ErrorBound, error_bound
 from hyst.compensation.error_of_inverse.inverse_reduction import reduce_inverse
 from hyst.compensation.error_of_inverse.inverse_slopes import slope_range
@@ -17,6 +18,7 @@ from hyst.compensation.suited_methods import methods_for
 
 __all__ = [
     "METHODS",
+    "CodedCommand",
     "Compensation",
     "Contraction",
     "ErrorBound",
@@ -24,8 +26,10 @@ __all__ = [
     "LoopsBehind",
     "ModelError",
     "Repetition",
+    "change_of_output",
     "error_bound",
     "error_parts",
+    "in_codes",
     "invert_trajectory",
     "loops_behind",
     "methods_for",

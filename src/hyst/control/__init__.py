@@ -24,6 +24,8 @@ from hyst.control.frequency_responses import LoopResponses, loop_responses, unce
 from hyst.control.inexact_inverse import first_unstable_slope, slope_margin
 from hyst.control.infinity_norm import hinf_norm
 from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
+from hyst.control.limited_drive.drive import LimitedDrive
+from hyst.control.limited_drive.schedule import LimitedSchedule
 from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.loop_poles import closed_loop_poles
 from hyst.control.plants import (
@@ -78,6 +80,8 @@ __all__ = [
     "IdentifiedPlant",
     "InternalModel",
     "InverseComparison",
+    "LimitedDrive",
+    "LimitedSchedule",
     "LinearSystem",
     "LoopComparison",
     "LoopJudgement",

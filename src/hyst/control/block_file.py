@@ -41,7 +41,7 @@ class InModelFile(Described, ABC):
             kind = data.get("kind") if isinstance(data, dict) else data
             raise InputError(f"the kind is {kind!r}; give the dictionary of a {cls.file_kind}")
         given = entries(data, cls.needed, cls.optional)
-        for name in ("inverse", "hysteresis"):
+        for name in ("operator", "inverse", "hysteresis", "forward"):
             if name in given:
                 given[name] = operator_from_dict(given[name])
         return cls(**given)

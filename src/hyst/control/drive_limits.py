@@ -95,7 +95,11 @@ def stated(limits: Limits | None, rate: float | None, dt: float) -> tuple[float,
 
 
 def forward_operator(
-    inverse: Operator | None, hysteresis: Operator | None, limits: Limits | None, dt: float
+    inverse: Operator | None,
+    hysteresis: Operator | None,
+    limits: Limits | None,
+    dt: float | None,
+    name: str = "hysteresis",
 ) -> Operator | None:
     """Give the operator from the drive to v of which ``inverse`` is the exact inverse.
 
@@ -108,7 +112,9 @@ def forward_operator(
     limits
         As checked.
     dt
-        Sample time of the block, s.
+        Sample time of the block, s; None if any will do.
+    name
+        What messages call the operator that is known.
 
     Returns
     -------
@@ -125,14 +131,14 @@ def forward_operator(
             raise InputError("there is no inverse for the hysteresis to belong to; leave it out")
         return None
     if hysteresis is not None:
-        _require_cancelling(inverse, hysteresis, limits, dt)
+        _require_cancelling(inverse, hysteresis, limits, dt, name)
         return hysteresis
     try:
         return inverse.inverse()
     except NotInvertibleError as refused:
         raise InputError(
             "a limited drive needs the operator of which the inverse is the exact inverse, and of "
-            f"this one it is not known ({refused}); give it as hysteresis"
+            f"this one it is not known ({refused}); give it as {name}"
         ) from refused
 
 
@@ -187,23 +193,22 @@ def limited_drive(
 
 
 def _require_cancelling(
-    inverse: Operator, hysteresis: Operator, limits: Limits | None, dt: float
+    inverse: Operator, hysteresis: Operator, limits: Limits | None, dt: float | None, name: str
 ) -> None:
     if not isinstance(hysteresis, Operator):
-        raise InputError(f"hysteresis is {type(hysteresis).__name__}; give an operator or None")
-    hysteresis.require_sample_time(dt, "the controller")
+        raise InputError(f"{name} is {type(hysteresis).__name__}; give an operator or None")
+    if dt is not None:
+        hysteresis.require_sample_time(dt, "the controller")
     if limits is None:
-        raise InputError("hysteresis is tried on drives within the limits; give limits, too")
+        raise InputError(f"{name} is tried on drives within the limits; give limits, too")
     u = _drives(*limits)
     try:
         missed = float(np.abs(inverse(hysteresis(u)) - u).max())
     except InputError as refused:
-        raise InputError(f"inverse cannot undo the hysteresis within the limits: {refused}") from (
-            refused
-        )
+        raise InputError(f"inverse cannot undo {name} within the limits: {refused}") from (refused)
     if missed > _EXACT * (limits[1] - limits[0]):
         raise InputError(
-            f"inverse is not the exact inverse of hysteresis: drives within the limits come back "
+            f"inverse is not the exact inverse of {name}: drives within the limits come back "
             f"up to {missed:.3g} off; give the operator of which it is"
         )
 

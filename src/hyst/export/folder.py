@@ -9,6 +9,7 @@ import tempfile
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from hyst._files import replacing, require_folder
 from hyst.errors import InputError
@@ -104,24 +105,32 @@ def _refuse_existing(target: Path, force: bool) -> None:
 def _is_ours(target: Path) -> bool:
     """Tell whether it is an earlier export or an empty folder."""
     if target.is_dir():
-        return not any(target.iterdir()) or _is_manifest(target / MANIFEST)
+        return not any(target.iterdir()) or export_manifest(target / MANIFEST) is not None
     if not zipfile.is_zipfile(target):
         return False
     with zipfile.ZipFile(target) as archive:
-        names = [name for name in archive.namelist() if name.endswith(f"/{MANIFEST}")]
-        return any(_is_manifest_text(archive.read(name)) for name in names)
+        names = [name for name in archive.namelist() if name.endswith(MANIFEST)]
+        return any(_as_manifest(archive.read(name)) is not None for name in names)
 
 
-def _is_manifest(file: Path) -> bool:
-    return file.is_file() and _is_manifest_text(file.read_bytes())
+def export_manifest(file: Path) -> dict[str, Any] | None:
+    """Give what the manifest of an export says; None for any other file, or none.
+
+    Parameters
+    ----------
+    file
+        Its path.
+    """
+    return _as_manifest(file.read_bytes()) if file.is_file() else None
 
 
-def _is_manifest_text(text: bytes) -> bool:
+def _as_manifest(text: bytes) -> dict[str, Any] | None:
     try:
         content = json.loads(text)
     except ValueError:
-        return False
-    return isinstance(content, dict) and content.get("format") == FORMAT
+        return None
+    ours = isinstance(content, dict) and content.get("format") == FORMAT
+    return content if ours else None
 
 
 def _write_folder(target: Path, files: Files) -> None:

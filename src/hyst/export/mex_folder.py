@@ -10,16 +10,23 @@ from pathlib import Path
 from textwrap import wrap
 from typing import final
 
+from numpy.typing import ArrayLike
+
 import hyst
+from hyst.control.drive_limits import Limits
 from hyst.errors import InputError
 from hyst.export.c.block import Block, Model, described, refuse_unfit
 from hyst.export.c.c_sources import bad_samples, header, places, source
+from hyst.export.c.core_copy import CoreCopy
 from hyst.export.c.core_sources import core_files
+from hyst.export.c.drive_options import AUTO, DriveOptions
+from hyst.export.c.drive_range import DriveRange
 from hyst.export.c.names import as_c_name, plain_text
 from hyst.export.c.one_file import in_one_file
-from hyst.export.c.readme import lag_row, verdict_row
+from hyst.export.c.readme_rows import lag_row, verdict_row
 from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, MANIFEST, write_export
+from hyst.export.mex_start import start_texts
 from hyst.export.tool_block import ToolBlock, tool_block
 from hyst.operators import ModelDescription
 
@@ -55,6 +62,12 @@ class MexFolder:
         Numbers of memory.
     saved_bytes
         Of a state.
+    drive
+        Limits of the drive, and where they come from.
+    history
+        The drives it starts after.
+    has_start
+        Whether ``init_after`` of the object starts it after others.
     """
 
     path: Path
@@ -64,6 +77,9 @@ class MexFolder:
     output: str
     state_length: int
     saved_bytes: int
+    drive: DriveRange
+    history: tuple[float, ...]
+    has_start: bool
 
 
 def mex(
@@ -74,6 +90,9 @@ def mex(
     force: bool = False,
     description: ModelDescription | None = None,
     despite_verdict: bool = False,
+    limits: Limits | str | None = AUTO,
+    rate_limit: float | None = None,
+    history: ArrayLike | None = None,
 ) -> MexFolder:
     """Write a model as one C file that MATLAB and Octave compile, with wrappers in their language.
 
@@ -91,6 +110,8 @@ def mex(
         Names and units of input and output, for comments; that of the model itself if left out.
     despite_verdict
         Export also a model whose verdict is ``unfit``.
+    limits, rate_limit, history
+        Of the drive, as ``c_project`` takes them.
 
     Returns
     -------
@@ -100,7 +121,9 @@ def mex(
     ------
     InputError
         If the model or the name cannot be used, the path exists, or the verdict on the model is
-        ``unfit``.
+        ``unfit``, or limits or history cannot be used.
+    NotInvertibleError
+        As ``c_project``.
 
     Examples
     --------
@@ -114,7 +137,7 @@ def mex(
     """
     _as_function_name(name)
     refuse_unfit(model, description, despite_verdict)
-    tool = tool_block(model)
+    tool = tool_block(model, DriveOptions(limits, rate_limit, history), description)
     about = described(model, description)
     files = mex_files(tool, name, about)
     path = write_export(folder, files, name, force=force)
@@ -126,6 +149,9 @@ def mex(
         output=tool.output,
         state_length=len(tool.block.start),
         saved_bytes=int(places(tool.block, name, "double", about)["saved_bytes"]),
+        drive=tool.block.drive,
+        history=tool.block.history,
+        has_start=tool.block.following is not None,
     )
 
 
@@ -156,11 +182,12 @@ def mex_files(tool: ToolBlock, name: str, about: ModelDescription) -> dict[str, 
         "inputs": str(len(tool.inputs)),
         "with_state": str(len(tool.inputs) + 1),
         "quoted": ", ".join(f'"{each}"' for each in tool.inputs),
-        "step": tool.step(name, "state", elements),
+        "step": CoreCopy(f"{name}_core", "double").own(tool.step(name, "state", elements)),
         "bad_sample": "changes no parameter"
         if tool.estimates
         else "is answered with the last output, leaves the memory as it is",
         **(_estimates(tool, name) if tool.estimates else _limited(block, name)),
+        **start_texts(block, name),
         "bad": bad_samples(block, name, "state"),
         "bad_here": bad_samples(block, name, "&state"),
         "license": _commented(_LICENSE.read_text(encoding="utf-8"), " *"),
@@ -179,7 +206,7 @@ def mex_files(tool: ToolBlock, name: str, about: ModelDescription) -> dict[str, 
 
 def _limited(block: Block, name: str) -> dict[str, str]:
     """Give what tells whether a drive was held at its limits, where there are any."""
-    if block.limits is None:
+    if "OUT_OF_RANGE" not in block.tells:
         return {"estimate_in_c": "", "estimate_in_m": ""}
     return {
         "estimate_in_c": f"""    }} else if (strcmp(command, "limited") == 0) {{
@@ -223,10 +250,11 @@ def _as_function_name(name: str) -> str:
 
 def _c_file(block: Block, common: dict[str, str], about: ModelDescription) -> str:
     name = common["name"]
-    own = places(block, name, "double", about)
-    stage, declared = source(block, own, "double"), header(block, own)
-    core = core_files(stage + declared)
-    everything = in_one_file(core, {f"{name}.h": declared, f"{name}.c": stage})
+    plain = places(block, name, "double", about)
+    stage, declared = source(block, plain, "double"), header(block, plain)
+    copy = CoreCopy(f"{name}_core", "double")
+    own = {f"{name}.h": copy.own(declared), f"{name}.c": copy.own(stage)}
+    everything = in_one_file(copy.files(core_files(stage + declared)), own)
     return filled("mex/head.c", common) + everything + "\n" + filled("mex/gateway.c", common)
 
 
@@ -262,6 +290,8 @@ def _manifest(block: Block, name: str, files: dict[str, bytes]) -> bytes:
         "target": "mex",
         "name": name,
         "model": {"kind": block.kind, "sha256": block.sha256()},
+        "drive": block.drive.told(),
+        "history": list(block.history),
         "files": {path: hashlib.sha256(files[path]).hexdigest() for path in sorted(files)},
     }
     return (json.dumps(content, indent=2) + "\n").encode()

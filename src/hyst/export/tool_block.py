@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import final
 
-from hyst.export.c.any_estimator import any_estimator_block
-from hyst.export.c.block import Block, Model, block_of
+from hyst.export.c.any_block import any_block
+from hyst.export.c.block import Block, Model
+from hyst.export.c.drive_options import DriveOptions
 from hyst.online import JointEstimator, ScaleEstimator
+from hyst.operators import ModelDescription
 
 
 @final
@@ -61,7 +63,9 @@ class ToolBlock:
         )
 
 
-def tool_block(model: Model) -> ToolBlock:
+def tool_block(
+    model: Model, options: DriveOptions, description: ModelDescription | None = None
+) -> ToolBlock:
     """Give a model as tools step it.
 
     Parameters
@@ -69,6 +73,10 @@ def tool_block(model: Model) -> ToolBlock:
     model
         What ``c_project`` takes. A joint estimator takes in a sample of u and y and then gives the
         command for y_ref.
+    options
+        What it is told of the drive.
+    description
+        As given to the export; None for that of the model.
 
     Returns
     -------
@@ -79,8 +87,7 @@ def tool_block(model: Model) -> ToolBlock:
     InputError
         If it cannot be exported.
     """
+    block = any_block(model, "double", options, description)
     if isinstance(model, JointEstimator | ScaleEstimator):
-        block = any_estimator_block(model, "double")
         return ToolBlock(block, ("u", "y", "y_ref"), "command", model.names)
-    block = block_of(model, "double")
     return ToolBlock(block, block.inputs, block.output)

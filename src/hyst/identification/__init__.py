@@ -19,6 +19,7 @@ from hyst.identification.forecast import (
     sketched_stage,
 )
 from hyst.identification.identify_records import identify
+from hyst.identification.record_use.coded_input import in_volts, with_driver
 from hyst.identification.record_use.part_of_a_sample import earlier, later
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.identified import Candidate, Identified
@@ -49,12 +50,14 @@ __all__ = [
     "identify",
     "identify_from_reversal_curves",
     "identify_weights_from_slopes",
+    "in_volts",
     "late_output",
     "later",
     "names_of",
     "require_taken",
     "sketched_plays",
     "sketched_stage",
+    "with_driver",
 ]
 
 

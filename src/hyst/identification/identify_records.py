@@ -20,11 +20,13 @@ from hyst.identification.lag.found_lag import Wanted as Lagging
 from hyst.identification.lag.found_lag import as_lag, found_with_lag, search_beside_lag
 from hyst.identification.options import Options, listed, silent
 from hyst.identification.record_use.cleaned import Cleaned, as_drift, cleaned
+from hyst.identification.record_use.coded_input import all_in_volts, with_driver
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import beside_level, require_same_units
 from hyst.identification.result.identified import Identified
 from hyst.identification.result.identified_from_fit import identified_from_fit, traced
 from hyst.identification.search import Found, find
+from hyst.operators import Driver
 from hyst.operators.provenance import options_asked
 from hyst.signals import Record
 
@@ -39,6 +41,7 @@ def identify(
     creep: int | Literal["auto"] | None = "auto",
     lag: float | Literal["auto"] | None = None,
     validation: Record | Sequence[Record] = (),
+    driver: Driver | None = None,
     max_iterations: int = 200,
     allow_unconverged: bool = False,
     progress: Callable[[str], None] | None = None,
@@ -86,6 +89,10 @@ def identify(
         None: the model has none, and what comes late is the delay beside it.
     validation
         Records to judge the model by; they do not take part in the fit.
+    driver
+        Table of the drive's converter, where the input of all these records is in its codes: they
+        are made volts before anything else, the model is one from volts, and its description keeps
+        the driver.
     max_iterations
         Of the final fit, for each of its starts.
     allow_unconverged
@@ -120,8 +127,10 @@ def identify(
     >>> bool(np.abs(found.model(u) - true(u))[500:].max() < 1e-6)
     True
     """
-    asked = options_asked(identify, locals()) | options
-    given, judged = listed(records), listed(validation, "validation record")
+    asked = options_asked(identify, locals() | {"driver": None}) | options
+    measured = listed(records)
+    given = all_in_volts(measured, driver)
+    judged = all_in_volts(listed(validation, "validation record"), driver)
     require_same_units((*given, *judged))
     wanted = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
     families, about_drift = chosen_families(family, options), as_drift(drift)
@@ -156,7 +165,7 @@ def identify(
         )
         identified = creeping.told(identified)
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
-    return traced(told, given, asked)
+    return with_driver(traced(told, measured, asked), driver)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hyst.io.driver_file import read_driver
 from hyst.io.formats import FORMATS, read_table, read_tables
 from hyst.io.frequency_response_file import read_frequency_response
 from hyst.io.header import split_unit
@@ -20,6 +21,7 @@ __all__ = [
     "Table",
     "join_unit",
     "read_column",
+    "read_driver",
     "read_frequency_response",
     "read_record",
     "read_records",

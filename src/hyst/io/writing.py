@@ -5,8 +5,8 @@ from __future__ import annotations
 import csv
 import os
 from collections.abc import Sequence
+from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from hyst._files import replacing
@@ -15,7 +15,7 @@ from hyst._files import replacing
 def write_columns(
     path: str | os.PathLike[str],
     headers: Sequence[str],
-    columns: Sequence[NDArray[np.float64]],
+    columns: Sequence[NDArray[Any]],
 ) -> None:
     """Write columns of numbers under headers, separated by commas.
 
@@ -26,7 +26,7 @@ def write_columns(
     headers
         One for each column, for instance ``voltage [V]``.
     columns
-        Vectors of one length, float64.
+        Vectors of one length, of real or whole numbers.
 
     Raises
     ------
@@ -35,7 +35,7 @@ def write_columns(
 
     Examples
     --------
-    >>> import pathlib, tempfile
+    >>> import pathlib, tempfile, numpy as np
     >>> path = pathlib.Path(tempfile.mkdtemp()) / "out.csv"
     >>> write_columns(path, ["u [V]", "y"], [np.array([0.1, 1.0]), np.array([1 / 3, 2.0])])
     >>> path.read_text().split()

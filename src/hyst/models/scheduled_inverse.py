@@ -16,7 +16,7 @@ from hyst.models.maxwell_slip import MaxwellSlip
 from hyst.models.prandtl_ishlinskii import PrandtlIshlinskii
 from hyst.models.schedule_run import ScheduledSystem
 from hyst.models.schedule_stages import moving_places, with_kind
-from hyst.operators import Affine, DeadZone, ModelDescription, Operator
+from hyst.operators import Affine, DeadZone, Operator
 from hyst.operators.composition import leaves_of
 from hyst.operators.stage import Stage
 
@@ -50,9 +50,8 @@ class ScheduledInverse(ScheduledSystem):
 
     def __post_init__(self) -> None:
         _ = self.scheduled.knot_stages, self._stages
-        about = self.scheduled.description
-        if about != ModelDescription():
-            vars(self).update(vars(self.with_description(about.of_inverse())))
+        about = self.scheduled.description.of_inverse()
+        vars(self).update(vars(self.with_description(about)))
 
     @property
     def values(self) -> Array:  # type: ignore[override]

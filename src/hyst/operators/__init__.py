@@ -7,6 +7,7 @@ from hyst.operators.base import Operator
 from hyst.operators.composition import Chained, Composition
 from hyst.operators.dead_zone import DeadZone
 from hyst.operators.description import ModelDescription
+from hyst.operators.driver.driver import Driver
 from hyst.operators.parameters import Parameters
 from hyst.operators.play import Play
 from hyst.operators.portrait import Portrait
@@ -23,6 +24,7 @@ __all__ = [
     "Composition",
     "DeadZone",
     "Degree",
+    "Driver",
     "ModelDescription",
     "Operator",
     "Parameters",

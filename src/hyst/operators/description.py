@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any, ClassVar, Self, final
 
 from hyst.errors import InputError
+from hyst.operators.driver.driver import Driver
 from hyst.operators.dynamics_errors import DynamicsErrors
 from hyst.operators.plain_data import (
     as_finite,
@@ -46,7 +47,8 @@ class ModelDescription:
         Family the model was identified in.
     errors
         How good the model is, by record: ``training``, ``validation``, ... Each has ``rms`` and
-        ``max_abs`` in output units, and ``rms_percent`` of the output's range.
+        ``max_abs`` in output units, and ``rms_percent`` of the output's range. Those of an inverse
+        are of the model that it inverts, whose output is the inverse's input.
     provenance
         Where the model comes from, if it was identified.
     verdict
@@ -58,6 +60,10 @@ class ModelDescription:
         show nothing.
     dynamics_errors
         How well linear dynamics behind a hysteresis are known, if they were identified.
+    driver
+        Which volts the codes of the drive's converter give, if the record's input was in codes.
+    is_inverse
+        Whether the output is the drive of an actuator and the input what it shall do.
 
     Raises
     ------
@@ -83,6 +89,8 @@ class ModelDescription:
     delay_interval: tuple[float, float] | None = None
     smallest_swing: float | None = None
     dynamics_errors: DynamicsErrors | None = None
+    driver: Driver | None = None
+    is_inverse: bool = False
 
     # Of the file format: entries that files of a version may have are those of it and before.
     ADDED: ClassVar[dict[str, int]] = {
@@ -92,6 +100,8 @@ class ModelDescription:
         "delay_interval": 3,
         "smallest_swing": 3,
         "dynamics_errors": 4,
+        "driver": 5,
+        "is_inverse": 5,
     }
 
     def __post_init__(self) -> None:
@@ -123,15 +133,17 @@ class ModelDescription:
     def to_dict(self) -> dict[str, Any]:
         """Give what there is to say as values of JSON; what is not known is left out."""
         plain = asdict(self)
-        for name in ("verdict", "dynamics_errors"):
+        for name in ("verdict", "dynamics_errors", "driver"):
             given = getattr(self, name)
             plain[name] = None if given is None else given.to_dict()
         if self.delay_interval is not None:
             plain["delay_interval"] = list(self.delay_interval)
+        if not self.is_inverse:
+            del plain["is_inverse"]
         return {key: value for key, value in plain.items() if value not in (None, {})}
 
     @classmethod
-    def from_dict(cls, data: Any, version: int = 4) -> ModelDescription:
+    def from_dict(cls, data: Any, version: int = 5) -> ModelDescription:
         """Rebuild a description from ``to_dict()``.
 
         Parameters
@@ -140,7 +152,8 @@ class ModelDescription:
             What ``to_dict()`` gave, or the same read from a file.
         version
             Of the description: 1 has neither errors nor provenance, 2 neither verdict nor what
-            records leave open, and both know whole delays from 0 only; 3 has no errors of dynamics.
+            records leave open, and both know whole delays from 0 only; 3 has no errors of
+            dynamics, 4 no driver and not what is an inverse.
 
         Raises
         ------
@@ -169,10 +182,15 @@ class ModelDescription:
         return about
 
     def of_inverse(self) -> ModelDescription:
-        """Give that of the inverse: input and output change places, without errors and swing.
+        """Give that of the inverse: input and output change places, without swing.
 
-        The verdict stays, for the inverse of a model that is not fit is not fit either.
+        The errors stay those of the model: the inverse has none of its own but the rounding.
+
+        The verdict stays, for the inverse of a model that is not fit is not fit either. Where
+        nothing is known of the signals, all that is said is that it is an inverse.
         """
+        if replace(self, is_inverse=False) == _NOTHING_SAID:
+            return replace(self, is_inverse=not self.is_inverse)
         return replace(
             self,
             input_name=self.output_name,
@@ -183,9 +201,9 @@ class ModelDescription:
             output_unit=self.input_unit,
             output_low=self.input_low,
             output_high=self.input_high,
-            errors={},
             smallest_swing=None,
             dynamics_errors=None,
+            is_inverse=not self.is_inverse,
         )
 
     def of_other_constants(self) -> ModelDescription:
@@ -285,6 +303,16 @@ def _as_dynamics_errors(name: str, value: Any) -> DynamicsErrors | None:
     return value if known else DynamicsErrors.from_dict(value)
 
 
+def _as_driver(name: str, value: Any) -> Driver | None:
+    return value if value is None or isinstance(value, Driver) else Driver.from_dict(value)
+
+
+def _as_yes_or_no(name: str, value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise InputError(f"{name} is {value!r}; give true or false")
+    return value
+
+
 # How each entry is checked; one that has a structure gives back what is plain and its own.
 _CHECKS: dict[str, Callable[[str, Any], Any]] = {
     **dict.fromkeys(("input_name", "output_name", "input_unit", "output_unit", "family"), as_text),
@@ -297,6 +325,8 @@ _CHECKS: dict[str, Callable[[str, Any], Any]] = {
     "delay_interval": as_finite_pair_or_none,
     "smallest_swing": as_finite_or_none,
     "dynamics_errors": _as_dynamics_errors,
+    "driver": _as_driver,
+    "is_inverse": _as_yes_or_no,
 }
 _ANY_DELAY = 3  # the version from which on a delay may be a fraction or negative
 _NOTHING_SAID = ModelDescription()

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from hyst.checks.numbers import whole_number
 from hyst.errors import NotInvertibleError
-from hyst.operators.description import Described, ModelDescription
+from hyst.operators.description import Described
 from hyst.operators.registry import delayed
 
 if TYPE_CHECKING:
@@ -145,7 +145,6 @@ class Inverses(Described):
 def _described_inverse(inverse: Callable[..., Any]) -> Callable[..., Any]:
     @functools.wraps(inverse)
     def described(self: Inverses, *samples: int) -> Any:
-        found, about = inverse(self, *samples), self.description
-        return found if about == ModelDescription() else found.with_description(about.of_inverse())
+        return inverse(self, *samples).with_description(self.description.of_inverse())
 
     return described

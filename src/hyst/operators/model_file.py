@@ -45,14 +45,14 @@ class Format:
 
 
 # Version 2 of a description: errors and provenance; version 3: a verdict, and a delay that may be a
-# fraction or negative with its interval; version 4: errors of dynamics. A model file must have one,
-# an estimator's file of version 2 may; version 1 of those knew no search beside the estimate and is
-# not read.
-MODEL = Format("hyst model", "model", {1: 1, 2: 2, 3: 3, 4: 4}, ("model",))
+# fraction or negative with its interval; version 4: errors of dynamics; version 5: a driver, and
+# whether it is an inverse. A model file must have one, an estimator's file of version 2 may;
+# version 1 of those knew no search beside the estimate and is not read.
+MODEL = Format("hyst model", "model", {1: 1, 2: 2, 3: 3, 4: 4, 5: 5}, ("model",))
 ESTIMATOR = Format(
-    "hyst estimator", "estimator", {2: 1, 3: 2, 4: 3, 5: 4}, ("kind", "settings", "state")
+    "hyst estimator", "estimator", {2: 1, 3: 2, 4: 3, 5: 4, 6: 5}, ("kind", "settings", "state")
 )
-LEARNING = Format("hyst learning", "learning", {1: 1, 2: 2, 3: 3, 4: 4}, ("learning",))
+LEARNING = Format("hyst learning", "learning", {1: 1, 2: 2, 3: 3, 4: 4, 5: 5}, ("learning",))
 _FORMATS = {each.name: each for each in (MODEL, ESTIMATOR, LEARNING)}
 
 

@@ -34,6 +34,8 @@ def description_table(about: ModelDescription) -> Table:
         ("sample time", "any" if about.dt is None else f"{number(about.dt, 6)} s"),
         ("delay of the output", _delay(about)),
     ]
+    if about.driver is not None:
+        rows.append(("driver", about.driver.told()))
     if about.smallest_swing is not None:
         swing = with_unit(number(about.smallest_swing), about.input_unit)
         rows.append(("smallest loop it was shown", swing))
@@ -61,14 +63,16 @@ def errors_table(about: ModelDescription) -> Table:
     Table
         A row a record; none if the file does not say.
     """
-    unit = about.output_unit and f"[{about.output_unit}]"
+    told = about.input_unit if about.is_inverse else about.output_unit
+    unit = told and f"[{told}]"
     rms, largest = with_unit("rms", unit), with_unit("max", unit)
     names = {"rms": rms, "rms_percent": "rms, % of range", "max_abs": largest}
     rows = tuple(
         (record, *(number(errors[name]) if name in errors else "-" for name in names))
         for record, errors in about.errors.items()
     )
-    return Table("Errors when it was identified", ("record", *names.values()), rows)
+    of = "the model it inverts" if about.is_inverse else "it"
+    return Table(f"Errors when {of} was identified", ("record", *names.values()), rows)
 
 
 def provenance_table(about: ModelDescription) -> Table:

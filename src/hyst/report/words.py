@@ -125,6 +125,8 @@ def in_short(identified: Identified, records: tuple[Record, ...]) -> tuple[str, 
     tuple of str
     """
     sentences = [f"The model is a {words_of(identified).full_name}{_plays_of(identified.model)}."]
+    if (driver := identified.description.driver) is not None:
+        sentences.append(f"Its input is what the driver gives, not its codes: {driver.told()}.")
     unit = identified.description.output_unit
     training = identified.metrics.get("training")
     if training is not None:

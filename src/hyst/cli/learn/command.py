@@ -18,7 +18,9 @@ from hyst.cli.arguments import (
 )
 from hyst.cli.command_over import tell_virgin, write_command
 from hyst.cli.console import at_work, note
+from hyst.cli.driver_option import DriverOfCommand, driver_for, range_of_codes
 from hyst.cli.exit_codes import DONE, UNFIT
+from hyst.cli.learn.coded import in_codes_of
 from hyst.cli.learn.measured import read_measured
 from hyst.cli.learn.reference import Reference, read_reference
 from hyst.cli.learn.replay import Replayed, Wish, replay
@@ -140,6 +142,7 @@ def learn(
     reference_format: ReferenceFormat = None,
     report: Report = None,
     figure: Figure = None,
+    driver: DriverOfCommand = None,
     despite_verdict: DespiteVerdict = False,
     schedule_value: ScheduleValue = None,
 ) -> int:
@@ -150,10 +153,11 @@ def learn(
     model = _operator(model_file, schedule_value)
     about = model.description
     hyst.operators.verdict.refuse_if_unfit(about.verdict, "no command is made", despite_verdict)
+    codes_of = driver_for(driver, about)
     whose = {"table": reference_table, "format": reference_format}
     wanted = read_reference(reference, column, whose, about, reference_rate)
     unit = wanted.unit or about.output_unit
-    records = read_measured(files, how, about, unit, wanted.dt or model.dt)
+    records = read_measured(files, how, about, unit, wanted.dt or model.dt, codes_of)
     wanted = wanted.timed(model, records, how["rate"])
     if rate_limit is not None and wanted.dt is None:
         raise hyst.InputError(
@@ -161,7 +165,7 @@ def learn(
             "give --reference-rate"
         )
     wish = Wish(
-        _range(input_range, about),
+        range_of_codes(_range(input_range, about), codes_of),
         rate_limit,
         periodic,
         noise,
@@ -172,9 +176,11 @@ def learn(
     names = [each.name for each in files]
     with at_work("learning") as say:
         done = replay(model, wanted, list(zip(names, records, strict=True)), wish, say)
-    _write(done, about, wanted, out, (report, figure), read)
+    coded = in_codes_of(codes_of, done, model, wish)
+    _write(done, about, wanted, out, (report, figure), read, coded)
     virgin = history is None and not periodic and model.initial_state().size > 0
-    return _tell(done, about, [out, report, figure], virgin)
+    said = None if coded is None else coded.told(about.input_unit, about.output_unit)
+    return _tell(done, about, [out, report, figure], virgin, said)
 
 
 def _operator(file: Path, value: float | None) -> hyst.Operator:
@@ -223,13 +229,16 @@ def _write(
     out: Path,
     extras: tuple[Path | None, Path | None],
     read: list[Path],
+    coded: hyst.compensation.CodedCommand | None,
 ) -> None:
     """Write the page and the picture, and last the command, which is what is acted on."""
     write_extras(done, about, wanted, extras, read)
     rate = wanted.rate if wanted.rate_given else None
     time = time_column(wanted.file, rate, wanted.dt, wanted.y.size, **wanted.how)
     learner = done.learner
-    write_command(out, about, time, (wanted.y, learner.command, done.expected))
+    expected = done.expected if coded is None else coded.y_predicted
+    codes = None if coded is None else coded.codes
+    write_command(out, about, time, (wanted.y, learner.command, expected), codes)
 
 
 def _tell(
@@ -237,6 +246,7 @@ def _tell(
     about: hyst.ModelDescription,
     files: list[Path | None],
     virgin: bool,
+    of_codes: str | None,
 ) -> int:
     for sentence in done.notes:
         note(sentence)
@@ -245,5 +255,7 @@ def _tell(
     else:
         tell_first(done, about)
         tell_virgin(virgin)
+    if of_codes is not None:
+        print(of_codes)
     tell_files(done, [each for each in files if each is not None])
     return UNFIT if about.is_unfit or done.stopped else DONE

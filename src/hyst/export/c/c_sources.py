@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from hyst import __version__
+from hyst.export.c import driver_codes
 from hyst.export.c.block import Block
 from hyst.export.c.drive import PERIOD, SAMPLES
 from hyst.export.c.names import plain_text
 from hyst.export.c.numbers import Precision, literal, table
-from hyst.export.c.readme import signals
+from hyst.export.c.readme_rows import signals
 from hyst.export.c.selftest import BAD, SECOND_RESTS, SEEDS, SelfTest
+from hyst.export.c.short_test import SHORT_SAMPLES
+from hyst.export.c.start_code import answer, beginning, start_tables
+from hyst.export.c.start_code import declared as start_declared
 from hyst.export.c.templating import filled, indented
 from hyst.operators import ModelDescription
 
@@ -48,27 +52,26 @@ def places(
         "saved_bytes": str(12 + WORD_BYTES[precision] * (length + 1)),
         "word": "uint32_t" if single else "uint64_t",
         "word_bytes": str(WORD_BYTES[precision]),
-        "zero": "HYST_REAL(0.0)" if block.limits is None else _rest(block, precision),
-        "rest": "0" if block.limits is None else _rest(block, precision),
+        "zero": answer(block.virgin[1], precision),
+        "rest": answer(block.virgin[1], precision),
         "fault_there": _fault(block, name, "state"),
         "fault_here": _fault(block, name, "&state"),
         "identity": f"0x{block.identity(precision):08x}",
-        "wrong_precision": "ifndef" if single else "ifdef",
-        "how_to_compile": "compile every file with -DHYST_SINGLE"
-        if single
-        else "compile without HYST_SINGLE",
-        "define": "-DHYST_SINGLE " if single else "",
         "output": block.output,
         "first": block.inputs[0],
         "arguments": ", ".join(f"hyst_real {each}" for each in block.inputs),
         "records": ", ".join(f"const hyst_real *{each}" for each in block.inputs),
         "elements": ", ".join(f"{each}[k]" for each in block.inputs),
         "samples": str(SAMPLES),
+        "short_samples": str(SHORT_SAMPLES),
         "signals": _signals(block, about),
         "more_faults": block.faults.replace("@{NAME}", name.upper()),
         "raised": _raised(block, name.upper()),
         **_reset(block, name),
-        "sample_time": _sample_time(block, name),
+        "sample_time": _sample_time(block, name) + block.drive.defined(name),
+        "answered": _answered(block, name),
+        "start_declared": start_declared(block, name),
+        "codes_declared": driver_codes.declared(block, name),
         # What a refused sample leaves in an estimator's scratch area is of no use.
         "saved_number": "hyst_is_finite(state->memory[i]) ? state->memory[i] : HYST_REAL(0.0)"
         if block.is_estimator
@@ -85,18 +88,20 @@ def header(block: Block, places: dict[str, str]) -> str:
 def source(block: Block, places: dict[str, str], precision: Precision) -> str:
     """Give the source file of a ``block`` in a ``precision``, filled with ``places``."""
     uses_memory = "memory" in block.body
+    coded = () if block.codes is None else (driver_codes.HEADER,)
     more = {
         "includes": "".join(
-            f'#include "{each}"\n' for each in sorted({"hyst/finite.h", *block.headers})
+            f'#include "{each}"\n' for each in sorted({"hyst/finite.h", *block.headers, *coded})
         ),
-        "declarations": _start_table(block, precision) + block.head,
-        "start": indented(_start(block)),
+        "declarations": start_tables(block, precision) + block.head + driver_codes.tables(block),
+        "beginning": beginning(block, places["name"], precision),
         "memory": "    hyst_real *const memory = state->memory;\n" if uses_memory else "",
         "calls": indented(block.body.replace("@{NAME}", places["NAME"])),
         "signal": block.signal,
     }
     template = block.source_template or _template(block)
-    return filled(f"{template}.c", places | more) + filled("state.c", places)
+    text = filled(f"{template}.c", places | more) + filled("state.c", places)
+    return text + driver_codes.defined(block, places["name"])
 
 
 def selftest_source(block: Block, places: dict[str, str]) -> str:
@@ -154,9 +159,15 @@ def vectors(block: Block, test: SelfTest, places: dict[str, str], precision: Pre
     return filled("selftest_vectors.h", places | more)
 
 
-def _rest(block: Block, precision: Precision) -> str:
-    """Give the last drive of a limited block before the first sample, which ends its memory."""
-    return f"({literal(block.start[-1], precision, 'start')})"
+def _answered(block: Block, name: str) -> str:
+    """Give the end of an estimator's command: finite, and within the limits of the drive."""
+    if block.drive.limits is None:
+        return "    return hyst_is_finite(u) ? u : state->y_last;\n"
+    low, high = f"{name.upper()}_U_MIN", f"{name.upper()}_U_MAX"
+    return (
+        "    u = hyst_is_finite(u) ? u : state->y_last;\n"
+        f"    u = u < {low} ? {low} : u;\n    return u > {high} ? {high} : u;\n"
+    )
 
 
 def _fault(block: Block, name: str, state: str) -> str:
@@ -233,18 +244,3 @@ def _sample_time(block: Block, name: str) -> str:
         f"#define {name.upper()}_DT HYST_REAL({float(block.dt)!r}) "
         "/* seconds between samples; the model holds for no other */\n"
     )
-
-
-def _start_table(block: Block, precision: Precision) -> str:
-    if not any(block.start):
-        return ""
-    values = table(block.start, precision, "start")
-    return f"static const hyst_real start_memory[{len(block.start)}] = {values};\n"
-
-
-def _start(block: Block) -> str:
-    if not block.start:
-        return "state->memory[0] = HYST_REAL(0.0);"
-    value = "start_memory[i]" if any(block.start) else "HYST_REAL(0.0)"
-    count = len(block.start)
-    return f"size_t i;\nfor (i = 0; i < {count}u; ++i) {{\n    state->memory[i] = {value};\n}}"

@@ -63,8 +63,8 @@ def estimator_block(estimator: JointEstimator, precision: Precision) -> Block:
         model={"kind": "joint-estimator", "settings": settings, "state": start},
         stages=(),
         chain=operator_from_dict(estimator.settings["model"]),
-        stepper=in_double,
-        single_stepper=in_single,
+        stepper=lambda _: in_double(),
+        single_stepper=lambda _: in_single(),
         is_estimator=True,
         more={
             "theta": str(places["theta"]),

@@ -5,25 +5,35 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, final
 
+from numpy.typing import ArrayLike
+
 from hyst import __version__
-from hyst.export.c.any_estimator import any_estimator_block
-from hyst.export.c.block import Block, Model, block_of, described, refuse_unfit
+from hyst.control.drive_limits import Limits
+from hyst.export.c.any_block import any_block
+from hyst.export.c.block import Block, Model, described, refuse_unfit
 from hyst.export.c.c_sources import WORD_BYTES, header, places, selftest_source, source, vectors
+from hyst.export.c.cmake import cmake_file
 from hyst.export.c.core_sources import core_files
 from hyst.export.c.drive import SAMPLES
-from hyst.export.c.flat import flattened
+from hyst.export.c.drive_options import AUTO, DriveOptions
+from hyst.export.c.drive_range import DriveRange
+from hyst.export.c.driver_codes import driver_codes
+from hyst.export.c.layout import Layout
 from hyst.export.c.names import as_c_name
-from hyst.export.c.numbers import Precision, as_precision
+from hyst.export.c.numbers import as_precision
+from hyst.export.c.one_file import in_one_file
 from hyst.export.c.readme import readme
 from hyst.export.c.selftest import SelfTest
+from hyst.export.c.short_test import short_test_source
 from hyst.export.c.templating import filled
-from hyst.export.folder import FORMAT, MANIFEST, write_export
-from hyst.online import JointEstimator, ScaleEstimator
-from hyst.operators import ModelDescription
+from hyst.export.folder import FORMAT, write_export
+from hyst.export.shared_folder import add_to_folder
+from hyst.operators import Driver, ModelDescription
 
 
 @final
@@ -49,6 +59,18 @@ class CProject:
         Of a saved state.
     away_from_double
         Largest difference of the self-test's outputs from those in double: 0 in double.
+    readme
+        The one of ``files`` that people read.
+    test_command
+        What a shell compiles and runs the self-test with, in the folder.
+    drive
+        Limits of the drive, and where they come from.
+    history
+        The drives it starts after.
+    has_start
+        Whether ``NAME_init_after`` starts it after others.
+    codes
+        What is to be told of the driver's codes; "" without a driver.
     """
 
     path: Path
@@ -59,6 +81,12 @@ class CProject:
     state_bytes: int
     saved_bytes: int
     away_from_double: float
+    readme: str
+    test_command: str
+    drive: DriveRange
+    history: tuple[float, ...]
+    has_start: bool
+    codes: str = ""
 
 
 def c_project(
@@ -70,7 +98,12 @@ def c_project(
     force: bool = False,
     description: ModelDescription | None = None,
     despite_verdict: bool = False,
-    flat: bool = False,
+    layout: str = "folder",
+    shared_core: bool = False,
+    limits: Limits | str | None = AUTO,
+    rate_limit: float | None = None,
+    history: ArrayLike | None = None,
+    driver: Driver | str | None = AUTO,
 ) -> CProject:
     """Write a model as C99 for firmware, with the core's sources it needs and a self-test.
 
@@ -93,9 +126,26 @@ def c_project(
         the model itself if left out.
     despite_verdict
         Export also a model whose verdict is ``unfit``.
-    flat
-        Whether all code lies in one folder and needs no path of includes, as an Arduino library
-        does; the self-test is then in a folder of its own.
+    layout
+        "folder", with the core's files in ``core/``; "flat", all that is compiled in one folder, as
+        an Arduino library has it, and the self-test in ``extras/``; or "single-file", with the
+        core's files inside the one source. Flat and single-file exports are added to a folder that
+        is there, beside what it holds.
+    shared_core
+        Whether exports of one folder share one copy of the core in each precision; each is then
+        added to a folder that is there.
+    limits
+        Of the drive, the output of an inverse or the input of a model: ``"auto"`` for its range in
+        the record, None or ``"none"`` for none, or lowest and highest. Where it is held at them,
+        the memory follows what the actuator really does; see ``hyst.control.LimitedDrive``.
+    rate_limit
+        The most the drive moves in a second; any if left out.
+    history
+        What drove the actuator before, in time order, where the start shall be after it: where the
+        drive turned is enough, unless time counts.
+    driver
+        Table of the drive's converter: the step gives, or takes, its codes too, and the limits are
+        volts of codes. ``"auto"`` for that of the description, None or ``"none"`` for none.
 
     Returns
     -------
@@ -104,8 +154,11 @@ def c_project(
     Raises
     ------
     InputError
-        If the model, the name or the precision cannot be used, the path exists, or the verdict on
-        the model is ``unfit``.
+        If the model, the name, the precision or the layout cannot be used, the path exists or holds
+        what would be overwritten, the verdict on the model is ``unfit``, the limits are upside down
+        or not for this model, or the history is beyond them.
+    NotInvertibleError
+        If the output of the model in front of an inverse turns back within the limits.
 
     Examples
     --------
@@ -114,21 +167,24 @@ def c_project(
     >>> model = PrandtlIshlinskii(p=[0.5, 0.2], r=[0.1, 0.3], p0=1.0)
     >>> with tempfile.TemporaryDirectory() as parent:
     ...     project = c_project(model.inverse(), f"{parent}/inverse", name="inverse")
-    >>> [file for file in project.files if file.endswith(".c")]
-    ['core/src/prandtl_ishlinskii.c', 'inverse.c', 'selftest.c']
+    >>> [file for file in project.files if file.endswith(".c") and "core" not in file]
+    ['inverse.c', 'inverse_selftest.c', 'inverse_step_response.c']
     """
     as_c_name(name)
     refuse_unfit(model, description, despite_verdict)
     exact = as_precision(precision)
-    if isinstance(model, JointEstimator | ScaleEstimator):
-        block = any_estimator_block(model, exact)
-    else:
-        block = block_of(model, exact)
+    where = Layout(layout, shared_core, name, exact)
     about = described(model, description)
+    codes = driver_codes(driver, about, exact)
+    options = DriveOptions(limits, rate_limit, history, codes)
+    block = any_block(model, exact, options, description)
     test = SelfTest.of(block, exact, about)
-    files = project_files(block, test, name, exact, about, flat)
+    files = project_files(block, test, about, where)
     length = max(len(block.start), 1)
-    path = write_export(folder, files, name, force=force)
+    if where.is_alone:
+        path = write_export(folder, files, name, force=force)
+    else:
+        path = add_to_folder(folder, files, name, force=force)
     return CProject(
         path=path,
         files=tuple(sorted(files)),
@@ -138,16 +194,17 @@ def c_project(
         state_bytes=WORD_BYTES[exact] * (length + 1) + 8,
         saved_bytes=WORD_BYTES[exact] * (length + 1) + 12,
         away_from_double=test.away_from_double,
+        readme=where.beside("README.md"),
+        test_command=where.places(any(map(where.is_core_source, files)))["test_command"],
+        drive=block.drive,
+        history=block.history,
+        has_start=block.following is not None,
+        codes="" if block.codes is None else block.codes.row(),
     )
 
 
 def project_files(
-    block: Block,
-    test: SelfTest,
-    name: str,
-    precision: Precision,
-    about: ModelDescription,
-    flat: bool = False,
+    block: Block, test: SelfTest, about: ModelDescription, layout: Layout
 ) -> dict[str, bytes]:
     """Give the files of a project.
 
@@ -157,56 +214,76 @@ def project_files(
         What is exported.
     test
         Its self-test.
-    name
-        The prefix, checked.
-    precision
-        Of the target.
     about
         What the numbers mean.
-    flat
-        Whether all code lies in one folder.
+    layout
+        Name, precision, and where the files lie.
 
     Returns
     -------
     dict
         Content by path.
     """
+    name, precision = layout.name, layout.precision
     common = places(block, name, precision, about)
     head, main = header(block, common), source(block, common, precision)
-    core = {f"core/{path}": text for path, text in core_files(main + head).items()}
-    sources = [f"{name}.c", *(path for path in core if path.endswith(".c"))]
-    cmake = {
-        "sources": "\n".join(f"  {each}" for each in sources),
-        "definitions": f"target_compile_definitions({name} PUBLIC HYST_SINGLE)\n"
-        if precision == "single"
-        else "",
+    needed = core_files(main + head)
+    common |= layout.places(any(path.endswith(".c") for path in needed))
+    short = layout.own(short_test_source(block, test, common, precision), layout.short_test_folder)
+    core = layout.core.files(needed)
+    if layout.form == "single-file":
+        compiled = {f"{name}.c": in_one_file(core, {f"{name}.c": layout.own(main)})}
+    else:
+        compiled = {f"{name}.c": layout.own(main)}
+        compiled |= {layout.core_folder + each: text.decode("ascii") for each, text in core.items()}
+    tests = layout.test_folder
+    texts = compiled | {
+        f"{name}.h": layout.own(head),
+        f"{layout.short_test_folder}{name}_step_response.c": short,
+        f"{tests}{name}_selftest.c": layout.own(selftest_source(block, common), tests),
+        f"{tests}{name}_selftest_vectors.h": layout.own(vectors(block, test, common, precision)),
+        layout.beside("LICENSE"): filled("LICENSE", {}),
+        layout.beside("README.md"): readme(
+            block, common, about, test, any(each.endswith("power.h") for each in needed)
+        ),
+        "CMakeLists.txt" if layout.is_alone else f"{name}.cmake": cmake_file(
+            layout, common, sorted(filter(layout.is_core_source, compiled))
+        ),
     }
-    texts = {
-        f"{name}.h": head,
-        f"{name}.c": main,
-        "selftest.c": selftest_source(block, common),
-        "selftest_vectors.h": vectors(block, test, common, precision),
-        "CMakeLists.txt": filled("CMakeLists.txt", common | cmake),
-        "LICENSE": filled("LICENSE", {}),
-        "README.md": readme(block, common, about, test, len(sources) > 1),
-    }
-    files = {path: text.encode("ascii") for path, text in texts.items()} | core
-    files = flattened(files, name) if flat else files
-    return files | {MANIFEST: _manifest(block, name, precision, files, test)}
+    files = {path: text.encode("ascii") for path, text in texts.items()}
+    return files | {layout.manifest: _manifest(block, layout, files, needed, test)}
 
 
 def _manifest(
-    block: Block, name: str, precision: str, files: dict[str, bytes], test: SelfTest
+    block: Block,
+    layout: Layout,
+    files: Mapping[str, bytes],
+    needed: Mapping[str, bytes],
+    test: SelfTest,
 ) -> bytes:
     content: dict[str, Any] = {
         "format": FORMAT,
-        "version": 1,
+        "version": 2,
         "hyst": __version__,
         "target": "c",
-        "name": name,
-        "precision": precision,
+        "name": layout.name,
+        "precision": layout.precision,
+        "layout": layout.form,
         "model": {"kind": block.kind, "sha256": block.sha256()},
+        "drive": block.drive.told(),
+        **({} if block.codes is None else {"driver": block.codes.told()}),
+        "history": list(block.history),
         "selftest": {"samples": SAMPLES, "away_from_double": test.away_from_double},
-        "files": {path: hashlib.sha256(files[path]).hexdigest() for path in sorted(files)},
+        # The core's own files, before their names became those of the copy.
+        "core": {
+            "prefix": f"{layout.core.prefix}_",
+            "shared": layout.shared_core,
+            "sources": {path: _sha256(text) for path, text in needed.items()},
+        },
+        "files": {path: _sha256(files[path]) for path in sorted(files)},
     }
     return (json.dumps(content, indent=2) + "\n").encode()
+
+
+def _sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()

@@ -1,4 +1,4 @@
-"""The C of a tracking controller whose drive is limited, as the core has it, without chains."""
+"""The C of an inverse whose drive is limited, as the core has it, without chains."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def limits_in(
     """
     if precision == "double":
         return low, high, change
-    inner = _not_below(low), -_not_below(-high), -_not_below(-change)
+    inner = not_below(low), not_above(high), not_above(change)
     if not inner[0] < inner[1] or (change > 0.0 and inner[2] <= 0.0):
         raise InputError(
             f"the limits {low:.9g} to {high:.9g}, {change:.9g} a sample, leave no number of single "
@@ -59,11 +59,17 @@ def limits_in(
     return inner
 
 
-def _not_below(value: float) -> float:
+def not_below(value: float) -> float:
+    """Give the number of single precision nearest to a ``value`` that is not below it."""
     largest = np.finfo(np.float32).max
     nearest = np.float32(np.clip(value, -float(largest), float(largest)))
     below = float(nearest) < value and nearest < largest
     return float(np.nextafter(nearest, np.float32(np.inf)) if below else nearest)
+
+
+def not_above(value: float) -> float:
+    """Give the number of single precision nearest to a ``value`` that is not above it."""
+    return -not_below(-value)
 
 
 @final
@@ -74,7 +80,7 @@ class LimitedStages:
     Parameters
     ----------
     linear
-        The linear part.
+        The linear part; None for an inverse alone.
     inverse, forward
         The stages from v to the drive, and back.
     limits
@@ -85,7 +91,7 @@ class LimitedStages:
         What follows every sample and is told the excess, instead of w; None for none.
     """
 
-    linear: CoreStage
+    linear: CoreStage | None
     inverse: tuple[CoreStage, ...]
     forward: tuple[CoreStage, ...]
     limits: tuple[float, float, float]
@@ -95,20 +101,8 @@ class LimitedStages:
     @property
     def all(self) -> tuple[CoreStage, ...]:
         """All of them, in the order of their memory."""
-        numbers = dict(zip(("low", "high", "change"), self.limits, strict=True))
-        limits = CoreStage(
-            kind="drive_limits",
-            numbers=numbers,
-            tables={},
-            choices={"forward": _outermost(self.forward)},
-            form="",
-            state_length=1,
-            offers=dict.fromkeys(numbers, (0, "")),
-            feeds_through=True,
-            header="hyst/drive_limits.h",
-            structure="hyst_drive_limits $model = {$low, $high, $change};",
-            call="$signal = hyst_limited_drive(&$model, $memory, $signal);",
-        )
+        told = {"forward": outermost(self.forward)} | ({"way": 1} if self.linear is None else {})
+        limits = limits_stage(self.limits, told)
         windup = CoreStage(
             kind="anti_windup",
             numbers={},
@@ -122,11 +116,16 @@ class LimitedStages:
             structure="",
             call="hyst_tracking_take_back(#w, $w, memory, $signal);",
         )
+        if self.linear is None:
+            return (*self.inverse, *self.forward, limits)
         after = windup if self.learning is None else self.learning
         return (self.linear, *self.inverse, *self.forward, limits, after)
 
     def body(self, code: StageCode) -> str:
-        """Give the statements that take ``y_ref`` and ``y`` and leave the drive in ``v``."""
+        """Give the statements that take the inputs and leave the drive in ``v``."""
+        if self.linear is None:
+            inner = self._inner(code, "", taken_back=False)
+            return f"hyst_real v = u;\nif (hyst_is_finite(v)) {{\n{inner}\n}}\n"
         if self.learning is not None:
             return self._learning_body(code)
         inner = self._inner(code, "const hyst_real excess = applied - wanted;", taken_back=True)
@@ -150,24 +149,25 @@ class LimitedStages:
 
     def _inner(self, code: StageCode, excess: str, taken_back: bool) -> str:
         """Give the statements from a v that is finite to its drive."""
-        first = 1 + len(self.inverse)
+        before = 0 if self.linear is None else 1
+        first = before + len(self.inverse)
         last = first + len(self.forward)
         memory = sum(each.state_length for each in self.inverse)
         there = f"memory[{sum(each.state_length for each in self.all) - 1}]"
-        inverse = range(1, first)
+        inverse = range(before, first)
         inner = [
             "const hyst_real wanted = v;",
-            "hyst_real u = v;",
+            "hyst_real drive = v;",
             "hyst_real applied;",
             "int held = 0;",
             *self._copied("before", "memory", memory, declared=True),
-            *(["{", indented(code.calls("u", only=inverse)), "}"] if self.inverse else []),
-            "if (!hyst_is_finite(u)) { /* no drive belongs to v: the last one is kept */",
+            *(["{", indented(code.calls("drive", only=inverse)), "}"] if self.inverse else []),
+            "if (!hyst_is_finite(drive)) { /* no drive belongs to v: the last one is kept */",
             "    held = 1;",
             "    state->fault |= @{NAME}_NOT_FINITE;",
-            f"    u = {there};",
+            f"    drive = {there};",
             "}",
-            "v = u;",
+            "v = drive;",
             code.calls("v", only=range(last, last + 1)).rstrip("\n"),
             "applied = v;",
             code.calls("applied", only=range(first, last)).rstrip("\n"),
@@ -175,9 +175,9 @@ class LimitedStages:
             "    state->fault |= @{NAME}_NOT_FINITE;",
             "    applied = wanted;",
             "}",
-            "if ((held != 0) || (v < u) || (v > u)) { /* on with what belongs to it */",
+            "if ((held != 0) || (v < drive) || (v > drive)) { /* on with what belongs to it */",
             *(["    hyst_real again = applied;"] if self.inverse else []),
-            f"    {excess}",
+            f"    {excess}" if excess else "",
             *(f"    {line}" for line in self._copied("memory", "before", memory)),
             indented(code.calls("again", only=inverse)),
             *(["    (void)again;"] if self.inverse else []),
@@ -191,7 +191,7 @@ class LimitedStages:
         """C that copies the memory of the inverse, which stands behind that of the linear part."""
         if count == 0:
             return []
-        offset = self.linear.state_length
+        offset = 0 if self.linear is None else self.linear.state_length
         place = {
             "memory": f"memory[{offset}u + i]" if offset else "memory[i]",
             "before": "before[i]",
@@ -205,8 +205,62 @@ class LimitedStages:
         ]
 
 
-def _outermost(stages: tuple[CoreStage, ...]) -> int:
-    """Count stages; those inside another one count with it."""
+def limits_stage(limits: tuple[float, float, float], choices: dict[str, int]) -> CoreStage:
+    """Give the limits of a drive as a stage.
+
+    Parameters
+    ----------
+    limits
+        Lowest and highest drive, and most change in a sample, in numbers of the target.
+    choices
+        What the twin in single precision is told beside them.
+    """
+    numbers = dict(zip(("low", "high", "change"), limits, strict=True))
+    return CoreStage(
+        kind="drive_limits",
+        numbers=numbers,
+        tables={},
+        choices=choices,
+        form="",
+        state_length=1,
+        offers=dict.fromkeys(numbers, (0, "")),
+        feeds_through=True,
+        header="hyst/drive_limits.h",
+        structure="hyst_drive_limits $model = {$low, $high, $change};",
+        call="$signal = hyst_limited_drive(&$model, $memory, $signal);",
+    )
+
+
+def bank_limits_stage(told: dict[str, float | int]) -> CoreStage:
+    """Give the limits of a bank of plays at the end of an inverse as a stage.
+
+    Parameters
+    ----------
+    told
+        As ``LimitedDrive.bank_limits`` gives them.
+    """
+    choices = {name: int(told[name]) for name in ("moved_low", "moved_high")}
+    numbers = {name: float(value) for name, value in told.items() if name not in choices}
+    low, high = (
+        f"{{#moved_{k}, $slope_{k}, $constant_{k}, $from_{k}, $least_{k}}}" for k in ("low", "high")
+    )
+    return CoreStage(
+        kind="bank_limits",
+        numbers=numbers,
+        tables={},
+        choices=choices,
+        form="",
+        state_length=1,
+        offers=dict.fromkeys(numbers, (0, "")),
+        feeds_through=True,
+        header="hyst/limited_bank.h",
+        structure=f"hyst_bank_limits $model = {{$low, $high, {low}, {high}}};",
+        call="",
+    )
+
+
+def outermost(stages: tuple[CoreStage, ...]) -> int:
+    """Count ``stages``; those inside another one count with it."""
     count = 0
     for stage in stages:
         count += 1 - stage.inside

@@ -35,9 +35,13 @@ _TAKEN = """
     rebuild_cache test
     aux com1 com2 com3 com4 com5 com6 com7 com8 com9 con lpt1 lpt2 lpt3 lpt4 lpt5 lpt6 lpt7 lpt8
     lpt9 nul prn
-    core selftest selftest_vectors
+    core selftest
 """
 _KEYWORDS = frozenset((_C_KEYWORDS + _CXX_KEYWORDS).split())
+# What another export may define: lens has lens_core_..., lens_selftest and lens_clear_fault.
+_OF_ANOTHER = re.compile(
+    r"_core(_|$)|_(clear|selftest|selftest_vectors|step_response)$", re.IGNORECASE
+)
 _FILES = frozenset((_HEADERS + _TAKEN).split())
 
 
@@ -58,7 +62,7 @@ def as_c_name(name: str) -> str:
     ------
     InputError
         If it is no C identifier, is a word of C or C++ or reserved there, starts with "hyst", or
-        would name a file or a target that something else needs.
+        would name a file, a target or a function that something else has.
 
     Examples
     --------
@@ -81,17 +85,20 @@ def _objection(name: str) -> str:
         return f"which has more than {LONGEST_NAME} characters"
     if name.startswith("_") or name.endswith("_") or "__" in name:
         return "and C or C++ reserves names with an underscore first, last or twice"
-    if name in _KEYWORDS or name.lower() in _KEYWORDS:
+    if is_word(name):
         return "a word of C or C++"
     if name.lower().startswith("hyst"):
         return "but names that start with hyst are those of the core"
     if name.lower() in _FILES:
         return "which a standard header, CMake, Windows or another file of the export has"
+    part = _OF_ANOTHER.search(name)
+    if part:
+        return f"but an export named {name[: part.start()]} may define the same with {part[0]}"
     return ""
 
 
 # The micro sign and the Greek letter, the Ohm sign and the Greek letter look alike.
-_WORDS = {
+_SPELLED = {
     "\N{MICRO SIGN}": "u",
     "\N{GREEK SMALL LETTER MU}": "u",
     "\N{DEGREE SIGN}": "deg",
@@ -105,24 +112,36 @@ _WORDS = {
 _LONGEST_TEXT = 60
 
 
-def plain_text(text: str) -> str:
+def is_word(name: str) -> bool:
+    """Tell whether a ``name`` is a word of C or C++."""
+    return name in _KEYWORDS or name.lower() in _KEYWORDS
+
+
+def spelled(text: str) -> str:
+    """Give a ``text`` with the signs of units as letters: um, degC, Ohm."""
+    for special, word in _SPELLED.items():
+        text = text.replace(special, word)
+    return text
+
+
+def plain_text(text: str, longest: int = _LONGEST_TEXT) -> str:
     """Give a text that means nothing to C, CMake, XML or Markdown, wherever it stands.
 
     Parameters
     ----------
     text
         Any, as the unit in a column's header.
+    longest
+        What is longer is cut.
 
     Returns
     -------
     str
-        One line of at most 60 ASCII characters; what is not letter, digit or harmless becomes "_".
+        At most so many ASCII characters, one line; what is not letter, digit or harmless is "_".
 
     Examples
     --------
     >>> plain_text("µm"), plain_text("V */ #error")
     ('um', 'V _/ _error')
     """
-    for special, word in _WORDS.items():
-        text = text.replace(special, word)
-    return re.sub(r"[^A-Za-z0-9 .,:+/()%^=-]", "_", text[:_LONGEST_TEXT])
+    return re.sub(r"[^A-Za-z0-9 .,:+/()%^=-]", "_", spelled(text)[:longest])

@@ -3,8 +3,20 @@
 from __future__ import annotations
 
 from hyst.export.c.block import Block
+from hyst.export.c.driver_codes import words
+from hyst.export.c.example import example_of
 from hyst.export.c.names import plain_text
+from hyst.export.c.readme_rows import (
+    drive_rows,
+    error_rows,
+    lag_row,
+    provenance_row,
+    signal_rows,
+    verdict_row,
+)
+from hyst.export.c.readme_start import start_section
 from hyst.export.c.selftest import SelfTest
+from hyst.export.c.short_test import short_test_cost
 from hyst.export.c.templating import filled
 from hyst.operators import ModelDescription
 
@@ -14,7 +26,7 @@ def readme(
     places: dict[str, str],
     about: ModelDescription,
     test: SelfTest,
-    has_core: bool,
+    takes_power: bool,
 ) -> str:
     """Give the README.
 
@@ -23,115 +35,106 @@ def readme(
     block
         What is exported.
     places
-        What the templates have in common.
+        What the templates have in common, those of the layout among them.
     about
         What the numbers mean.
     test
         The self-test.
-    has_core
-        Whether there are sources of the core.
+    takes_power
+        Whether the sources of the core take powers, which may be another's.
 
     Returns
     -------
     str
     """
-    length = max(len(block.start), 1)
-    word = int(places["word_bytes"])
-    rows = {
-        "model": plain_text(block.kind),
-        "precision": places["precision"],
-        "state": f"{word * (length + 1) + 8} bytes, {len(block.start)} numbers of memory",
-        "saved state": f"{places['saved_bytes']} bytes",
-        "sample time": "any" if block.dt is None else f"{block.dt!r} s, and no other",
-    }
-    if places["precision"] == "single":
+    precision = places["precision"]
+    example = example_of(block, places["name"], precision, about, test)
+    rows = signal_rows(block, about, example.variable)
+    rows |= drive_rows(block, places["name"])
+    rows |= {"sample time": "any" if block.dt is None else f"{block.dt!r} s, and no other"}
+    if precision == "single":
         rows["away from double"] = (
             f"at most {test.away_from_double:.3g} over the self-test, whose input goes "
             f"from {test.drive.low * test.drive.unit:.6g} to {test.drive.high:.6g}"
         )
-    rows |= {signal: _signal(*meant) for signal, meant in signals(block, about).items()}
-    rows |= verdict_row(about) | lag_row(about)
+    if block.codes is not None:
+        rows["codes"] = plain_text(block.codes.row())
+    rows |= error_rows(about) | verdict_row(about, all_levels=True) | lag_row(about)
+    rows |= provenance_row(about) | _size_rows(block, places)
     more = {
         "rows": "\n".join(f"| {key} | {value} |" for key, value in rows.items()),
-        "usage": _ESTIMATOR_USAGE if block.is_estimator else _USAGE,
-        "faults": _ESTIMATOR_FAULTS
-        if block.is_estimator
-        else _FAULTS
-        + (_SCHEDULE_FAULTS if block.second else "")
-        + (_LIMIT_FAULTS if block.limits is not None else "")
-        + (_REPETITIVE if block.forgets else "")
-        + (_CHANGED if "REFERENCE_CHANGED" in block.tells else ""),
-        "in_precision": " in single precision" if places["precision"] == "single" else "",
-        "elements": ", ".join(block.inputs),
+        "program": example.program,
+        "start_section": start_section(block, places["name"]),
+        "power_section": _power_section(places["core_prefix"]) if takes_power else "",
+        "faults": _faults(block) + words(block),
+        "in_precision": " in single precision" if precision == "single" else "",
+        "test_bytes": short_test_cost(block, places),
     }
-    for part in ("usage", "faults"):
-        for key in ("name", "NAME", "output", "elements"):
-            more[part] = more[part].replace(f"@{{{key}}}", (places | more)[key])
-    text = filled("README.md", places | more)
-    return text if has_core else text.replace(" core/src/*.c", "")
+    for key, word in {**places, "rest": f"{block.virgin[1]:.6g}"}.items():
+        more["faults"] = more["faults"].replace(f"@{{{key}}}", word)
+    return filled("README.md", places | more)
 
 
-def signals(block: Block, about: ModelDescription) -> dict[str, tuple[str, str]]:
-    """Give name and unit of the signals of a ``block`` by what C calls them, if ``about`` tells."""
-    named = (about.input_name, about.input_unit), (about.output_name, about.output_unit)
+def _size_rows(block: Block, places: dict[str, str]) -> dict[str, str]:
+    length = max(len(block.start), 1)
+    size = int(places["word_bytes"]) * (length + 1) + 8
+    return {
+        "model": f"{plain_text(block.kind)}, SHA-256 {block.sha256()[:16]}...",
+        "precision": places["precision"],
+        "state": f"{size} bytes, {len(block.start)} numbers of memory",
+        "saved state": f"{places['saved_bytes']} bytes",
+    }
+
+
+def _power_section(prefix: str) -> str:
+    """Give what is told of powers, whose function in the core starts with ``prefix``."""
+    return _POWER.replace("@{prefix}", prefix).replace("@{PREFIX}", prefix.upper())
+
+
+def _faults(block: Block) -> str:
     if block.is_estimator:
-        return dict(zip(block.inputs, named, strict=True))
-    if len(block.inputs) == 1:
-        return dict(zip((block.inputs[0], block.output), named, strict=True))
-    if block.second:
-        meant = (named[0], block.second_meaning, named[1])
-        return dict(zip((*block.inputs, block.output), meant, strict=True))
-    return {}
+        return _ESTIMATOR_FAULTS + (_CLAMPED if block.drive.limits is not None else "")
+    return (
+        _FAULTS
+        + (_SCHEDULE_FAULTS if block.second else "")
+        + _LIMIT_FAULTS.get(block.drive.side if block.drive.is_limited else "", "")
+        + (_REPETITIVE if block.forgets else "")
+        + (_CHANGED if "REFERENCE_CHANGED" in block.tells else "")
+    )
 
 
-def verdict_row(about: ModelDescription) -> dict[str, str]:
-    """Give the row of a table that says that no command should come from what ``about`` tells of.
+_POWER = """
+## A power function of your own
 
-    Parameters
-    ----------
-    about
-        Of the model.
-    """
-    if about.verdict is None or not about.is_unfit:
-        return {}
-    return {"verdict": f"{about.verdict.level}: {plain_text(about.verdict.sentences[0])}"}
-
-
-def lag_row(about: ModelDescription) -> dict[str, str]:
-    """Give the row of a table that says what lag ``about`` tells of, which no code contains."""
-    if about.delay == 0:
-        return {}
-    time = "" if about.dt is None else f" of {about.dt!r} s"
-    if about.delay < 0:
-        ahead = f"the recorded output was {-about.delay} sample(s){time} ahead of the input, which"
-        return {"lag": f"{ahead} no actuator is: its channels were not aligned"}
-    low, _ = about.delay_interval or (about.delay, about.delay)
-    if low <= 0.0:
-        return {}  # the records would bear none
-    return {"lag": f"the recorded output lagged {about.delay} sample(s){time}; this code does not"}
-
-
-def _signal(name: str, unit: str) -> str:
-    return f"{plain_text(name)} in {plain_text(unit)}" if unit else plain_text(name)
-
-
-_USAGE = """\
-    @{output} = @{name}_step(&state, @{elements});    /* every sample */
-    if (@{name}_fault(&state)) { ... }                /* since when a sample was not finite */
+The step takes powers, in plain arithmetic that gives the same bits everywhere. If your target has a
+better function, compile every file with `-D@{PREFIX}POWER_HEADER='"my_power.h"'`. That header
+defines, for this precision and as `static inline`, `@{prefix}power(x, e)` for x >= 0,
+`@{prefix}log2(x)` for x > 0, and `@{prefix}exp2(v)`. The bits are then no longer those of Python:
+both self-tests say so, and the difference that the first one prints is yours to judge.
 """
 _FAULTS = """\
 A sample that is NaN or infinite, or that overflows inside, is answered with the last output; the
 memory it did not reach stays as it was, and `@{name}_fault` gives `@{NAME}_NOT_FINITE` until
-`@{name}_clear_fault`. A step before `@{name}_init` gives 0 and `@{NAME}_NOT_READY`.
+`@{name}_clear_fault`. A step before `@{name}_init` gives @{rest} and `@{NAME}_NOT_READY`.
 """
 _SCHEDULE_FAULTS = """\
 Constants follow the second signal by straight lines; outside the values they are known at they are
 held at the nearer end, and `@{name}_fault` gives `@{NAME}_OFF_SCHEDULE` too.
 """
-_LIMIT_FAULTS = """\
-The drive never leaves its limits, before `@{name}_init` and after bad samples neither; where more
+_HELD = """\
 was asked for it is held there, and `@{name}_fault` gives `@{NAME}_OUT_OF_RANGE` too. That is no
-error: the controller goes on with what was applied.
+error: the memory goes on with what was applied.
+"""
+_LIMIT_FAULTS = {
+    "output": f"""\
+The drive never leaves its limits, before `@{{name}}_init` and after bad samples neither; where more
+{_HELD}""",
+    "input": f"""\
+What drives the actuator is held to its limits before it enters the model; where more
+{_HELD}""",
+}
+_CLAMPED = """\
+A command never leaves the limits of the drive; update with what was applied.
 """
 _REPETITIVE = """\
 
@@ -143,13 +146,8 @@ _CHANGED = """\
 Where the reference is another one than a period before, the block forgets by itself, and
 `@{name}_fault` gives `@{NAME}_REFERENCE_CHANGED` too.
 """
-_ESTIMATOR_USAGE = """\
-    u = @{name}_command(&state, y_ref);               /* the input for the output that is wanted */
-    (void)@{name}_update(&state, u, y);               /* with the output that was measured then */
-    if (@{name}_fault(&state)) { ... }                /* since when a sample was not finite */
-"""
 _ESTIMATOR_FAULTS = """\
 A sample that is NaN or infinite, or that would overflow, changes no parameter; `@{name}_fault`
 gives `@{NAME}_NOT_FINITE` or `@{NAME}_REFUSED` until `@{name}_clear_fault`. Where a command would
-not be finite, it is the last input. The estimate stands in `state.memory` from `@{NAME}_THETA` on.
+not be finite, it is the last input. The estimate stands in `@{name}.memory`, from `@{NAME}_THETA`.
 """

@@ -9,8 +9,9 @@ import numpy as np
 
 from hyst import _single
 from hyst.errors import InputError, NotInvertibleError
-from hyst.export.c.block import Block, told
+from hyst.export.c.block import Block
 from hyst.export.c.core_stage import core_stages
+from hyst.export.c.following import told
 from hyst.export.c.numbers import Precision, literal
 from hyst.export.c.stage_code import StageCode
 from hyst.export.c.templating import indented
@@ -67,8 +68,8 @@ def scale_estimator_block(estimator: ScaleEstimator, precision: Precision) -> Bl
         model={"kind": "scale-estimator", "settings": settings, "state": start},
         stages=(),
         chain=model,
-        stepper=in_double,
-        single_stepper=in_single,
+        stepper=lambda _: in_double(),
+        single_stepper=lambda _: in_single(),
         is_estimator=True,
         source_template=_TEMPLATE,
         more={

@@ -48,7 +48,9 @@ class SelfTest:
         """Run a ``block`` in a ``precision``, over the input range that ``about`` tells, if any."""
         low, high = about.input_low, about.input_high
         driven = len(block.inputs) == 1 or block.second
-        if driven and low is not None and high is not None and low < high:
+        if block.tested is not None:
+            drive = Drive.between(*block.tested)
+        elif driven and low is not None and high is not None and low < high:
             drive = Drive.between(low, high)
         else:
             drive = drive_for(block.chain)

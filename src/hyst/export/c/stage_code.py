@@ -10,7 +10,7 @@ from __future__ import annotations
 import dataclasses
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from textwrap import wrap
 from typing import final
 
@@ -111,7 +111,13 @@ class StageCode:
                 lines += _in_lines(f"static const {self._written(stage.structure, stage, index)}")
         return "\n".join(lines) + "\n" if lines else ""
 
-    def calls(self, signal: str = "u", memory: str = "memory", only: range | None = None) -> str:
+    def calls(
+        self,
+        signal: str = "u",
+        memory: str = "memory",
+        only: range | None = None,
+        apart: bool = False,
+    ) -> str:
         """Give the statements that take one sample through all stages, or some of them.
 
         Parameters
@@ -122,6 +128,8 @@ class StageCode:
             Points to the first number of memory.
         only
             Places of the stages that are called, one after the other; all if left out.
+        apart
+            Whether they have a memory of their own, in which the first of them comes first.
 
         Returns
         -------
@@ -133,7 +141,7 @@ class StageCode:
         first = _first_inside(self.stages)
         for index, stage in enumerate(self.stages):
             if only is not None and index not in only:
-                offset += stage.state_length
+                offset += 0 if apart else stage.state_length
                 continue
             lines += [
                 f"const hyst_real {_input(self.stages[around], around)} = {signal};"
@@ -145,6 +153,35 @@ class StageCode:
             lines.append("}")
             offset += stage.state_length
         return "\n".join(lines) + "\n"
+
+    def call(self, index: int, call: str, signal: str, memory: str) -> str:
+        """Give one statement that calls something else with the constants of a stage.
+
+        Parameters
+        ----------
+        index
+            Place of the stage.
+        call
+            C with the places of a row of ``engine/kinds``.
+        signal, memory
+            What stands at those of the signal and the memory.
+        """
+        stage = self.stages[index]
+        lines = list(self._call(replace(stage, call=call), index, signal, memory))
+        return "\n".join(
+            [f"if (hyst_is_finite({signal})) {{", *(f"    {each}" for each in lines), "}"]
+        )
+
+    def name(self, index: int) -> str:
+        """Give what C calls the structure of a stage."""
+        return _name(self.stages[index], index)
+
+    def local(self, index: int) -> str:
+        """Give the declaration of the structure of a stage where it is used; "" if in the file."""
+        if self.held_by is None:
+            return ""
+        stage = self.stages[index]
+        return "\n".join(_in_lines(f"const {self._written(stage.structure, stage, index)}")) + "\n"
 
     def _declaration(self, constant: Constant) -> Iterator[str]:
         size = f"[{len(constant.values)}]" if constant.is_table else ""
@@ -167,12 +204,12 @@ class StageCode:
     ) -> str:
         """Give the C of a row of ``engine/kinds``, its places filled."""
         fixed = {
+            **{name: str(choice) for name, choice in stage.choices.items()},
             "signal": signal,
             "memory": place,
             "model": _name(stage, index),
             "form": stage.form,
             "input": _input(stage, index),
-            **{name: str(choice) for name, choice in stage.choices.items()},
         }
         reference = self._reference(stage, index)
 

@@ -9,9 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import final
 
+from numpy.typing import ArrayLike
+
 import hyst
+from hyst.control.drive_limits import Limits
 from hyst.errors import InputError
-from hyst.export.c.block import Model, described, refuse_unfit
+from hyst.export.c.block import Block, Model, described, refuse_unfit
+from hyst.export.c.drive_options import AUTO, DriveOptions
+from hyst.export.c.drive_range import DriveRange
 from hyst.export.c.names import as_c_name
 from hyst.export.fmi.binary import binary_path, compiled
 from hyst.export.fmi.description import (
@@ -23,7 +28,6 @@ from hyst.export.fmi.description import (
 )
 from hyst.export.fmi.sources import FmuModel, fmu_model, fmu_sources
 from hyst.export.folder import FORMAT, MANIFEST, write_export
-from hyst.export.tool_block import tool_block
 from hyst.operators import ModelDescription
 
 _VERSIONS: tuple[FmiVersion, ...] = ("2.0", "3.0")
@@ -54,6 +58,10 @@ class Fmu:
     dt
         Sample time, seconds: communication steps must be whole multiples of it. None if any will
         do.
+    drive
+        Limits of the drive, and where they come from.
+    history
+        The drives it starts after.
     """
 
     path: Path
@@ -65,6 +73,8 @@ class Fmu:
     output: str
     parameters: tuple[str, ...]
     dt: float | None
+    drive: DriveRange
+    history: tuple[float, ...]
 
 
 def fmu(
@@ -78,6 +88,9 @@ def fmu(
     binary: bool = True,
     compiler: str | None = None,
     despite_verdict: bool = False,
+    limits: Limits | str | None = AUTO,
+    rate_limit: float | None = None,
+    history: ArrayLike | None = None,
 ) -> Fmu:
     """Write a model as an FMU for co-simulation, with its sources and a binary for this platform.
 
@@ -101,6 +114,9 @@ def fmu(
         Command of a C compiler; by default that of the variable CC, or else cc, gcc or clang.
     despite_verdict
         Export also a model whose verdict is ``unfit``.
+    limits, rate_limit, history
+        Of the drive, as ``c_project`` takes them. With a history what its memory depends on is no
+        parameter.
 
     Returns
     -------
@@ -110,7 +126,9 @@ def fmu(
     ------
     InputError
         If the model, the name, the version or the compiler cannot be used, the path exists, or the
-        verdict on the model is ``unfit``.
+        verdict on the model is ``unfit``, or limits or history cannot be used.
+    NotInvertibleError
+        As ``c_project``.
     HystError
         If there is no compiler, or it fails.
 
@@ -129,12 +147,13 @@ def fmu(
     fmi = _as_version(version)
     if Path(path).suffix.lower() != ".fmu":
         raise InputError(f"{path} is not the name of an FMU; give one that ends in .fmu")
-    exported = fmu_model(model)
+    options = DriveOptions(limits, rate_limit, history)
+    exported = fmu_model(model, options, description)
     files, said = _contents(exported, name, described(model, description), fmi)
     if binary:
         library = compiled(_below_sources(files), compiler)
         files[binary_path(name, fmi)] = library
-    files[f"resources/{MANIFEST}"] = _manifest(model, name, fmi, files)
+    files[f"resources/{MANIFEST}"] = _manifest(exported.tool.block, name, fmi, files)
     target = write_export(path, files, "", force=force)
     return Fmu(
         path=target,
@@ -146,6 +165,8 @@ def fmu(
         output=said.output.name,
         parameters=tuple(each.name for each in said.parameters),
         dt=said.dt,
+        drive=exported.tool.block.drive,
+        history=exported.tool.block.history,
     )
 
 
@@ -175,7 +196,10 @@ def _contents(
 
 def _describe(model: FmuModel, name: str, about: ModelDescription, token: str) -> FmuDescription:
     tool = model.tool
-    units = {"u": (about.input_name, about.input_unit), "y": (about.output_name, about.output_unit)}
+    units = {
+        "u": (about.input_name.strip() or "u", about.input_unit),
+        "y": (about.output_name.strip() or "y", about.output_unit),
+    }
     units |= {"y_ref": (f"wanted {units['y'][0]}", units["y"][1])}
     units |= {"command": (f"wanted {units['u'][0]}", units["u"][1])}
     return FmuDescription(
@@ -210,8 +234,7 @@ def _below_sources(files: dict[str, bytes]) -> dict[str, bytes]:
     }
 
 
-def _manifest(model: Model, name: str, version: str, files: dict[str, bytes]) -> bytes:
-    block = tool_block(model).block
+def _manifest(block: Block, name: str, version: str, files: dict[str, bytes]) -> bytes:
     content = {
         "format": FORMAT,
         "version": 1,
@@ -220,6 +243,8 @@ def _manifest(model: Model, name: str, version: str, files: dict[str, bytes]) ->
         "fmi": version,
         "name": name,
         "model": {"kind": block.kind, "sha256": block.sha256()},
+        "drive": block.drive.told(),
+        "history": list(block.history),
         "files": {path: hashlib.sha256(files[path]).hexdigest() for path in sorted(files)},
     }
     return (json.dumps(content, indent=2) + "\n").encode()

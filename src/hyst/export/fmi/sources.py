@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
 
 from hyst.errors import InputError
-from hyst.export.c.block import Model
+from hyst.export.c.block import Block, Model
 from hyst.export.c.c_sources import header, places, source, told
+from hyst.export.c.core_copy import CoreCopy
 from hyst.export.c.core_sources import core_files
+from hyst.export.c.core_stage import CoreStage
+from hyst.export.c.drive_options import DriveOptions
 from hyst.export.c.numbers import table
-from hyst.export.c.one_file import renamed, shared_names
+from hyst.export.c.one_file import with_own_names
 from hyst.export.c.stage_code import StageCode
 from hyst.export.c.templating import filled, indented
 from hyst.export.fmi.description import FmiVersion
 from hyst.export.fmi.variables import (
     ParameterVariable,
+    Rule,
     constant_rules,
     direct_inputs,
     parameter_variables,
@@ -34,7 +37,7 @@ _OF_VERSION = {
     "3.0": ("hyst_fmi3.c", "hyst_fmi3.h", "hyst_fmi3_absent.c", "hyst_fmi3_other_kinds.c"),
 }
 _HELD_BY = "constants->of."
-_SHARED = re.compile(r"^(?!static)[a-z][\w \*]*?\b(hyst_\w+)(?:\(| = )", re.MULTILINE)
+_BESIDE_ITS_MODEL = 1  # how a drive is limited, as the twin in single precision is told it
 
 
 @final
@@ -68,13 +71,19 @@ class FmuModel:
         return tuple(value for each in self.code.constants() for value in each.values)
 
 
-def fmu_model(model: Model) -> FmuModel:
+def fmu_model(
+    model: Model, options: DriveOptions, description: ModelDescription | None = None
+) -> FmuModel:
     """Give a model as an FMU runs it.
 
     Parameters
     ----------
     model
         What ``c_project`` takes.
+    options
+        What it is told of the drive.
+    description
+        As given to the export; None for that of the model.
 
     Returns
     -------
@@ -90,10 +99,12 @@ def fmu_model(model: Model) -> FmuModel:
             "a scheduled model is no FMU yet: its constants follow a second input, where an FMU "
             "offers them as parameters; export it as C or MEX, or the model at(value) as an FMU"
         )
-    tool = tool_block(model)
-    block = tool.block
+    tool = tool_block(model, options, description)
+    # It starts as it was exported: whoever runs it sets no memory.
+    block = replace(tool.block, following=None, before=None)
+    tool = replace(tool, block=block)
     fixed = StageCode(block.stages, "double").calls(block.signal)
-    code = StageCode(block.stages, "double", _HELD_BY)
+    code = StageCode(_offered(block), "double", _HELD_BY)
     if block.is_estimator:
         return FmuModel(tool, code)
     body = (
@@ -102,6 +113,36 @@ def fmu_model(model: Model) -> FmuModel:
         else block.written(code)
     )
     return FmuModel(replace(tool, block=replace(block, head="", body=body)), code)
+
+
+def _offered(block: Block) -> tuple[CoreStage, ...]:
+    """Give the stages with those constants as parameters that may change one by one.
+
+    A memory after a history belongs to its constants. Of an inverse with limits, a model that is
+    kept beside it must be its own, and a bank that is solved for must rise.
+    """
+    held: dict[int, set[Rule]] = {}
+    everything = {Rule.FIXED, Rule.THRESHOLD, Rule.TUNABLE}
+    for index, stage in enumerate(block.stages):
+        if stage.choices.get("way") == _BESIDE_ITS_MODEL:
+            held = dict.fromkeys(range(len(block.stages)), everything)
+        elif stage.kind == "bank_limits":
+            held[index - 1] = everything
+    if block.history:
+        memory = {Rule.FIXED, Rule.THRESHOLD}
+        held = {index: held.get(index, memory) for index in range(len(block.stages))}
+    return tuple(
+        _held(stage, held[index]) if index in held else stage
+        for index, stage in enumerate(block.stages)
+    )
+
+
+def _held(stage: CoreStage, rules: set[Rule]) -> CoreStage:
+    offers = {
+        name: (Rule.CONSTANT.value if Rule(rule) in rules else rule, meaning)
+        for name, (rule, meaning) in stage.offers.items()
+    }
+    return replace(stage, offers=offers)
 
 
 def fmu_sources(
@@ -130,8 +171,8 @@ def fmu_sources(
     block = model.tool.block
     common = places(block, name, "double", about)
     held = {
-        "arguments": f"const hyst_fmu_constants *constants, {common['arguments']}",
-        "records": f"const hyst_fmu_constants *constants, {common['records']}",
+        "arguments": f"const fmu_constants *constants, {common['arguments']}",
+        "records": f"const fmu_constants *constants, {common['records']}",
         "elements": f"constants, {common['elements']}",
     }
     stage = source(block, common | held, "double")
@@ -139,25 +180,25 @@ def fmu_sources(
         stage = stage.replace(
             "    if (state->ready", "    (void)constants;\n    if (state->ready", 1
         )
+    copy = CoreCopy(f"{name}_core", "double")
     core = {
-        path.replace("include/", "").replace("src/", "hyst_core_"): text
-        for path, text in core_files(stage + header(block, common)).items()
+        path: text.decode("ascii")
+        for path, text in copy.files(core_files(stage + header(block, common))).items()
     }
-    files = (*_COMMON, *_OF_VERSION[version])
-    return core | {file: (_TEMPLATES / file).read_bytes() for file in files} | {
-        f"{name}.h": header(block, common | held).encode("ascii"),
-        f"{name}.c": stage.encode("ascii"),
-        "hyst_model.h": _model_header(model, common, token).encode("ascii"),
-        "hyst_names.h": _names(name, core).encode("ascii"),
-        "hyst_all.c": _all(core, common, version).encode("ascii"),
-    }  # fmt: skip
+    texts = with_own_names(core | {f"{name}.c": copy.own(stage)}) | {
+        f"{name}.h": copy.own(header(block, common | held)),
+        "hyst_model.h": _model_header(model, common, copy, token),
+        "hyst_all.c": _all(core, common, version),
+    }
+    files = {file: (_TEMPLATES / file).read_bytes() for file in (*_COMMON, *_OF_VERSION[version])}
+    return files | {path: text.encode("ascii") for path, text in texts.items()}
 
 
-def _model_header(model: FmuModel, common: dict[str, str], token: str) -> str:
+def _model_header(model: FmuModel, common: dict[str, str], copy: CoreCopy, token: str) -> str:
     tool, values = model.tool, model.values()
     dt = tool.block.dt
     rules = [rule.value for rule in constant_rules(model.code)]
-    members = model.code.declarations() or "hyst_real none;\n"
+    members = model.code.declarations() or "double none;\n"
     signals = tuple(f"(input)[{k}]" for k in range(len(tool.inputs)))
     more = {
         "token": token,
@@ -165,15 +206,15 @@ def _model_header(model: FmuModel, common: dict[str, str], token: str) -> str:
         "estimates": str(len(tool.estimates)),
         "estimate": f"(state)->memory[{common['NAME']}_THETA + (place)]"
         if tool.estimates
-        else "HYST_REAL(0.0)",
+        else "0.0",
         "out_of_range": f"({' | '.join(told(tool.block, common['name']))})"
         if tool.block.tells
         else "0u",
         "count": str(len(values)),
         "size": str(max(len(values), 1)),
         "sample_time": "" if dt is None else f"#define HYST_FMU_DT {dt!r} /* seconds */\n",
-        "members": indented(members, 8),
-        "evaluate": tool.step(common["name"], "state", signals, "constants, "),
+        "members": indented(copy.own(members), 8),
+        "evaluate": copy.own(tool.step(common["name"], "state", signals, "constants, ")),
         "defaults": table(values or (0.0,), "double", "constants"),
         "rules": f"{{{_in_rows(rules or [0])}}}",
     }
@@ -185,31 +226,11 @@ def _in_rows(numbers: Sequence[int], length: int = 24) -> str:
     return ",\n    ".join(", ".join(map(str, row)) for row in rows)
 
 
-def _names(name: str, core: dict[str, bytes]) -> str:
-    """Rename what the core's files share, so that several FMUs can be linked into one program."""
-    found = {
-        shared
-        for path, content in core.items()
-        if path.endswith(".c")
-        for shared in _SHARED.findall(content.decode("ascii"))
-    }
-    lines = [f"#define {each} {name}_{each}" for each in sorted(found)]
-    return (
-        "/* The core's functions and tables under names of this FMU's own. */\n"
-        + "\n".join(lines)
-        + "\n"
-    )
-
-
-def _all(core: dict[str, bytes], common: dict[str, str], version: FmiVersion) -> str:
+def _all(core: Mapping[str, str], common: dict[str, str], version: FmiVersion) -> str:
     interface = _OF_VERSION[version]
-    texts = {path: text.decode("ascii") for path, text in core.items() if path.endswith(".c")}
-    shared = shared_names(texts)
     more = {
         "api": interface[0].removesuffix(".c").removeprefix("hyst_"),
-        "core": "".join(
-            renamed(each, shared.get(each, ()), f'#include "{each}"\n') for each in texts
-        ),
+        "core": "".join(f'#include "{each}"\n' for each in core if each.endswith(".c")),
         "interface": "".join(f'#include "{each}"\n' for each in interface if each.endswith(".c")),
     }
     return filled("fmu/hyst_all.c", common | more)

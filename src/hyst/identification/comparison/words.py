@@ -152,7 +152,9 @@ def _for_commands(found: Comparison) -> str:
 def _carried_over(found: Comparison) -> Iterator[str]:
     """Say which models are much worse here than where they were identified."""
     for each in found.models:
-        training = each.description.errors.get("training", {}).get("rms")
+        # Those of an inverse are in units of its input.
+        errors = {} if each.description.is_inverse else each.description.errors
+        training = errors.get("training", {}).get("rms")
         least = 5e-4 * each.metrics.output_range
         error = found.error_of(each)
         if training is None or each.seen or error <= FAR_ABOVE * max(training, least):

@@ -325,6 +325,7 @@ class Identified:
                     self.parameter_names, self.parameter_values, errors, strict=True
                 )
             ],
+            **({} if (driver := self.description.driver) is None else {"driver": driver.to_dict()}),
             "undetermined": list(self.undetermined),
             "candidates": [vars(each) for each in self.candidates],
             "used_samples": [vars(each) for each in self.used],

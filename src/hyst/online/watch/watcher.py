@@ -302,7 +302,7 @@ class Watcher:
 
 def stated_error(model: Operator) -> float:
     """Give the error a model states of itself, output units; 0 if it states none."""
-    errors = model.description.errors
+    errors = {} if model.description.is_inverse else model.description.errors
     for record in ("validation", *errors):
         value = errors.get(record, {}).get("rms")
         if value is not None:

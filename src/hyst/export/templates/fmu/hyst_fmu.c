@@ -130,14 +130,14 @@ static hyst_fmu_status hyst_fmu_set_constant(hyst_fmu_instance *fmu, size_t inde
         return hyst_fmu_refuse(fmu, "a threshold was set to a negative value; the old one is kept, "
                                     "set one >= 0");
     }
-    fmu->now.constant.value[index] = (hyst_real)value;
+    fmu->now.constant.value[index] = value;
     return HYST_FMU_OK;
 }
 
 static hyst_fmu_status hyst_fmu_set_real(hyst_fmu_instance *fmu, uint32_t reference, double value)
 {
     if (reference >= HYST_FMU_FIRST_INPUT && reference < HYST_FMU_OUTPUT) {
-        fmu->now.input[reference - HYST_FMU_FIRST_INPUT] = (hyst_real)value;
+        fmu->now.input[reference - HYST_FMU_FIRST_INPUT] = value;
         return HYST_FMU_OK;
     }
     if (reference >= HYST_FMU_FIRST_CONSTANT && reference < HYST_FMU_FIRST_ESTIMATE) {
@@ -364,12 +364,12 @@ static int hyst_fmu_read(const unsigned char *bytes, size_t size, hyst_fmu_value
     }
     at += HYST_FMU_SAVED_BYTES;
     for (size_t i = 0; i < hyst_fmu_constant_count; ++i, at += 8) {
-        values->constant.value[i] = (hyst_real)hyst_fmu_take_number(at);
+        values->constant.value[i] = hyst_fmu_take_number(at);
     }
     for (size_t i = 0; i < HYST_FMU_INPUTS; ++i, at += 8) {
-        values->input[i] = (hyst_real)hyst_fmu_take_number(at);
+        values->input[i] = hyst_fmu_take_number(at);
     }
-    values->output = (hyst_real)hyst_fmu_take_number(at);
+    values->output = hyst_fmu_take_number(at);
     values->time = hyst_fmu_take_number(at + 8);
     if (hyst_fmu_take(at + 16) > (uint64_t)HYST_FMU_TERMINATED) {
         return 0;

@@ -5,7 +5,7 @@
  *
  * hyst_model.h, written for each model, says which stage and which constants, and defines
  *   hyst_fmu_state, hyst_fmu_init, hyst_fmu_fault, hyst_fmu_save, hyst_fmu_load   of the stage
- *   hyst_fmu_constants                           union of them as hyst_real value[] and by name
+ *   fmu_constants                                union of them as double value[] and by name
  *   hyst_fmu_evaluate(state, constants, input)   one step
  *   hyst_fmu_estimate(state, place)              an estimated parameter, of HYST_FMU_ESTIMATES
  *   HYST_FMU_TOKEN, HYST_FMU_INPUTS, HYST_FMU_CONSTANTS, HYST_FMU_SAVED_BYTES
@@ -52,9 +52,9 @@ typedef enum {
 /* All that a saved state of the FMU holds. */
 typedef struct {
     hyst_fmu_state stage;
-    hyst_fmu_constants constant;
-    hyst_real input[HYST_FMU_INPUTS];
-    hyst_real output;
+    fmu_constants constant;
+    double input[HYST_FMU_INPUTS];
+    double output;
     double time;
     hyst_fmu_mode mode;
 } hyst_fmu_values;

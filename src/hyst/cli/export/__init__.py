@@ -1,0 +1,1 @@
+"""hyst export: a model as code for other tools; one file a target."""

@@ -1,0 +1,1 @@
+"""An operator alone whose drive is limited."""

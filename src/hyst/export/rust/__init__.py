@@ -1,0 +1,1 @@
+"""Export as a Rust crate without the standard library: the exported C, translated."""
