@@ -40,6 +40,9 @@ public:
     Moving(const Moving &) = delete;
     Moving &operator=(const Moving &) = delete;
 
+    // The stages with the constants of now.
+    hyst_chain view() const { return {stages_.size(), stages_.data()}; }
+
     std::size_t state_length() const {
         const hyst_chain chain = view();
         return hyst_chain_state_length(&chain);
@@ -90,8 +93,6 @@ public:
     }
 
 private:
-    hyst_chain view() const { return {stages_.size(), stages_.data()}; }
-
     void add(std::size_t i, const std::vector<Stages> &knots, std::vector<kinds::Reals> &rows) {
         bool moves = false;
         std::vector<kinds::Reals> own;

@@ -50,7 +50,7 @@ static size_t piece_of_volt(const hyst_driver *driver, hyst_real volt)
     size_t piece = 0u, beyond = driver->count - 1u;
     while (beyond - piece > 1u) {
         const size_t middle = piece + (beyond - piece) / 2u;
-        if (is_before(driver, volt, driver->volt[middle])) {
+        if (is_before(driver, volt, driver->volt[middle]) != 0) {
             beyond = middle;
         } else {
             piece = middle;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "../limited_drive.hpp"
 #include "../moving.hpp"
 #include "chain_binding.hpp"
 
@@ -72,6 +73,68 @@ struct MovingStepper {
     }
 };
 
+// A model, or an inverse and the model in front of which it is, whose drive is limited.
+struct LimitedMovingStepper {
+    Moving own, forward;
+    bool is_inverse;
+    hyst_drive_limits limits;
+    Vector state;
+    std::vector<double> before;
+    hyst_limited_guard guard{};
+    int outside = 0;
+
+    LimitedMovingStepper(const std::vector<double> &at, nb::iterable knots, nb::iterable forwards,
+                         bool inverse, double low, double high, double change, Vector memory)
+        : own(at, at_knots(knots)), forward(at, at_knots(forwards)), is_inverse(inverse),
+          limits{low, high, change}, state(std::move(memory)), before(own.state_length()) {
+        const std::size_t beside = is_inverse ? forward.state_length() : 0;
+        if (state.shape(0) != own.state_length() + beside + 1) {
+            throw std::invalid_argument("the state has the wrong length");
+        }
+        if (is_inverse) guard.guard.y_last = state(state.shape(0) - 1);
+    }
+    double step(double x, double s) {
+        if (hyst_is_finite(s)) {
+            if (own.set(s) != 0) outside = 1;
+            (void)forward.set(s);
+        } else {
+            x = s;
+        }
+        return limited().step(state.data(), before.data(), &guard, x);
+    }
+    // Takes the memory to where the drive leaves an actuator; false where that cannot be answered.
+    bool lead(double drive, double s) {
+        (void)own.set(s);
+        (void)forward.set(s);
+        return limited().lead(state.data(), drive) != 0;
+    }
+    void clear_fault() { guard.guard.fault = guard.limited = outside = 0; }
+
+private:
+    LimitedDrive limited() const {
+        const auto way = is_inverse ? LimitedDrive::Way::forward : LimitedDrive::Way::model;
+        return {way, own.view(), forward.view(), limits};
+    }
+};
+
+// Index of the first sample that could not be answered, or -1; and how many were outside the schedule.
+std::pair<std::ptrdiff_t, std::size_t> run_limited(LimitedMovingStepper &steps, Signal x, Signal s,
+                                                   Vector y) {
+    if (s.shape(0) != x.shape(0) || y.shape(0) != x.shape(0)) {
+        throw std::invalid_argument("arrays do not fit each other");
+    }
+    std::size_t outside = 0;
+    for (std::size_t k = 0; k < x.shape(0); ++k) {
+        steps.clear_fault();
+        y(k) = steps.step(x(k), s(k));
+        outside += steps.outside != 0 ? 1 : 0;
+        if (steps.guard.guard.fault != 0 && steps.guard.limited == 0) {
+            return {static_cast<std::ptrdiff_t>(k), outside};
+        }
+    }
+    return {-1, outside};
+}
+
 }  // namespace
 
 void bind_moving(nb::module_ &module) {
@@ -92,6 +155,22 @@ void bind_moving(nb::module_ &module) {
         .def_prop_ro("fault", [](const MovingStepper &self) { return self.guard.fault != 0; })
         .def_prop_ro("outside", [](const MovingStepper &self) { return self.outside != 0; })
         .def("clear_fault", &MovingStepper::clear_fault);
+    nb::class_<LimitedMovingStepper>(module, "LimitedMovingStepper")
+        .def(nb::init<const std::vector<double> &, nb::iterable, nb::iterable, bool, double,
+                      double, double, Vector>(),
+             nb::arg("at"), nb::arg("knots"), nb::arg("forward"), nb::arg("is_inverse"),
+             nb::arg("low"), nb::arg("high"), nb::arg("change"), nb::arg("state").noconvert())
+        .def("__call__", &LimitedMovingStepper::step, nb::arg("x"), nb::arg("s"))
+        .def("run", &run_limited, nb::arg("x").noconvert(), nb::arg("s").noconvert(),
+             nb::arg("y").noconvert())
+        .def("lead", &LimitedMovingStepper::lead, nb::arg("drive"), nb::arg("s"))
+        .def_prop_ro("state", [](LimitedMovingStepper &self) { return self.state; })
+        .def_prop_ro("fault",
+                     [](const LimitedMovingStepper &self) { return self.guard.guard.fault != 0; })
+        .def_prop_ro("limited",
+                     [](const LimitedMovingStepper &self) { return self.guard.limited != 0; })
+        .def_prop_ro("outside", [](const LimitedMovingStepper &self) { return self.outside != 0; })
+        .def("clear_fault", &LimitedMovingStepper::clear_fault);
 }
 
 }  // namespace hyst

@@ -11,6 +11,7 @@ from hyst.operators.model_file import ESTIMATOR, LEARNING, read_file
 
 _BLOCKS = {
     "limited-drive": "LimitedDrive",
+    "limited-schedule": "LimitedSchedule",
     "repetitive-controller": "RepetitiveController",
     "tracking-controller": "TrackingController",
 }
@@ -26,8 +27,8 @@ def load(path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    Operator, Scheduled, LimitedDrive, TrackingController, RepetitiveController,
-    LearningCompensator, or an estimator of hyst.online or its AdaptiveInverse
+    Operator, Scheduled, LimitedDrive, LimitedSchedule, TrackingController,
+    RepetitiveController, LearningCompensator, or an estimator of hyst.online or its AdaptiveInverse
         Equal to the one saved, every double exact; an estimator goes on with the same bits. What
         its numbers mean is its ``description``.
 

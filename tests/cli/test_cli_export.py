@@ -120,7 +120,7 @@ def test_a_tracking_controller_is_exported_from_its_file(run: Run, folder: Path)
         (["--name", "int"], "a word of C or C++"),
         (["--name", "../x"], "C identifier"),
         (["--precision", "half"], "double or single"),
-        (["--target", "ada"], "--target is 'ada'"),
+        (["--target", "cobol"], "--target is 'cobol'"),
         (["-o", "model.json/out"], "is a file"),
     ],
 )
@@ -142,3 +142,56 @@ def test_a_file_that_is_no_model_is_refused(run: Run, folder: Path) -> None:
     assert ended.code == 2
     assert "not a model file" in ended.err
     assert run("export", "missing.json", "-o", "out").code == 2
+
+
+def test_limits_and_start_are_told_in_the_table(run: Run, folder: Path, model_file: Path) -> None:
+    by_itself = run("export", model_file, "--inverse", "-o", "auto", "--name", "lens")
+    assert "0 to 4 V (the range of the record)" in by_itself.out
+    assert "as nothing had ever driven it; or lens_init_after" in by_itself.out
+    told = run(
+        "export", model_file, "--inverse", "-o", "told", "--limits=-1,3.5", "--rate-limit", "20",
+        "--history=3.5,-1,2",
+    )  # fmt: skip
+    assert "-1 to 3.5 V, at most 20 V per second (as given)" in told.out
+    assert "after 3.5, -1, 2; or stage_init_after" in told.out
+    python = c_project(
+        STAGE.inverse(), folder / "python", limits=(-1.0, 3.5), rate_limit=20.0,
+        history=[3.5, -1.0, 2.0], description=describe(STAGE).of_inverse(),
+    )  # fmt: skip
+    assert snapshot(folder / "told") == snapshot(python.path)
+    none = run("export", model_file, "--inverse", "-o", "none", "--limits", "none")
+    assert "none: as asked for" in none.out
+    STAGE.save(folder / "undescribed.json")
+    unknown = run("export", folder / "undescribed.json", "--inverse", "-o", "unknown")
+    assert "none: no range of the drive is known" in unknown.out
+
+
+def test_a_history_can_be_a_column(run: Run, folder: Path, model_file: Path) -> None:
+    (folder / "drive.csv").write_text("V\n" + "\n".join(str(k % 5) for k in range(20)) + "\n")
+    done = run("export", model_file, "--inverse", "-o", "out", "--history", "drive.csv:V")
+    assert "after 0, 1, 2, 3, 4, 0 ... (20 drives)" in done.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--limits", "4,0"], "give the lowest drive first"),
+        (["--limits", "wide"], "--limits is 'wide'; give numbers with commas"),
+        (["--limits", "1"], "--limits is '1'; give auto, none, or the lowest and the highest"),
+        (["--limits", "0,1,2"], "give auto, none, or the lowest and the highest"),
+        (["--rate-limit", "0"], "rate is 0"),
+        (["--history", "0,9"], "history has 9, beyond the limits of the drive, 0 to 4"),
+        (["--history", "nan"], "history is nan at index 0"),
+        (["--history", "first"], "--history is 'first'; give numbers"),
+    ],
+)
+@pytest.mark.parametrize("target", ["c", "mex"])
+def test_limits_and_histories_that_cannot_be(
+    target: str, arguments: list[str], said: str, run: Run, folder: Path, model_file: Path
+) -> None:
+    before = snapshot(folder)
+    ended = run("export", model_file, "--inverse", "-o", "out", "--target", target, *arguments)
+    assert ended.code == 2
+    assert said in ended.err
+    assert ended.err.count("\n") == 1
+    assert snapshot(folder) == before

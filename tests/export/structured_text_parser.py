@@ -1,7 +1,6 @@
 """Read IEC 61131-3 structured text: the plain part of it that an export writes, and nothing else.
 
-It knows nothing of how such text is made. What is no letter of the standard's third edition, what is
-declared twice but for the case of its letters, or has a name that the language keeps, is refused.
+It knows nothing of how such text is made, and takes no word that only one vendor's tool knows.
 """
 
 from __future__ import annotations
@@ -10,14 +9,13 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-KEYWORDS = frozenset(
-    """
+_KEYWORDS = """
     array of begin by case constant continue do else elsif end_case end_for end_function
     end_function_block end_if end_repeat end_struct end_type end_var end_while exit false for
     function function_block if mod not and or xor repeat return struct then to true type until var
     var_input var_in_out var_output var_temp while program end_program retain at
-    """.split()
-)
+"""
+KEYWORDS = frozenset(_KEYWORDS.split())
 ELEMENTARY = ("BOOL", "DINT", "UDINT", "DWORD", "REAL", "LREAL")
 _TOKEN = re.compile(
     r"""(?P<comment>\(\*.*?\*\))|(?P<space>\s+)

@@ -48,7 +48,7 @@ class Codes:
             for end in ("MIN", "MAX")
         )
         self.u_low, self.u_high = (
-            float(re.search(rf"LENS_U_{end} \(\w*\(?([-\w.+]+?)f?\)", header)[1])  # type: ignore[index]
+            float(re.search(rf"LENS_U_{end} \(([-\d.e+]+)f?\)", header)[1])  # type: ignore[index]
             for end in ("MIN", "MAX")
         )
 

@@ -6,6 +6,7 @@ import re
 import subprocess
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -89,6 +90,17 @@ def test_the_program_starts_after_the_sweep_it_tells_of(precision: str, tmp_path
     assert abs(expected[1] - drive(printed[:, 0])[1]) > 1.0
     # "%g" prints six digits, and single precision has seven.
     np.testing.assert_allclose(printed[:, 1], expected, rtol=1.1e-5)
+
+
+def test_an_export_with_a_history_starts_after_it(tmp_path: Path) -> None:
+    drive, history = LimitedDrive(MODEL.inverse()), [0.0, 120.0, 30.0]
+    folder = c_project(MODEL.inverse(), tmp_path / "out", name="lens", history=history).path
+    assert "| start | after drives of 0, 120, 30 V |" in readme_of(folder)
+    printed = columns(run_readme(folder, "example", program_of(folder), *STRICTLY))
+    expected = drive.run(printed[:, 0], drive.state_after(history))[0]
+    # Of six digits.
+    np.testing.assert_allclose(printed[:, 1], expected, rtol=1e-5)
+    assert "the state after those drives" in readme_of(folder)
 
 
 def test_where_time_counts_the_start_takes_every_sample(tmp_path: Path) -> None:
@@ -243,3 +255,21 @@ def test_ranges_between_which_single_precision_has_no_number(tmp_path: Path) -> 
     model, place = MODEL.with_description(about), tmp_path / "out"
     folder = c_project(model, place, precision="single", limits=None).path
     assert len(columns(run_readme(folder, "example", program_of(folder)))) >= 1
+
+
+@pytest.mark.parametrize(
+    ("model", "constants", "kept"),
+    [
+        (MODEL, 8 * (64 + 16), "stack"),  # outputs, and the levels of one signal
+        (estimation()[0], 8 * (64 + 2 * 16), "memory"),  # too large for a stack
+    ],
+)
+def test_what_the_short_test_costs_is_told(
+    model: Any, constants: int, kept: str, tmp_path: Path
+) -> None:
+    project = c_project(model, tmp_path / "out", name="lens")
+    assert f"{constants} bytes of constants and {project.state_bytes} of {kept}" in readme_of(
+        project.path
+    )
+    source = (project.path / "lens_step_response.c").read_text()
+    assert ("static lens_state state;" in source) == (kept == "memory")

@@ -13,6 +13,7 @@ import hyst
 from hyst._files import read_small, replacing, require_folder
 from hyst.cli.arguments import load_operator, refuse_inputs_as_outputs
 from hyst.cli.console import at_work, note, show_files, show_table
+from hyst.cli.driver_option import DriverOfInput, common_driver, driver_of
 from hyst.cli.exit_codes import DONE, UNFIT
 from hyst.cli.fitted import HowToRead, InputLabel, OutputLabel
 from hyst.cli.reading_options import reads_records
@@ -60,14 +61,17 @@ def compare(
     copy_best: CopyBest = None,
     input_label: InputLabel = None,
     output_label: OutputLabel = None,
+    driver: DriverOfInput = None,
 ) -> int:
     """Set models of one actuator side by side on a record that none of them has seen."""
     _refuse_outputs(folder, copy_best, [*models, data, *_output_file(how)])
     named = _named(models)
-    files = HowToRead(how, {}, (input_label, output_label))
+    typed = driver_of(driver)
     with at_work("comparing") as say:
         say("reading")
         loaded = {name: load_operator(path) for name, path in named.items()}
+        known = common_driver(loaded.values())
+        files = HowToRead(how, {}, (input_label, output_label), typed, known)
         records = files.records([data])
         say("running")
         found = hyst.compare(loaded, records)

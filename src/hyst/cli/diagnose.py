@@ -12,6 +12,7 @@ import typer
 import hyst
 from hyst._files import replacing
 from hyst.cli.console import at_work, show_files
+from hyst.cli.driver_option import DriverOfInput, driver_of
 from hyst.cli.excite import write_drive
 from hyst.cli.fitted import Data, HowToRead, InputLabel, OutputLabel
 from hyst.cli.reading_options import reads_records
@@ -43,9 +44,10 @@ def diagnose(
     output_label: OutputLabel = None,
     out: Out = None,
     next_file: Next = None,
+    driver: DriverOfInput = None,
 ) -> None:
     """Say what records show before any model, the worst first, and what to record next."""
-    files = HowToRead(how, {}, (input_label, output_label))
+    files = HowToRead(how, {}, (input_label, output_label), driver_of(driver))
     with at_work("diagnosing"):
         found = hyst.diagnose(files.records(data))
     _tell(found, files.sources)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -12,6 +13,7 @@ import hyst
 
 _HOW = "FILE|linear:.."
 _LINEAR = "linear:"
+_CODES = ("code", "codes", "count", "counts", "lsb")
 
 DriverOfInput = Annotated[
     str | None,
@@ -71,6 +73,35 @@ def driver_of(text: str | None) -> hyst.Driver | None:
             "lowest and highest code, as linear:0.0366,0,0,4095"
         ) from None
     return hyst.Driver.linear(scale, offset, low, high)
+
+
+def says_codes(name: str, unit: str) -> bool:
+    """Tell whether a column called ``name`` in a ``unit`` is one of codes, by what it says."""
+    return name.strip().lower() in _CODES or unit.strip().lower() in _CODES
+
+
+def volts_of_record(
+    record: hyst.Record, typed: hyst.Driver | None, known: hyst.Driver | None
+) -> hyst.Record:
+    """Give a record in volts where its input is in codes.
+
+    Parameters
+    ----------
+    record
+        As read.
+    typed
+        The driver that the user gives for inputs in codes; None if none was given.
+    known
+        That of a model, for columns that say that they are codes.
+    """
+    told = says_codes(record.input_name, record.input_unit)
+    return hyst.identification.in_volts(record, typed or (known if told else None))
+
+
+def common_driver(models: Iterable[hyst.Operator]) -> hyst.Driver | None:
+    """Give the driver that models have in their descriptions, if they agree on one."""
+    drivers = {each.description.driver for each in models} - {None}
+    return drivers.pop() if len(drivers) == 1 else None
 
 
 def driver_for(text: str | None, about: hyst.ModelDescription) -> hyst.Driver | None:

@@ -12,6 +12,7 @@ import typer
 
 import hyst
 from hyst.cli.console import show_table
+from hyst.cli.driver_option import volts_of_record
 from hyst.cli.exit_codes import DONE, UNFIT
 from hyst.cli.reading_options import read_told
 
@@ -61,6 +62,8 @@ class HowToRead:
         What input and output are to be called, with their units; None as in the file.
     driver
         Of the converter, where the input is in its codes; the records then are in volts.
+    known_driver
+        That of a model: for columns that say that they are codes.
     sources
         Where each record that was read comes from, in the order of reading.
     """
@@ -69,6 +72,7 @@ class HowToRead:
     validation_columns: dict[str, str | None]
     labels: tuple[str | None, str | None]
     driver: hyst.Driver | None = None
+    known_driver: hyst.Driver | None = None
     sources: list[str] = field(default_factory=list)
 
     def records(self, paths: Sequence[Path]) -> list[hyst.Record]:
@@ -86,7 +90,7 @@ class HowToRead:
         return [
             each
             for path in paths
-            for each in self._named(path, _read(path, self.columns, self.labels, self.driver))
+            for each in self._named(path, _read(path, self.columns, self.labels, self._drivers))
         ]
 
     def validation(self, paths: Sequence[Path] | None) -> list[hyst.Record]:
@@ -96,8 +100,12 @@ class HowToRead:
         return [
             each
             for path in paths or []
-            for each in self._named(path, _read_validation(path, how, self.labels, self.driver))
+            for each in self._named(path, _read_validation(path, how, self.labels, self._drivers))
         ]
+
+    @property
+    def _drivers(self) -> tuple[hyst.Driver | None, hyst.Driver | None]:
+        return self.driver, self.known_driver
 
     def _named(self, path: Path, records: list[hyst.Record]) -> list[hyst.Record]:
         several = len(records) > 1
@@ -112,14 +120,14 @@ def _read(
     path: Path,
     how: dict[str, Any],
     labels: tuple[str | None, str | None],
-    driver: hyst.Driver | None,
+    drivers: tuple[hyst.Driver | None, hyst.Driver | None],
 ) -> list[hyst.Record]:
     records = read_told(path, **how)
     try:
-        records = tuple(hyst.identification.in_volts(each, driver) for each in records)
+        records = tuple(volts_of_record(each, *drivers) for each in records)
     except hyst.InputError as refusal:
         raise hyst.InputError(f"{path.name}: {refusal}") from None
-    return [_labelled(each, *labels, driver) for each in records]
+    return [_labelled(each, *labels, drivers[0]) for each in records]
 
 
 def _otherwise(
@@ -139,10 +147,10 @@ def _read_validation(
     path: Path,
     how: dict[str, Any],
     labels: tuple[str | None, str | None],
-    driver: hyst.Driver | None,
+    drivers: tuple[hyst.Driver | None, hyst.Driver | None],
 ) -> list[hyst.Record]:
     try:
-        return _read(path, how, labels, driver)
+        return _read(path, how, labels, drivers)
     except hyst.InputError as error:
         if "has no column" not in str(error):
             raise

@@ -67,9 +67,9 @@ def loop(
 ) -> int:
     """See the loop behind the dynamics of a model in new sines, and test if rate moves it."""
     require_folder(folder)
-    files = HowToRead(how, {}, (None, None))
     with at_work("loops") as say:
         model = load_operator(model_file)
+        files = HowToRead(how, {}, (None, None), known_driver=model.description.driver)
         say("reading")
         records = files.records(data)
         names = _names(files.sources)

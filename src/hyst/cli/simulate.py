@@ -15,6 +15,7 @@ from hyst.cli.arguments import (
     sample_time_known,
 )
 from hyst.cli.console import note, show_files
+from hyst.cli.driver_option import DriverOfInput, driver_of, says_codes
 from hyst.cli.reading_options import InputColumn, reads_columns
 from hyst.cli.scheduled import (
     ScheduleColumn,
@@ -50,6 +51,7 @@ def simulate(
         typer.Option("--with-delay", help="Let the output lag as in the record identified from."),
     ] = False,
     rate: SampleRate = None,
+    driver: DriverOfInput = None,
     schedule_column: ScheduleColumn = None,
     schedule_value: ScheduleValue = None,
 ) -> None:
@@ -57,7 +59,10 @@ def simulate(
     model = loaded(model_file, schedule_column, schedule_value)
     about = model.description
     sample_time_known(model_at_rest(model), data, rate, "the record", **how)
-    u, _, unit = hyst.io.read_column(data, input_column, **how)
+    u, name, unit = hyst.io.read_column(data, input_column, **how)
+    table = driver_of(driver) or (about.driver if says_codes(name, unit) else None)
+    if table is not None:
+        u, unit = table.volts(u), table.unit
     require_same_unit(unit, about.input_unit, "the input")
     late = about.delay if with_delay else 0
     if isinstance(model, hyst.Scheduled):

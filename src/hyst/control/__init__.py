@@ -25,6 +25,7 @@ from hyst.control.inexact_inverse import first_unstable_slope, slope_margin
 from hyst.control.infinity_norm import hinf_norm
 from hyst.control.inverse_comparison import EXACT, InverseComparison, compare_inverses
 from hyst.control.limited_drive.drive import LimitedDrive
+from hyst.control.limited_drive.schedule import LimitedSchedule
 from hyst.control.linear_system import LinearSystem, as_linear_system
 from hyst.control.loop_poles import closed_loop_poles
 from hyst.control.plants import (
@@ -80,6 +81,7 @@ __all__ = [
     "InternalModel",
     "InverseComparison",
     "LimitedDrive",
+    "LimitedSchedule",
     "LinearSystem",
     "LoopComparison",
     "LoopJudgement",

@@ -7,6 +7,7 @@ from hyst.export.fmi.archive import Fmu, fmu
 from hyst.export.inverses import explicit_inverse, inverse_of
 from hyst.export.mex_folder import MexFolder, mex
 from hyst.export.rust_crate.crate import RustCrate, rust
+from hyst.export.structured_text.project import StructuredText, structured_text
 from hyst.export.wave_table.table import Waveform, waveform
 
 __all__ = [
@@ -14,6 +15,7 @@ __all__ = [
     "Fmu",
     "MexFolder",
     "RustCrate",
+    "StructuredText",
     "Waveform",
     "c_project",
     "explicit_inverse",
@@ -21,6 +23,7 @@ __all__ = [
     "inverse_of",
     "mex",
     "rust",
+    "structured_text",
     "waveform",
 ]
 

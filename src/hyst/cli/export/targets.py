@@ -10,6 +10,7 @@ from hyst.cli.export.fmu import fmu
 from hyst.cli.export.mex import mex
 from hyst.cli.export.order import Done, Order
 from hyst.cli.export.rust import rust
+from hyst.cli.export.structured_text import structured_text
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,7 @@ TARGETS = {
     "fmu": Target(fmu, "for simulation tools", ("fmi", "binary")),
     "mex": Target(mex, "for MATLAB and Octave"),
     "rust": Target(rust, "a crate", ("precision",)),
+    "st": Target(structured_text, "IEC 61131-3 for PLCs", ("precision",)),
 }
 
 

@@ -157,7 +157,7 @@ def learn(
     whose = {"table": reference_table, "format": reference_format}
     wanted = read_reference(reference, column, whose, about, reference_rate)
     unit = wanted.unit or about.output_unit
-    records = read_measured(files, how, about, unit, wanted.dt or model.dt)
+    records = read_measured(files, how, about, unit, wanted.dt or model.dt, codes_of)
     wanted = wanted.timed(model, records, how["rate"])
     if rate_limit is not None and wanted.dt is None:
         raise hyst.InputError(

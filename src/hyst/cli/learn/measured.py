@@ -9,6 +9,7 @@ from typing import Any
 
 import hyst
 from hyst.cli.arguments import require_same_unit
+from hyst.cli.driver_option import volts_of_record
 from hyst.cli.reading_options import read_told
 
 _LARGEST_MISFIT = 0.01  # of a sample time, however short the reference
@@ -39,6 +40,7 @@ def read_measured(
     about: hyst.ModelDescription,
     output_unit: str,
     dt: float | None,
+    driver: hyst.Driver | None = None,
 ) -> list[hyst.Record]:
     """Read the records of all files, in their order.
 
@@ -54,6 +56,8 @@ def read_measured(
         Of the reference, or of the model if the reference says none.
     dt
         Sample time of files that tell none, s.
+    driver
+        Of drives that say that they are in codes.
 
     Raises
     ------
@@ -74,7 +78,8 @@ def read_measured(
             "that hold both columns"
         )
     how = how | {"table": None if how["table"] is None else str(how["table"]), "one_way": True}
-    records = [_read(path, how, dt) for path in files]
+    read = [_read(path, how, dt) for path in files]
+    records = [volts_of_record(each, None, driver) for each in read]
     for path, record in zip(files, records, strict=True):
         require_same_unit(record.input_unit, about.input_unit, f"the drive in {path.name}")
         require_same_unit(record.output_unit, output_unit, f"the output in {path.name}")

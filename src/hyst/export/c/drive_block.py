@@ -96,8 +96,8 @@ def _parts(
         return (*own, told), _model_body
     if model.bank is not None:
         dtype = np.float32 if precision == "single" else np.float64
-        told = model.bank_limits(limits[0], limits[1], dtype)
-        return (*own, bank_limits_stage(told)), _bank_body
+        ends = model.bank_limits(limits[0], limits[1], dtype)
+        return (*own, bank_limits_stage(ends)), _bank_body
     forward = () if model.forward is None else core_stages(model.forward)
     held = LimitedStages(None, own, forward, limits, ())
     return held.all, held.body

@@ -106,8 +106,8 @@ def meanings(block: Block, about: ModelDescription) -> dict[str, tuple[str, str]
 
 
 def starts_from_extremes(block: Block) -> bool:
-    """Tell whether a sweep over the limits of the drive says all that the start needs to know."""
-    known = block.following is not None and block.drive.limits is not None
+    """Tell whether a sweep over the limits of the drive is the start, and says all it needs."""
+    known = block.following is not None and block.drive.limits is not None and not block.history
     return known and block.chain.dt is None
 
 
@@ -133,7 +133,8 @@ def _swept(block: Block, name: str, number: str) -> list[str]:
 
 def _started(block: Block, name: str) -> str:
     if not starts_from_extremes(block):
-        return f"{name}_init(&{name}); /* once */"
+        after = ", after the drives it was exported with" if block.history else ""
+        return f"{name}_init(&{name}); /* once{after} */"
     call = f"{name}_init_after(&{name}, {swept_name(block, name)}, 2u)"
     return f"if ({call} != 0) {{ return 1; }} /* once, after it */"
 

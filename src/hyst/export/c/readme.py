@@ -16,7 +16,7 @@ from hyst.export.c.readme_rows import (
 )
 from hyst.export.c.readme_start import start_section
 from hyst.export.c.selftest import SelfTest
-from hyst.export.c.short_test import short_test_bytes
+from hyst.export.c.short_test import short_test_cost
 from hyst.export.c.templating import filled
 from hyst.operators import ModelDescription
 
@@ -68,7 +68,7 @@ def readme(
         "power_section": _power_section(places["core_prefix"]) if takes_power else "",
         "faults": _faults(block) + words(block),
         "in_precision": " in single precision" if precision == "single" else "",
-        "test_bytes": str(short_test_bytes(block, precision)),
+        "test_bytes": short_test_cost(block, places),
     }
     for key, word in {**places, "rest": f"{block.virgin[1]:.6g}"}.items():
         more["faults"] = more["faults"].replace(f"@{{{key}}}", word)
@@ -93,7 +93,7 @@ def _power_section(prefix: str) -> str:
 
 def _faults(block: Block) -> str:
     if block.is_estimator:
-        return _ESTIMATOR_FAULTS
+        return _ESTIMATOR_FAULTS + (_CLAMPED if block.drive.limits is not None else "")
     return (
         _FAULTS
         + (_SCHEDULE_FAULTS if block.second else "")
@@ -129,13 +129,13 @@ _LIMIT_FAULTS = {
     "output": f"""\
 The drive never leaves its limits, before `@{{name}}_init` and after bad samples neither; where more
 {_HELD}""",
-    "command": f"""\
-The command never leaves its limits; where more
-{_HELD}""",
     "input": f"""\
 What drives the actuator is held to its limits before it enters the model; where more
 {_HELD}""",
 }
+_CLAMPED = """\
+A command never leaves the limits of the drive; update with what was applied.
+"""
 _REPETITIVE = """\
 
 The step must be called at every sample, for what is learned belongs to a place in the period: a
@@ -149,5 +149,5 @@ Where the reference is another one than a period before, the block forgets by it
 _ESTIMATOR_FAULTS = """\
 A sample that is NaN or infinite, or that would overflow, changes no parameter; `@{name}_fault`
 gives `@{NAME}_NOT_FINITE` or `@{NAME}_REFUSED` until `@{name}_clear_fault`. Where a command would
-not be finite, it is the last input. The estimate stands in `state.memory` from `@{NAME}_THETA` on.
+not be finite, it is the last input. The estimate stands in `@{name}.memory`, from `@{NAME}_THETA`.
 """

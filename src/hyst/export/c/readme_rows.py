@@ -5,6 +5,7 @@ from __future__ import annotations
 from hyst.export.c.block import Block
 from hyst.export.c.example import meanings
 from hyst.export.c.names import plain_text
+from hyst.export.c.readme_start import history_said
 from hyst.operators import ModelDescription
 
 _LONGEST_SENTENCE = 400
@@ -59,7 +60,7 @@ def drive_rows(block: Block, name: str) -> dict[str, str]:
         said = f"`{name.upper()}_U_MIN` to `{name.upper()}_U_MAX`: {said}"
     rows = {"limits of the drive": said}
     if block.history:
-        rows["start"] = f"after drives of {', '.join(f'{each:.6g}' for each in block.history)}"
+        rows["start"] = f"after drives of {history_said(block)}"
     return rows
 
 

@@ -7,6 +7,7 @@ from hyst.export.c.example import starts_from_extremes, swept_name
 from hyst.export.c.names import plain_text
 
 _LONGEST_REASON = 300
+_MOST_DRIVES = 6
 
 
 def start_section(block: Block, name: str) -> str:
@@ -37,6 +38,12 @@ def start_section(block: Block, name: str) -> str:
             f"Call `{name}_init_after(&{name}, drives, count)` with the drive at every sample\n"
             "   of the sweep and of the rest behind it, for in this model time counts."
         )
+    if block.history:
+        told = (
+            f"Call `{name}_init(&{name})`, which is the state after those drives; or\n"
+            f"   `{name}_init_after(&{name}, drives, count)` with others."
+        )
+        ends = history_said(block)
     return f"""
 {_TITLE}
 
@@ -50,6 +57,14 @@ def start_section(block: Block, name: str) -> str:
 `{name}_init_after` gives 0; or 1, and the state before any drive, if one is not finite or beyond
 the limits.
 """
+
+
+def history_said(block: Block) -> str:
+    """Give the drives that a ``block`` was exported with."""
+    first = [f"{each:.6g}" for each in block.history[:_MOST_DRIVES]]
+    more = len(block.history) - len(first)
+    unit = f" {plain_text(block.drive.unit)}" if block.drive.unit else ""
+    return ", ".join(first) + unit + (f" and {more} more" if more else "")
 
 
 _TITLE = "## How to start the actuator"

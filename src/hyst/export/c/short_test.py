@@ -55,10 +55,20 @@ class ShortTest:
         return cls(levels, every, longer)
 
 
-def short_test_bytes(block: Block, precision: str) -> int:
-    """Give the bytes of the constants that the short test of a ``block`` has in a ``precision``."""
-    numbers = SHORT_SAMPLES + len(_LEVELS) * _inputs(block)
-    return numbers * (4 if precision == "single" else 8)
+def short_test_cost(block: Block, places: dict[str, str]) -> str:
+    """Give what the short test takes on a target, in words.
+
+    Parameters
+    ----------
+    block
+        What is exported.
+    places
+        What stands at every place.
+    """
+    word, state = int(places["word_bytes"]), _state_bytes(block, places)
+    numbers = SHORT_SAMPLES + len(_LEVELS) * len(_signals(block))
+    kept = "memory" if state > _MOST_ON_STACK else "stack"
+    return f"{numbers * word} bytes of constants and {state} of {kept}"
 
 
 def short_test_source(
@@ -91,7 +101,6 @@ def short_test_source(
         )
     else:
         call = f"result.number = {name}_step(&state, {', '.join(levels)});"
-    state = int(places["word_bytes"]) * (max(len(block.start), 1) + 1) + 8
     return filled(
         "step_response.c",
         places
@@ -102,7 +111,7 @@ def short_test_source(
             "kept": str(KEPT),
             "every": str(short.every),
             "call": call,
-            "storage": "static " if state > _MOST_ON_STACK else "",
+            "storage": "static " if _state_bytes(block, places) > _MOST_ON_STACK else "",
         },
     )
 
@@ -111,8 +120,8 @@ def _signals(block: Block) -> tuple[str, ...]:
     return ("u", "y") if block.is_estimator else block.inputs
 
 
-def _inputs(block: Block) -> int:
-    return len(_signals(block))
+def _state_bytes(block: Block, places: dict[str, str]) -> int:
+    return int(places["word_bytes"]) * (max(len(block.start), 1) + 1) + 8
 
 
 def _levels(block: Block, precision: Precision, drive: Drive) -> Array:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -38,6 +37,7 @@ _OF_VERSION = {
     "3.0": ("hyst_fmi3.c", "hyst_fmi3.h", "hyst_fmi3_absent.c", "hyst_fmi3_other_kinds.c"),
 }
 _HELD_BY = "constants->of."
+_BESIDE_ITS_MODEL = 1  # how a drive is limited, as the twin in single precision is told it
 
 
 @final
@@ -118,15 +118,23 @@ def fmu_model(
 def _offered(block: Block) -> tuple[CoreStage, ...]:
     """Give the stages with those constants as parameters that may change one by one.
 
-    A memory after a history belongs to constants, and so does a model kept beside its inverse.
+    A memory after a history belongs to its constants. Of an inverse with limits, a model that is
+    kept beside it must be its own, and a bank that is solved for must rise.
     """
-    stages = tuple(_without_reach(each) for each in block.stages)
-    is_kept = any(each.choices.get("forward", 0) and "way" in each.choices for each in stages)
-    if is_kept:
-        return tuple(_held(each, {Rule.FIXED, Rule.THRESHOLD, Rule.TUNABLE}) for each in stages)
+    held: dict[int, set[Rule]] = {}
+    everything = {Rule.FIXED, Rule.THRESHOLD, Rule.TUNABLE}
+    for index, stage in enumerate(block.stages):
+        if stage.choices.get("way") == _BESIDE_ITS_MODEL:
+            held = dict.fromkeys(range(len(block.stages)), everything)
+        elif stage.kind == "bank_limits":
+            held[index - 1] = everything
     if block.history:
-        return tuple(_held(each, {Rule.FIXED, Rule.THRESHOLD}) for each in stages)
-    return stages
+        memory = {Rule.FIXED, Rule.THRESHOLD}
+        held = {index: held.get(index, memory) for index in range(len(block.stages))}
+    return tuple(
+        _held(stage, held[index]) if index in held else stage
+        for index, stage in enumerate(block.stages)
+    )
 
 
 def _held(stage: CoreStage, rules: set[Rule]) -> CoreStage:
@@ -135,15 +143,6 @@ def _held(stage: CoreStage, rules: set[Rule]) -> CoreStage:
         for name, (rule, meaning) in stage.offers.items()
     }
     return replace(stage, offers=offers)
-
-
-def _without_reach(stage: CoreStage) -> CoreStage:
-    """Give limits of a bank that hold whatever its parameters are."""
-    if stage.kind != "bank_limits":
-        return stage
-    most = sys.float_info.max
-    numbers = {**stage.numbers, "from_low": most, "from_high": -most}
-    return replace(stage, numbers=numbers, choices={"moved_low": 0, "moved_high": 0})
 
 
 def fmu_sources(

@@ -1,7 +1,7 @@
 """Functions that the core writes with the bits of a number: their equals in plain arithmetic.
 
-Structured text cannot look at the bits of a number without what one vendor alone has. Scaling by powers
-of two is exact, so the same results come about; a test compares all of them with the C.
+Structured text cannot look at the bits of a number without what one vendor alone has. Scaling by
+powers of two is exact, so the same results come about; a test compares all of them with the C.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ n := {real}_TO_DINT(size - {half});
 IF DINT_TO_{real}(n) > size THEN
     n := n - 1;
 END_IF;
-IF DINT_TO_{real}(n) <= size - {one} THEN
+IF size - DINT_TO_{real}(n) >= {one} THEN
     n := n + 1;
 END_IF;
 IF x < {zero} THEN
@@ -131,8 +131,9 @@ def _halvings(top: int) -> list[int]:
 def _powers(top: int, text: Any) -> str:
     lines = []
     for each in [top, *_halvings(top)]:
-        lines += _scaled("left_over >= " + str(each), "power", text(2.0**each), "left_over", f"- {each}")
-        lines += _scaled("left_over <= " + str(-each), "power", text(2.0**-each), "left_over", f"+ {each}")
+        up, down = text(2.0**each), text(2.0**-each)
+        lines += _scaled(f"left_over >= {each}", "power", up, "left_over", f"- {each}")
+        lines += _scaled(f"left_over <= {-each}", "power", down, "left_over", f"+ {each}")
     return "\n".join(lines)
 
 

@@ -1,29 +1,34 @@
 """Expressions of a program as structured text.
 
-Both sides of AND and OR may be evaluated there, and nothing chooses between two values without
-evaluating them; so what C evaluates on a condition goes into statements before.
+Both sides of AND and OR may be evaluated there, and no choice between two values leaves one out; so
+what C evaluates on a condition goes into statements before.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any
 
+from hyst.export.structured_text.forms import (
+    WHOLE,
+    bare,
+    changes,
+    counted,
+    in_parentheses,
+    may_always_be_evaluated,
+    number_text,
+)
 from hyst.export.structured_text.numbers import constant, real_text
-from hyst.export.structured_text.plan import Plan
 from hyst.export.structured_text.usage import (
     is_array_of_numbers,
     is_structure_table,
-    nodes_in,
     plain,
     points_to_number,
     points_to_structure,
     size_of,
 )
-from hyst.export.structured_text.words import Names
+from hyst.export.structured_text.writer import Writer
 from hyst.export.translate.program import (
-    INT,
     SIZE,
     UNSIGNED,
     AddressOf,
@@ -36,7 +41,6 @@ from hyst.export.translate.program import (
     CType,
     Decay,
     Element,
-    Function,
     Initialiser,
     Logical,
     Member,
@@ -47,63 +51,15 @@ from hyst.export.translate.program import (
     Number,
     Offset,
     Pointer,
-    Scalar,
     Unary,
 )
 from hyst.export.translate.refusal import refused
 
 _COMPARISONS = {"==": "=", "!=": "<>"}
-_WHOLE = (INT, SIZE)
 
 
-class Expressions:
-    """Writes the expressions of one function.
-
-    Parameters
-    ----------
-    plan
-        What is known of the whole program.
-    function
-        The one that is written.
-    """
-
-    def __init__(self, plan: Plan, function: Function) -> None:
-        self.plan = plan
-        self.function = function
-        self.names = Names(plan.names_of_functions())
-        self.lines: list[str] = []
-        self.temporaries: list[tuple[str, str]] = []
-        self.aliases: dict[str, str] = {}
-        self.roles = dict(
-            zip((p.name for p in function.parameters), plan.usage.roles.get(function.name, ()), strict=True)
-        )
-        self.stored = plan.usage.stored.get(function.name, frozenset())
-
-    # Statements before.
-
-    @contextmanager
-    def inside(self, head: str, tail: str = "") -> Iterator[None]:
-        """Write what is written meanwhile between two lines, indented."""
-        outer, self.lines = self.lines, []
-        yield
-        inner, self.lines = self.lines, outer
-        self.lines.append(head)
-        self.lines += [f"    {line}" for line in inner]
-        if tail:
-            self.lines.append(tail)
-
-    def apart(self, written: Callable[[], str]) -> tuple[list[str], str]:
-        """Give an expression, and the statements it needs before, unwritten."""
-        outer, self.lines = self.lines, []
-        text = written()
-        needed, self.lines = self.lines, outer
-        return needed, text
-
-    def temporary(self, kind: str, name: str = "chosen") -> str:
-        """Give a new variable of the function."""
-        own = self.names.fresh(name)
-        self.temporaries.append((own, kind))
-        return own
+class Expressions(Writer):
+    """Writes the expressions of one function."""
 
     # Conditions.
 
@@ -113,7 +69,7 @@ class Expressions:
             case Comparison():
                 return self._comparison(of)
             case Not(operand=operand):
-                return f"NOT {_in_parentheses(self.condition(operand))}"
+                return f"NOT {in_parentheses(self.condition(operand))}"
             case Logical():
                 return self._logical(of)
         return f"{self.value(of)} <> 0"
@@ -122,28 +78,27 @@ class Expressions:
         if isinstance(of.right, Null):
             there = self._is_there(plain(of.left))
             return there if of.operator == "!=" else f"NOT {there}"
-        if of.right == Number(0, INT) and isinstance(of.left, Comparison | Not | Logical):
-            inner = self.condition(of.left)
-            if of.operator in ("!=", "=="):
-                return inner if of.operator == "!=" else f"NOT {_in_parentheses(inner)}"
         mark = _COMPARISONS.get(of.operator, of.operator)
         left, right = self.value(of.left), self.value(of.right)
         return f"{left} {mark} {right}"
 
     def _is_there(self, pointer: Any) -> str:
-        if isinstance(pointer, Name) and pointer.name in self.roles:
-            if self.roles[pointer.name].may_be_null:
-                return self.names.of(f"{pointer.name}_given")
+        if self._may_be_null(pointer):
+            return self.names.of(f"{pointer.name}_given")
         if points_to_number(pointer.type):
             return f"({self.index(pointer)} >= 0)"
         raise refused("a comparison of a pointer with NULL")
+
+    def _may_be_null(self, pointer: Any) -> bool:
+        role = self.roles.get(pointer.name) if isinstance(pointer, Name) else None
+        return role is not None and role.may_be_null
 
     def _logical(self, of: Logical) -> str:
         left = self.condition(of.left)
         needed, right = self.apart(lambda: self.condition(of.right))
         word = "AND" if of.operator == "&&" else "OR"
-        if not needed and _may_always_be_evaluated(of.right) and not _changes(of.left):
-            return f"{_in_parentheses(left)} {word} {_in_parentheses(right)}"
+        if not needed and may_always_be_evaluated(of.right) and not changes(of.left):
+            return f"{in_parentheses(left)} {word} {in_parentheses(right)}"
         held = self.temporary("BOOL", "holds")
         self.lines.append(f"{held} := {left};")
         asks = held if word == "AND" else f"NOT {held}"
@@ -180,13 +135,7 @@ class Expressions:
 
     def number(self, of: Number) -> str:
         """Give a constant."""
-        if isinstance(of.type, Scalar) and of.type.is_real:
-            return real_text(float(of.value), self.plan.precision)
-        if of.type == UNSIGNED:
-            return f"DWORD#16#{of.value:08X}"
-        if of.type not in _WHOLE or of.value > 2**31 - 1:
-            raise refused(f"the number {of.value}")
-        return str(of.value)
+        return number_text(of, self.plan.precision)
 
     def _constant(self, name: str) -> str:
         table = self.plan.program.tables[name]
@@ -225,15 +174,15 @@ class Expressions:
         if folded is not None:
             return self.number(folded)
         before, after = of.operand.type, of.type
-        if before == UNSIGNED and after in _WHOLE:
-            return self.value(_counted(of.operand))
+        if before == UNSIGNED and after in WHOLE:
+            return self.value(counted(of.operand))
         inner = self.value(of.operand)
-        if before == after or (before in _WHOLE and after in _WHOLE):
+        if before == after or (before in WHOLE and after in WHOLE):
             return inner
         told = {each: self.plan.type_text(each) for each in (before, after)}
-        if before in _WHOLE and after.is_real:  # type: ignore[union-attr]
+        if before in WHOLE and after.is_real:  # type: ignore[union-attr]
             return f"DINT_TO_{told[after]}({inner})"
-        if before.is_real and after in _WHOLE:  # type: ignore[union-attr]
+        if before.is_real and after in WHOLE:  # type: ignore[union-attr]
             return f"{self.plan.whole_part()}(x := {inner})"
         if before.is_real and after.is_real:  # type: ignore[union-attr]
             return f"{told[before]}_TO_{told[after]}({inner})"
@@ -270,7 +219,7 @@ class Expressions:
             of = of.of
         if isinstance(of.type, Array):
             if not is_array_of_numbers(of.type) or self.plan.is_inline(of):
-                return f"{self.place(of)}[{self.value(index)}]"
+                return f"{self.place(of)}[{bare(self.value(index))}]"
             return f"numbers[{self.index(of, index)}]"
         if points_to_number(of.type):
             if isinstance(of, Name) and self._is_reference(of):
@@ -316,7 +265,9 @@ class Expressions:
             case Name(kind="table", name=name):
                 return str(self.plan.numbers.table(name)), None
             case Name(name=name) if isinstance(of.type, Array):
-                return str(self.plan.numbers.place(self.function.name, name, size_of(of.type))), None
+                return str(
+                    self.plan.numbers.place(self.function.name, name, size_of(of.type))
+                ), None
             case Name(name=name):
                 return self.aliases.get(name) or self.names.of(name), None
             case AddressOf(of=Name(name=name)) if name in self.stored:
@@ -341,7 +292,7 @@ class Expressions:
             case AddressOf(of=inner):
                 return self.place(inner)
             case Null() | Conditional():
-                assert points_to_structure(of.type)
+                assert isinstance(of.type, Pointer)
                 held = self.temporary(self.plan.type_text(of.type.to), "nothing")
                 if isinstance(of, Conditional):
                     self.assign(held, of.type, of)
@@ -376,13 +327,16 @@ class Expressions:
         for parameter, role, given in zip(function.parameters, roles, of.arguments, strict=True):
             name = names.of(parameter.name)
             if role.way == "value":
-                values.append(f"{name} := {self._argument(given)}")
+                values.append(f"{name} := {bare(self._argument(given))}")
             elif role.way == "index":
                 values.append(f"{name} := {self.index(given)}")
             elif role.way == "reference":
                 if role.may_be_null:
                     there = self._whether_there(plain(given))
                     values.append(f"{names.of(f'{parameter.name}_given')} := {there}")
+                is_const = isinstance(parameter.type, Pointer) and parameter.type.is_const
+                if isinstance(plain(given), Conditional) and not is_const:
+                    raise refused(f"a choice of what {of.function} changes")  # a copy here
                 references.append(f"{name} := {self._reference(given)}")
         if of.function in self.plan.usage.numbers:
             references.append("numbers := numbers")
@@ -399,15 +353,16 @@ class Expressions:
     def _whether_there(self, pointer: Any) -> str:
         if isinstance(pointer, Null):
             return "FALSE"
-        if isinstance(pointer, Name) and pointer.name in self.roles:
-            if self.roles[pointer.name].may_be_null:
-                return self.names.of(f"{pointer.name}_given")
+        if self._may_be_null(pointer):
+            return self.names.of(f"{pointer.name}_given")
         if isinstance(pointer, Conditional):
             held = self.temporary("BOOL", "holds")
             self._choose(
                 pointer.condition,
                 lambda: self.lines.append(f"{held} := {self._whether_there(plain(pointer.then))};"),
-                lambda: self.lines.append(f"{held} := {self._whether_there(plain(pointer.other))};"),
+                lambda: self.lines.append(
+                    f"{held} := {self._whether_there(plain(pointer.other))};"
+                ),
             )
             return held
         return "TRUE"
@@ -431,7 +386,7 @@ class Expressions:
             self._choose(value.condition, lambda: self.assign(target, kind, value.then),
                          lambda: self.assign(target, kind, value.other))  # fmt: skip
         elif not self.plan.is_left_out(kind):
-            self.lines.append(f"{target} := {self.value(value)};")
+            self.lines.append(f"{target} := {bare(self.value(value))};")
 
     def _assign_all(self, target: str, kind: CType, value: Initialiser) -> None:
         if isinstance(kind, Array):
@@ -442,39 +397,3 @@ class Expressions:
         members = self.plan.program.structures[kind.name].members
         for (name, of), each in zip(members.items(), value.values, strict=True):
             self.assign(f"{target}.{self.plan.field(kind, name)}", of, each)
-
-
-def _in_parentheses(text: str) -> str:
-    return text if text.isidentifier() or text in ("TRUE", "FALSE") else f"({text})"
-
-
-def _may_always_be_evaluated(of: Any) -> bool:
-    """Tell whether an expression can do no harm where C does not evaluate it."""
-    return not any(
-        isinstance(each, Call | Conditional)
-        or (isinstance(each, Element) and not isinstance(each.index, Number))
-        or (isinstance(each, Binary) and each.operator in "/%" and each.type in _WHOLE)
-        for each in nodes_in(of)
-    )
-
-
-def _changes(of: Any) -> bool:
-    """Tell whether an expression calls what may change a variable that its neighbour reads."""
-    return any(
-        isinstance(each, Call) and any(isinstance(given.type, Pointer) for given in each.arguments)
-        for each in nodes_in(of)
-    )
-
-
-def _counted(of: Any) -> Any:
-    """Give an unsigned number that C computes, as one that counts: none comes near 2^31."""
-    match of:
-        case Number():
-            return Number(of.value, SIZE)
-        case Conditional():
-            return Conditional(of.condition, _counted(of.then), _counted(of.other), SIZE)
-        case Binary(operator="+" | "-" | "*" | "/" | "%"):
-            return Binary(of.operator, _counted(of.left), _counted(of.right), SIZE)
-        case Convert(operand=operand) if operand.type in _WHOLE:
-            return operand
-    raise refused("an unsigned number")

@@ -56,7 +56,7 @@ class Numbers:
     _places: dict[tuple[str, str], int] = field(default_factory=dict)
 
     def place(self, function: str, name: str, count: int) -> int:
-        """Give where the array of a function begins; no function calls itself, so one place does."""
+        """Give where the array of a function begins; one does, for no function calls itself."""
         key = (function, name)
         if key not in self._places:
             self._places[key] = len(self.starts)
@@ -77,7 +77,9 @@ class Numbers:
     def initial(self) -> str:
         """Give the initial values as structured text, equal ones counted."""
         parts = []
-        for text, run in groupby(real_text(each, self.precision).strip("()") for each in self.starts):
+        for text, run in groupby(
+            real_text(each, self.precision).strip("()") for each in self.starts
+        ):
             count = len(list(run))
             parts += [f"{count}({text})"] if count > 2 else [text] * count
         return "[" + ", ".join(parts) + "]"

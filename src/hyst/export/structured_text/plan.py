@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hyst.export.structured_text.numbers import Numbers
-from hyst.export.structured_text.usage import Usage, innermost, nodes_in, plain, usage_of
+from hyst.export.structured_text.usage import Usage, nodes_in, plain, usage_of
 from hyst.export.structured_text.words import Names
 from hyst.export.translate.program import (
     INT,
@@ -126,6 +126,7 @@ class Plan:
 
     @property
     def whole_part_name(self) -> str:
+        """Name of what cuts off the fraction of a number."""
         return f"{self.name}_whole_part"
 
     def whole_part(self) -> str:
@@ -140,7 +141,7 @@ class Plan:
         if isinstance(kind, Named):
             return self._global("_type", kind.name)
         if isinstance(kind, Pointer):
-            if isinstance(kind.to, Named):
+            if isinstance(kind.to, Named) and kind.is_const:
                 return self.type_text(kind.to)
             if isinstance(kind.to, Scalar) and kind.to.is_real:
                 return "DINT"
@@ -168,18 +169,18 @@ class Plan:
         for function in self.program.functions.values():
             for each in nodes_in(function.body):
                 if isinstance(each, Decay) and isinstance(each.of, Member):
-                    found.add((each.of.of.type.name, each.of.name))
+                    found.add(_place_of(each.of))
         return frozenset(found)
 
     def is_inline(self, of: Any) -> bool:
         """Tell whether an array is a member that stays in its structure."""
-        if not isinstance(of, Member) or (of.of.type.name, of.name) == (self.state, "memory"):
+        if not isinstance(of, Member) or _place_of(of) == (self.state, "memory"):
             return False
-        return (of.of.type.name, of.name) not in self._walked
+        return _place_of(of) not in self._walked
 
     def array_member(self, of: Member) -> int:
         """Give where an array inside a structure begins, if it has one place alone."""
-        if isinstance(of.of.type, Named) and of.of.type.name == self.state:
+        if _place_of(of)[0] == self.state:
             return 0
         raise refused(f"a pointer into the member {of.name} of {of.of.type}")
 
@@ -213,5 +214,11 @@ class Plan:
 
 _WHOLE: dict[str, Any] = {
     "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.floordiv,
-    "%": operator.mod,
+    "%": operator.mod, "&": operator.and_, "|": operator.or_, "^": operator.xor,
 }  # fmt: skip
+
+
+def _place_of(member: Member) -> tuple[str, str]:
+    """Give the structure that a member is in, and its name."""
+    assert isinstance(member.of.type, Named)
+    return member.of.type.name, member.name

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Sequence
 from textwrap import wrap
 from typing import Any
 
 from hyst.export.structured_text.expressions import Expressions
-from hyst.export.structured_text.plan import Plan
 from hyst.export.structured_text.usage import (
     is_array_of_numbers,
     nodes_in,
@@ -26,7 +27,6 @@ from hyst.export.translate.program import (
     Declare,
     Element,
     Evaluate,
-    Function,
     If,
     Initialiser,
     Loop,
@@ -52,9 +52,8 @@ class Statements(Expressions):
             case Declare(variable=variable, value=value):
                 self._declared(variable, value)
             case Assign(place=place, value=value):
-                if isinstance(place.type, Pointer) and points_to_structure(place.type):
-                    if isinstance(place, Name):
-                        raise refused("a pointer to a structure that moves")
+                if isinstance(place, Name) and points_to_structure(place.type):
+                    raise refused("a pointer to a structure that moves")
                 self.assign(self.place(place), place.type, value)
             case Evaluate(call=call):
                 self._evaluated(call)
@@ -105,7 +104,7 @@ class Statements(Expressions):
             self.all(of.then)
         other = of.other
         while len(other) == 1 and isinstance(other[0], If):
-            needed, text = self.apart(lambda inner=other[0]: self.condition(inner.condition))
+            needed, text = self.apart(functools.partial(self.condition, other[0].condition))
             if needed:
                 break
             with self.inside(f"ELSIF {text} THEN"):
@@ -199,7 +198,9 @@ class Statements(Expressions):
 
     def _has_a_place_elsewhere(self, variable: Any) -> bool:
         kind = variable.type
-        return is_array_of_numbers(kind) or points_to_structure(kind) or variable.name in self.stored
+        return (
+            is_array_of_numbers(kind) or points_to_structure(kind) or variable.name in self.stored
+        )
 
     def _parameters(self) -> tuple[list[Any], list[Any], list[str]]:
         """Give inputs, references and the statements that copy inputs which change."""
@@ -259,11 +260,15 @@ def _changed(body: tuple[Any, ...]) -> list[str]:
     return found
 
 
-def section(word: str, variables: list[tuple[str, str]]) -> list[str]:
-    """Give a section of declarations; nothing where there are none."""
+def section(word: str, variables: Sequence[tuple[str, ...]]) -> list[str]:
+    """Give a section of declarations, with comments if any; nothing where there are none."""
     if not variables:
         return []
-    return [word, *(f"    {name} : {kind};" for name, kind in variables), "END_VAR"]
+    lines = []
+    for name, kind, *comment in variables:
+        behind = f" (* {comment[0]} *)" if comment and comment[0] else ""
+        lines.append(f"    {name} : {kind};{behind}")
+    return [word, *lines, "END_VAR"]
 
 
 def folded(lines: list[str]) -> list[str]:

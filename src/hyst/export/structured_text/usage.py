@@ -1,8 +1,8 @@
 """What a program does with its pointers: which are indices, which are references.
 
-Structured text has no pointers. A pointer to a real number that walks over an array becomes an index
-into the one array of numbers that a block has; one that only stands for a variable is a parameter by
-reference, as is a pointer to a structure.
+Structured text has no pointers. A pointer to a real number that walks over an array becomes an
+index into the one array of numbers that a block has; one that only stands for a variable is a
+parameter by reference, as is a pointer to a structure.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from hyst.export.translate.program import (
     Convert,
     CType,
     Element,
+    FromBits,
     Function,
     FunctionPointer,
-    FromBits,
     Name,
     Named,
     Null,
@@ -176,7 +176,11 @@ def _stored(function: Function, body: list[Any], usage: Usage) -> frozenset[str]
 def _tables(program: Program, body: list[Any], usage: Usage) -> tuple[str, ...]:
     found: dict[str, None] = {}
     for each in body:
-        if isinstance(each, Name) and each.kind == "table" and is_structure_table(program, each.name):
+        if (
+            isinstance(each, Name)
+            and each.kind == "table"
+            and is_structure_table(program, each.name)
+        ):
             found[each.name] = None
         if isinstance(each, Call):
             found |= dict.fromkeys(usage.tables[each.function])
@@ -184,7 +188,7 @@ def _tables(program: Program, body: list[Any], usage: Usage) -> tuple[str, ...]:
 
 
 def is_structure_table(program: Program, name: str) -> bool:
-    """Tell whether a constant of the file stays whole: a structure, an array of them or of counts."""
+    """Tell whether a constant stays whole: a structure, an array of them or of counts."""
     kind = program.tables[name].type
     return isinstance(kind, Named) or (isinstance(kind, Array) and not is_array_of_numbers(kind))
 
@@ -221,7 +225,7 @@ def _reaches_numbers(function: Function, body: list[Any], usage: Usage) -> bool:
         if isinstance(each, Call):
             for role, given in zip(usage.roles[each.function], each.arguments, strict=True):
                 given = plain(given)
-                if role.way == "reference" and points_to_number(given.type):
-                    if not isinstance(given, AddressOf | Name):
-                        return True
+                is_number = role.way == "reference" and points_to_number(given.type)
+                if is_number and not isinstance(given, AddressOf | Name):
+                    return True
     return False

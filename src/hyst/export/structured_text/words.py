@@ -8,26 +8,27 @@ from hyst.errors import InputError
 
 # Keywords of the third edition, and of the vendors that are told apart from names by no prefix.
 _KEYWORDS = """
-    abstract action and any array at begin by case class configuration constant continue do else elsif
-    end end_action end_case end_class end_configuration end_for end_function end_function_block
-    end_if end_interface end_method end_namespace end_program end_property end_repeat end_resource
-    end_step end_struct end_transition end_type end_union end_var end_while en eno exit extends
-    f_edge false final for from function function_block get global goto if implements initial_step
-    interface internal interval jmp method mod namespace non_retain not null of on or overlap override
-    pointer priority private program property protected public r_edge read_only read_write ref
-    reference repeat resource retain return set single step struct super task then this to
-    transition true type union until using var var_access var_config var_external var_global
-    var_in_out var_inst var_input var_output var_stat var_temp volatile while with xor
-    bit bool byte char date date_and_time dint dt dword ldate ldt lint lreal ltime ltod lword real
-    sint string tod time time_of_day udint uint ulint usint wchar word wstring int
+    abstract action and any array at begin by case class configuration constant continue do else
+    elsif end end_action end_case end_class end_configuration end_for end_function
+    end_function_block end_if end_interface end_method end_namespace end_program end_property
+    end_repeat end_resource end_step end_struct end_transition end_type end_union end_var
+    end_while en eno exit extends f_edge false final for from function function_block get global
+    goto if implements initial_step interface internal interval jmp method mod namespace
+    non_retain not null of on or overlap override persistent pointer priority private program
+    property protected public r_edge read_only read_write ref reference repeat resource retain
+    return set single step struct super task then this to transition true type union until using
+    var var_access var_config var_external var_global var_in_out var_inst var_input var_output
+    var_stat var_temp volatile while with xor bit bool byte char date date_and_time dint dt
+    dword ldate ldt lint lreal ltime ltod lword real sint string tod time time_of_day udint uint
+    ulint usint wchar word wstring int
 """
 # Standard functions and function blocks, operators of the vendors, and those of instruction lists.
 _FUNCTIONS = """
     abs acos add adr and_then asin atan atan2 bitadr cal calc calcn ceil concat cos ctd ctu ctud
-    delete div eq exp expt f_trig find floor ge gt indexof ini insert is_valid jmpc jmpcn ld ldn le
-    left len limit ln log lower_bound lt max mid min move mul mux ne neg or_else r_trig replace ret
-    retc retcn right rol ror round rs rtc sel sema shl shr sign sin sizeof sqrt sr st stn sub tan
-    tof ton tp trunc trunc_int upper_bound xsizeof
+    delete div eq exp expt f_trig find floor ge gt indexof ini insert is_valid jmpc jmpcn ld ldn
+    le left len limit ln log lower_bound lt max mid min move mul mux ne neg or_else r_trig
+    replace ret retc retcn right rol ror round rs rtc sel sema shl shr sign sin sizeof sqrt sr
+    st stn sub tan tof ton tp trunc trunc_int upper_bound xsizeof
 """
 # One letter alone means something in sequential charts, instruction lists or literals of time.
 _LETTERS = "d l n p r s t"
