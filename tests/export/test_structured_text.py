@@ -18,7 +18,7 @@ from hyst.control.tracking_controller import TrackingController
 from hyst.export import structured_text
 from hyst.export.c.block import block_of, stepper_of
 from hyst.export.c.numbers import Precision
-from hyst.export.structured_text.project import text_files
+from hyst.export.iec61131.project import text_files
 from hyst.models import Scheduled
 from hyst.online import JointEstimator
 from reference.examples import EXAMPLES
