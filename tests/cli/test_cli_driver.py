@@ -226,3 +226,35 @@ def test_learning_takes_measured_codes(run: Run, folder: Path, measured: Path) -
     missed = [np.abs(stage(DRIVER.volts(each)) - y_ref).max() for each in (codes, learnt)]
     # A gain of 2 % is taken back in one repetition, but for its square and half a code.
     assert missed[1] < 0.1 * missed[0]
+
+
+def test_a_model_over_temperature_keeps_the_driver_and_gives_codes(run: Run, folder: Path) -> None:
+    k = np.arange(700)
+    drive = 75.0 - 74.0 * np.cos(0.03 * k) * np.linspace(1.0, 0.4, k.size)
+    codes = DRIVER.codes(drive)
+    for name, gain in (("cold", 1.0), ("warm", 1.1)):
+        y = gain * PLAYS(DRIVER.volts(codes))
+        write_csv(folder / f"{name}.csv", "t,code,y [um]", k * DT, codes, y)
+    write_csv(
+        folder / "driver.csv",
+        "code,volt",
+        np.array(DRIVER.table_codes),
+        np.array(DRIVER.table_volts),
+    )
+    schedule = ("--schedule", "20,50", "--schedule-name", "temperature")
+    asked = ("cold.csv", "warm.csv", *ASKED, *schedule, "--driver", "driver.csv", "-o", "out")
+    ended = run("identify", *asked)
+    assert ended.code in (0, 3), ended.err
+    found = hyst.load(folder / "out" / "model.json")
+    assert found.description.driver == DRIVER
+    assert hyst.load(folder / "out" / "at_20" / "model.json").description.driver == DRIVER
+    y_ref = 1.05 * PLAYS(75.0 + 50.0 * np.sin(0.05 * k))
+    path = write_csv(folder / "ref.csv", "t,T,y [um]", k * DT, np.full(k.size, 35.0), y_ref)
+    more = ("--schedule-column", "T", "--despite-verdict", "-o", "c.csv")
+    ended = run("compensate", "out/model.json", path, "--column", "y", *more)
+    assert ended.code == 0, ended.err
+    assert "as codes" in ended.out
+    rows = np.loadtxt(folder / "c.csv", delimiter=",", skiprows=1)
+    assert np.array_equal(rows[:, 3], DRIVER.codes(rows[:, 2]))
+    # Identified without noise; half a code through all plays is 0.002.
+    assert np.abs(1.05 * PLAYS(DRIVER.volts(rows[:, 3])) - y_ref)[100:].max() < 0.01

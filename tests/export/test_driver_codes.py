@@ -5,12 +5,14 @@ from __future__ import annotations
 import ctypes
 import json
 import re
+import subprocess
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from c_builds import AS_C, AS_CXX, Objects, build_library
+from c_builds import AS_C, AS_CXX, STRICT, Objects, build_library, compiler
+from c_builds import compiled as built
 
 import hyst
 from hyst.errors import InputError
@@ -179,3 +181,24 @@ def test_what_has_no_codes_is_refused(
     with pytest.raises(InputError, match=said):
         c_project(model, tmp_path / "lens", name="lens", **given)
     assert not (tmp_path / "lens").exists()
+
+
+def test_two_axes_with_drivers_live_in_one_folder(tmp_path: Path) -> None:
+    known = described(TABLES["rising"])
+    c_project(known.inverse(), tmp_path / "axes", name="lens", layout="flat")
+    c_project(known, tmp_path / "axes", name="axis", layout="flat", precision="single", force=True)
+    (tmp_path / "axes" / "main.c").write_text(
+        '#include <stdio.h>\n#include "lens.h"\n#include "axis.h"\n'
+        "int main(void)\n{\n    lens_state lens;\n    axis_state axis;\n    int k;\n"
+        "    lens_init(&lens);\n    axis_init(&axis);\n    for (k = 0; k < 4; ++k) {\n"
+        "        const int32_t code = lens_step_code(&lens, 3.0 + k);\n"
+        '        printf("%ld %.4f\\n", (long)code, (double)axis_step_of_code(&axis, code));\n'
+        "    }\n    return 0;\n}\n"
+    )
+    sources = sorted(each.name for each in (tmp_path / "axes").glob("*.c"))
+    built([compiler("gcc"), *AS_C, *STRICT, *sources, "-o", "main"], tmp_path / "axes")
+    program = [str(tmp_path / "axes" / "main")]
+    said = subprocess.run(program, capture_output=True, text=True, check=True).stdout.split()
+    # The model in single answers to the codes of its inverse in double: half a code of 39 mV.
+    reached = np.array(said[1::2], dtype=float)
+    assert np.abs(reached - [3.0, 4.0, 5.0, 6.0]).max() < 0.13 * 0.5 * 0.0391 + 1e-4
