@@ -210,7 +210,7 @@ def test_volts_that_numbers_do_not_take_are_refused(volts: list[float], said: st
 
 @pytest.mark.parametrize("limits", [3, (1, 2, 3), (math.nan, 3), ("a", "b"), ([1], 3)])
 def test_limits_that_are_no_two_numbers_are_refused(limits: Any) -> None:
-    with pytest.raises(InputError, match="give the lowest and the highest volts|a limit"):
+    with pytest.raises(InputError, match=r"give the lowest and the highest volts|a limit"):
         Driver.linear(1.0, 0.0, 0, 8).codes([1.0], limits)
 
 

@@ -79,7 +79,7 @@ class Waveform:
 
     @property
     def largest_rate(self) -> float:
-        """Largest rate of the drive wanted, per second; of one that repeats from end to start too."""
+        """Largest rate of the drive wanted, per second; where it repeats, back to its start too."""
         return _largest_step(self.u, self.repeat) / self.dt
 
     def columns(self, name: str = "u", unit: str = "") -> tuple[list[str], list[NDArray[Any]]]:
