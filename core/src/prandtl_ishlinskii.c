@@ -3,6 +3,11 @@
 
 #include "hyst/bank.h"
 
+hyst_real hyst_pi_step(const hyst_pi *pi, hyst_real *z, hyst_real u)
+{
+    return hyst_bank_step(pi, z, u, u, pi->p0 * u);
+}
+
 hyst_real hyst_wide_bank_step(const hyst_pi *bank, hyst_real *z, hyst_real low, hyst_real high,
                               hyst_real first)
 {
@@ -31,14 +36,11 @@ hyst_real hyst_wide_bank_step(const hyst_pi *bank, hyst_real *z, hyst_real low, 
     }
     hyst_real y = first + ((s0 + s2) + (s1 + s3));
     for (; i < count; ++i) {
-        y += hyst_bank_term(p[i], r[i], &z[i], low, high);
+        const hyst_real moved = hyst_clamp(low - r[i], high + r[i], z[i]);
+        z[i] = moved;
+        y += p[i] * moved;
     }
     return y;
-}
-
-hyst_real hyst_pi_step(const hyst_pi *pi, hyst_real *z, hyst_real u)
-{
-    return hyst_bank_step(pi, z, u, u, pi->p0 * u);
 }
 
 static size_t pi_length(const void *model)

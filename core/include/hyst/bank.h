@@ -26,29 +26,22 @@ extern "C" {
 hyst_real hyst_wide_bank_step(const hyst_pi *bank, hyst_real *z, hyst_real low, hyst_real high,
                               hyst_real first);
 
-/* One sample of one play, and what it adds to its sum. */
-static inline hyst_real hyst_bank_term(hyst_real p, hyst_real r, hyst_real *z, hyst_real low,
-                                       hyst_real high)
-{
-    const hyst_real moved = hyst_clamp(low - r, high + r, *z);
-    *z = moved;
-    return p * moved;
-}
-
 /* One sample of any bank, whose p0 does not count: it is in `first`. */
 static inline hyst_real hyst_bank_step(const hyst_pi *bank, hyst_real *z, hyst_real low,
                                        hyst_real high, hyst_real first)
 {
+    if (bank->count >= HYST_WIDE_BANK) {
+        return hyst_wide_bank_step(bank, z, low, high, first);
+    }
     /* Read once: a compiler that saves space would fetch them again for every play. */
     const size_t count = bank->count;
     const hyst_real *p = bank->p;
     const hyst_real *r = bank->r;
     hyst_real y = first;
-    if (count >= HYST_WIDE_BANK) {
-        return hyst_wide_bank_step(bank, z, low, high, first);
-    }
     for (size_t i = 0; i < count; ++i) {
-        y += hyst_bank_term(p[i], r[i], &z[i], low, high);
+        const hyst_real moved = hyst_clamp(low - r[i], high + r[i], z[i]);
+        z[i] = moved;
+        y += p[i] * moved;
     }
     return y;
 }
