@@ -32,11 +32,12 @@ static int bank_held(const hyst_pi *bank, hyst_real *z, hyst_real side, hyst_rea
     hyst_real rest = drive - known->constant - bank_resting(bank, z, moved);
     hyst_real end = rest / slope;
     if (moved > 0u && way * (end - z[moved - 1u]) < known->least) {
-        /* Another memory than was expected: from where no play moves, up or down. */
-        moved = 0;
+        moved = 0; /* another memory than was expected */
         slope = bank->p0;
         rest = drive - bank_resting(bank, z, moved);
         end = rest / slope;
+    }
+    if (moved == 0u) { /* from where no play moves the end may lie on either side */
         way = end < z[0] ? -HYST_REAL(1.0) : HYST_REAL(1.0);
     }
     while (moved < count && way * (end - way * r[moved]) > way * z[moved]) {

@@ -77,7 +77,7 @@ def test_the_command_that_mex_prints_compiles(run: Run, folder: Path, model_file
         (("--target", "fmu", "--fmi", "1.0", "-o", "a.fmu"), "2.0 or 3.0"),
         (("--target", "fmu", "-o", "nowhere"), "nowhere is no folder"),
         (("--target", "ada", "-o", "out"), "c or fmu or mex"),
-        (("--target", "rust", "--flat", "-o", "out"), "--flat is for --target c"),
+        (("--target", "rust", "--layout", "flat", "-o", "out"), "--layout is for --target c"),
         (("--target", "rust", "--name", "match", "-o", "out"), "a word of Rust"),
     ],
 )

@@ -149,6 +149,17 @@ def test_a_held_sample_by_hand() -> None:
     assert step.state.tolist() == [pytest.approx(1.5, abs=1e-15), pytest.approx(1.9, abs=1e-15)]
 
 
+def test_the_lowest_drive_may_lie_above_the_start() -> None:
+    # y = u - 0.3 play(u, 1): 1.5 gives 1.35, and a little more belongs to 1.3505, on the way up.
+    model = hyst.PrandtlIshlinskii([-0.3], [1.0], p0=1.0)
+    for sign in (1.0, -1.0):
+        ends = sorted([sign * 1.5, sign * 3.0])
+        step = LimitedDrive(model.inverse(), (ends[0], ends[1])).stepper()
+        for _ in range(2):
+            assert step(sign * 1.3505) == pytest.approx(sign * (1.5 + 0.0005 / 0.7), rel=1e-14)
+            assert step(sign * 0.2) == sign * 1.5
+
+
 def test_a_model_is_driven_within_its_limits_and_its_rate() -> None:
     block = LimitedDrive(STAGE, (-1.0, 2.0), 0.5, dt=1.0)
     u = np.array([5.0, 5.0, 5.0, 5.0, 5.0, -5.0])

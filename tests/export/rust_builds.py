@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from hyst.export.c.block import Model
-from hyst.export.rust.crate import RustCrate, rust
+from hyst.export.rust_crate.crate import RustCrate, rust
 
 CARGO = shutil.which("cargo")
 

@@ -124,7 +124,7 @@ def test_only_what_is_needed_of_the_core_is_copied() -> None:
     assert sources("inverse of mpi") == {"src/dead_zone.c", "src/prandtl_ishlinskii.c"}
     assert sources("linear") == {"src/linear_dynamics.c"}
     assert sources("rate-dependent") == {
-        "src/dead_zone.c", "src/rate_dependent_prandtl_ishlinskii.c",
+        "src/dead_zone.c", "src/prandtl_ishlinskii.c", "src/rate_dependent_prandtl_ishlinskii.c",
     }  # fmt: skip
     assert sources("ramberg-osgood") == {"src/loading_curve.c", "src/masing.c"}
 

@@ -56,6 +56,19 @@ def test_the_description_is_valid(name: str, version: str, tmp_path: Path) -> No
     assert problems == []
 
 
+@pytest.mark.parametrize("version", VERSIONS)
+def test_signals_without_a_name_are_described_as_the_variables_are(
+    version: str, tmp_path: Path
+) -> None:
+    about = ModelDescription(input_name="", output_name=" ")
+    written = hyst.export.fmu(
+        PI, tmp_path / "a.fmu", version=version, description=about, binary=False
+    )
+    assert validate_fmu(str(written.path)) == []
+    said = {each.get("name"): each.get("description") for each in described(written).iter()}
+    assert (said["u"], said["y"]) == ("u", "y")
+
+
 def wrong_references(root: ElementTree.Element, version: str) -> list[str]:
     """What FMPy does not look at: that the structure points to the output and to its knowns."""
     variables = list(root.find("ModelVariables"))

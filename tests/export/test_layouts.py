@@ -9,30 +9,31 @@ import numpy as np
 import pytest
 from c_builds import AS_C, AS_CXX, STRICT, compiled, compiler
 
-from hyst.export.c.block import block_of
+from hyst.export.c.block import Block, block_of
 from hyst.export.c.drive import Drive
 from hyst.export.c.firmware import project_files
 from hyst.export.c.layout import Layout
 from hyst.export.c.numbers import Precision
 from hyst.export.c.selftest import SelfTest
+from hyst.operators import ModelDescription
 from reference.examples import EXAMPLES
 
 # One sample, for these tests compile and compare texts.
 TEST = SelfTest(Drive.between(-1.0, 1.0), np.zeros(1), 0.0)
-WAYS: dict[Precision, tuple[tuple[str, list[str]], ...]] = {
-    "double": (("gcc", AS_C), ("g++", AS_CXX)),
-    "single": (("clang", AS_C), ("clang++", AS_CXX)),
+# Beside gcc as C99 and clang++ as C++17, with which test_c_projects compiles the layout folder.
+WAYS: dict[Precision, tuple[str, list[str]]] = {
+    "double": ("g++", AS_CXX),
+    "single": ("clang", AS_C),
 }
 # Numbers that no warning depends on: two models that differ in them alone are checked once.
 NUMBERS = re.compile(r"-?0x[0-9a-f.]+p[-+]\d+|0x[0-9a-f]{8}u")
 CHECKED: set[tuple[str, str]] = set()
 
 
-def laid_out(name: str, precision: Precision, form: str, shared: bool = False) -> dict[str, str]:
+def laid_out(block: Block, precision: Precision, form: str, shared: bool = False) -> dict[str, str]:
     """The C of an example by path, without its self-test."""
-    model = EXAMPLES[name]
     layout = Layout(form, shared, "stage", precision)
-    files = project_files(block_of(model, precision), TEST, model.description, layout)
+    files = project_files(block, TEST, ModelDescription(), layout)
     return {
         path: content.decode()
         for path, content in files.items()
@@ -44,8 +45,9 @@ def laid_out(name: str, precision: Precision, form: str, shared: bool = False) -
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_every_example_in_every_layout(name: str, precision: Precision, tmp_path: Path) -> None:
     """What the layout folder compiles to is tested in test_c_projects; the others hold its text."""
-    folder = laid_out(name, precision, "folder")
-    flat = laid_out(name, precision, "flat")
+    block = block_of(EXAMPLES[name], precision)
+    folder = laid_out(block, precision, "folder")
+    flat = laid_out(block, precision, "flat")
     assert {
         path.removeprefix("core/"): text.replace('"core/', '"') for path, text in folder.items()
     } == flat
@@ -54,16 +56,30 @@ def test_every_example_in_every_layout(name: str, precision: Precision, tmp_path
         path.replace(f"{prefix}_", "stage_core_"): re.sub(
             rf"\b{prefix}_", "stage_core_", text
         ).replace(f"{prefix.upper()}_", "STAGE_CORE_")
-        for path, text in laid_out(name, precision, "folder", shared=True).items()
+        for path, text in laid_out(block, precision, "folder", shared=True).items()
     }
     assert renamed == folder
-    single = laid_out(name, precision, "single-file")
+    single = laid_out(block, precision, "single-file")
     assert set(single) == {"stage.c", "stage.h"}
     assert single["stage.h"] == folder["stage.h"]
     for path, text in single.items():
         (tmp_path / path).write_text(text)
-    for driver, language in WAYS[precision]:
-        kind = driver, NUMBERS.sub("0.0", single["stage.c"])
-        if kind not in CHECKED:
-            compiled([compiler(driver), *language, *STRICT, "-fsyntax-only", "stage.c"], tmp_path)
-            CHECKED.add(kind)
+    driver, language = WAYS[precision]
+    kind = driver, NUMBERS.sub("0.0", single["stage.c"])
+    if kind not in CHECKED:
+        compiled([compiler(driver), *language, *STRICT, "-fsyntax-only", "stage.c"], tmp_path)
+        CHECKED.add(kind)
+
+
+@pytest.mark.parametrize("language", [AS_C, AS_CXX])
+@pytest.mark.parametrize("precision", ["double", "single"])
+@pytest.mark.parametrize("name", ["inverse of nested", "inverse iwan", "jiles-atherton"])
+def test_a_single_file_by_every_compiler(
+    name: str, precision: Precision, language: list[str], tmp_path: Path
+) -> None:
+    """Of several stages, of a solver, and of a series: what many static functions are for."""
+    single = laid_out(block_of(EXAMPLES[name], precision), precision, "single-file")
+    for path, text in single.items():
+        (tmp_path / path).write_text(text)
+    for driver in ("gcc", "clang") if language is AS_C else ("g++", "clang++"):
+        compiled([compiler(driver), *language, *STRICT, "-O1", "-c", "stage.c"], tmp_path)

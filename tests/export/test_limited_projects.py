@@ -18,16 +18,16 @@ from c_builds import (
 )
 
 import hyst
-from hyst import Affine, DeadZone, InputError, PrandtlIshlinskii
+from hyst import Affine, InputError, PrandtlIshlinskii
 from hyst.compensation import invert_trajectory
 from hyst.control import TrackingController
 from hyst.control.limited_drive.drive import LimitedDrive
 from hyst.control.repetitive.controller import RepetitiveController
-from hyst.export import CProject, c_project, explicit_inverse
+from hyst.export import CProject, c_project
 from hyst.export.c.any_block import any_block
 from hyst.export.c.block import stepper_of
 from hyst.export.c.drive_options import DriveOptions
-from hyst.models import RateDependentPrandtlIshlinskii, Scheduled
+from hyst.models import Scheduled
 from hyst.online import JointEstimator, ScaleEstimator
 from hyst.operators import ModelDescription, Operator
 from reference.examples import EXAMPLES
@@ -340,61 +340,6 @@ def test_what_an_estimator_is_not_told_of_its_drive(tmp_path: Path) -> None:
         c_project(estimators()[name], tmp_path / "x", rate_limit=1.0)
     with pytest.raises(InputError, match="goes on from the memory that it has now"):
         c_project(estimators()[name], tmp_path / "x", history=[1.0])
-
-
-@pytest.mark.parametrize(
-    ("told", "said"),
-    [
-        ({"limits": (3.0, 1.0)}, "give the lowest drive first"),
-        ({"limits": (1.0, 1.0)}, "give the lowest drive first"),
-        ({"limits": (0.0, np.nan)}, "the highest drive is nan"),
-        ({"limits": "wide"}, "limits is 'wide'; give 'auto', 'none', or the lowest"),
-        ({"limits": 3.0}, "give the lowest and the highest drive"),
-        ({"rate_limit": 0.0}, "rate is 0"),
-        ({"rate_limit": -5.0}, "rate is -5"),
-        ({"history": [0.0, 3.5]}, "history has 3.5, beyond the limits of the drive, 0 to 3"),
-        ({"history": [0.0, np.nan]}, "history is nan at index 1"),
-        ({"history": []}, "history is empty"),
-        ({"history": [[1.0]]}, "history has shape"),
-    ],
-)
-def test_what_cannot_be_is_refused(told: dict[str, object], said: str, tmp_path: Path) -> None:
-    for write, out in (
-        (c_project, "c"), (hyst.export.mex, "mex"), (hyst.export.fmu, "x.fmu")
-    ):  # fmt: skip
-        with pytest.raises(InputError, match=said):
-            write(STAGE.inverse(), tmp_path / out, **told)  # type: ignore[operator]
-        assert not (tmp_path / out).exists()
-
-
-def test_a_rate_needs_to_know_the_time(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="whose time is not known; give dt"):
-        c_project(PI.inverse(), tmp_path / "out", limits=(0.0, 1.0), rate_limit=1.0)
-
-
-def test_limits_beyond_which_the_output_turns_back(tmp_path: Path) -> None:
-    """u - 2 max(u - 1, 0) rises up to 1; its inverse up to there is u itself."""
-    tent = DeadZone([1.0, -2.0], [0.0, 1.0])
-    rising = Affine(1.0).with_description(ModelDescription(is_inverse=True))
-    turned = LimitedDrive(rising, (0.0, 1.0), forward=tent)
-    assert c_project(turned, tmp_path / "up to the top").drive.limits == (0.0, 1.0)
-    with pytest.raises(InputError, match="not the exact inverse of forward: drives within the lim"):
-        LimitedDrive(rising, (0.0, 2.0), forward=tent)
-
-
-def test_an_inverse_whose_model_is_not_known_has_no_limits_and_no_start(tmp_path: Path) -> None:
-    rated = RateDependentPrandtlIshlinskii([0.5, 0.3], [0.1, 0.4], 0.01, 0.001, 1.0)
-    rated = rated.with_description(ABOUT)
-    for i, model in enumerate((rated.inverse(preview=5), explicit_inverse(rated))):
-        project = c_project(model, tmp_path / str(i))
-        assert project.drive.limits is None
-        assert project.drive.said().startswith("none: the memory of a drive that is held could not")
-        assert not project.has_start
-        assert "init_after" not in header_of(project)
-        with pytest.raises(InputError, match="a limited drive needs the operator"):
-            c_project(model, tmp_path / "x", limits=(0.0, 3.0))
-        with pytest.raises(InputError, match="no start after a history: the model in front"):
-            c_project(model, tmp_path / "x", history=[1.0])
 
 
 def test_a_limited_drive_is_exported_as_it_is(tmp_path: Path, objects: Objects) -> None:

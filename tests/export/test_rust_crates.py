@@ -23,8 +23,8 @@ from hyst.export.c.any_block import any_block
 from hyst.export.c.block import stepper_of
 from hyst.export.c.core_stage import core_stages
 from hyst.export.c.drive_options import DriveOptions
-from hyst.export.rust.kernel import kernel
-from hyst.export.rust.names import rust_name
+from hyst.export.rust_crate.kernel import kernel
+from hyst.export.rust_crate.names import rust_name
 from hyst.export.translate.exported import program_of
 from hyst.online import JointEstimator
 from hyst.operators import ModelDescription

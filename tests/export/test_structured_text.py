@@ -11,6 +11,7 @@ import pytest
 from c_builds import same_bits, stepped, wandering
 from structured_text_machine import Instance, Machine
 from structured_text_parser import StructuredTextError, units_of
+from test_repetitive_projects import BLOCKS
 
 from hyst import InputError, ModelDescription, Operator, PrandtlIshlinskii
 from hyst.control.limited_drive.drive import LimitedDrive
@@ -18,7 +19,7 @@ from hyst.control.tracking_controller import TrackingController
 from hyst.export import structured_text
 from hyst.export.c.block import block_of, stepper_of
 from hyst.export.c.numbers import Precision
-from hyst.export.structured_text.project import text_files
+from hyst.export.iec61131.project import text_files
 from hyst.models import Scheduled
 from hyst.online import JointEstimator
 from reference.examples import EXAMPLES
@@ -157,6 +158,17 @@ def test_a_controller_with_limits(tmp_path: Path) -> None:
     assert (written.inputs, written.output) == (("y_ref", "y"), "u")
     lens = instance_of((tmp_path / "out" / "lens.st").read_text(), tmp_path)
     y_ref, y = wandering(20_000, size=2.0), wandering(20_000, seed=11, size=2.0)
+    (u,) = lens.run(("u",), y_ref=y_ref, y=y)
+    assert same_bits(u, stepped(model.stepper(), y_ref, y))
+
+
+@pytest.mark.parametrize("kind", ["compared", "limited, of several stages"])
+def test_a_repetitive_controller(kind: str, tmp_path: Path) -> None:
+    model = BLOCKS[kind]
+    files, names = text_files(block_of(model, "double"), "lens", "double", ModelDescription())
+    lens = instance_of(files["lens.st"].decode("ascii"), tmp_path)
+    y_ref, y = wandering(20_000, size=2.0), wandering(20_000, seed=9, size=2.0)
+    assert (names.inputs, names.output) == (("y_ref", "y"), "u")
     (u,) = lens.run(("u",), y_ref=y_ref, y=y)
     assert same_bits(u, stepped(model.stepper(), y_ref, y))
 

@@ -16,8 +16,8 @@ from test_structured_text import text_of
 
 from hyst.export.c.core_sources import core_folder
 from hyst.export.c.numbers import Precision
-from hyst.export.structured_text.numbers import real_text
-from hyst.export.structured_text.words import Names, is_taken
+from hyst.export.iec61131.numbers import real_text
+from hyst.export.iec61131.words import Names, is_taken
 
 NUMBERS: dict[Precision, type] = {"double": np.float64, "single": np.float32}
 

@@ -17,7 +17,17 @@ _SHOWN = 6  # drives of a history
 
 @dataclass(frozen=True)
 class Order:
-    """What is asked for: which model, where to, and how."""
+    """What is asked for: which model, where to, and how.
+
+    Parameters
+    ----------
+    model, out
+        What is exported, and where to.
+    precision, name, force, fmi, binary, despite_verdict, layout, shared_core
+        As the verb is given them.
+    limits, rate_limit, history, driver
+        Of the drive.
+    """
 
     model: Model
     out: Path
@@ -42,7 +52,15 @@ class Order:
 
 @dataclass(frozen=True)
 class Done:
-    """What has been written: rows for the table, and what to do next."""
+    """What has been written.
+
+    Parameters
+    ----------
+    rows
+        Of the table.
+    next_step
+        What to do next.
+    """
 
     rows: tuple[tuple[str, str], ...]
     next_step: str

@@ -15,7 +15,17 @@ from hyst.cli.export.structured_text import structured_text
 
 @dataclass(frozen=True)
 class Target:
-    """What writes it, what it is for, and the parameters of the verb that not all targets take."""
+    """A target.
+
+    Parameters
+    ----------
+    write
+        What writes it.
+    purpose
+        What it is for.
+    takes
+        Those parameters of the verb that not all targets take.
+    """
 
     write: Callable[[Order], Done]
     purpose: str

@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 
 
 def tracking_block(model: TrackingController, precision: Precision) -> Block:
-    """Give what is exported of a tracking controller."""
+    """Give what is exported of a ``model``, a tracking controller, in a ``precision``."""
     inverse = () if model.inverse is None else core_stages(model.inverse)
     # What the test signal passes: the gain from y_ref to v, then the inverse.
     gain = Affine(abs(float(model.D[0])) or 1.0)
@@ -95,7 +95,7 @@ def _limited(
 
 
 def repetitive_block(model: RepetitiveController, precision: Precision) -> Block:
-    """Give what is exported of a repetitive controller."""
+    """Give what is exported of a ``model``, a repetitive controller, in a ``precision``."""
     stages = RepetitiveStages.of(model, precision)
     code = StageCode(stages.all, precision)
     passed = Affine(1.0) if model.inverse is None else model.inverse

@@ -7,6 +7,7 @@ is of one precision, whatever a compiler is told.
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -56,10 +57,7 @@ class CoreCopy:
         dict
             Content by name.
         """
-        return {
-            self.name_of(path): self._copied(path, text.decode("ascii")).encode("ascii")
-            for path, text in needed.items()
-        }
+        return {self.name_of(path): _copied(self, path, text) for path, text in needed.items()}
 
     def name_of(self, path: str) -> str:
         """Give the name of the copy of a file of the core."""
@@ -83,11 +81,14 @@ class CoreCopy:
         code = _MACRO.sub(f"{self.prefix.upper()}_", code)
         return _NAME.sub(f"{self.prefix}_", code)
 
-    def _copied(self, path: str, text: str) -> str:
-        known = {"HYST_SINGLE": self.precision == "single", "HYST_REAL_HEADER": False}
-        if path.endswith("/real.h"):
-            text = _FIRST_COMMENT.sub("/* The number type of this copy of the core. */\n", text)
-        return self.renamed(_BLANK_LINES.sub("\n\n", decided(text, known)))
+
+@functools.lru_cache(256)
+def _copied(copy: CoreCopy, path: str, content: bytes) -> bytes:
+    text, known = content.decode("ascii"), {"HYST_SINGLE": copy.precision == "single"}
+    if path.endswith("/real.h"):
+        text = _FIRST_COMMENT.sub("/* The number type of this copy of the core. */\n", text)
+        known["HYST_REAL_HEADER"] = False
+    return copy.renamed(_BLANK_LINES.sub("\n\n", decided(text, known))).encode("ascii")
 
 
 def decided(text: str, known: Mapping[str, bool]) -> str:

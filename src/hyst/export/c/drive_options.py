@@ -59,7 +59,20 @@ class DriveOptions:
         return not isinstance(self.limits, str) or self.rate is not None
 
     def refuse(self, what: str, instead: str, is_limited: bool) -> None:
-        """Refuse limits and rate, for ``what`` has no use for them, with what to do ``instead``."""
+        """Refuse limits and rate where there is no use for them.
+
+        Parameters
+        ----------
+        what, instead
+            Why there is none, and what to do.
+        is_limited
+            Whether there are others, which cannot be taken away.
+
+        Raises
+        ------
+        InputError
+            If they are given.
+        """
         if self.are_given or (is_limited and self.limits == NONE):
             name = "rate_limit" if self.rate is not None else "limits"
             raise InputError(f"{what}, so {name} cannot be given; {instead}")

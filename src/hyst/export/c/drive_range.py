@@ -54,7 +54,15 @@ class DriveRange:
         precision: Precision,
         source: str,
     ) -> DriveRange:
-        """Give limits that hold in a ``precision``: no wider than they are."""
+        """Give limits that hold in a ``precision``: no wider than they are.
+
+        Parameters
+        ----------
+        side, limits, rate, source
+            As the fields.
+        precision
+            Of the target.
+        """
         if precision == "double":
             low, high = (None, None) if limits is None else limits
             return cls(side, low, high, rate, source, limits)

@@ -83,7 +83,15 @@ class Following:
         last: int | None = None,
         answers: Literal["drive", "signal"] = "drive",
     ) -> Following:
-        """Write the C of it, with the constants of a ``code``."""
+        """Write the C of it.
+
+        Parameters
+        ----------
+        code
+            It has the constants.
+        passed, last, answers
+            As the fields.
+        """
         statements = "".join(each.statements(code).rstrip("\n") + "\n" for each in passed)
         return cls(tuple(passed), last, answers, statements)
 

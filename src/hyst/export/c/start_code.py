@@ -11,12 +11,12 @@ from hyst.export.c.templating import indented
 
 
 def answer(value: float, precision: Precision) -> str:
-    """Give what a sample is answered with where there has been none, as C."""
+    """Give as C, in a ``precision``, the ``value`` that answers a sample before any other."""
     return f"({literal(value, precision, 'start')})" if value else "HYST_REAL(0.0)"
 
 
 def start_tables(block: Block, precision: Precision) -> str:
-    """Give the memory that a start sets, where it is not all 0."""
+    """Give the memory that a start of a ``block`` sets, in a ``precision``, if it is not all 0."""
     tables = {"start_memory": block.start, "virgin_memory": block.virgin[0]}
     if block.before is None:
         del tables["virgin_memory"]
@@ -30,7 +30,17 @@ def start_tables(block: Block, precision: Precision) -> str:
 
 
 def beginning(block: Block, name: str, precision: Precision) -> str:
-    """Give the functions that set a state: ``init``, and what it and ``init_after`` call."""
+    """Give the functions that set a state: ``init`` and ``init_after``, and what they call.
+
+    Parameters
+    ----------
+    block
+        What is exported.
+    name
+        The prefix.
+    precision
+        Of the target.
+    """
     init = _setting(f"void {name}_init", block.start, block.rest, "start_memory", name, precision)
     if block.following is None:
         return init
@@ -45,7 +55,7 @@ def beginning(block: Block, name: str, precision: Precision) -> str:
 
 
 def declared(block: Block, name: str) -> str:
-    """Give the declaration of ``init_after``, where there is one."""
+    """Give the declaration of ``init_after`` of a ``block`` called ``name``, if it has one."""
     if block.following is None:
         return ""
     limits = ""

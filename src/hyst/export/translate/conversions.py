@@ -38,7 +38,20 @@ def promoted(value: Expression) -> Expression:
 
 
 def common(left: Expression, right: Expression) -> tuple[Expression, Expression, CType]:
-    """Give two numbers in the type that C computes with them in."""
+    """Give two numbers in the type that C computes with them in.
+
+    Parameters
+    ----------
+    left
+        The first operand.
+    right
+        The second operand.
+
+    Raises
+    ------
+    UntranslatableError
+        If C does something here that has no counterpart.
+    """
     left, right = promoted(left), promoted(right)
     if left.type not in _RANK or right.type not in _RANK:
         raise refused("arithmetic with something that is no number")
@@ -47,7 +60,20 @@ def common(left: Expression, right: Expression) -> tuple[Expression, Expression,
 
 
 def converted(value: Expression, to: CType) -> Expression:
-    """Give a value as one of another type, as C does in assignments and calls."""
+    """Give a value as one of another type, as C does in assignments and calls.
+
+    Parameters
+    ----------
+    value
+        What it holds, or is given.
+    to
+        The type, or the place, it becomes.
+
+    Raises
+    ------
+    UntranslatableError
+        If C does something here that has no counterpart.
+    """
     if isinstance(value, Null) and isinstance(to, Pointer):
         return Null(to)
     value = decayed(value)

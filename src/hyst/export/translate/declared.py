@@ -48,7 +48,19 @@ _PLAIN = {
 @final
 @dataclass(frozen=True)
 class Pattern:
-    """A union of a real number and its bits; a variable of it is kept as the bits."""
+    """A union of a real number and its bits; a variable of it is kept as the bits.
+
+    Parameters
+    ----------
+    value
+        What it holds, or is given.
+    bits
+        Name of the member that holds the bits.
+    real
+        Type of the number.
+    word
+        Type of the bits.
+    """
 
     value: str
     bits: str
@@ -59,7 +71,19 @@ class Pattern:
 @final
 @dataclass
 class Declared:
-    """Types and enumerators that the text has declared so far."""
+    """Types and enumerators that the text has declared so far.
+
+    Parameters
+    ----------
+    names
+        Types by name.
+    structures
+        By name.
+    patterns
+        Unions of a number and its bits, by name.
+    enumerators
+        Values by name.
+    """
 
     names: dict[str, CType] = field(default_factory=dict)
     structures: dict[str, Structure] = field(default_factory=dict)
@@ -67,7 +91,20 @@ class Declared:
     enumerators: dict[str, int] = field(default_factory=dict)
 
     def type_of(self, node: Any, count: Any = None) -> CType:
-        """Give the type of a declarator; ``count`` evaluates the length of an array."""
+        """Give the type of a declarator; ``count`` evaluates the length of an array.
+
+        Parameters
+        ----------
+        node
+            Of the syntax tree.
+        count
+            How many, or what evaluates it.
+
+        Raises
+        ------
+        UntranslatableError
+            If C does something here that has no counterpart.
+        """
         match type(node).__name__:
             case "TypeDecl":
                 return self._base(node)
@@ -126,7 +163,13 @@ class Declared:
             following += 1
 
     def constant(self, node: Any) -> int:
-        """Give the value of a constant expression of whole numbers."""
+        """Give the value of a constant expression of whole numbers.
+
+        Raises
+        ------
+        UntranslatableError
+            If C does something here that has no counterpart.
+        """
         match type(node).__name__:
             case "Constant":
                 return int(node.value.rstrip("uUlL"), 0)

@@ -21,12 +21,31 @@ def entries_of(text: str, name: str) -> tuple[str, ...]:
     """Give the functions of an export called ``name`` that are translated, as far as it has them.
 
     Saving and loading a state is left to every language, for it is about bytes.
+
+    Parameters
+    ----------
+    text
+        C.
+    name
+        Its name.
     """
     return tuple(f"{name}_{each}" for each in _ENTRIES if re.search(rf"\b{name}_{each}\(.*;", text))
 
 
 def c_text(block: Block, name: str, precision: Precision, about: ModelDescription) -> str:
-    """Give all C of an export, the core's part included, as one text."""
+    """Give all C of an export, the core's part included, as one text.
+
+    Parameters
+    ----------
+    block
+        What is exported.
+    name
+        Its name.
+    precision
+        Of the target.
+    about
+        What the numbers mean.
+    """
     common = places(block, name, precision, about)
     declared, stage = header(block, common), source(block, common, precision)
     copy = CoreCopy("hyst", precision)

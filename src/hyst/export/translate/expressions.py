@@ -85,14 +85,28 @@ class Expressions:
         self.target = target
 
     def value(self, node: Any) -> Expression:
-        """Give the value of an expression, an array as it is."""
+        """Give the value of an expression, an array as it is.
+
+        Raises
+        ------
+        UntranslatableError
+            If C does something here that has no counterpart.
+        """
         method = getattr(self, f"_{type(node).__name__.lower()}", None)
         if method is None:
             raise refused(f"a {type(node).__name__} inside an expression", node)
         return method(node)  # type: ignore[no-any-return]
 
     def as_type(self, node: Any, to: CType) -> Expression:
-        """Give the value of an expression, or of an initialiser, as that of a type."""
+        """Give the value of an expression, or of an initialiser, as that of a type.
+
+        Parameters
+        ----------
+        node
+            Of the syntax tree.
+        to
+            The type, or the place, it becomes.
+        """
         if type(node).__name__ == "InitList":
             return self._initialiser(node, to)
         if isinstance(to, FunctionPointer):
@@ -168,7 +182,22 @@ class Expressions:
         raise refused("sizeof", node)
 
     def arithmetic(self, operator: str, left: Expression, right: Expression) -> Expression:
-        """Give an operation of two numbers."""
+        """Give an operation of two numbers.
+
+        Parameters
+        ----------
+        operator
+            As C writes it.
+        left
+            The first operand.
+        right
+            The second operand.
+
+        Raises
+        ------
+        UntranslatableError
+            If C does something here that has no counterpart.
+        """
         if operator in ("<<", ">>"):
             left, right = promoted(left), promoted(right)
             return Binary(operator, left, right, left.type)
@@ -255,7 +284,13 @@ class Expressions:
         return Initialiser(tuple(values), to)
 
     def nothing(self, kind: CType) -> Expression:
-        """Give what C leaves where an initialiser says nothing."""
+        """Give what C leaves where an initialiser says nothing.
+
+        Raises
+        ------
+        UntranslatableError
+            If C does something here that has no counterpart.
+        """
         if isinstance(kind, Scalar):
             return Number(0.0 if kind.is_real else 0, kind)
         if isinstance(kind, Pointer):
@@ -307,7 +342,24 @@ def _pointers(node: Any, left: Expression, right: Expression) -> Expression:
 
 
 def moved(operator: str, pointer: Expression, by: Expression, node: Any) -> Expression:
-    """Give a pointer further on, or back, by a number."""
+    """Give a pointer further on, or back, by a number.
+
+    Parameters
+    ----------
+    operator
+        As C writes it.
+    pointer
+        What points.
+    by
+        How far.
+    node
+        Of the syntax tree.
+
+    Raises
+    ------
+    UntranslatableError
+        If C does something here that has no counterpart.
+    """
     if operator not in "+-" or not isinstance(by.type, Scalar) or by.type.is_real:
         raise refused(f"{operator} of pointers", node)
     index = converted(promoted(by), SIZE)

@@ -56,7 +56,17 @@ class Facts:
     lies: dict[Slot, set[str]] = field(default_factory=dict)
 
     def is_one_number(self, program: Program, function: str, parameter: str) -> bool:
-        """Tell whether a pointer to a number is only used for the one it points to."""
+        """Tell whether a pointer to a number is only used for the one it points to.
+
+        Parameters
+        ----------
+        program
+            What it reaches.
+        function
+            The function it stands in or belongs to.
+        parameter
+            Name of the parameter.
+        """
         body = program.functions[function].body
         for each in all_expressions(body):
             if isinstance(each, Element) and _is_parameter(each.of, parameter):

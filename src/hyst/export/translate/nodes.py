@@ -25,7 +25,17 @@ class Number:
 @final
 @dataclass(frozen=True)
 class Name:
-    """A variable: ``kind`` is parameter, local or table (a constant of the file)."""
+    """A variable.
+
+    Parameters
+    ----------
+    name
+        Unique in its function, or a table's.
+    type
+        Of what it holds.
+    kind
+        ``parameter``, ``local`` or ``table`` (a constant of the file).
+    """
 
     name: str
     type: CType
@@ -43,7 +53,17 @@ class Null:
 @final
 @dataclass(frozen=True)
 class Unary:
-    """``-`` or ``~`` of a number of the same type."""
+    """``-`` or ``~`` of a number of the same type.
+
+    Parameters
+    ----------
+    operator
+        As C writes it.
+    operand
+        The one operand.
+    type
+        Type of the result.
+    """
 
     operator: str
     operand: Expression
@@ -53,7 +73,15 @@ class Unary:
 @final
 @dataclass(frozen=True)
 class Not:
-    """1 where the operand is 0 (or null), else 0."""
+    """1 where the operand is 0 (or null), else 0.
+
+    Parameters
+    ----------
+    operand
+        The one operand.
+    type
+        Type of the result.
+    """
 
     operand: Expression
     type: CType = INT
@@ -62,7 +90,19 @@ class Not:
 @final
 @dataclass(frozen=True)
 class Binary:
-    """``+ - * / % & | ^ << >>``; of a shift, the right operand keeps its own type."""
+    """``+ - * / % & | ^ << >>``; of a shift, the right operand keeps its own type.
+
+    Parameters
+    ----------
+    operator
+        As C writes it.
+    left
+        The first operand.
+    right
+        The second operand.
+    type
+        Type of the result.
+    """
 
     operator: str
     left: Expression
@@ -73,7 +113,19 @@ class Binary:
 @final
 @dataclass(frozen=True)
 class Comparison:
-    """``< <= > >= == !=`` of two numbers of one type, or a pointer with ``Null``: 1 or 0."""
+    """``< <= > >= == !=`` of two numbers of one type, or a pointer with ``Null``: 1 or 0.
+
+    Parameters
+    ----------
+    operator
+        As C writes it.
+    left
+        The first operand.
+    right
+        The second operand.
+    type
+        Type of the result.
+    """
 
     operator: str
     left: Expression
@@ -84,7 +136,19 @@ class Comparison:
 @final
 @dataclass(frozen=True)
 class Logical:
-    """``&&`` or ``||``, the right operand only evaluated where it decides: 1 or 0."""
+    """``&&`` or ``||``, the right operand only evaluated where it decides: 1 or 0.
+
+    Parameters
+    ----------
+    operator
+        As C writes it.
+    left
+        The first operand.
+    right
+        The second operand.
+    type
+        Type of the result.
+    """
 
     operator: str
     left: Expression
@@ -95,7 +159,19 @@ class Logical:
 @final
 @dataclass(frozen=True)
 class Conditional:
-    """One of two values of one type."""
+    """One of two values of one type.
+
+    Parameters
+    ----------
+    condition
+        A comparison, or several, joined or denied.
+    then
+        Where the condition holds.
+    other
+        Where it does not.
+    type
+        Type of the result.
+    """
 
     condition: Expression
     then: Expression
@@ -106,7 +182,15 @@ class Conditional:
 @final
 @dataclass(frozen=True)
 class Convert:
-    """A number as one of another type."""
+    """A number as one of another type.
+
+    Parameters
+    ----------
+    operand
+        The one operand.
+    type
+        Type of the result.
+    """
 
     operand: Expression
     type: CType
@@ -115,7 +199,15 @@ class Convert:
 @final
 @dataclass(frozen=True)
 class ToBits:
-    """The bits of a real number as an unsigned one of the same size."""
+    """The bits of a real number as an unsigned one of the same size.
+
+    Parameters
+    ----------
+    operand
+        The one operand.
+    type
+        Type of the result.
+    """
 
     operand: Expression
     type: CType
@@ -124,7 +216,15 @@ class ToBits:
 @final
 @dataclass(frozen=True)
 class FromBits:
-    """The real number that has these bits."""
+    """The real number that has these bits.
+
+    Parameters
+    ----------
+    operand
+        The one operand.
+    type
+        Type of the result.
+    """
 
     operand: Expression
     type: CType
@@ -133,7 +233,17 @@ class FromBits:
 @final
 @dataclass(frozen=True)
 class Member:
-    """A member of a structure, which is a place or a value, not a pointer to it."""
+    """A member of a structure, which is a place or a value, not a pointer to it.
+
+    Parameters
+    ----------
+    of
+        What it is of.
+    name
+        Its name.
+    type
+        Type of the result.
+    """
 
     of: Expression
     name: str
@@ -143,7 +253,17 @@ class Member:
 @final
 @dataclass(frozen=True)
 class Element:
-    """What a pointer or an array has at an index."""
+    """What a pointer or an array has at an index.
+
+    Parameters
+    ----------
+    of
+        What it is of.
+    index
+        A number of type size.
+    type
+        Type of the result.
+    """
 
     of: Expression
     index: Expression
@@ -153,7 +273,17 @@ class Element:
 @final
 @dataclass(frozen=True)
 class Offset:
-    """A pointer further on by an index."""
+    """A pointer further on by an index.
+
+    Parameters
+    ----------
+    of
+        What it is of.
+    index
+        A number of type size.
+    type
+        Type of the result.
+    """
 
     of: Expression
     index: Expression
@@ -163,7 +293,7 @@ class Offset:
 @final
 @dataclass(frozen=True)
 class Decay:
-    """An array as the pointer to its first element."""
+    """An array, the place ``of``, as the pointer of a ``type`` to its first element."""
 
     of: Expression
     type: CType
@@ -172,7 +302,15 @@ class Decay:
 @final
 @dataclass(frozen=True)
 class AddressOf:
-    """The pointer to a place that is no element."""
+    """The pointer to a place that is no element.
+
+    Parameters
+    ----------
+    of
+        What it is of.
+    type
+        Type of the result.
+    """
 
     of: Expression
     type: CType
@@ -181,7 +319,17 @@ class AddressOf:
 @final
 @dataclass(frozen=True)
 class Call:
-    """A call of a function of the program; ``type`` may be void."""
+    """A call of a function of the program; ``type`` may be void.
+
+    Parameters
+    ----------
+    function
+        The function it stands in or belongs to.
+    arguments
+        In their order.
+    type
+        Type of the result.
+    """
 
     function: str
     arguments: tuple[Expression, ...]
@@ -191,7 +339,7 @@ class Call:
 @final
 @dataclass(frozen=True)
 class FunctionName:
-    """A function as the value of a member, which no call reads."""
+    """A function by its ``name`` as the value of a member of a ``type``, which no call reads."""
 
     name: str
     type: CType
@@ -200,7 +348,15 @@ class FunctionName:
 @final
 @dataclass(frozen=True)
 class Initialiser:
-    """Values of all members or elements, in their order."""
+    """Values of all members or elements, in their order.
+
+    Parameters
+    ----------
+    values
+        In their order.
+    type
+        Type of the result.
+    """
 
     values: tuple[Expression, ...]
     type: CType

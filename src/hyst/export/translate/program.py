@@ -76,7 +76,17 @@ class Evaluate:
 @final
 @dataclass(frozen=True)
 class If:
-    """``other`` is empty where there is none."""
+    """``other`` is empty where there is none.
+
+    Parameters
+    ----------
+    condition
+        A comparison, or several, joined or denied.
+    then
+        Where the condition holds.
+    other
+        Where it does not.
+    """
 
     condition: Expression
     then: tuple[Statement, ...]
@@ -103,7 +113,13 @@ class Break:
 @final
 @dataclass(frozen=True)
 class Return:
-    """Leaves the function."""
+    """Leaves the function.
+
+    Parameters
+    ----------
+    value
+        What it holds, or is given.
+    """
 
     value: Expression | None
 
@@ -111,7 +127,13 @@ class Return:
 @final
 @dataclass(frozen=True)
 class Block:
-    """Statements with variables of their own; their names are unique in the function anyway."""
+    """Statements with variables of their own; their names are unique in the function anyway.
+
+    Parameters
+    ----------
+    body
+        Statements.
+    """
 
     body: tuple[Statement, ...]
 
@@ -171,6 +193,13 @@ class Structure:
     """A structure: types of its members, in their order.
 
     A union of structures, of which C code uses the one that a tag names, is a structure too.
+
+    Parameters
+    ----------
+    name
+        Its name.
+    members
+        Types by name, in their order.
     """
 
     name: str
@@ -180,7 +209,17 @@ class Structure:
 @final
 @dataclass(frozen=True)
 class Table:
-    """A constant of the file: an array, a structure or a number."""
+    """A constant of the file: an array, a structure or a number.
+
+    Parameters
+    ----------
+    name
+        Its name.
+    type
+        Type of the result.
+    value
+        What it holds, or is given.
+    """
 
     name: str
     type: CType

@@ -32,7 +32,19 @@ class Scope:
         self.visible.pop()
 
     def declare(self, name: str, kind: CType, is_const: bool, role: str = "local") -> Variable:
-        """Give the variable of a declaration, under a name of its own."""
+        """Give the variable of a declaration, under a name of its own.
+
+        Parameters
+        ----------
+        name
+            Its name.
+        kind
+            Its type.
+        is_const
+            Whether it must not be changed.
+        role
+            Its kind as a name: parameter or local.
+        """
         own, count = name, 1
         seen = {each.name for block in self.visible for each in block.values()}
         while own in self.taken or own in seen or not self._fits(own, kind):
@@ -45,7 +57,15 @@ class Scope:
         return Variable(own, kind, is_const)
 
     def bind(self, name: str, to: Name) -> None:
-        """Let a name stand for something else in this block, as a table."""
+        """Let a name stand for something else in this block, as a table.
+
+        Parameters
+        ----------
+        name
+            Its name.
+        to
+            The type, or the place, it becomes.
+        """
         self.visible[-1][name] = to
 
     def find(self, name: str) -> Name | None:

@@ -74,7 +74,13 @@ class Statements:
         return tuple(each for node in nodes or () for each in self.one(node))
 
     def one(self, node: Any) -> tuple[Statement, ...]:
-        """Give what a statement does; nothing for one that does nothing."""
+        """Give what a statement does; nothing for one that does nothing.
+
+        Raises
+        ------
+        UntranslatableError
+            If C does something here that has no counterpart.
+        """
         method = getattr(self, f"_{type(node).__name__.lower()}", None)
         if method is None:
             raise refused(f"a {type(node).__name__}", node)

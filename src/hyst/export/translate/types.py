@@ -9,7 +9,13 @@ from typing import final
 @final
 @dataclass(frozen=True)
 class Scalar:
-    """A number: double, float, int32, uint32, uint64, uint8 or size; or void."""
+    """A number: double, float, int32, uint32, uint64, uint8 or size; or void.
+
+    Parameters
+    ----------
+    name
+        Its name.
+    """
 
     name: str
 
@@ -22,7 +28,15 @@ class Scalar:
 @final
 @dataclass(frozen=True)
 class Pointer:
-    """A pointer to one or more of a type."""
+    """A pointer to one or more of a type.
+
+    Parameters
+    ----------
+    to
+        The type, or the place, it becomes.
+    is_const
+        Whether it must not be changed.
+    """
 
     to: CType
     is_const: bool
@@ -31,7 +45,15 @@ class Pointer:
 @final
 @dataclass(frozen=True)
 class Array:
-    """So many of a type."""
+    """So many of a type.
+
+    Parameters
+    ----------
+    of
+        What it is of.
+    count
+        How many, or what evaluates it.
+    """
 
     of: CType
     count: int

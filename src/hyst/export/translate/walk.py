@@ -83,7 +83,15 @@ def all_expressions(body: tuple[Statement, ...]) -> Iterator[Any]:
 def with_expressions(
     body: tuple[Statement, ...], change: Callable[[Any], Any]
 ) -> tuple[Statement, ...]:
-    """Give statements whose expressions are changed as wholes."""
+    """Give statements whose expressions are changed as wholes.
+
+    Parameters
+    ----------
+    body
+        Statements.
+    change
+        Gives what takes the place of an expression.
+    """
     return tuple(_with_expressions(each, change) for each in body)
 
 

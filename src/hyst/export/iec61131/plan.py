@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from hyst.export.structured_text.numbers import Numbers
-from hyst.export.structured_text.usage import Usage, nodes_in, plain, usage_of
-from hyst.export.structured_text.words import Names
+from hyst.export.iec61131.numbers import Numbers
+from hyst.export.iec61131.usage import Usage, nodes_in, plain, usage_of
+from hyst.export.iec61131.words import Names
 from hyst.export.translate.program import (
     INT,
     SIZE,
@@ -120,7 +120,7 @@ class Plan:
         return names
 
     def field(self, kind: CType, name: str) -> str:
-        """Give what a member of a structure is called."""
+        """Give what a member, by its ``name`` in C, of a structure, its ``kind``, is called."""
         assert isinstance(kind, Named)
         return self._fields(kind.name).of(name)
 
@@ -137,7 +137,13 @@ class Plan:
     # Types.
 
     def type_text(self, kind: CType) -> str:
-        """Give a type as structured text has it; a pointer to a structure is kept as its copy."""
+        """Give a type as structured text has it; a pointer to a structure is kept as its copy.
+
+        Raises
+        ------
+        UntranslatableError
+            If it has no form in structured text.
+        """
         if isinstance(kind, Named):
             return self._global("_type", kind.name)
         if isinstance(kind, Pointer):
@@ -179,13 +185,19 @@ class Plan:
         return _place_of(of) not in self._walked
 
     def array_member(self, of: Member) -> int:
-        """Give where an array inside a structure begins, if it has one place alone."""
+        """Give where an array inside a structure begins, if it has one place alone.
+
+        Raises
+        ------
+        UntranslatableError
+            If it has no form in structured text.
+        """
         if _place_of(of)[0] == self.state:
             return 0
         raise refused(f"a pointer into the member {of.name} of {of.of.type}")
 
     def is_member_kept(self, structure: str, name: str) -> bool:
-        """Tell whether a member is written."""
+        """Tell whether the member ``name`` of a ``structure`` is written."""
         kind = self.program.structures[structure].members[name]
         is_memory = structure == self.state and name == "memory"
         return not self.is_left_out(kind) and not is_memory

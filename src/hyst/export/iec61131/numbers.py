@@ -8,7 +8,7 @@ from itertools import groupby
 from typing import Any, final
 
 from hyst.errors import HystError
-from hyst.export.structured_text.usage import is_array_of_numbers
+from hyst.export.iec61131.usage import is_array_of_numbers
 from hyst.export.translate.program import Initialiser, Number, Program, Unary
 
 
@@ -27,6 +27,11 @@ def real_text(value: float, precision: str) -> str:
     str
         The shortest that is exact; a number of single precision has as many digits as one in double
         needs, so that a compiler that reads it as such does not round twice.
+
+    Raises
+    ------
+    HystError
+        If it is not finite.
     """
     if not math.isfinite(value):
         raise HystError(f"{value} is no constant of structured text")
@@ -56,7 +61,7 @@ class Numbers:
     _places: dict[tuple[str, str], int] = field(default_factory=dict)
 
     def place(self, function: str, name: str, count: int) -> int:
-        """Give where the array of a function begins; one does, for no function calls itself."""
+        """Give where ``count`` numbers of a function begin, by ``name``: always the same place."""
         key = (function, name)
         if key not in self._places:
             self._places[key] = len(self.starts)
@@ -93,7 +98,13 @@ def constants(value: Any) -> list[float]:
 
 
 def constant(value: Any) -> float:
-    """Give the value of a constant."""
+    """Give the value of a constant.
+
+    Raises
+    ------
+    HystError
+        If it would have to be computed.
+    """
     if isinstance(value, Number):
         return float(value.value)
     if isinstance(value, Unary) and value.operator == "-":

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, final
 
-from hyst.export.rust.names import type_name
+from hyst.export.rust_crate.names import type_name
 from hyst.export.translate.facts import MEMORY, TABLE, Facts, Slot
 from hyst.export.translate.program import (
     VOID,
@@ -57,13 +57,32 @@ class Places:
     forced: set[Slot] = field(default_factory=set)
 
     def number(self, kind: CType) -> str:
-        """Give the name of a type of numbers."""
+        """Give the name of a type of numbers.
+
+        Raises
+        ------
+        UntranslatableError
+            If C does something here that has no counterpart.
+        """
         if not isinstance(kind, Scalar) or kind.name not in _NUMBERS:
             raise refused(f"the type {said(kind)}")
         return _NUMBERS[kind.name]
 
     def is_cell(self, slot: Slot, kind: Pointer) -> bool:
-        """Tell whether a parameter or a member is a slice of cells."""
+        """Tell whether a parameter or a member is a slice of cells.
+
+        Parameters
+        ----------
+        slot
+            The parameter or member it is given to.
+        kind
+            The type.
+
+        Raises
+        ------
+        UntranslatableError
+            If C does something here that has no counterpart.
+        """
         lies = self.facts.lies.get(slot, set())
         if slot in self.forced or MEMORY in lies or not kind.is_const:
             if TABLE in lies:
@@ -88,7 +107,15 @@ class Places:
                 yield name, kind
 
     def value_type(self, kind: CType, lifetime: str = "'_") -> str:
-        """Give the type of a number, an array or a structure."""
+        """Give the type of a number, an array or a structure.
+
+        Parameters
+        ----------
+        kind
+            The type.
+        lifetime
+            Of the references inside.
+        """
         if isinstance(kind, Array):
             return f"[{self.value_type(kind.of, lifetime)}; {kind.count}]"
         if isinstance(kind, Named):
@@ -97,13 +124,33 @@ class Places:
         return self.number(kind)
 
     def member_type(self, structure: str, name: str, kind: CType) -> str:
-        """Give the type of a member."""
+        """Give the type of a member.
+
+        Parameters
+        ----------
+        structure
+            Name of the structure.
+        name
+            Its name.
+        kind
+            The type.
+        """
         if isinstance(kind, Pointer):
             return self._pointer((structure, name), kind, "'a ", "'a")
         return self.value_type(kind, "'a")
 
     def parameter_type(self, function: Function, name: str, kind: CType) -> str:
-        """Give the type of a parameter."""
+        """Give the type of a parameter.
+
+        Parameters
+        ----------
+        function
+            The function it stands in or belongs to.
+        name
+            Its name.
+        kind
+            The type.
+        """
         slot = (function.name, name)
         before, inner = self.lifetimes(function)
         if not isinstance(kind, Pointer):
@@ -130,7 +177,15 @@ class Places:
         return slot in self.facts.written or slot[0] in self.program.entries
 
     def is_optional(self, slot: Slot, kind: CType) -> bool:
-        """Tell whether a pointer to a structure may be none; no numbers are an empty slice."""
+        """Tell whether a pointer to a structure may be none; no numbers are an empty slice.
+
+        Parameters
+        ----------
+        slot
+            The parameter or member it is given to.
+        kind
+            The type.
+        """
         return (
             isinstance(kind, Pointer) and isinstance(kind.to, Named) and slot in self.facts.nullable
         )
@@ -146,7 +201,20 @@ class Places:
         raise refused(f"{'.'.join(slot)}, a pointer to {said(kind.to)},")
 
     def blank(self, kind: CType, slot: Slot = ("", "")) -> str:
-        """Give a value for what is set later."""
+        """Give a value for what is set later.
+
+        Parameters
+        ----------
+        kind
+            The type.
+        slot
+            The parameter or member it is given to.
+
+        Raises
+        ------
+        UntranslatableError
+            If C does something here that has no counterpart.
+        """
         if isinstance(kind, Scalar):
             return f"0.0_{self.number(kind)}" if kind.is_real else f"0_{self.number(kind)}"
         if isinstance(kind, Array):
@@ -161,7 +229,15 @@ class Places:
 
 
 def slot_of(function: Function, pointer: Any) -> Slot | None:
-    """Give the parameter or member that a pointer is read from; None if it is neither."""
+    """Give the parameter or member that a pointer is read from; None if it is neither.
+
+    Parameters
+    ----------
+    function
+        The function it stands in or belongs to.
+    pointer
+        What points.
+    """
     if isinstance(pointer, Name) and pointer.kind == "parameter":
         return (function.name, pointer.name)
     if isinstance(pointer, Member) and isinstance(pointer.of.type, Named):

@@ -26,11 +26,11 @@ from hyst.export.c.readme_rows import error_rows, lag_row, provenance_row, signa
 from hyst.export.c.selftest import SelfTest
 from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, MANIFEST, write_export
-from hyst.export.rust.interface import constants, interface_places, methods
-from hyst.export.rust.kernel import kernel
-from hyst.export.rust.layout import laid_out
-from hyst.export.rust.names import refuse_for_rust
-from hyst.export.rust.selftest import selftest_source, vectors
+from hyst.export.rust_crate.interface import constants, interface_places, methods
+from hyst.export.rust_crate.kernel import kernel
+from hyst.export.rust_crate.layout import laid_out
+from hyst.export.rust_crate.names import refuse_for_rust
+from hyst.export.rust_crate.selftest import selftest_source, vectors
 from hyst.export.translate.exported import program_of
 from hyst.operators import ModelDescription
 

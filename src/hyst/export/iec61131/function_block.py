@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import final
 
 from hyst.export.c.block import Block
-from hyst.export.structured_text.plan import Plan
-from hyst.export.structured_text.statements import folded, section
-from hyst.export.structured_text.words import Names
+from hyst.export.iec61131.plan import Plan
+from hyst.export.iec61131.statements import folded, section
+from hyst.export.iec61131.words import Names
 from hyst.export.translate.program import Named
 
 HISTORY = 32
@@ -45,7 +45,7 @@ class BlockNames:
 
     @classmethod
     def of(cls, block: Block, taken: frozenset[str]) -> BlockNames:
-        """Give names that nothing else in the block has."""
+        """Give names for a ``block`` that are not ``taken`` by anything else in it."""
         names = Names(taken)
         # One letter alone would be "the" signal, which says nothing.
         wanted = ("scheduled_by" if each == "s" else each for each in block.inputs)
@@ -57,7 +57,7 @@ class BlockNames:
 @final
 @dataclass(frozen=True)
 class Table:
-    """A structure of constants: its name, its type, and the statements that fill it."""
+    """A structure of constants: its name and type, and by which statements it is filled."""
 
     name: str
     type: str
@@ -125,7 +125,7 @@ def function_block(block: Block, plan: Plan, tables: list[Table], meanings: dict
 
 
 def taken_by(plan: Plan, tables: list[Table]) -> frozenset[str]:
-    """Give the names that a block has for itself."""
+    """Give the names that the block of a ``plan`` has for itself and its ``tables``."""
     return frozenset(
         {plan.name, "numbers", "state", "ignored", "began", "i", *(each.name for each in tables)}
     )

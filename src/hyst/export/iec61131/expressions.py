@@ -9,17 +9,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from hyst.export.structured_text.forms import (
+from hyst.export.iec61131.conditions import Conditions
+from hyst.export.iec61131.forms import (
     WHOLE,
     bare,
-    changes,
     counted,
-    in_parentheses,
-    may_always_be_evaluated,
     number_text,
 )
-from hyst.export.structured_text.numbers import constant, real_text
-from hyst.export.structured_text.usage import (
+from hyst.export.iec61131.numbers import constant, real_text
+from hyst.export.iec61131.usage import (
     is_array_of_numbers,
     is_structure_table,
     plain,
@@ -27,7 +25,6 @@ from hyst.export.structured_text.usage import (
     points_to_structure,
     size_of,
 )
-from hyst.export.structured_text.writer import Writer
 from hyst.export.translate.program import (
     SIZE,
     UNSIGNED,
@@ -55,56 +52,9 @@ from hyst.export.translate.program import (
 )
 from hyst.export.translate.refusal import refused
 
-_COMPARISONS = {"==": "=", "!=": "<>"}
 
-
-class Expressions(Writer):
+class Expressions(Conditions):
     """Writes the expressions of one function."""
-
-    # Conditions.
-
-    def condition(self, of: Any) -> str:
-        """Give an expression as BOOL."""
-        match of:
-            case Comparison():
-                return self._comparison(of)
-            case Not(operand=operand):
-                return f"NOT {in_parentheses(self.condition(operand))}"
-            case Logical():
-                return self._logical(of)
-        return f"{self.value(of)} <> 0"
-
-    def _comparison(self, of: Comparison) -> str:
-        if isinstance(of.right, Null):
-            there = self._is_there(plain(of.left))
-            return there if of.operator == "!=" else f"NOT {there}"
-        mark = _COMPARISONS.get(of.operator, of.operator)
-        left, right = self.value(of.left), self.value(of.right)
-        return f"{left} {mark} {right}"
-
-    def _is_there(self, pointer: Any) -> str:
-        if self._may_be_null(pointer):
-            return self.names.of(f"{pointer.name}_given")
-        if points_to_number(pointer.type):
-            return f"({self.index(pointer)} >= 0)"
-        raise refused("a comparison of a pointer with NULL")
-
-    def _may_be_null(self, pointer: Any) -> bool:
-        role = self.roles.get(pointer.name) if isinstance(pointer, Name) else None
-        return role is not None and role.may_be_null
-
-    def _logical(self, of: Logical) -> str:
-        left = self.condition(of.left)
-        needed, right = self.apart(lambda: self.condition(of.right))
-        word = "AND" if of.operator == "&&" else "OR"
-        if not needed and may_always_be_evaluated(of.right) and not changes(of.left):
-            return f"{in_parentheses(left)} {word} {in_parentheses(right)}"
-        held = self.temporary("BOOL", "holds")
-        self.lines.append(f"{held} := {left};")
-        asks = held if word == "AND" else f"NOT {held}"
-        with self.inside(f"IF {asks} THEN", "END_IF;"):
-            self.lines += [*needed, f"{held} := {right};"]
-        return held
 
     # Values.
 
@@ -191,7 +141,13 @@ class Expressions(Writer):
     # Places.
 
     def place(self, of: Any) -> str:
-        """Give a variable, a member or an element."""
+        """Give a variable, a member or an element.
+
+        Raises
+        ------
+        UntranslatableError
+            If it has no form in structured text.
+        """
         match of:
             case Name(kind="table"):
                 return self._constant(of.name)
@@ -242,7 +198,7 @@ class Expressions(Writer):
     # Pointers.
 
     def index(self, of: Any, more: Any = None) -> str:
-        """Give a pointer to real numbers as the index it is, ``more`` elements further on."""
+        """Give the pointer ``of`` numbers as the index it is, ``more`` elements further on."""
         base, offset = self._split(of)
         parts = [each for each in (offset, more) if each is not None]
         first = int(base) if base.lstrip("-").isdigit() else 0
@@ -284,7 +240,13 @@ class Expressions(Writer):
         raise refused(f"a pointer {type(of).__name__}")
 
     def structure(self, of: Any) -> str:
-        """Give the structure that a pointer points to."""
+        """Give the structure that a pointer points to.
+
+        Raises
+        ------
+        UntranslatableError
+            If it has no form in structured text.
+        """
         of = plain(of)
         match of:
             case Name() | Member():
@@ -319,7 +281,13 @@ class Expressions(Writer):
     # Calls.
 
     def call(self, of: Call) -> str:
-        """Give a call, its arguments by name."""
+        """Give a call, its arguments by name.
+
+        Raises
+        ------
+        UntranslatableError
+            If it has no form in structured text.
+        """
         values, references = [], []
         function = self.plan.program.functions[of.function]
         names = self.plan.parameter_names(of.function)
@@ -370,7 +338,7 @@ class Expressions(Writer):
     # Assignments.
 
     def assign(self, target: str, kind: CType, value: Any) -> None:
-        """Write an assignment of a value of a type."""
+        """Write that a ``target`` of a ``kind`` gets a ``value``."""
         value = plain(value)
         if isinstance(value, Initialiser):
             self._assign_all(target, kind, value)

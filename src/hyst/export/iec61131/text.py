@@ -9,19 +9,19 @@ from hyst import __version__
 from hyst.errors import HystError
 from hyst.export.c.block import Block
 from hyst.export.c.names import plain_text
-from hyst.export.structured_text.bit_functions import bit_functions, whole_part
-from hyst.export.structured_text.expressions import Expressions
-from hyst.export.structured_text.function_block import BlockNames, Table, function_block, taken_by
-from hyst.export.structured_text.plan import Plan
-from hyst.export.structured_text.statements import Statements
-from hyst.export.structured_text.usage import is_structure_table
+from hyst.export.iec61131.bit_functions import bit_functions, whole_part
+from hyst.export.iec61131.expressions import Expressions
+from hyst.export.iec61131.function_block import BlockNames, Table, function_block, taken_by
+from hyst.export.iec61131.plan import Plan
+from hyst.export.iec61131.statements import Statements
+from hyst.export.iec61131.usage import is_structure_table
 from hyst.export.translate.program import Function, Named, Pointer, Program
 
 
 @final
 @dataclass(frozen=True)
 class Written:
-    """A text, and what its block calls the signals."""
+    """A text, and the names of its block's signals."""
 
     text: str
     names: BlockNames

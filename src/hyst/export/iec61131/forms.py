@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from hyst.export.structured_text.numbers import real_text
-from hyst.export.structured_text.usage import nodes_in
+from hyst.export.iec61131.numbers import real_text
+from hyst.export.iec61131.usage import nodes_in
 from hyst.export.translate.program import (
     INT,
     SIZE,
@@ -25,7 +25,13 @@ WHOLE = (INT, SIZE)
 
 
 def number_text(of: Number, precision: str) -> str:
-    """Give a constant."""
+    """Give a constant ``of`` the program in a ``precision``.
+
+    Raises
+    ------
+    UntranslatableError
+        If it has no form in structured text.
+    """
     if isinstance(of.type, Scalar) and of.type.is_real:
         return real_text(float(of.value), precision)
     if of.type == UNSIGNED:
@@ -71,7 +77,13 @@ def changes(of: Any) -> bool:
 
 
 def counted(of: Any) -> Any:
-    """Give an unsigned number that C computes, as one that counts: none comes near 2^31."""
+    """Give an unsigned number that C computes, as one that counts: none comes near 2^31.
+
+    Raises
+    ------
+    UntranslatableError
+        If it has no form in structured text.
+    """
     match of:
         case Number():
             return Number(of.value, SIZE)

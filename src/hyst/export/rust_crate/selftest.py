@@ -10,7 +10,7 @@ from hyst.export.c.exported import Block
 from hyst.export.c.numbers import Precision
 from hyst.export.c.selftest import BAD, SECOND_RESTS, SEEDS, SelfTest
 from hyst.export.c.templating import filled, indented
-from hyst.export.rust.names import rust_name
+from hyst.export.rust_crate.names import rust_name
 
 
 def selftest_source(block: Block, places: dict[str, str]) -> str:
@@ -44,7 +44,17 @@ def selftest_source(block: Block, places: dict[str, str]) -> str:
 
 
 def vectors(block: Block, test: SelfTest, precision: Precision) -> str:
-    """Give the input and what Python makes of it, numbers as their bits."""
+    """Give the input and what Python makes of it, numbers as their bits.
+
+    Parameters
+    ----------
+    block
+        What is exported.
+    test
+        The self-test.
+    precision
+        Of the target.
+    """
     drive = test.drive
     word = "u32" if precision == "single" else "u64"
     lines = [

@@ -23,9 +23,9 @@ from hyst.export.c.numbers import Precision, as_precision
 from hyst.export.c.readme_rows import error_rows, lag_row, provenance_row, signals, verdict_row
 from hyst.export.c.templating import filled
 from hyst.export.folder import FORMAT, MANIFEST, write_export
-from hyst.export.structured_text.function_block import HISTORY, BlockNames
-from hyst.export.structured_text.text import structured_text_of
-from hyst.export.structured_text.words import as_block_name
+from hyst.export.iec61131.function_block import HISTORY, BlockNames
+from hyst.export.iec61131.text import structured_text_of
+from hyst.export.iec61131.words import as_block_name
 from hyst.export.translate.exported import program_of
 from hyst.operators import ModelDescription
 

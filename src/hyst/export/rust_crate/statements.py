@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from hyst.export.rust.expressions import Expressions
-from hyst.export.rust.names import rust_name
-from hyst.export.rust.places import Places
+from hyst.export.rust_crate.expressions import Expressions
+from hyst.export.rust_crate.names import rust_name
+from hyst.export.rust_crate.places import Places
 from hyst.export.translate.facts import Slot
 from hyst.export.translate.pointers import split
 from hyst.export.translate.program import (

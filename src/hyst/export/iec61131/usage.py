@@ -37,7 +37,7 @@ from hyst.export.translate.program import (
 @final
 @dataclass(frozen=True)
 class Role:
-    """How a parameter is passed: value, index, reference, or not at all.
+    """The way a parameter is passed: value, index, reference, or nothing.
 
     ``may_be_null`` adds a parameter that tells whether there is one.
     """
@@ -188,7 +188,10 @@ def _tables(program: Program, body: list[Any], usage: Usage) -> tuple[str, ...]:
 
 
 def is_structure_table(program: Program, name: str) -> bool:
-    """Tell whether a constant stays whole: a structure, an array of them or of counts."""
+    """Tell whether the constant ``name`` of a ``program`` stays whole.
+
+    So does a structure, and an array of them or of counts.
+    """
     kind = program.tables[name].type
     return isinstance(kind, Named) or (isinstance(kind, Array) and not is_array_of_numbers(kind))
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from hyst.errors import HystError
 from hyst.export.c.templating import filled
-from hyst.export.structured_text.numbers import real_text
-from hyst.export.structured_text.plan import Plan
+from hyst.export.iec61131.numbers import real_text
+from hyst.export.iec61131.plan import Plan
 
 _LITERAL = re.compile(r"<([\d.e+-]+)>")
 _FUNCTION = re.compile(r"^FUNCTION (\w+) .*?^END_FUNCTION\n", re.MULTILINE | re.DOTALL)

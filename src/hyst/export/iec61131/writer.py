@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from hyst.export.structured_text.plan import Plan
-from hyst.export.structured_text.words import Names
+from hyst.export.iec61131.plan import Plan
+from hyst.export.iec61131.words import Names
 from hyst.export.translate.program import Function
 
 
@@ -41,7 +41,7 @@ class Writer:
 
     @contextmanager
     def inside(self, head: str, tail: str = "") -> Iterator[None]:
-        """Write what is written meanwhile between two lines, indented."""
+        """Write what is written meanwhile between the lines ``head`` and ``tail``, indented."""
         outer, self.lines = self.lines, []
         yield
         inner, self.lines = self.lines, outer
@@ -58,7 +58,7 @@ class Writer:
         return needed, text
 
     def temporary(self, kind: str, name: str = "chosen") -> str:
-        """Give a new variable of the function."""
+        """Give a new variable of a ``kind``, called ``name`` or nearly so."""
         own = self.names.fresh(name)
         self.temporaries.append((own, kind))
         return own

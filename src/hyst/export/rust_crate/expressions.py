@@ -5,8 +5,8 @@ from __future__ import annotations
 import struct
 from typing import Any
 
-from hyst.export.rust.names import constant_name, rust_name, type_name
-from hyst.export.rust.places import Places, slot_of
+from hyst.export.rust_crate.names import constant_name, rust_name, type_name
+from hyst.export.rust_crate.places import Places, slot_of
 from hyst.export.translate.pointers import split
 from hyst.export.translate.program import (
     AddressOf,
@@ -69,12 +69,28 @@ class Expressions:
         self.function = function
 
     def value(self, expression: Any, least: int = _OTHER) -> str:
-        """Give the Rust of a value, in parentheses if it holds less than ``least``."""
+        """Give the Rust of a value, in parentheses if it holds less than ``least``.
+
+        Parameters
+        ----------
+        expression
+            What is written.
+        least
+            How strongly it must hold together.
+        """
         text, level = self._write(expression)
         return f"({text})" if level < least else text
 
     def condition(self, expression: Any, least: int = _OTHER) -> str:
-        """Give a condition as a bool."""
+        """Give a condition as a bool.
+
+        Parameters
+        ----------
+        expression
+            What is written.
+        least
+            How strongly it must hold together.
+        """
         text, level = self._condition(expression)
         return f"({text})" if level < least else text
 
@@ -178,7 +194,13 @@ class Expressions:
         return f"{first} {operator} {self.value(right, _ATOM)}", _OTHER
 
     def whole(self, of: Any) -> str:
-        """Give a structure as the place it has."""
+        """Give a structure as the place it has.
+
+        Raises
+        ------
+        UntranslatableError
+            If C does something here that has no counterpart.
+        """
         match of:
             case Element(of=Name() | Member() as pointer, index=Number(value=0)) if isinstance(
                 pointer.type, Pointer
@@ -272,7 +294,17 @@ class Expressions:
         return f"{rust_name(call.function)}({arguments})"
 
     def given(self, slot: tuple[str, str], kind: CType, value: Any) -> str:
-        """Give what a parameter or a member is given."""
+        """Give what a parameter or a member is given.
+
+        Parameters
+        ----------
+        slot
+            The parameter or member it is given to.
+        kind
+            The type.
+        value
+            What it holds, or is given.
+        """
         if not isinstance(kind, Pointer):
             return self.value(value)
         if isinstance(kind.to, Scalar):
@@ -315,7 +347,15 @@ class Expressions:
 
 
 def real_text(value: float, number: str) -> Written:
-    """Give a real number as Rust reads it back to the bit, the shortest way."""
+    """Give a real number as Rust reads it back to the bit, the shortest way.
+
+    Parameters
+    ----------
+    value
+        What it holds, or is given.
+    number
+        The type in Rust.
+    """
     if number == "f32":
         import numpy as np
 

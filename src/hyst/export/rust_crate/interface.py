@@ -8,8 +8,8 @@ from hyst.errors import HystError
 from hyst.export.c.exported import Block
 from hyst.export.c.numbers import Precision
 from hyst.export.c.templating import filled
-from hyst.export.rust.expressions import real_text
-from hyst.export.rust.names import rust_name, type_name
+from hyst.export.rust_crate.expressions import real_text
+from hyst.export.rust_crate.names import rust_name, type_name
 from hyst.export.translate.conversions import real_literal
 from hyst.export.translate.program import Program
 
@@ -74,7 +74,19 @@ def _constant(key: str, value: str, precision: Precision) -> tuple[str, str]:
 
 
 def methods(block: Block, program: Program, name: str, places: dict[str, str]) -> str:
-    """Give the methods that step a block, as far as its program has them."""
+    """Give the methods that step a block, as far as its program has them.
+
+    Parameters
+    ----------
+    block
+        What is exported.
+    program
+        What it reaches.
+    name
+        Its name.
+    places
+        What stands at every place of the templates.
+    """
     steps = filled("rust/estimator.rs" if block.is_estimator else "rust/step.rs", places)
     more = [
         filled(f"rust/{each}.rs", places)
@@ -85,7 +97,17 @@ def methods(block: Block, program: Program, name: str, places: dict[str, str]) -
 
 
 def interface_places(block: Block, name: str, precision: Precision) -> dict[str, str]:
-    """Give what the templates of a crate have beside those of C."""
+    """Give what the templates of a crate have beside those of C.
+
+    Parameters
+    ----------
+    block
+        What is exported.
+    name
+        Its name.
+    precision
+        Of the target.
+    """
     inputs = [rust_name(each) for each in block.inputs]
     one = len(inputs) == 1
     number = "*number"

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from textwrap import wrap
 from typing import Any
 
-from hyst.export.structured_text.expressions import Expressions
-from hyst.export.structured_text.usage import (
+from hyst.export.iec61131.expressions import Expressions
+from hyst.export.iec61131.usage import (
     is_array_of_numbers,
     nodes_in,
     points_to_structure,
@@ -261,7 +261,7 @@ def _changed(body: tuple[Any, ...]) -> list[str]:
 
 
 def section(word: str, variables: Sequence[tuple[str, ...]]) -> list[str]:
-    """Give a section of declarations, with comments if any; nothing where there are none."""
+    """Give a section that a ``word`` opens, with ``variables``; nothing where there are none."""
     if not variables:
         return []
     lines = []

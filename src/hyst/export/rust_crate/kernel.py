@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hyst.export.rust.expressions import Expressions, MismatchError
-from hyst.export.rust.names import constant_name, rust_name, type_name
-from hyst.export.rust.places import Places
-from hyst.export.rust.statements import Statements
+from hyst.export.rust_crate.expressions import Expressions, MismatchError
+from hyst.export.rust_crate.names import constant_name, rust_name, type_name
+from hyst.export.rust_crate.places import Places
+from hyst.export.rust_crate.statements import Statements
 from hyst.export.translate.facts import facts_of
 from hyst.export.translate.program import VOID, Function, Pointer, Program, Scalar
 from hyst.export.translate.refusal import UntranslatableError
