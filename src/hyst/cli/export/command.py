@@ -99,7 +99,9 @@ def export(
         ),
     ] = False,
     preview: Preview = None,
-    precision: Annotated[str, typer.Option(help="Of C or Rust: double or single.")] = "double",
+    precision: Annotated[
+        str, typer.Option(help="Of C, Rust or structured text: double or single.")
+    ] = "double",
     name: Annotated[
         str, typer.Option(metavar="NAME", help="Prefix of files, functions and types.")
     ] = "stage",
