@@ -110,3 +110,15 @@ def test_an_inverse_whose_model_is_not_known_has_no_limits_and_no_start(tmp_path
             c_project(model, tmp_path / "x", limits=(0.0, 3.0))
         with pytest.raises(InputError, match="no start after a history: the model in front"):
             c_project(model, tmp_path / "x", history=[1.0])
+
+
+def test_a_history_that_the_model_cannot_follow_is_said_to_be_one(tmp_path: Path) -> None:
+    """Friction that slides has its largest force at every drive, so no drive belongs to it."""
+    friction = hyst.models.Dahl(sigma=1e3, Fc=1.0)
+    limited = LimitedDrive(friction.inverse(), (-1.0, 1.0), drive="output")
+    with pytest.raises(InputError, match="cannot be followed: it overflows, or no drive belongs"):
+        limited.state_after([1.0])
+    project = c_project(limited, tmp_path / "out")
+    told = "none that the model can follow, as in saturation"
+    assert told in header_of(project)
+    assert told in (project.path / "README.md").read_text()

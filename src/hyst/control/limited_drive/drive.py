@@ -217,13 +217,16 @@ class LimitedDrive(InModelFile):
             if outside.any():
                 k = int(np.argmax(outside))
                 raise InputError(
-                    f"history[{k}] = {drives[k]:.6g} is outside the limits {self.limits[0]:.6g} to "
-                    f"{self.limits[1]:.6g}; give drives that the actuator can have had"
+                    f"history[{k}] = {drives[k]:.9g} is outside the limits {self.limits[0]:.9g} to "
+                    f"{self.limits[1]:.9g}; give drives that the actuator can have had"
                 )
         state = self.initial_state()
         bad = self.compiled.lead(state, drives)
         if bad >= 0:
-            raise InputError(f"history[{bad}] = {drives[bad]:.6g} overflows; give smaller drives")
+            raise InputError(
+                f"history[{bad}] = {drives[bad]:.6g} cannot be followed: it overflows, or no "
+                "drive belongs to what the model gives there; give smaller drives"
+            )
         return state
 
     def __call__(self, x: ArrayLike) -> Array:

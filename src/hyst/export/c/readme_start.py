@@ -55,7 +55,7 @@ def start_section(block: Block, name: str) -> str:
 3. Step. The first output goes on from the last of those drives.
 
 `{name}_init_after` gives 0; or 1, and the state before any drive, if one is not finite or beyond
-the limits.
+the limits, or is none that the model can follow, as in saturation.
 """
 
 

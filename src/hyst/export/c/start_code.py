@@ -64,7 +64,8 @@ def declared(block: Block, name: str) -> str:
     return (
         "\n/* Instead of it, where it is known what drove the actuator: the state after `count`\n"
         " * drives in time order; where it turned is enough unless time counts. 0; or 1, and the\n"
-        f" * state before any drive, if one is not finite{limits}. */\n"
+        f" * state before any drive, if one is not finite{limits},\n"
+        " * or is none that the model can follow, as in saturation. */\n"
         f"int {name}_init_after({name}_state *state, const hyst_real *extremes, size_t count);\n"
     )
 
