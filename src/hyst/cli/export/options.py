@@ -34,7 +34,7 @@ Explicit = Annotated[
     ),
 ]
 
-Precision = Annotated[str, typer.Option(help="Of C or Rust: double or single.")]
+Precision = Annotated[str, typer.Option(help="Of C, Rust or structured text: double or single.")]
 
 Name = Annotated[str, typer.Option(metavar="NAME", help="Prefix of files, functions and types.")]
 
