@@ -61,6 +61,15 @@ History = Annotated[
     ),
 ]
 
+HistoryAt = Annotated[
+    float | None,
+    typer.Option(
+        metavar="X",
+        show_default=False,
+        help="The second signal of a scheduled model during --history, as a temperature.",
+    ),
+]
+
 Preview = Annotated[
     int | None,
     typer.Option(
@@ -119,6 +128,7 @@ def export(
     limits: Limits = "auto",
     rate_limit: RateLimit = None,
     history: History = None,
+    history_at: HistoryAt = None,
     driver: DriverOfDrive = "auto",
     schedule_value: ScheduleValue = None,
 ) -> None:
@@ -146,6 +156,7 @@ def export(
         rate_limit,
         None if history is None else history_of(history),
         driver_or_word(driver, model.description),
+        history_at,
     )
     done = TARGETS[target].write(order)
     what = "inverse of " if inverse or explicit else ""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
 
+from hyst.control.limited_drive.schedule import LimitedSchedule
 from hyst.errors import InputError
 from hyst.export.c.block import Block, Model
 from hyst.export.c.c_sources import header, places, source, told
@@ -94,7 +95,7 @@ def fmu_model(
     InputError
         If it cannot be exported.
     """
-    if isinstance(model, ScheduledSystem):
+    if isinstance(model, ScheduledSystem | LimitedSchedule):
         raise InputError(
             "a scheduled model is no FMU yet: its constants follow a second input, where an FMU "
             "offers them as parameters; export it as C or MEX, or the model at(value) as an FMU"
