@@ -65,8 +65,9 @@ the limits.{_at_one_value(name, second) if second else ""}
 def _at_one_value(name: str, second: str) -> str:
     """Say what is taken for granted where a second signal moves the constants."""
     return f""" The constants are those at the {second} that it is told, one value for
-the whole history: do not let it drift meanwhile. If it is not finite, 1 is given, too; outside the values that the
-constants are known at, they are held, and `{name.upper()}_OFF_SCHEDULE` of the fault says so."""
+the whole history: do not let it drift meanwhile. If it is not finite, 1 is given, too; outside the
+values that the constants are known at, they are held, and `{name.upper()}_OFF_SCHEDULE` of the
+fault says so."""
 
 
 def history_said(block: Block) -> str:
