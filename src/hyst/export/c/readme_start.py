@@ -38,8 +38,9 @@ def start_section(block: Block, name: str) -> str:
     told = f"Call `{name}_init_after(&{name}, {drives})` with the drives at which it turned."
     if block.chain.dt is not None:
         told = (
-            f"Call `{name}_init_after(&{name}, drives, count{more})` with the drive at every\n"
-            "   sample of the sweep and of the rest behind it, for in this model time counts."
+            f"Call `{name}_init_after(&{name}, drives, count{more})` "
+            "with the drive at every sample\n"
+            "   of the sweep and of the rest behind it, for in this model time counts."
         )
     if block.history:
         told = (
