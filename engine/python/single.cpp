@@ -19,8 +19,8 @@
 #include "hyst/hyst.h"
 #include "../kinds/kind.hpp"
 #include "../limited_drive.hpp"
-#include "../limited_moving.hpp"
-#include "../moving.hpp"
+#include "single_moving.hpp"
+#include "single_stages.hpp"
 
 namespace nb = nanobind;
 
@@ -28,25 +28,9 @@ namespace {
 
 static_assert(sizeof(hyst_real) == sizeof(float), "this module is for single precision");
 
-using Numbers = std::map<std::string, double>;
-using Tables = std::map<std::string, std::vector<double>>;
-using Choices = std::map<std::string, std::size_t>;
-// Kind, form, numbers, tables, choices of a stage, as the engine in double has derived them.
-using Description = std::tuple<std::string, std::string, Numbers, Tables, Choices>;
-
-hyst::kinds::Constants rounded(const Description &description) {
-    const auto &[kind, form, numbers, tables, choices] = description;
-    hyst::kinds::Constants made;
-    made.form = form;
-    for (const auto &[name, value] : numbers) {
-        made.number(name, static_cast<float>(value), hyst::kinds::not_offered);
-    }
-    for (const auto &[name, values] : tables) {
-        made.table(name, {values.begin(), values.end()}, hyst::kinds::not_offered);
-    }
-    for (const auto &[name, choice] : choices) made.choose(name, choice);
-    return made;
-}
+using hyst::single::Description;
+using hyst::single::Tables;
+using hyst::single::rounded;
 
 class Stepper {
 public:
@@ -224,72 +208,6 @@ private:
     std::unique_ptr<hyst::LimitedDrive> drive_;
 };
 
-// What each knot has of stages whose constants follow a second signal.
-using Knots = std::vector<std::vector<Description>>;
-
-std::vector<hyst::Moving::Stages> stages_of(const Knots &knots) {
-    std::vector<hyst::Moving::Stages> made(knots.size());
-    for (std::size_t k = 0; k < knots.size(); ++k) {
-        for (const Description &each : knots[k]) {
-            made[k].emplace_back(&hyst::kinds::known_kind(std::get<0>(each)), rounded(each));
-        }
-    }
-    return made;
-}
-
-class MovingStepper {
-public:
-    MovingStepper(const std::vector<double> &at, const Knots &knots,
-                  const std::vector<double> &start)
-        : moving_({at.begin(), at.end()}, stages_of(knots)), state_(start.begin(), start.end()) {
-        if (moving_.state_length() != state_.size()) {
-            throw std::invalid_argument("start has the wrong length");
-        }
-    }
-
-    double step(double u, double s) {
-        return moving_.step(state_.data(), &guard_, &outside_, static_cast<float>(u),
-                            static_cast<float>(s));
-    }
-
-private:
-    hyst::Moving moving_;
-    std::vector<float> state_;
-    hyst_guard guard_{};
-    int outside_ = 0;
-};
-
-// The same with a drive that is limited, as LimitedMovingStepper of the engine has it.
-class LimitedMovingStepper {
-public:
-    LimitedMovingStepper(const std::vector<double> &at, const Knots &knots, const Knots &forwards,
-                         bool is_inverse, double low, double high, double change,
-                         const std::vector<double> &start)
-        : moving_({at.begin(), at.end()}, stages_of(knots), stages_of(forwards), is_inverse,
-                  {static_cast<float>(low), static_cast<float>(high), static_cast<float>(change)}),
-          state_(start.begin(), start.end()) {
-        if (moving_.state_length() != state_.size()) {
-            throw std::invalid_argument("start has the wrong length");
-        }
-        moving_.begin(state_.data());
-    }
-    double step(double x, double s) {
-        return moving_.step(state_.data(), static_cast<float>(x), static_cast<float>(s));
-    }
-    bool lead(double drive, double s) {
-        return moving_.lead(state_.data(), static_cast<float>(drive), static_cast<float>(s));
-    }
-    std::vector<double> state() const { return {state_.begin(), state_.end()}; }
-    bool fault() const { return moving_.guard.guard.fault != 0; }
-    bool limited() const { return moving_.guard.limited != 0; }
-    bool outside() const { return moving_.outside != 0; }
-    void clear_fault() { moving_.clear_fault(); }
-
-private:
-    hyst::LimitedMoving moving_;
-    std::vector<float> state_;
-};
-
 // Scale and offset; the constants are those that the engine's estimator in double tells.
 class ScaleEstimator {
 public:
@@ -383,22 +301,7 @@ NB_MODULE(_single, module) {
         .def_prop_ro("limited", &Stepper::limited)
         .def("clear_fault", &Stepper::clear_fault)
         .def("peek", &Stepper::peek, nb::arg("u"));
-    nb::class_<MovingStepper>(module, "MovingStepper")
-        .def(nb::init<const std::vector<double> &, const Knots &, const std::vector<double> &>(),
-             nb::arg("at"), nb::arg("knots"), nb::arg("start"))
-        .def("__call__", &MovingStepper::step, nb::arg("u"), nb::arg("s"));
-    nb::class_<LimitedMovingStepper>(module, "LimitedMovingStepper")
-        .def(nb::init<const std::vector<double> &, const Knots &, const Knots &, bool, double,
-                      double, double, const std::vector<double> &>(),
-             nb::arg("at"), nb::arg("knots"), nb::arg("forward"), nb::arg("is_inverse"),
-             nb::arg("low"), nb::arg("high"), nb::arg("change"), nb::arg("start"))
-        .def("__call__", &LimitedMovingStepper::step, nb::arg("x"), nb::arg("s"))
-        .def("lead", &LimitedMovingStepper::lead, nb::arg("drive"), nb::arg("s"))
-        .def_prop_ro("state", &LimitedMovingStepper::state)
-        .def_prop_ro("fault", &LimitedMovingStepper::fault)
-        .def_prop_ro("limited", &LimitedMovingStepper::limited)
-        .def_prop_ro("outside", &LimitedMovingStepper::outside)
-        .def("clear_fault", &LimitedMovingStepper::clear_fault);
+    hyst::single::bind_moving(module);
     nb::class_<ScaleEstimator>(module, "ScaleEstimator")
         .def(nb::init<const std::vector<double> &, const std::vector<bool> &,
                       const std::vector<double> &>(),
