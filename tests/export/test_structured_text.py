@@ -26,6 +26,7 @@ from hyst import (
     PrandtlIshlinskii,
 )
 from hyst.control.limited_drive.drive import LimitedDrive
+from hyst.control.limited_drive.schedule import LimitedSchedule
 from hyst.control.tracking_controller import TrackingController
 from hyst.export import structured_text
 from hyst.export.c.block import block_of, stepper_of
@@ -205,6 +206,33 @@ def test_a_scheduled_model(tmp_path: Path) -> None:
     y, fault = lens.run(("y", "fault"), u=u, scheduled_by=s)
     assert same_bits(y, stepped(model.stepper(), u, s))
     assert fault[-1] == 1 | 8  # not finite, and off the schedule
+
+
+def test_a_scheduled_inverse_with_limits_starts_after_a_history(tmp_path: Path) -> None:
+    models = [PrandtlIshlinskii([0.5 * k, 0.2], [0.1, 0.3], 1.0) for k in (1, 2, 3)]
+    drive = LimitedSchedule(Scheduled(models, [20.0, 40.0, 80.0]).inverse(), (-1.25, 2.0))
+    structured_text(drive, tmp_path / "out", name="lens")
+    lens = instance_of((tmp_path / "out" / "lens.st").read_text(), tmp_path)
+    v = wandering(5000)
+    s = 50.0 + 40.0 * np.sin(np.arange(v.size) / 71.0)
+    y, fault = lens.run(("y", "fault"), u=v, scheduled_by=s)
+    assert same_bits(y, stepped(drive.stepper(), v, s))
+    assert fault[-1] == 1 | 8 | 16
+    # With the value of the call that restarts it.
+    history = [2.0, -0.75, 0.5]
+    lens.set("history", history)
+    first, refused = lens.run(
+        ("y", "history_refused"), u=0.25, scheduled_by=30.0, restart=True, history_count=3
+    )
+    (rest,) = lens.run(("y",), u=v[:1000], scheduled_by=s[:1000], restart=False)
+    step = drive.stepper(drive.state_after(history, 30.0))
+    assert first[0] == step(0.25, 30.0)
+    assert not refused[0]
+    assert same_bits(rest, stepped(step, v[:1000], s[:1000]))
+    (refused,) = lens.run(
+        ("history_refused",), u=0.25, scheduled_by=np.nan, restart=True, history_count=3
+    )
+    assert refused[0]
 
 
 def test_fault_and_restart(tmp_path: Path) -> None:
