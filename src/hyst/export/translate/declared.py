@@ -140,15 +140,9 @@ class Declared:
         Parameters
         ----------
         node
-<<<<<<< HEAD
-            Of the syntax tree.
-        declared
-            The structure or union in it.
-=======
             Of what it is declared for.
         declared
             Of the structure or the union.
->>>>>>> main
 
         Raises
         ------
