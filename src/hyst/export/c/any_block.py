@@ -83,6 +83,8 @@ def _block(
         what = "a model with a second signal is exported without limits"
         instead = "limit the drive beside it, or export the model at one value"
         options.refuse(what, instead, False)
+        block = block_of(model, precision)
+        return replace(block, drive=replace(block.drive, source=f"none: {what}"))
     return block_of(model, precision)
 
 
