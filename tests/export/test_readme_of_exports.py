@@ -130,7 +130,7 @@ def test_a_history_wipes_out_only_what_is_within_it(tmp_path: Path) -> None:
     """After 100 and 80 V, one that was at 150 V before is another than one that was not."""
     drive = LimitedDrive(MODEL.inverse())
     before = [drive.state_after([*had, 100.0, 80.0]) for had in ([], [150.0])]
-    asked = np.linspace(0.0, 40.0, 9)
+    asked = np.array([22.0])  # about where it is
     assert not np.array_equal(*(drive.run(asked, each)[0] for each in before))
     told = readme_of(
         c_project(MODEL.inverse(), tmp_path / "out", name="lens", history=[100.0, 80.0]).path
