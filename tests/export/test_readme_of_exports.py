@@ -119,13 +119,6 @@ def test_what_cannot_be_told_a_history_says_so(tmp_path: Path) -> None:
     assert "no delay read backwards, keep the Delay" in told
 
 
-def test_a_second_signal_is_why_there_are_no_limits(tmp_path: Path) -> None:
-    """The range is known: 0 to 150 V stands in the row of the input."""
-    told = readme_of(c_project(SCHEDULED, tmp_path / "out", name="lens").path)
-    assert "none: a model with a second signal is exported without limits" in told
-    assert "no range of the drive is known" not in told
-
-
 def test_a_history_wipes_out_only_what_is_within_it(tmp_path: Path) -> None:
     """After 100 and 80 V, one that was at 150 V before is another than one that was not."""
     drive = LimitedDrive(MODEL.inverse())

@@ -104,6 +104,7 @@ def c_project(
     limits: Limits | str | None = AUTO,
     rate_limit: float | None = None,
     history: ArrayLike | None = None,
+    history_at: float | None = None,
     driver: Driver | str | None = AUTO,
 ) -> CProject:
     """Write a model as C99 for firmware, with the core's sources it needs and a self-test.
@@ -144,6 +145,8 @@ def c_project(
     history
         What drove the actuator before, in time order, where the start shall be after it: where the
         drive turned is enough, unless time counts.
+    history_at
+        The second signal of a scheduled model meanwhile, one value, which a history then needs.
     driver
         Table of the drive's converter: the step gives, or takes, its codes too, and the limits are
         volts of codes. ``"auto"`` for that of the description, None or ``"none"`` for none.
@@ -177,7 +180,7 @@ def c_project(
     where = Layout(layout, shared_core, name, exact)
     about = described(model, description)
     codes = driver_codes(driver, about, exact)
-    options = DriveOptions(limits, rate_limit, history, codes)
+    options = DriveOptions(limits, rate_limit, history, codes, history_at)
     block = any_block(model, exact, options, description)
     test = SelfTest.of(block, exact, about)
     files = project_files(block, test, about, where)
@@ -276,6 +279,7 @@ def _manifest(
         "drive": block.drive.told(),
         **({} if block.codes is None else {"driver": block.codes.told()}),
         "history": list(block.history),
+        **({} if block.history_at is None else {"history_at": block.history_at}),
         "selftest": {"samples": SAMPLES, "away_from_double": test.away_from_double},
         # The core's own files, before their names became those of the copy.
         "core": {
