@@ -116,6 +116,19 @@ def test_what_cannot_be_told_a_history_says_so(tmp_path: Path) -> None:
     told = readme_of(c_project(model, tmp_path / "out", name="lens").path)
     assert "This code can be told no history: the model in front of it is not known" in told
     assert "init_after" not in told
+    assert "no delay read backwards, keep the Delay" in told
+
+
+def test_a_history_wipes_out_only_what_is_within_it(tmp_path: Path) -> None:
+    """After 100 and 80 V, one that was at 150 V before is another than one that was not."""
+    drive = LimitedDrive(MODEL.inverse())
+    before = [drive.state_after([*had, 100.0, 80.0]) for had in ([], [150.0])]
+    asked = np.array([22.0])  # about where it is
+    assert not np.array_equal(*(drive.run(asked, each)[0] for each in before))
+    told = readme_of(
+        c_project(MODEL.inverse(), tmp_path / "out", name="lens", history=[100.0, 80.0]).path
+    )
+    assert "without effect, if it was never driven beyond" in told
 
 
 @pytest.mark.parametrize("shared_core", [False, True])

@@ -183,3 +183,9 @@ def test_a_single_file_shares_no_core(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="has the core within it"):
         c_project(MODEL, tmp_path / "out", layout="single-file", shared_core=True)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_name_that_no_file_system_takes_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="cannot be written"):
+        c_project(MODEL, tmp_path / ("x" * 300), layout="flat")
+    assert not list(tmp_path.iterdir())

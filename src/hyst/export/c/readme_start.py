@@ -27,7 +27,7 @@ def start_section(block: Block, name: str) -> str:
     if block.following is None:
         if not block.no_start:
             return ""
-        reason = plain_text(block.no_start, _LONGEST_REASON)
+        reason = plain_text(block.no_start.replace(";", ","), _LONGEST_REASON)
         return f"\n{_TITLE}\n\n{_WHY}\n\nThis code can be told no history: {reason}.\n"
     ends = "the highest drive it may have and then to the lowest"
     if block.drive.limits is not None:
