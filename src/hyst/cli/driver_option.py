@@ -98,6 +98,15 @@ def volts_of_record(
     return hyst.identification.in_volts(record, typed or (known if told else None))
 
 
+def refuse_codes(driver: hyst.Driver | None, source: str) -> None:
+    """Refuse an input that says codes where a model has a ``driver`` and volts are taken."""
+    if driver is not None:
+        raise hyst.InputError(
+            f"the input of {source} is in codes and the model takes {driver.unit or 'volts'}, and "
+            "a file that grows is not converted; log the drive in volts"
+        )
+
+
 def common_driver(models: Iterable[hyst.Operator]) -> hyst.Driver | None:
     """Give the driver that models have in their descriptions, if they agree on one."""
     drivers = {each.description.driver for each in models} - {None}
