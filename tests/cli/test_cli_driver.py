@@ -275,3 +275,17 @@ def test_what_follows_an_actuator_takes_no_codes_for_volts(
     ended = run("watch", "m.json", measured, *columns, "--stop-after", "at-end")
     assert ended.code == 2
     assert "is in codes and the model takes V" in ended.err
+
+
+def test_codes_of_models_with_other_drivers_are_refused(
+    run: Run, folder: Path, measured: Path
+) -> None:
+    other = hyst.Driver.linear(0.036, 0.0, 0, 4095)
+    for name, driver in (("a.json", DRIVER), ("b.json", other)):
+        PLAYS.save(folder / name, hyst.ModelDescription(input_unit="V", driver=driver))
+    columns = ("--input", "code", "--output", "y", "--time", "t")
+    ended = run("compare", "a.json", "b.json", measured, *columns)
+    assert ended.code == 2
+    assert "'code' is in codes and the models have 2 different drivers" in ended.err
+    ended = run("compare", "a.json", "b.json", measured, *columns, "--driver", "driver.csv")
+    assert ended.code in (0, 3), ended.err
