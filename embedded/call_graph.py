@@ -16,8 +16,10 @@ NODE = re.compile(r'^node: \{ title: "([^"]+)" label: "([^"]*)"')
 EDGE = re.compile(r'^edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
 FRAME = re.compile(r"(\d+) bytes \(([a-z,]+)\)")
 
-BY_POINTER = {"hyst_branch_advance": ("jiles_change",)}
-"""Whom the core calls through pointers: the slopes of the equations that branches are made of."""
+BY_POINTER = {"_core_branch_advance": ("jiles_change",)}
+"""Whom the core calls through pointers: the slopes of the equations that branches are made of.
+
+By the end of a function's name, for its beginning is that of an export."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,8 @@ class CallGraph:
 
     def _by_pointer(self, caller: str) -> list[str]:
         """Give whom a function may call through its pointer; static ones have a file's name."""
-        known = BY_POINTER.get(caller.split(":")[-1], ())
+        name = caller.split(":")[-1]
+        known = {called for end in BY_POINTER if name.endswith(end) for called in BY_POINTER[end]}
         found = [each for each in self.frames if each.split(":")[-1] in known]
         if not found:
             raise ValueError(f"{caller} calls through a pointer, so its stack has no bound")

@@ -258,3 +258,34 @@ def test_a_model_over_temperature_keeps_the_driver_and_gives_codes(run: Run, fol
     assert np.array_equal(rows[:, 3], DRIVER.codes(rows[:, 2]))
     # Identified without noise; half a code through all plays is 0.002.
     assert np.abs(1.05 * PLAYS(DRIVER.volts(rows[:, 3])) - y_ref)[100:].max() < 0.01
+
+
+def test_what_follows_an_actuator_takes_no_codes_for_volts(
+    run: Run, folder: Path, measured: Path
+) -> None:
+    PLAYS.save(folder / "m.json", hyst.ModelDescription(input_unit="V", driver=DRIVER, dt=DT))
+    columns = ("--input", "code", "--output", "y", "--time", "t")
+    ended = run("adapt", "m.json", measured, *columns, "-o", "adapted")
+    assert ended.code == 0, ended.err
+    adapted = hyst.load(folder / "adapted" / "model.json")
+    assert isinstance(adapted, hyst.Operator)
+    drive = np.linspace(160.0, 0.0, 50)  # 160 wipes out what the record left
+    # Noise of 0.001 in 2000 samples; codes for volts would be off by several um.
+    assert np.abs(adapted(drive) - PLAYS(drive)).max() < 0.01
+    ended = run("watch", "m.json", measured, *columns, "--stop-after", "at-end")
+    assert ended.code == 2
+    assert "is in codes and the model takes V" in ended.err
+
+
+def test_codes_of_models_with_other_drivers_are_refused(
+    run: Run, folder: Path, measured: Path
+) -> None:
+    other = hyst.Driver.linear(0.036, 0.0, 0, 4095)
+    for name, driver in (("a.json", DRIVER), ("b.json", other)):
+        PLAYS.save(folder / name, hyst.ModelDescription(input_unit="V", driver=driver))
+    columns = ("--input", "code", "--output", "y", "--time", "t")
+    ended = run("compare", "a.json", "b.json", measured, *columns)
+    assert ended.code == 2
+    assert "'code' is in codes and the models have 2 different drivers" in ended.err
+    ended = run("compare", "a.json", "b.json", measured, *columns, "--driver", "driver.csv")
+    assert ended.code in (0, 3), ended.err

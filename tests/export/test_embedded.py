@@ -58,6 +58,16 @@ def test_the_deepest_way_is_found() -> None:
     assert graph.deepest("near") == 24
 
 
+def test_pointers_of_the_core_are_known_by_the_names_of_an_export() -> None:
+    more = (
+        'node: { title: "b.c:jiles_change" label: "jiles_change\\nb.c:1:1\\n8 bytes (static)" }\n'
+        'node: { title: "my_core_branch_advance" label: "advance\\na.c:1:1\\n4 bytes (static)" }\n'
+        'edge: { sourcename: "my_core_branch_advance" targetname: "__indirect_call" label: "" }\n'
+        'edge: { sourcename: "far" targetname: "my_core_branch_advance" label: "" }\n'
+    )
+    assert read_call_graph(GRAPH + more).deepest("step") == 16 + 40 + 4 + 8
+
+
 @pytest.mark.parametrize(
     ("line", "message"),
     [

@@ -13,7 +13,12 @@ import hyst
 from hyst._files import read_small, replacing, require_folder
 from hyst.cli.arguments import load_operator, refuse_inputs_as_outputs
 from hyst.cli.console import at_work, note, show_files, show_table
-from hyst.cli.driver_option import DriverOfInput, common_driver, driver_of
+from hyst.cli.driver_option import (
+    DriverOfInput,
+    common_driver,
+    driver_of,
+    refuse_several_drivers,
+)
 from hyst.cli.exit_codes import DONE, UNFIT
 from hyst.cli.fitted import HowToRead, InputLabel, OutputLabel
 from hyst.cli.reading_options import reads_records
@@ -73,6 +78,8 @@ def compare(
         known = common_driver(loaded.values())
         files = HowToRead(how, {}, (input_label, output_label), typed, known)
         records = files.records([data])
+        if typed is None:
+            refuse_several_drivers(loaded.values(), records)
         say("running")
         found = hyst.compare(loaded, records)
         written: list[Path] = []

@@ -98,6 +98,26 @@ def volts_of_record(
     return hyst.identification.in_volts(record, typed or (known if told else None))
 
 
+def refuse_several_drivers(models: Iterable[hyst.Operator], records: Iterable[hyst.Record]) -> None:
+    """Refuse records in codes that models with different drivers would read differently."""
+    drivers = {each.description.driver for each in models} - {None}
+    coded = [each for each in records if says_codes(each.input_name, each.input_unit)]
+    if len(drivers) > 1 and coded:
+        raise hyst.InputError(
+            f"the input {coded[0].input_name!r} is in codes and the models have {len(drivers)} "
+            "different drivers; give that of the record with --driver"
+        )
+
+
+def refuse_codes(driver: hyst.Driver | None, source: str) -> None:
+    """Refuse an input that says codes where a model has a ``driver`` and volts are taken."""
+    if driver is not None:
+        raise hyst.InputError(
+            f"the input of {source} is in codes and the model takes {driver.unit or 'volts'}, and "
+            "a file that grows is not converted; log the drive in volts"
+        )
+
+
 def common_driver(models: Iterable[hyst.Operator]) -> hyst.Driver | None:
     """Give the driver that models have in their descriptions, if they agree on one."""
     drivers = {each.description.driver for each in models} - {None}

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 import hyst
 from hyst.cli.arguments import require_same_unit
+from hyst.cli.driver_option import volts_of_record
 from hyst.cli.reading_options import read_told
 
 Array = NDArray[np.float64]
@@ -71,7 +72,7 @@ def read_measured(
         raise hyst.InputError(
             f"--table all gives {len(records)} records, adapt takes one; name one"
         )
-    whole = records[0]
+    whole = volts_of_record(records[0], None, about.driver)
     ahead, behind = _shifts(whole, about.delay)
     record = _without_delay(whole, about.delay, ahead, behind)
     if start > record.samples - 2:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 import hyst
 from hyst.cli.arguments import require_same_unit
+from hyst.cli.driver_option import refuse_codes, says_codes
 from hyst.cli.watch.sources import Piece
 from hyst.io.growing import GrowingRows, Rows, joined
 from hyst.online.estimator import Estimator
@@ -147,6 +148,8 @@ class Session:
         for place, unit, what in zip(
             head.columns, (about.input_unit, about.output_unit), ("input", "output"), strict=False
         ):
+            if what == "input" and says_codes(head.names[place], head.units[place]):
+                refuse_codes(about.driver, self.rows.source)
             require_same_unit(head.units[place], unit, f"the {what} of {self.rows.source}")
         for sentence in head.notes:
             if sentence not in self._told:
