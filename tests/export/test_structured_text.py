@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from c_builds import same_bits, stepped, wandering
+from distinct_code import DISTINCT
 from structured_text_machine import Instance, Machine
 from structured_text_parser import StructuredTextError, units_of
 from test_repetitive_projects import BLOCKS
@@ -41,7 +42,7 @@ def first_of_each_kind() -> dict[str, str]:
 
 
 KINDS = first_of_each_kind()
-OTHERS = [name for name in EXAMPLES if name not in KINDS.values()]
+OTHERS = [name for name in DISTINCT if name not in KINDS.values()]
 
 
 @cache
@@ -85,7 +86,7 @@ def test_single_precision_gives_the_bits_of_its_twin(name: str, tmp_path: Path) 
 
 
 @pytest.mark.parametrize("name", OTHERS)
-def test_every_other_example_can_be_written(name: str) -> None:
+def test_every_other_code_can_be_written(name: str) -> None:
     units = units_of(text_of(name, "double"))
     assert units[-1].kind == "FUNCTION_BLOCK"
     assert units[-1].name == "lens"
