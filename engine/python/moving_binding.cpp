@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "../limited_drive.hpp"
+#include "../limited_moving.hpp"
 #include "../moving.hpp"
 #include "chain_binding.hpp"
 
@@ -73,48 +73,26 @@ struct MovingStepper {
     }
 };
 
-// A model, or an inverse and the model in front of which it is, whose drive is limited.
+// The same with a drive that is limited.
 struct LimitedMovingStepper {
-    Moving own, forward;
-    bool is_inverse;
-    hyst_drive_limits limits;
+    LimitedMoving moving;
     Vector state;
-    std::vector<double> before;
-    hyst_limited_guard guard{};
-    int outside = 0;
 
     LimitedMovingStepper(const std::vector<double> &at, nb::iterable knots, nb::iterable forwards,
-                         bool inverse, double low, double high, double change, Vector memory)
-        : own(at, at_knots(knots)), forward(at, at_knots(forwards)), is_inverse(inverse),
-          limits{low, high, change}, state(std::move(memory)), before(own.state_length()) {
-        const std::size_t beside = is_inverse ? forward.state_length() : 0;
-        if (state.shape(0) != own.state_length() + beside + 1) {
+                         bool is_inverse, double low, double high, double change, Vector memory)
+        : moving(at, at_knots(knots), at_knots(forwards), is_inverse, {low, high, change}),
+          state(std::move(memory)) {
+        if (state.shape(0) != moving.state_length()) {
             throw std::invalid_argument("the state has the wrong length");
         }
-        if (is_inverse) guard.guard.y_last = state(state.shape(0) - 1);
+        moving.begin(state.data());
     }
-    double step(double x, double s) {
-        if (hyst_is_finite(s)) {
-            if (own.set(s) != 0) outside = 1;
-            (void)forward.set(s);
-        } else {
-            x = s;
-        }
-        return limited().step(state.data(), before.data(), &guard, x);
-    }
-    // Takes the memory to where the drive leaves an actuator; false where that cannot be answered.
-    bool lead(double drive, double s) {
-        (void)own.set(s);
-        (void)forward.set(s);
-        return limited().lead(state.data(), drive) != 0;
-    }
-    void clear_fault() { guard.guard.fault = guard.limited = outside = 0; }
-
-private:
-    LimitedDrive limited() const {
-        const auto way = is_inverse ? LimitedDrive::Way::forward : LimitedDrive::Way::model;
-        return {way, own.view(), forward.view(), limits};
-    }
+    double step(double x, double s) { return moving.step(state.data(), x, s); }
+    bool lead(double drive, double s) { return moving.lead(state.data(), drive, s); }
+    bool fault() const { return moving.guard.guard.fault != 0; }
+    bool limited() const { return moving.guard.limited != 0; }
+    bool outside() const { return moving.outside != 0; }
+    void clear_fault() { moving.clear_fault(); }
 };
 
 // Index of the first sample that could not be answered, or -1; and how many were outside the schedule.
@@ -127,8 +105,8 @@ std::pair<std::ptrdiff_t, std::size_t> run_limited(LimitedMovingStepper &steps, 
     for (std::size_t k = 0; k < x.shape(0); ++k) {
         steps.clear_fault();
         y(k) = steps.step(x(k), s(k));
-        outside += steps.outside != 0 ? 1 : 0;
-        if (steps.guard.guard.fault != 0 && steps.guard.limited == 0) {
+        outside += steps.outside() ? 1 : 0;
+        if (steps.fault() && !steps.limited()) {
             return {static_cast<std::ptrdiff_t>(k), outside};
         }
     }
@@ -165,11 +143,9 @@ void bind_moving(nb::module_ &module) {
              nb::arg("y").noconvert())
         .def("lead", &LimitedMovingStepper::lead, nb::arg("drive"), nb::arg("s"))
         .def_prop_ro("state", [](LimitedMovingStepper &self) { return self.state; })
-        .def_prop_ro("fault",
-                     [](const LimitedMovingStepper &self) { return self.guard.guard.fault != 0; })
-        .def_prop_ro("limited",
-                     [](const LimitedMovingStepper &self) { return self.guard.limited != 0; })
-        .def_prop_ro("outside", [](const LimitedMovingStepper &self) { return self.outside != 0; })
+        .def_prop_ro("fault", &LimitedMovingStepper::fault)
+        .def_prop_ro("limited", &LimitedMovingStepper::limited)
+        .def_prop_ro("outside", &LimitedMovingStepper::outside)
         .def("clear_fault", &LimitedMovingStepper::clear_fault);
 }
 

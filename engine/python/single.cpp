@@ -19,7 +19,8 @@
 #include "hyst/hyst.h"
 #include "../kinds/kind.hpp"
 #include "../limited_drive.hpp"
-#include "../moving.hpp"
+#include "single_moving.hpp"
+#include "single_stages.hpp"
 
 namespace nb = nanobind;
 
@@ -27,25 +28,9 @@ namespace {
 
 static_assert(sizeof(hyst_real) == sizeof(float), "this module is for single precision");
 
-using Numbers = std::map<std::string, double>;
-using Tables = std::map<std::string, std::vector<double>>;
-using Choices = std::map<std::string, std::size_t>;
-// Kind, form, numbers, tables, choices of a stage, as the engine in double has derived them.
-using Description = std::tuple<std::string, std::string, Numbers, Tables, Choices>;
-
-hyst::kinds::Constants rounded(const Description &description) {
-    const auto &[kind, form, numbers, tables, choices] = description;
-    hyst::kinds::Constants made;
-    made.form = form;
-    for (const auto &[name, value] : numbers) {
-        made.number(name, static_cast<float>(value), hyst::kinds::not_offered);
-    }
-    for (const auto &[name, values] : tables) {
-        made.table(name, {values.begin(), values.end()}, hyst::kinds::not_offered);
-    }
-    for (const auto &[name, choice] : choices) made.choose(name, choice);
-    return made;
-}
+using hyst::single::Description;
+using hyst::single::Tables;
+using hyst::single::rounded;
 
 class Stepper {
 public:
@@ -223,40 +208,6 @@ private:
     std::unique_ptr<hyst::LimitedDrive> drive_;
 };
 
-// Stages whose constants follow a second signal: what each knot has of them.
-class MovingStepper {
-public:
-    MovingStepper(const std::vector<double> &at, const std::vector<std::vector<Description>> &knots,
-                  const std::vector<double> &start)
-        : moving_({at.begin(), at.end()}, stages_of(knots)), state_(start.begin(), start.end()) {
-        if (moving_.state_length() != state_.size()) {
-            throw std::invalid_argument("start has the wrong length");
-        }
-    }
-
-    double step(double u, double s) {
-        return moving_.step(state_.data(), &guard_, &outside_, static_cast<float>(u),
-                            static_cast<float>(s));
-    }
-
-private:
-    static std::vector<hyst::Moving::Stages> stages_of(
-        const std::vector<std::vector<Description>> &knots) {
-        std::vector<hyst::Moving::Stages> made(knots.size());
-        for (std::size_t k = 0; k < knots.size(); ++k) {
-            for (const Description &each : knots[k]) {
-                made[k].emplace_back(&hyst::kinds::known_kind(std::get<0>(each)), rounded(each));
-            }
-        }
-        return made;
-    }
-
-    hyst::Moving moving_;
-    std::vector<float> state_;
-    hyst_guard guard_{};
-    int outside_ = 0;
-};
-
 // Scale and offset; the constants are those that the engine's estimator in double tells.
 class ScaleEstimator {
 public:
@@ -350,11 +301,7 @@ NB_MODULE(_single, module) {
         .def_prop_ro("limited", &Stepper::limited)
         .def("clear_fault", &Stepper::clear_fault)
         .def("peek", &Stepper::peek, nb::arg("u"));
-    nb::class_<MovingStepper>(module, "MovingStepper")
-        .def(nb::init<const std::vector<double> &, const std::vector<std::vector<Description>> &,
-                      const std::vector<double> &>(),
-             nb::arg("at"), nb::arg("knots"), nb::arg("start"))
-        .def("__call__", &MovingStepper::step, nb::arg("u"), nb::arg("s"));
+    hyst::single::bind_moving(module);
     nb::class_<ScaleEstimator>(module, "ScaleEstimator")
         .def(nb::init<const std::vector<double> &, const std::vector<bool> &,
                       const std::vector<double> &>(),

@@ -136,3 +136,23 @@ def test_what_does_not_go_together_is_refused(records: list[Path], run: Callable
     ended = run(*identify, *OVER, "--validate", records[0])
     assert "--validate-schedule belong together" in ended.err
     assert run("export", model, "--target", "fmu", "-o", "x.fmu").code == 2
+
+
+def test_an_export_with_limits_and_a_start(run: Callable, folder: Path):
+    model = model_file(folder)
+    drive = ["--inverse", "--limits=-0.5,0.75", "--history", "0.75,-0.5"]
+    ended = run("export", model, *drive, "--history-at", 30, "-o", "out")
+    assert ended.code == 0, ended.err
+    assert "after 0.75, -0.5; or stage_init_after" in ended.out
+    said = (folder / "out" / "README.md").read_text()
+    assert "| start | after drives of 0.75, -0.5 V at temperature 30 degC |" in said
+    for more, why in (
+        ([], "needs its value meanwhile"),
+        (["--history-at", 99], "history_at is 99, outside 20 to 50"),
+        (["--history-at", 30, "--schedule-value", 30], "follows no second signal"),
+        (["--history-at", 30, "--target", "fmu"], "--history-at"),
+    ):
+        ended = run("export", model, *drive, *more, "-o", "none")
+        assert ended.code == 2
+        assert why in ended.err
+        assert not (folder / "none").exists()

@@ -133,13 +133,14 @@ class Exported:
         self._function("init")(ctypes.byref(state))
         return state
 
-    def state_after(self, drives: Sequence[float] | np.ndarray) -> tuple[Any, int]:
-        """A state after a history of the drive, and what the call gave."""
+    def state_after(self, drives: Sequence[float] | np.ndarray, *second: float) -> tuple[Any, int]:
+        """A state after a history of the drive, and what the call gave; with a second signal."""
         state, count = self._new(), len(drives)
         kept = np.ascontiguousarray(drives, dtype=np.float64)
         start = self._function("init_after")
         place = ctypes.c_void_p(kept.ctypes.data)
-        return state, int(start(ctypes.byref(state), place, ctypes.c_size_t(count)))
+        more = map(ctypes.c_double, second)
+        return state, int(start(ctypes.byref(state), place, ctypes.c_size_t(count), *more))
 
     def step(self, state: Any, *u: float) -> float:
         return float(self._function("step")(ctypes.byref(state), *u))

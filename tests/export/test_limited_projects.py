@@ -27,7 +27,6 @@ from hyst.export import CProject, c_project
 from hyst.export.c.any_block import any_block
 from hyst.export.c.block import stepper_of
 from hyst.export.c.drive_options import DriveOptions
-from hyst.models import Scheduled
 from hyst.online import JointEstimator, ScaleEstimator
 from hyst.operators import ModelDescription, Operator
 from reference.examples import EXAMPLES
@@ -313,6 +312,16 @@ def test_a_controller_starts_after_a_history(name: str, tmp_path: Path, objects:
     assert said in project.drive.said()
 
 
+def test_the_header_tells_what_a_step_gives_before_the_start(tmp_path: Path) -> None:
+    """The drive never leaves its limits, so 0 is no answer where it is not among them."""
+    for model, said in ((STAGE.inverse(), "1"), (STAGE, "0")):
+        project = c_project(model, tmp_path / said, limits=(1.0, 3.0))
+        assert f"Before stage_init: {said},\n * and a fault." in header_of(project)
+    for kind, estimator in estimators().items():
+        text = header_of(c_project(estimator, tmp_path / kind, limits=(1.0, 3.0)))
+        assert "stage_init: 1. It never leaves\n * STAGE_U_MIN to STAGE_U_MAX; no bit" in text
+
+
 def estimators() -> dict[str, JointEstimator | ScaleEstimator]:
     described = PI.with_description(ABOUT)
     return {"joint": JointEstimator(described), "scale": ScaleEstimator(described)}
@@ -352,17 +361,6 @@ def test_a_limited_drive_is_exported_as_it_is(tmp_path: Path, objects: Objects) 
     for told in ({"limits": (0.0, 1.0)}, {"limits": None}, {"rate_limit": 1.0}):
         with pytest.raises(InputError, match="a limited drive has its own limits"):
             c_project(drive, tmp_path / "x", **told)  # type: ignore[arg-type]
-
-
-def test_a_model_with_a_second_signal_takes_no_limits(tmp_path: Path) -> None:
-    moving = Scheduled([PI, PrandtlIshlinskii([0.7], [0.2], 1.0)][:1] * 2, [0.0, 1.0])
-    for i, model in enumerate((moving, moving.inverse())):
-        project = c_project(model, tmp_path / str(i), limits="none")
-        assert project.drive.limits is None
-        with pytest.raises(InputError, match="with a second signal is exported without limits"):
-            c_project(model, tmp_path / "x", limits=(0.0, 1.0))
-        with pytest.raises(InputError, match="no start after a history"):
-            c_project(model, tmp_path / "x", history=[1.0])
 
 
 def test_every_self_test_meets_the_limits() -> None:

@@ -11,6 +11,7 @@ from test_mex import READ, WRITE, compiled, needs_octave, octave
 
 import hyst.export
 from hyst import Operator
+from hyst.control import RepetitiveController, TrackingController
 from hyst.control.limited_drive.drive import LimitedDrive
 from reference.examples import EXAMPLES
 
@@ -92,3 +93,21 @@ def test_octave_starts_after_a_history(name: str, tmp_path: Path) -> None:
     assert lines[2] == lines[3]
     assert "is not finite or not from -1.5 to 2; pass those" in lines[2]
     assert "drives is not of class double" in lines[4]
+
+
+@pytest.mark.parametrize("kind", ["tracking", "repetitive"])
+def test_a_controller_with_limits_offers_no_half_of_its_inverse(kind: str, tmp_path: Path) -> None:
+    """The inverse and the model beside it have the same constants, and stay each other's."""
+
+    def parameters(limits: tuple[float, float] | None) -> tuple[str, ...]:
+        if kind == "tracking":
+            block: TrackingController | RepetitiveController = TrackingController.from_continuous(
+                ([4.0, 8.0], [1.0, 0.0]), dt=1e-3, inverse=INVERSE_MPI, limits=limits
+            )
+        else:
+            learn, smooth = [0.5, 0.2, 0.05], [0.1, -0.2, 0.5, 0.3]
+            block = RepetitiveController(40, learn, smooth, 3, 1e-3, INVERSE_MPI, limits=limits)
+        return hyst.export.fmu(block, tmp_path / "x.fmu", binary=False, force=True).parameters
+
+    assert {"pi_3.p0", "pi_3.p[1]", "pi_3.r[1]"} < set(parameters(None))
+    assert parameters(LIMITS) == ()

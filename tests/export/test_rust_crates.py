@@ -17,6 +17,7 @@ import hyst
 from hyst import InputError, MissingExtraError, PrandtlIshlinskii
 from hyst.control import RepetitiveController
 from hyst.control.limited_drive.drive import LimitedDrive
+from hyst.control.limited_drive.schedule import LimitedSchedule
 from hyst.control.tracking_controller import TrackingController
 from hyst.export import c_project, rust
 from hyst.export.c.any_block import any_block
@@ -68,6 +69,7 @@ SCHEDULED = hyst.Scheduled(
     "temperature",
     "degC",
 )
+MOVING = LimitedSchedule(SCHEDULED.inverse(), (-2.0, 2.5))
 MORE = {
     "held": LIMITED,
     "controller": TrackingController.from_continuous(
@@ -77,6 +79,7 @@ MORE = {
         40, [0.5, 0.2, 0.05], [0.1, -0.2, 0.5, 0.3], 3, 1e-3, EXAMPLES["inverse of mpi"]
     ),
     "scheduled": SCHEDULED,
+    "moving": MOVING,
     "estimator": JointEstimator(PI),
 }
 IN_DOUBLE = [*KINDS, *MORE]
@@ -93,7 +96,7 @@ def block_of(name: str, precision: str) -> hyst.export.c.block.Block:
 @pytest.fixture(scope="module")
 def crates(tmp_path_factory: pytest.TempPathFactory) -> Crates:
     models = {name: (model_of(name), "double") for name in IN_DOUBLE}
-    models |= {f"{name}_single": (model_of(name), "single") for name in (*SINGLE, "held")}
+    models |= {f"{name}_single": (model_of(name), "single") for name in (*SINGLE, "held", "moving")}
     return Crates(tmp_path_factory.mktemp("crates"), models)
 
 
@@ -127,7 +130,7 @@ def _signals(name: str, precision: str) -> list[np.ndarray]:
     # Commands planned ahead, and what is learned, take Python a tenth of a millisecond a sample.
     samples = 20_000 if name in ("planned", "estimator") else SAMPLES
     signals = [wandering(samples)]
-    if name == "scheduled":
+    if name in ("scheduled", "moving"):
         signals.append(30.0 + 25.0 * np.sin(np.arange(samples) / 501.0))
     elif name in MORE and name != "held":
         signals.append(wandering(samples, seed=8))
@@ -153,7 +156,7 @@ def test_crates_give_the_bits_of_python(name: str, crates: Crates) -> None:
 
 
 @needs_cargo
-@pytest.mark.parametrize("name", [*SINGLE, "held"])
+@pytest.mark.parametrize("name", [*SINGLE, "held", "moving"])
 def test_crates_in_single_give_the_bits_of_the_core_in_single(name: str, crates: Crates) -> None:
     same, fault = _same(crates, name, "single")
     assert same
@@ -216,6 +219,37 @@ def test_a_start_is_that_of_python_and_a_saved_state_that_of_c(
     # Also the crate's own self-test, and what clippy finds.
     cargo(crates.folder, "test", "--offline", "-q", "-p", "held")
     cargo(crates.folder, "clippy", "--offline", "-q", "-p", "held", "-p", "estimator")
+
+
+_START_AT = """
+use moving::{{Moving, OFF_SCHEDULE}};
+
+#[test]
+fn starts_after_a_history_at_a_value() {{
+    let mut block = Moving::new();
+    block.init_after(&[2.5, -1.5, 0.75], 25.0).expect("within the limits");
+    let memory: [u64; {count}] = [{memory}];
+    for (number, bits) in block.memory().iter().zip(memory) {{
+        assert_eq!(number.to_bits(), bits);
+    }}
+    assert_eq!(block.fault(), 0);
+    assert!(block.init_after(&[0.0], f64::NAN).is_err());
+    assert!(block.init_after(&[0.0, 2.6], 25.0).is_err());
+    block.init_after(&[0.0], 51.0).expect("the constants are held");
+    assert_eq!(block.fault(), OFF_SCHEDULE);
+}}
+"""
+
+
+@needs_cargo
+def test_a_start_at_a_value_of_the_second_signal(crates: Crates) -> None:
+    started = MOVING.state_after([2.5, -1.5, 0.75], 25.0)
+    text = _START_AT.format(
+        count=started.size, memory=", ".join(hex(each) for each in started.view(np.uint64).tolist())
+    )
+    (crates.folder / "moving" / "tests" / "start.rs").write_text(text)
+    cargo(crates.folder, "test", "--offline", "-q", "-p", "moving")
+    cargo(crates.folder, "clippy", "--offline", "-q", "-p", "moving")
 
 
 @needs_cargo

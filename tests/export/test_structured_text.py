@@ -2,25 +2,38 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+import structured_text_machine
 from c_builds import same_bits, stepped, wandering
 from distinct_code import DISTINCT
+from structured_text_compiler import Compiler
 from structured_text_machine import Instance, Machine
 from structured_text_parser import StructuredTextError, units_of
 from test_repetitive_projects import BLOCKS
 
-from hyst import InputError, ModelDescription, Operator, PrandtlIshlinskii
+from hyst import (
+    DeadZone,
+    InputError,
+    ModelDescription,
+    ModifiedPrandtlIshlinskii,
+    Operator,
+    PrandtlIshlinskii,
+)
 from hyst.control.limited_drive.drive import LimitedDrive
+from hyst.control.limited_drive.schedule import LimitedSchedule
 from hyst.control.tracking_controller import TrackingController
 from hyst.export import structured_text
 from hyst.export.c.block import block_of, stepper_of
 from hyst.export.c.numbers import Precision
 from hyst.export.iec61131.project import text_files
+from hyst.export.iec61131.words import is_taken
 from hyst.models import Scheduled
 from hyst.online import JointEstimator
 from reference.examples import EXAMPLES
@@ -101,6 +114,15 @@ def test_an_open_grammar_of_the_standard_takes_the_text(kind: str) -> None:
     parser = tree_sitter.Parser(tree_sitter.Language(grammar.language()))
     assert not parser.parse(text_of(KINDS[kind], "double").encode()).root_node.has_error
     assert parser.parse(b"FUNCTION f : LREAL\nf := ;\nEND_FUNCTION").root_node.has_error
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_variable_has_a_name_that_the_language_keeps(kind: str) -> None:
+    names = {
+        each.name for unit in units_of(text_of(KINDS[kind], "double")) for each in unit.variables
+    }
+    assert "numbers" in names
+    assert not {each for each in names if is_taken(each)}
 
 
 INVERSE = PrandtlIshlinskii([0.5, 0.2, 0.1], [0.1, 0.3, 0.7], 1.0).inverse()
@@ -187,6 +209,33 @@ def test_a_scheduled_model(tmp_path: Path) -> None:
     assert fault[-1] == 1 | 8  # not finite, and off the schedule
 
 
+def test_a_scheduled_inverse_with_limits_starts_after_a_history(tmp_path: Path) -> None:
+    models = [PrandtlIshlinskii([0.5 * k, 0.2], [0.1, 0.3], 1.0) for k in (1, 2, 3)]
+    drive = LimitedSchedule(Scheduled(models, [20.0, 40.0, 80.0]).inverse(), (-1.25, 2.0))
+    structured_text(drive, tmp_path / "out", name="lens")
+    lens = instance_of((tmp_path / "out" / "lens.st").read_text(), tmp_path)
+    v = wandering(5000)
+    s = 50.0 + 40.0 * np.sin(np.arange(v.size) / 71.0)
+    y, fault = lens.run(("y", "fault"), u=v, scheduled_by=s)
+    assert same_bits(y, stepped(drive.stepper(), v, s))
+    assert fault[-1] == 1 | 8 | 16
+    # With the value of the call that restarts it.
+    history = [2.0, -0.75, 0.5]
+    lens.set("history", history)
+    first, refused = lens.run(
+        ("y", "history_refused"), u=0.25, scheduled_by=30.0, restart=True, history_count=3
+    )
+    (rest,) = lens.run(("y",), u=v[:1000], scheduled_by=s[:1000], restart=False)
+    step = drive.stepper(drive.state_after(history, 30.0))
+    assert first[0] == step(0.25, 30.0)
+    assert not refused[0]
+    assert same_bits(rest, stepped(step, v[:1000], s[:1000]))
+    (refused,) = lens.run(
+        ("history_refused",), u=0.25, scheduled_by=np.nan, restart=True, history_count=3
+    )
+    assert refused[0]
+
+
 def test_fault_and_restart(tmp_path: Path) -> None:
     lens = instance_of(text_of("pi", "double"), tmp_path)
     u = np.array([1.0, 3.0, np.nan, np.inf, -2.0])
@@ -230,6 +279,49 @@ def test_what_is_written(tmp_path: Path) -> None:
         structured_text(INVERSE, tmp_path / "out", name="lens")
     again = structured_text(INVERSE, tmp_path / "again", name="lens", description=about)
     assert (again.path / "lens.st").read_text() == text
+
+
+TEN = PrandtlIshlinskii(np.linspace(0.3, 0.05, 10), np.linspace(0.1, 2.0, 10), 1.0)
+TEN_AND_MAP = ModifiedPrandtlIshlinskii(
+    TEN, DeadZone([1.0, 0.2, 0.1, 0.3], [0.0, 0.5, 1.5, -0.4])
+).inverse()
+
+
+class _Counting(Compiler):
+    """Counts the statements that are run."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.lines.insert(0, "unsigned counted;")
+
+    def body(self, statements: list[Any]) -> None:
+        for each in statements:
+            self.lines.append("counted += 1;")
+            super().body([each])
+
+
+@pytest.mark.parametrize(
+    ("model", "limits", "most"),
+    [(TEN, None, 92), (TEN_AND_MAP, None, 128), (TEN_AND_MAP, (-1.5, 2.0), 173)],
+)
+def test_a_sample_costs_the_statements_that_the_page_tells(
+    model: Operator,
+    limits: tuple[float, float] | None,
+    most: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(structured_text_machine, "Compiler", _Counting)
+    written = structured_text(model, tmp_path / "out", name="lens", limits=limits)
+    lens = instance_of((written.path / "lens.st").read_text(), tmp_path)
+    counted = ctypes.c_uint.in_dll(lens.machine.library, "counted")
+    lens.run(("y",), u=0.0)
+    costs = []
+    for each in np.sin(np.arange(3000) / 50.0) * np.linspace(0.2, 4.0, 3000):
+        counted.value = 0
+        lens.run(("y",), u=each)
+        costs.append(counted.value)
+    assert max(costs) == most
 
 
 @pytest.mark.parametrize("name", ["limit", "Step", "LREAL", "t", "Real_to_dint", "AT", "trunc"])

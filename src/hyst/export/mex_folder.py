@@ -93,6 +93,7 @@ def mex(
     limits: Limits | str | None = AUTO,
     rate_limit: float | None = None,
     history: ArrayLike | None = None,
+    history_at: float | None = None,
 ) -> MexFolder:
     """Write a model as one C file that MATLAB and Octave compile, with wrappers in their language.
 
@@ -110,7 +111,7 @@ def mex(
         Names and units of input and output, for comments; that of the model itself if left out.
     despite_verdict
         Export also a model whose verdict is ``unfit``.
-    limits, rate_limit, history
+    limits, rate_limit, history, history_at
         Of the drive, as ``c_project`` takes them.
 
     Returns
@@ -137,7 +138,9 @@ def mex(
     """
     _as_function_name(name)
     refuse_unfit(model, description, despite_verdict)
-    tool = tool_block(model, DriveOptions(limits, rate_limit, history), description)
+    tool = tool_block(
+        model, DriveOptions(limits, rate_limit, history, history_at=history_at), description
+    )
     about = described(model, description)
     files = mex_files(tool, name, about)
     path = write_export(folder, files, name, force=force)
@@ -292,6 +295,7 @@ def _manifest(block: Block, name: str, files: dict[str, bytes]) -> bytes:
         "model": {"kind": block.kind, "sha256": block.sha256()},
         "drive": block.drive.told(),
         "history": list(block.history),
+        **({} if block.history_at is None else {"history_at": block.history_at}),
         "files": {path: hashlib.sha256(files[path]).hexdigest() for path in sorted(files)},
     }
     return (json.dumps(content, indent=2) + "\n").encode()

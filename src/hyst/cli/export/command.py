@@ -15,6 +15,7 @@ from hyst.cli.export.options import (
     Force,
     ForTool,
     History,
+    HistoryAt,
     Inverse,
     Layout,
     Limits,
@@ -50,6 +51,7 @@ def export(
     limits: Limits = "auto",
     rate_limit: RateLimit = None,
     history: History = None,
+    history_at: HistoryAt = None,
     driver: DriverOfDrive = "auto",
     schedule_value: ScheduleValue = None,
 ) -> None:
@@ -77,6 +79,7 @@ def export(
         rate_limit,
         None if history is None else history_of(history),
         driver_or_word(driver, model.description),
+        history_at,
     )
     done = TARGETS[target].write(order)
     what = "inverse of " if inverse or explicit else ""

@@ -25,7 +25,7 @@ class Order:
         What is exported, and where to.
     precision, name, force, fmi, binary, despite_verdict, layout, shared_core
         As the verb is given them.
-    limits, rate_limit, history, driver
+    limits, rate_limit, history, driver, history_at
         Of the drive.
     """
 
@@ -43,11 +43,14 @@ class Order:
     rate_limit: float | None
     history: list[float] | None
     driver: Driver | str = "auto"
+    history_at: float | None = None
 
     @property
     def drive(self) -> dict[str, Any]:
         """What it is told of the drive, by the names in Python."""
-        return {"limits": self.limits, "rate_limit": self.rate_limit, "history": self.history}
+        at = {} if self.history_at is None else {"history_at": self.history_at}
+        told = {"limits": self.limits, "rate_limit": self.rate_limit, "history": self.history}
+        return told | at
 
 
 @dataclass(frozen=True)

@@ -33,11 +33,11 @@ class Target:
 
 
 TARGETS = {
-    "c": Target(c, "for firmware", ("precision", "layout", "shared_core", "driver")),
+    "c": Target(c, "for firmware", ("precision", "layout", "shared_core", "driver", "history_at")),
     "fmu": Target(fmu, "for simulation tools", ("fmi", "binary")),
-    "mex": Target(mex, "for MATLAB and Octave"),
-    "rust": Target(rust, "a crate", ("precision",)),
-    "st": Target(structured_text, "IEC 61131-3 for PLCs", ("precision",)),
+    "mex": Target(mex, "for MATLAB and Octave", ("history_at",)),
+    "rust": Target(rust, "a crate", ("precision", "history_at")),
+    "st": Target(structured_text, "IEC 61131-3 for PLCs", ("precision", "history_at")),
 }
 
 

@@ -90,7 +90,7 @@ class LimitedSchedule(InModelFile):
         if change is not None and known is None:
             raise InputError("a rate is counted in samples, whose time is not known; give dt")
         object.__setattr__(self, "dt", known if change is not None or given is not None else None)
-        _ = self._numbers
+        _ = self.numbers
         if self.drive == "output" and self.limits is not None:
             for each in self._model.models:
                 require_monotone(each, self.limits)
@@ -195,7 +195,7 @@ class LimitedSchedule(InModelFile):
         is_inverse, at = self.drive == "output", self._model.values.tolist()
         own = self.system.knot_stages
         beside = self._model.knot_stages if is_inverse else [()] * len(at)
-        return _engine.LimitedMovingStepper(at, own, beside, is_inverse, *self._numbers, memory)
+        return _engine.LimitedMovingStepper(at, own, beside, is_inverse, *self.numbers, memory)
 
     def to_dict(self) -> dict[str, Any]:
         """Give a dictionary of plain numbers, lists and text that ``from_dict`` understands."""
@@ -224,7 +224,8 @@ class LimitedSchedule(InModelFile):
         return self.system if isinstance(self.system, Scheduled) else self.system.scheduled
 
     @property
-    def _numbers(self) -> tuple[float, float, float]:
+    def numbers(self) -> tuple[float, float, float]:
+        """Lowest and highest drive, and most change in a sample, as the core takes them."""
         return stated(self.limits, self.rate, 1.0 if self.dt is None else self.dt)
 
     def _side_by_side(self, x: ArrayLike, s: ArrayLike) -> tuple[Array, Array]:

@@ -8,19 +8,22 @@ from typing import Any
 
 from hyst.control.drive_limits import Limits, within
 from hyst.control.limited_drive.drive import LimitedDrive
+from hyst.control.limited_drive.schedule import LimitedSchedule
 from hyst.control.repetitive.controller import RepetitiveController
 from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError
 from hyst.export.c.any_estimator import any_estimator_block
 from hyst.export.c.block import Block, Model, block_of, described
 from hyst.export.c.drive_block import limited_block
-from hyst.export.c.drive_options import DriveOptions, ends_of, limited
+from hyst.export.c.drive_options import DriveOptions, ends_of, limited, limited_schedule
 from hyst.export.c.drive_range import DriveRange
 from hyst.export.c.driver_codes import with_codes
 from hyst.export.c.names import plain_text
 from hyst.export.c.numbers import Precision
+from hyst.export.c.schedule_block import limited_schedule_block
 from hyst.export.c.start import after_history
-from hyst.models.schedule_run import ScheduledSystem
+from hyst.models.scheduled import Scheduled
+from hyst.models.scheduled_inverse import ScheduledInverse
 from hyst.online import JointEstimator, ScaleEstimator
 from hyst.operators import ModelDescription, Operator
 
@@ -56,10 +59,13 @@ def any_block(
         If the model turns back within the limits.
     """
     about = described(model, description)
+    if isinstance(model, Operator) and about.is_inverse and not model.description.is_inverse:
+        model = model.with_description(about)  # which of its signals the drive is
     block = _block(model, precision, options, about)
     unit = about.output_unit if block.drive.side == "output" else about.input_unit
     block = replace(block, drive=replace(block.drive, unit=plain_text(unit)))
-    return with_codes(after_history(block, options.history, precision), options.codes)
+    block = after_history(block, options.history, precision, options.history_at)
+    return with_codes(block, options.codes)
 
 
 def _block(
@@ -73,16 +79,18 @@ def _block(
             return limited_block(had.model, precision, had.source)
         block = block_of(had.model, precision)
         return replace(block, drive=replace(block.drive, source=had.source))
-    if isinstance(model, LimitedDrive):
+    if isinstance(model, Scheduled | ScheduledInverse):
+        had = limited_schedule(model, options, about)
+        if isinstance(had.model, LimitedSchedule):
+            return limited_schedule_block(had.model, precision, had.source)
+        block = block_of(model, precision)
+        return replace(block, drive=replace(block.drive, source=had.source))
+    if isinstance(model, LimitedDrive | LimitedSchedule):
         instead = "leave it out, or export its operator"
         options.refuse("a limited drive has its own limits", instead, True)
     elif isinstance(model, TrackingController | RepetitiveController):
         what = f"a {type(model).__name__} limits its drive itself"
         options.refuse(what, "make the controller with limits", model.is_limited)
-    elif isinstance(model, ScheduledSystem):
-        what = "a model with a second signal is exported without limits"
-        instead = "limit the drive beside it, or export the model at one value"
-        options.refuse(what, instead, False)
     return block_of(model, precision)
 
 

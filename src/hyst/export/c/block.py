@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-from hyst import _single
 from hyst.control.limited_drive.drive import LimitedDrive
+from hyst.control.limited_drive.schedule import LimitedSchedule
 from hyst.control.repetitive.controller import RepetitiveController
 from hyst.control.tracking_controller import TrackingController
 from hyst.errors import InputError
 from hyst.export.c.controllers import repetitive_block, tracking_block
 from hyst.export.c.drive_block import limited_block
-from hyst.export.c.exported import Block, Memory, stepper_of
-from hyst.export.c.following import told
+from hyst.export.c.exported import Block, stepper_of
 from hyst.export.c.numbers import Precision
 from hyst.export.c.operator_block import operator_block
-from hyst.export.c.scheduled import OFF_SCHEDULE, scheduled_code, second_values
+from hyst.export.c.schedule_block import limited_schedule_block, scheduled_block
 from hyst.models.schedule_run import ScheduledSystem
 from hyst.models.scheduled import Scheduled
 from hyst.models.scheduled_inverse import ScheduledInverse
@@ -30,6 +27,7 @@ Model = (
     Operator
     | LimitedDrive
     | ScheduledSystem
+    | LimitedSchedule
     | TrackingController
     | RepetitiveController
     | StableInverse
@@ -44,8 +42,8 @@ def block_of(model: Model, precision: Precision) -> Block:
     Parameters
     ----------
     model
-        Any operator, a limited drive, a scheduled model or its inverse, a tracking or a repetitive
-        controller; a stable inverse is refused with the reason.
+        Any operator, a scheduled model or its inverse, either with a limited drive, a tracking or a
+        repetitive controller; a stable inverse is refused with the reason.
     precision
         Of the target.
 
@@ -65,7 +63,9 @@ def block_of(model: Model, precision: Precision) -> Block:
     if isinstance(model, LimitedDrive):
         return limited_block(model, precision)
     if isinstance(model, Scheduled | ScheduledInverse):
-        return _scheduled(model, precision)
+        return scheduled_block(model, precision)
+    if isinstance(model, LimitedSchedule):
+        return limited_schedule_block(model, precision)
     if isinstance(model, StableInverse):
         raise InputError(
             f"a stable inverse looks {model.preview} samples ahead, which a target cannot; compute "
@@ -125,33 +125,4 @@ def _no_model(found: object) -> InputError:
     return InputError(
         f"{name} cannot be exported; give an operator, a tracking controller, a joint estimator, "
         "or the model that an estimator has found"
-    )
-
-
-def _scheduled(model: Scheduled | ScheduledInverse, precision: Precision) -> Block:
-    code = scheduled_code(model, precision)
-
-    def single_stepper(memory: Memory) -> Callable[..., float]:
-        knots = [[told(stage) for stage in each] for each in code.knots]
-        return _single.MovingStepper(model.values.tolist(), knots, memory)
-
-    first = model.models[0] if isinstance(model, Scheduled) else model.scheduled.models[0].inverse()
-    return Block(
-        kind=model.kind,
-        inputs=("u", "s"),
-        output="y",
-        head=code.head,
-        body=code.body,
-        signal="u",
-        headers=code.headers,
-        start=tuple(model.initial_state().tolist()),
-        dt=model.dt,
-        model=model.to_dict(),
-        stages=code.knots[0],
-        chain=first,
-        stepper=model.stepper,
-        single_stepper=single_stepper,
-        second=second_values(model),
-        second_meaning=(model.name, model.unit),
-        faults=OFF_SCHEDULE,
     )

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from hyst.control.drive_limits import within
+from hyst.control.drive_limits import Limits, within
 from hyst.control.limited_drive.drive import LimitedDrive
 from hyst.export.c.core_stage import CoreStage, core_stages
 from hyst.export.c.drive_range import DriveRange
@@ -79,7 +79,7 @@ def limited_block(model: LimitedDrive, precision: Precision, source: str = "as g
         drive=DriveRange.of(model.drive, model.limits, model.rate, precision, source),
         rest=float(start[-1]) if is_output else 0.0,
         following=_following(model, code),
-        tested=_tested(model),
+        tested=tested(model.limits, () if model.forward is None else (model.forward,)),
     )
 
 
@@ -93,7 +93,7 @@ def _parts(
     own = core_stages(model.operator)
     if model.drive == "input":
         told = limits_stage(limits, {"forward": 0, "way": 0})
-        return (*own, told), _model_body
+        return (*own, told), model_body
     if model.bank is not None:
         dtype = np.float32 if precision == "single" else np.float64
         ends = model.bank_limits(limits[0], limits[1], dtype)
@@ -103,8 +103,8 @@ def _parts(
     return held.all, held.body
 
 
-def _model_body(code: StageCode) -> str:
-    """Clip what drives a model."""
+def model_body(code: StageCode) -> str:
+    """Give C that clips what drives a model, with the last of the stages of its ``code``."""
     last = len(code.stages) - 1
     clipped = code.calls("u", only=range(last, last + 1)).rstrip("\n")
     return (
@@ -157,13 +157,23 @@ def _start_headers(model: LimitedDrive) -> tuple[str, ...]:
     return (SOLVED_HEADER,) if model.bank is not None else ()
 
 
-def _tested(model: LimitedDrive) -> tuple[float, float] | None:
-    """Give the range of the self-test: what is in reach within the limits, and some more."""
-    if model.limits is None:
+def tested(limits: Limits | None, forward: Sequence[Operator]) -> tuple[float, float] | None:
+    """Give the range of a self-test: what is in reach within the limits, and some more.
+
+    Parameters
+    ----------
+    limits
+        Of the drive; None without.
+    forward
+        Models in front of the inverse, of which the one that reaches farthest counts; none where
+        the drive is the input.
+    """
+    if limits is None:
         return None
-    low, high = model.limits
-    if model.drive == "output" and model.forward is not None:
-        low, high = _reached(model.forward, low, high)
+    low, high = limits
+    if forward:
+        ends = [_reached(each, *limits) for each in forward]
+        low, high = min(each[0] for each in ends), max(each[1] for each in ends)
     more = _BEYOND * (high - low)
     return low - more, high + more
 

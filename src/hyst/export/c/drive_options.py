@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, final
 
 from numpy.typing import ArrayLike
 
+from hyst.checks.numbers import as_number
 from hyst.control.drive_limits import Limits, as_limits, as_rate
 from hyst.control.limited_drive.checked import Drive, as_drive
 from hyst.control.limited_drive.drive import LimitedDrive
+from hyst.control.limited_drive.schedule import LimitedSchedule
 from hyst.errors import InputError, NotInvertibleError
 from hyst.export.c.drive_range import NO_RANGE
 from hyst.export.c.driver_codes import DriverCodes
+from hyst.models.scheduled import Scheduled
+from hyst.models.scheduled_inverse import ScheduledInverse
 from hyst.operators import ModelDescription, Operator
+
+System = Scheduled | ScheduledInverse
 
 AUTO, NONE = "auto", "none"
 
@@ -35,12 +41,15 @@ class DriveOptions:
         What drove the actuator before the start; None for nothing.
     codes
         Of a driver, whose volts the limits then are; None for a drive in volts.
+    history_at
+        Second signal during the history; None where there is none.
     """
 
     limits: Any = AUTO
     rate: float | None = None
     history: ArrayLike | None = None
     codes: DriverCodes | None = None
+    history_at: float | None = None
 
     def __post_init__(self) -> None:
         limits = NONE if self.limits is None else self.limits
@@ -52,6 +61,10 @@ class DriveOptions:
             )
         object.__setattr__(self, "limits", limits)
         object.__setattr__(self, "rate", as_rate(self.rate))
+        if self.history_at is not None:
+            if self.history is None:
+                raise InputError("history_at is of a history; give one, or leave it out")
+            object.__setattr__(self, "history_at", as_number(self.history_at, "history_at"))
 
     @property
     def are_given(self) -> bool:
@@ -81,7 +94,7 @@ class DriveOptions:
 @final
 @dataclass(frozen=True)
 class Limited:
-    """An operator with its limits, or without and why.
+    """An operator or a scheduled model with its limits, or without and why.
 
     Parameters
     ----------
@@ -91,7 +104,7 @@ class Limited:
         Where the limits come from, or why there are none.
     """
 
-    model: Operator | LimitedDrive
+    model: Operator | LimitedDrive | System | LimitedSchedule
     source: str
 
 
@@ -134,6 +147,30 @@ def limited(model: Operator, options: DriveOptions, about: ModelDescription) -> 
     dt = about.dt if options.rate is not None and model.dt is None else None
     limits = NONE if ends is None else ends
     return Limited(LimitedDrive(model, limits, options.rate, dt=dt, drive=side), source)
+
+
+def limited_schedule(model: System, options: DriveOptions, about: ModelDescription) -> Limited:
+    """Give a scheduled model or its inverse as it is exported: with the limits that are asked for.
+
+    Parameters
+    ----------
+    model, options, about
+        As ``limited`` takes them. A driver counts for nothing: no codes are exported.
+
+    Raises
+    ------
+    InputError
+        If limits or a rate are asked for and cannot be had.
+    NotInvertibleError
+        If the model turns back within the limits at a value of the schedule.
+    """
+    side: Drive = "input" if isinstance(model, Scheduled) else "output"
+    ends, source = ends_of(replace(options, codes=None), side, about, model.description)
+    if ends is None and options.rate is None:
+        return Limited(model, source)
+    dt = about.dt if options.rate is not None and model.dt is None else None
+    limits = NONE if ends is None else ends
+    return Limited(LimitedSchedule(model, limits, options.rate, dt=dt), source)
 
 
 def ends_of(

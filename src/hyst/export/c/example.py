@@ -70,7 +70,7 @@ def example_of(
         f"static {name}_state {name}; /* its memory: one for each actuator */",
         *_swept(block, name, number),
         "int main(void) {",
-        f"    {_started(block, name)}",
+        f"    {_started(block, name, number)}",
         f"    {loop} /* every sample */",
         *(f"        {line}" for line in _sample(block, name, number, named)),
         "    }",
@@ -131,11 +131,17 @@ def _swept(block: Block, name: str, number: str) -> list[str]:
     return [f"static const {number} {swept}[] = {drives}; /* where the sweep turned */"]
 
 
-def _started(block: Block, name: str) -> str:
+def middle_of_second(block: Block) -> float:
+    """Give a value of the second signal of a ``block`` in the midst of those it knows."""
+    return sorted(block.second)[len(block.second) // 2]
+
+
+def _started(block: Block, name: str, number: str) -> str:
     if not starts_from_extremes(block):
         after = ", after the drives it was exported with" if block.history else ""
         return f"{name}_init(&{name}); /* once{after} */"
-    call = f"{name}_init_after(&{name}, {swept_name(block, name)}, 2u)"
+    at = f", {_decimal(middle_of_second(block), number)}" if block.second else ""
+    call = f"{name}_init_after(&{name}, {swept_name(block, name)}, 2u{at})"
     return f"if ({call} != 0) {{ return 1; }} /* once, after it */"
 
 
@@ -155,7 +161,7 @@ def _sample(block: Block, name: str, number: str, named: dict[str, str]) -> Iter
         yield f'printf("%g: %g, used %d, fault %u\\n", {shown});'
         return
     for role in block.inputs[1:]:
-        value = sorted(block.second)[len(block.second) // 2] if block.second else 0.0
+        value = middle_of_second(block) if block.second else 0.0
         yield f"const {number} {named[role]} = {_decimal(value, number)}; /* as it is measured */"
     out = named[block.output]
     yield f"const {number} {out} = {name}_step({arguments});"

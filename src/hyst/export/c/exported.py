@@ -66,6 +66,8 @@ class Block:
         Values of a second signal for the self-test; empty where there is none.
     second_meaning
         Its name and unit.
+    schedule
+        Its lowest and its highest value at which the constants are known.
     faults
         C that defines further bits of the fault.
     written
@@ -89,6 +91,8 @@ class Block:
         Memory and answer before the history that ``start`` comes after; None without a history.
     history
         The drives the memory comes after.
+    history_at
+        The second signal meanwhile; None where there is none.
     tested
         Lowest and highest input of the self-test; None for that of the record, or what passes all.
     codes
@@ -113,6 +117,7 @@ class Block:
     more: Mapping[str, str] = field(default_factory=dict)
     second: tuple[float, ...] = ()
     second_meaning: tuple[str, str] = ("", "")
+    schedule: tuple[float, float] = (0.0, 0.0)
     faults: str = ""
     written: Callable[[StageCode], str] | None = None
     source_template: str = ""
@@ -124,6 +129,7 @@ class Block:
     no_start: str = ""
     before: tuple[Memory, float] | None = None
     history: Memory = ()
+    history_at: float | None = None
     tested: tuple[float, float] | None = None
     codes: Any = None
 

@@ -27,6 +27,7 @@ from hyst.export.c.layout import Layout
 from hyst.export.c.names import as_c_name
 from hyst.export.c.numbers import as_precision
 from hyst.export.c.one_file import in_one_file
+from hyst.export.c.own_names import with_prefix
 from hyst.export.c.readme import readme
 from hyst.export.c.selftest import SelfTest
 from hyst.export.c.short_test import short_test_source
@@ -103,6 +104,7 @@ def c_project(
     limits: Limits | str | None = AUTO,
     rate_limit: float | None = None,
     history: ArrayLike | None = None,
+    history_at: float | None = None,
     driver: Driver | str | None = AUTO,
 ) -> CProject:
     """Write a model as C99 for firmware, with the core's sources it needs and a self-test.
@@ -143,6 +145,8 @@ def c_project(
     history
         What drove the actuator before, in time order, where the start shall be after it: where the
         drive turned is enough, unless time counts.
+    history_at
+        The second signal of a scheduled model meanwhile, one value, which a history then needs.
     driver
         Table of the drive's converter: the step gives, or takes, its codes too, and the limits are
         volts of codes. ``"auto"`` for that of the description, None or ``"none"`` for none.
@@ -176,7 +180,7 @@ def c_project(
     where = Layout(layout, shared_core, name, exact)
     about = described(model, description)
     codes = driver_codes(driver, about, exact)
-    options = DriveOptions(limits, rate_limit, history, codes)
+    options = DriveOptions(limits, rate_limit, history, codes, history_at)
     block = any_block(model, exact, options, description)
     test = SelfTest.of(block, exact, about)
     files = project_files(block, test, about, where)
@@ -232,7 +236,9 @@ def project_files(
     short = layout.own(short_test_source(block, test, common, precision), layout.short_test_folder)
     core = layout.core.files(needed)
     if layout.form == "single-file":
-        compiled = {f"{name}.c": in_one_file(core, {f"{name}.c": layout.own(main)})}
+        # Tools and sketches include such sources in one: no name may be that of another's file.
+        whole = in_one_file(core, {f"{name}.c": layout.own(main)})
+        compiled, short = {f"{name}.c": with_prefix(whole, name)}, with_prefix(short, name)
     else:
         compiled = {f"{name}.c": layout.own(main)}
         compiled |= {layout.core_folder + each: text.decode("ascii") for each, text in core.items()}
@@ -273,6 +279,7 @@ def _manifest(
         "drive": block.drive.told(),
         **({} if block.codes is None else {"driver": block.codes.told()}),
         "history": list(block.history),
+        **({} if block.history_at is None else {"history_at": block.history_at}),
         "selftest": {"samples": SAMPLES, "away_from_double": test.away_from_double},
         # The core's own files, before their names became those of the copy.
         "core": {

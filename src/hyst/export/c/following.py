@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal, final
 
@@ -16,6 +16,7 @@ from hyst.export.c.stage_code import StageCode
 from hyst.operators.stage import Stage
 
 Memory = tuple[float, ...]
+Moved = Callable[[Memory, Sequence[float], float, Precision], tuple[Memory, float]]
 
 
 @final
@@ -68,12 +69,19 @@ class Following:
         "drive", or "signal" for what the last of ``passed`` gives.
     statements
         C that takes a drive in ``v`` through them.
+    prepared
+        C before the first drive that takes the constants at a second signal: declarations, and
+        statements; empty where there is none.
+    moved
+        What gives memory and answer after drives at a second signal; None where there is none.
     """
 
     passed: tuple[Passed, ...]
     last: int | None
     answers: str
     statements: str
+    prepared: tuple[str, str] = ("", "")
+    moved: Moved | None = None
 
     @classmethod
     def of(
@@ -82,6 +90,8 @@ class Following:
         passed: Sequence[Passed],
         last: int | None = None,
         answers: Literal["drive", "signal"] = "drive",
+        prepared: tuple[str, str] = ("", ""),
+        moved: Moved | None = None,
     ) -> Following:
         """Write the C of it.
 
@@ -89,11 +99,11 @@ class Following:
         ----------
         code
             It has the constants.
-        passed, last, answers
+        passed, last, answers, prepared, moved
             As the fields.
         """
         statements = "".join(each.statements(code).rstrip("\n") + "\n" for each in passed)
-        return cls(tuple(passed), last, answers, statements)
+        return cls(tuple(passed), last, answers, statements, prepared, moved)
 
     @property
     def apart(self) -> Memory:
@@ -101,7 +111,11 @@ class Following:
         return tuple(value for each in self.passed if each.place is None for value in each.start)
 
     def after(
-        self, memory: Memory, drives: Sequence[float], precision: Precision
+        self,
+        memory: Memory,
+        drives: Sequence[float],
+        precision: Precision,
+        second: float | None = None,
     ) -> tuple[Memory, float]:
         """Give the memory and the answer after an actuator's ``drives``, in time order.
 
@@ -113,12 +127,16 @@ class Following:
             At least one, numbers of the target.
         precision
             Of the target.
+        second
+            The second signal meanwhile, where there is one.
 
         Raises
         ------
         InputError
             If one of them overflows on its way.
         """
+        if self.moved is not None and second is not None:
+            return self.moved(memory, drives, second, precision)
         moved = np.array(memory, dtype=np.float64)
         signal = np.array(drives, dtype=np.float64)
         for each in self.passed:
@@ -151,11 +169,15 @@ def _run(
 
 def _require_finite(signal: np.ndarray, drives: Sequence[float]) -> None:
     if not np.isfinite(signal).all():
-        k = int(np.argmin(np.isfinite(signal)))
-        raise InputError(
-            f"the history cannot be followed: {drives[k]:.6g}, value {k + 1} of it, overflows in "
-            "the model; give drives that the actuator can have had"
-        )
+        raise overflows(drives, int(np.argmin(np.isfinite(signal))))
+
+
+def overflows(drives: Sequence[float], k: int) -> InputError:
+    """Give the error that the ``drives`` of a history cannot be followed, for that at ``k``."""
+    return InputError(
+        f"the history cannot be followed: {drives[k]:.6g}, value {k + 1} of it, overflows in "
+        "the model; give drives that the actuator can have had"
+    )
 
 
 def told(stage: CoreStage) -> tuple[str, str, dict[str, float], dict[str, Memory], dict[str, int]]:

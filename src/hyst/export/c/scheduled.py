@@ -8,7 +8,7 @@ from typing import final
 import numpy as np
 
 from hyst.errors import InputError
-from hyst.export.c.core_stage import CoreStage, stages_as_core
+from hyst.export.c.core_stage import CoreStage
 from hyst.export.c.numbers import Precision, table
 from hyst.export.c.stage_code import StageCode, values_of
 from hyst.models.schedule_run import ScheduledSystem
@@ -19,82 +19,133 @@ OFF_SCHEDULE = (
 )
 
 
+Knots = tuple[tuple[CoreStage, ...], ...]
+
+
 @final
 @dataclass(frozen=True)
 class ScheduledCode:
-    """What the block of a scheduled model is made of.
+    """The C of stages whose constants follow a second signal.
 
     Parameters
     ----------
-    head, body, headers
-        As of a ``Block``; the body takes ``u`` and ``s`` and leaves the output in ``u``.
+    code
+        The stages at the first value of the schedule, with those behind them that only a start
+        needs; their constants stand in the array ``now``.
     knots
-        The stages at each value of the schedule.
+        The stages of the step at each value of the schedule.
+    head
+        C declarations of constants for the head of the file.
+    moving
+        Numbers of ``now`` that a step takes, and that a start takes.
     """
 
+    code: StageCode
+    knots: Knots
     head: str
-    body: str
-    headers: tuple[str, ...]
-    knots: tuple[tuple[CoreStage, ...], ...]
+    moving: tuple[int, int]
+
+    @classmethod
+    def of(
+        cls, model: ScheduledSystem, knots: Knots, precision: Precision, start: Knots = ()
+    ) -> ScheduledCode:
+        """Write the C of ``knots``.
+
+        Parameters
+        ----------
+        model
+            A scheduled model or its inverse.
+        knots
+            What its step passes at each value of the schedule.
+        precision
+            Of the target.
+        start
+            What a start passes beside that; nothing if left out.
+
+        Raises
+        ------
+        InputError
+            If a constant cannot be written in that precision, values of the schedule are one
+            number in it, or stages inside a stage meet single precision.
+        """
+        whole = tuple((*a, *b) for a, b in zip(knots, start or ((),) * len(knots), strict=True))
+        _require_precision(model, whole, precision)
+        moving, ends = dict[int, int](), [0]
+        for part in (range(len(knots[0])), range(len(knots[0]), len(whole[0]))):
+            first = ends[-1]
+            for index in part:
+                values = [values_of(each[index]) for each in whole]
+                if any(each != values[0] for each in values):
+                    moving[index] = first
+                    first += len(values[0])
+            ends.append(first)
+        code = StageCode(whole[0], precision, now=moving)
+        head = code.declarations() + _values(model, precision)
+        for name, first, last in (
+            ("schedule", 0, ends[1]),
+            ("actuator_schedule", ends[1], ends[2]),
+        ):
+            rows = [
+                value
+                for each in whole
+                for index, place in moving.items()
+                if first <= place < last
+                for value in values_of(each[index])
+            ]
+            if name == "schedule" or rows:
+                head += _schedule(name, len(knots), last - first, rows or [0.0], precision)
+        return cls(code, knots, head, (ends[1], ends[2]))
+
+    @property
+    def headers(self) -> tuple[str, ...]:
+        """Of the core, that the stages need."""
+        return (*self.code.headers(), "hyst/schedule.h")
+
+    @property
+    def taken(self) -> str:
+        """C of a step that takes the constants at ``s``; where that is not finite, ``u`` is so."""
+        return (
+            f"hyst_real now[{max(self.moving[0], 1)}]; /* constants at s */\n"
+            f"{_AT_S}if (!hyst_is_finite(s)) {{\n    u = s;\n}}\n"
+        )
+
+    @property
+    def prepared(self) -> tuple[str, str]:
+        """C of a start: the array of constants, and what takes them; 1 for what is not finite."""
+        own, all_of_them = self.moving
+        beside = (
+            f"(void)hyst_schedule_constants(&actuator_schedule, s, now + {own});\n"
+            if all_of_them > own
+            else ""
+        )
+        return (
+            f"hyst_real now[{max(all_of_them, 1)}]; /* constants at s */\n",
+            f"if (!hyst_is_finite(s)) {{\n    return 1;\n}}\n{_AT_S}{beside}",
+        )
 
 
-def scheduled_code(model: ScheduledSystem, precision: Precision) -> ScheduledCode:
-    """Give the C of a model whose constants follow a second signal.
-
-    Parameters
-    ----------
-    model
-        A scheduled model or its inverse.
-    precision
-        Of the target.
-
-    Returns
-    -------
-    ScheduledCode
-
-    Raises
-    ------
-    InputError
-        If its constants cannot move, a constant cannot be written in that precision, values of the
-        schedule are one number in it, or stages inside a stage meet single precision.
-    """
-    knots = tuple(stages_as_core(stages) for stages in model.knot_stages)
-    _require_precision(model, knots, precision)
-    moving, first = dict[int, int](), 0
-    for index, stage in enumerate(knots[0]):
-        if any(values_of(each[index]) != values_of(stage) for each in knots):
-            moving[index] = first
-            first += len(values_of(stage))
-    codes = [StageCode(each, precision, now=moving) for each in knots]
-    rows = [value for each in knots for index in moving for value in values_of(each[index])]
-    head = codes[0].declarations() + _schedule(model, rows or [0.0], first, precision)
-    body = (
-        f"hyst_real now[{max(first, 1)}]; /* constants at s */\n"
-        "if (hyst_schedule_constants(&schedule, s, now) != 0) {\n"
-        "    state->fault |= @{NAME}_OFF_SCHEDULE;\n"
-        "}\n"
-        "if (!hyst_is_finite(s)) {\n"
-        "    u = s;\n"
-        "}\n"
-    )
-    headers = (*codes[0].headers(), "hyst/schedule.h")
-    return ScheduledCode(head, body + codes[0].calls(), headers, knots)
+_AT_S = """\
+if (hyst_schedule_constants(&schedule, s, now) != 0) {
+    state->fault |= @{NAME}_OFF_SCHEDULE;
+}
+"""
 
 
-def _schedule(model: ScheduledSystem, rows: list[float], count: int, precision: Precision) -> str:
+def _values(model: ScheduledSystem, precision: Precision) -> str:
     values = model.values.tolist()
-    at, table_of_rows = table(values, precision, "values"), table(rows, precision, "constants")
+    at = table(values, precision, "values")
+    return f"static const hyst_real schedule_at[{len(values)}] = {at};\n"
+
+
+def _schedule(name: str, knots: int, count: int, rows: list[float], precision: Precision) -> str:
+    values = table(rows, precision, "constants")
     return (
-        f"static const hyst_real schedule_at[{len(values)}] = {at};\n"
-        f"static const hyst_real schedule_row[{len(rows)}] = {table_of_rows};\n"
-        f"static const hyst_schedule schedule = {{{len(values)}u, {count}u, schedule_at, "
-        "schedule_row};\n"
+        f"static const hyst_real {name}_row[{len(rows)}] = {values};\n"
+        f"static const hyst_schedule {name} = {{{knots}u, {count}u, schedule_at, {name}_row}};\n"
     )
 
 
-def _require_precision(
-    model: ScheduledSystem, knots: tuple[tuple[CoreStage, ...], ...], precision: Precision
-) -> None:
+def _require_precision(model: ScheduledSystem, knots: Knots, precision: Precision) -> None:
     if precision == "double":
         return
     if any(stage.inside for stage in knots[0]):

@@ -121,7 +121,9 @@ def with_start(
     return replace(block, head=whole.declarations(), headers=headers, following=following)
 
 
-def after_history(block: Block, history: ArrayLike | None, precision: Precision) -> Block:
+def after_history(
+    block: Block, history: ArrayLike | None, precision: Precision, second: float | None = None
+) -> Block:
     """Give a ``block`` that starts after a history.
 
     Parameters
@@ -132,11 +134,14 @@ def after_history(block: Block, history: ArrayLike | None, precision: Precision)
         Drives of the actuator in time order; None for the start before any.
     precision
         Of the target.
+    second
+        The second signal meanwhile, as ``history_at`` is given; None where there is none.
 
     Raises
     ------
     InputError
-        If there is none, one is not finite or beyond the limits, or the block cannot follow them.
+        If there is none, one is not finite or beyond the limits, or the block cannot follow them;
+        or if the second signal is missing, of no use or outside the schedule.
     """
     if history is None:
         return block
@@ -145,8 +150,29 @@ def after_history(block: Block, history: ArrayLike | None, precision: Precision)
     if following is None:
         raise InputError(f"there is no start after a history: {block.no_start}; leave it out")
     told = [_told(each, block.drive, precision) for each in drives.tolist()]
-    memory, answer = following.after(block.start, told, precision)
-    return replace(block, start=memory, rest=answer, before=block.virgin, history=tuple(told))
+    at = _second(block, second, precision)
+    memory, answer = following.after(block.start, told, precision, at)
+    block = replace(block, start=memory, rest=answer, before=block.virgin, history=tuple(told))
+    return replace(block, history_at=at)
+
+
+def _second(block: Block, second: float | None, precision: Precision) -> float | None:
+    """Give the second signal of a history as a number of the target."""
+    if not block.second:
+        if second is not None:
+            raise InputError("this model follows no second signal; leave history_at out")
+        return None
+    name, (low, high) = block.second_meaning[0], block.schedule
+    if second is None:
+        raise InputError(
+            f"the history of a model that follows {name} needs its value meanwhile; give history_at"
+        )
+    if not low <= second <= high:
+        raise InputError(
+            f"history_at is {second:.9g}, outside {low:.9g} to {high:.9g}, where the model is "
+            f"known; give the {name} there was within, or tell the history on the target"
+        )
+    return rounded(second, precision, "history_at")
 
 
 def _told(value: float, drive: DriveRange, precision: Precision) -> float:

@@ -64,8 +64,8 @@ def declared(block: Block, name: str) -> str:
     return (
         "\n/* Instead of it, where it is known what drove the actuator: the state after `count`\n"
         " * drives in time order; where it turned is enough unless time counts. 0; or 1, and the\n"
-        f" * state before any drive, if one is not finite{limits}. */\n"
-        f"int {name}_init_after({name}_state *state, const hyst_real *extremes, size_t count);\n"
+        f" * state before any drive, if one is not finite{limits}.{_meanwhile(block, name)} */\n"
+        f"int {name}_init_after({_arguments(block, name)});\n"
     )
 
 
@@ -87,22 +87,39 @@ def _set(target: str, memory: Memory, table_name: str) -> str:
     return f"size_t i;\nfor (i = 0; i < {len(memory)}u; ++i) {{\n    {target}[i] = {value};\n}}"
 
 
+def _meanwhile(block: Block, name: str) -> str:
+    if not block.second:
+        return ""
+    return (
+        " `s` is the second\n * signal meanwhile, one value for all of them; outside its schedule "
+        f"{name.upper()}_OFF_SCHEDULE\n * is raised, not finite is answered with 1, too."
+    )
+
+
+def _arguments(block: Block, name: str) -> str:
+    more = f", hyst_real {block.inputs[1]}" if block.second else ""
+    return f"{name}_state *state, const hyst_real *extremes, size_t count{more}"
+
+
 def _init_after(block: Block, following: Following, name: str, virgin: str) -> str:
     prefix = name.upper()
     outside = ["!hyst_is_finite(drive)"]
     if block.drive.limits is not None:
         outside += [f"(drive < {prefix}_U_MIN)", f"(drive > {prefix}_U_MAX)"]
     apart, last = following.apart, following.last
+    declarations, statements = (each.replace("@{NAME}", prefix) for each in following.prepared)
     uses_actuator = re.search(r"\bactuator\b", following.statements) is not None
     uses_memory = last is not None or re.search(r"\bmemory\b", following.statements) is not None
     lines = [
-        f"int {name}_init_after({name}_state *state, const hyst_real *extremes, size_t count)",
+        f"int {name}_init_after({_arguments(block, name)})",
         "{",
         *["    hyst_real *const memory = state->memory;"] * uses_memory,
         *[f"    hyst_real actuator[{max(len(apart), 1)}]; /* its memory */"] * uses_actuator,
+        indented(declarations) if declarations else "",
         "    size_t k;",
         *([indented(_set("actuator", apart, "actuator_memory"))] if uses_actuator else []),
         f"    {virgin}(state);",
+        indented(statements) if statements else "",
         "    for (k = 0; k < count; ++k) {",
         "        const hyst_real drive = extremes[k];",
         "        hyst_real v = drive;",

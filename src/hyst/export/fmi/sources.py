@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import final
 
+from hyst.control.limited_drive.schedule import LimitedSchedule
 from hyst.errors import InputError
 from hyst.export.c.block import Block, Model
 from hyst.export.c.c_sources import header, places, source, told
@@ -37,7 +38,7 @@ _OF_VERSION = {
     "3.0": ("hyst_fmi3.c", "hyst_fmi3.h", "hyst_fmi3_absent.c", "hyst_fmi3_other_kinds.c"),
 }
 _HELD_BY = "constants->of."
-_BESIDE_ITS_MODEL = 1  # how a drive is limited, as the twin in single precision is told it
+_BESIDE_ITS_MODEL = 1  # the way of limiting a drive, as the twin in single precision is told it
 
 
 @final
@@ -94,7 +95,7 @@ def fmu_model(
     InputError
         If it cannot be exported.
     """
-    if isinstance(model, ScheduledSystem):
+    if isinstance(model, ScheduledSystem | LimitedSchedule):
         raise InputError(
             "a scheduled model is no FMU yet: its constants follow a second input, where an FMU "
             "offers them as parameters; export it as C or MEX, or the model at(value) as an FMU"
@@ -118,13 +119,14 @@ def fmu_model(
 def _offered(block: Block) -> tuple[CoreStage, ...]:
     """Give the stages with those constants as parameters that may change one by one.
 
-    A memory after a history belongs to its constants. Of an inverse with limits, a model that is
-    kept beside it must be its own, and a bank that is solved for must rise.
+    A memory after a history belongs to its constants. Of an inverse with limits, alone or in a
+    controller, a model that is kept beside it must be its own, and a bank that is solved for must
+    rise.
     """
     held: dict[int, set[Rule]] = {}
     everything = {Rule.FIXED, Rule.THRESHOLD, Rule.TUNABLE}
     for index, stage in enumerate(block.stages):
-        if stage.choices.get("way") == _BESIDE_ITS_MODEL:
+        if stage.kind == "drive_limits" and _is_beside_its_model(stage):
             held = dict.fromkeys(range(len(block.stages)), everything)
         elif stage.kind == "bank_limits":
             held[index - 1] = everything
@@ -135,6 +137,11 @@ def _offered(block: Block) -> tuple[CoreStage, ...]:
         _held(stage, held[index]) if index in held else stage
         for index, stage in enumerate(block.stages)
     )
+
+
+def _is_beside_its_model(limits: CoreStage) -> bool:
+    """Tell whether the stages that ``limits`` end are an inverse and the model in front of it."""
+    return limits.choices["forward"] > 0 or limits.choices.get("way") == _BESIDE_ITS_MODEL
 
 
 def _held(stage: CoreStage, rules: set[Rule]) -> CoreStage:

@@ -100,7 +100,7 @@ def function_block(block: Block, plan: Plan, tables: list[Table], meanings: dict
             (names.history, f"ARRAY [0..{HISTORY - 1}] OF {plan.real}", "in time order"),
         ]
         outputs.append((names.history_refused, "BOOL", "it was not finite or out of the limits"))
-        lines += _restart_after(plan, names)
+        lines += _restart_after(plan, names, bool(block.second))
         kept.append(("i", "DINT"))
     else:
         lines += _restart(plan, names)
@@ -140,9 +140,10 @@ def _restart(plan: Plan, names: BlockNames) -> list[str]:
     ]
 
 
-def _restart_after(plan: Plan, names: BlockNames) -> list[str]:
+def _restart_after(plan: Plan, names: BlockNames, has_second: bool) -> list[str]:
     first = plan.numbers.place("", "history", HISTORY)
-    after = _call(plan, f"{plan.name}_init_after", (str(first), names.history_count))
+    given = (str(first), names.history_count, *([names.inputs[1]] if has_second else []))
+    after = _call(plan, f"{plan.name}_init_after", given)
     count = names.history_count
     return [
         f"IF {names.restart} OR NOT began THEN",

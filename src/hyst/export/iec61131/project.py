@@ -81,6 +81,7 @@ def structured_text(
     limits: Limits | str | None = AUTO,
     rate_limit: float | None = None,
     history: ArrayLike | None = None,
+    history_at: float | None = None,
 ) -> StructuredText:
     """Write a model as a function block of IEC 61131-3 structured text, for PLCs.
 
@@ -100,7 +101,7 @@ def structured_text(
         Names, units and ranges of input and output; that of the model itself if left out.
     despite_verdict
         Export also a model whose verdict is ``unfit``.
-    limits, rate_limit, history
+    limits, rate_limit, history, history_at
         As ``c_project`` takes them.
 
     Returns
@@ -130,7 +131,9 @@ def structured_text(
     as_block_name(as_c_name(name))
     refuse_unfit(model, description, despite_verdict)
     exact = as_precision(precision)
-    block = any_block(model, exact, DriveOptions(limits, rate_limit, history), description)
+    block = any_block(
+        model, exact, DriveOptions(limits, rate_limit, history, history_at=history_at), description
+    )
     if block.is_estimator:
         raise InputError(
             "an estimator is not written as structured text; export the model it has found, or "
@@ -248,6 +251,12 @@ def _start(block: Block, names: BlockNames) -> str:
         "tells that one of them was not finite or out of the limits; it has then started as "
         "nothing had ever driven it. Where nothing is known, drive the actuator from one end of "
         "its range to the other first: those two are then its history."
+        + (
+            f" `{names.inputs[1]}` of that call is taken for its value all the while; if it is "
+            f"not finite, `{names.history_refused}` is raised, too."
+            if block.second
+            else ""
+        )
     )
 
 
@@ -262,6 +271,7 @@ def _manifest(block: Block, name: str, precision: str, files: dict[str, bytes]) 
         "model": {"kind": block.kind, "sha256": block.sha256()},
         "drive": block.drive.told(),
         "history": list(block.history),
+        **({} if block.history_at is None else {"history_at": block.history_at}),
         "files": {path: hashlib.sha256(files[path]).hexdigest() for path in sorted(files)},
     }
     return (json.dumps(content, indent=2) + "\n").encode()

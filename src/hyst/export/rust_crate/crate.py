@@ -88,6 +88,7 @@ def rust(
     limits: Limits | str | None = AUTO,
     rate_limit: float | None = None,
     history: ArrayLike | None = None,
+    history_at: float | None = None,
 ) -> RustCrate:
     """Write a model as a Rust crate without the standard library that gives the bits of Python.
 
@@ -107,7 +108,7 @@ def rust(
         Names and units of input and output; that of the model itself if left out.
     despite_verdict
         Export also a model whose verdict is ``unfit``.
-    limits, rate_limit, history
+    limits, rate_limit, history, history_at
         Of the drive, as ``c_project`` takes them.
 
     Returns
@@ -139,7 +140,9 @@ def rust(
     refuse_for_rust(name)
     refuse_unfit(model, description, despite_verdict)
     exact = as_precision(precision)
-    block = any_block(model, exact, DriveOptions(limits, rate_limit, history), description)
+    block = any_block(
+        model, exact, DriveOptions(limits, rate_limit, history, history_at=history_at), description
+    )
     about = described(model, description)
     test = SelfTest.of(block, exact, about)
     files = crate_files(block, test, name, exact, about)
@@ -231,6 +234,8 @@ def _readme(block: Block, common: dict[str, str], about: ModelDescription, test:
     rows["limits"] = block.drive.said()
     if block.history:
         rows["start"] = f"after {len(block.history)} drives"
+        if block.history_at is not None:
+            rows["start"] += f" at {plain_text(block.second_meaning[0])} {block.history_at:.6g}"
     for role, (meaning, unit) in signals(block, about).items():
         said = f" in {plain_text(unit)}" if unit else ""
         rows[f"`{role}`"] = plain_text(meaning) + said

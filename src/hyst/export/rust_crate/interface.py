@@ -125,4 +125,15 @@ def interface_places(block: Block, name: str, precision: Precision) -> dict[str,
         "pattern": inputs[0] if one else f"({', '.join(inputs)})",
         "elements": ", ".join(f"*{each}" for each in inputs),
         "saved": finite if block.is_estimator else "number",
+        **_after(inputs[1] if block.second else ""),
+    }
+
+
+def _after(second: str) -> dict[str, str]:
+    """Give what a start after a history takes beside it: a ``second`` signal, if there is one."""
+    return {
+        "after_argument": f", {second}: Real" if second else "",
+        "after_value": f", {second}" if second else "",
+        "after_refused": f", or {second} is not finite" if second else "",
+        "after_meaning": f" The second signal was {second} all the while." if second else "",
     }
