@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from c_builds import AS_C, AS_CXX, STRICT, compiled, compiler
+from distinct_code import DISTINCT
 
 from hyst.export.c.block import Block, block_of
 from hyst.export.c.drive import Drive
@@ -42,8 +43,8 @@ def laid_out(block: Block, precision: Precision, form: str, shared: bool = False
 
 
 @pytest.mark.parametrize("precision", ["double", "single"])
-@pytest.mark.parametrize("name", EXAMPLES)
-def test_every_example_in_every_layout(name: str, precision: Precision, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", DISTINCT)
+def test_every_code_in_every_layout(name: str, precision: Precision, tmp_path: Path) -> None:
     """What the layout folder compiles to is tested in test_c_projects; the others hold its text."""
     block = block_of(EXAMPLES[name], precision)
     folder = laid_out(block, precision, "folder")
