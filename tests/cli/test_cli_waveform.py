@@ -74,6 +74,23 @@ def test_what_cannot_be_played_is_refused(
     assert not (folder / "w.csv").exists()
 
 
+@pytest.mark.parametrize("header", ["code", "dac [counts]"])
+def test_a_command_in_codes_is_the_volts_of_its_driver(run: Run, folder: Path, header: str) -> None:
+    """Codes that could be volts, too: 20 of 8 bits are 2.4 V, and would keep the limits."""
+    path = write_csv(folder / "c.csv", f"time [ms],{header}", K[:50], 20 + K[:50])
+    asked = ("--column", 1, "--driver", "linear:-0.1,4.4,0,255", "--limits", "-30,30")
+    ended = run("waveform", path, *asked, "-o", "w.csv")
+    assert ended.code == 0, ended.err
+    assert (folder / "w.csv").read_text().startswith("time [s],drive [V],code\n")
+    rows = np.loadtxt(folder / "w.csv", delimiter=",", skiprows=1)
+    assert np.array_equal(rows[:, 2], 20 + K[:50])
+    assert np.abs(rows[:, 1] - (4.4 - 0.1 * (20 + K[:50]))).max() < 1e-13
+    (folder / "w.csv").unlink()
+    ended = run("waveform", path, *asked[:-2], "--driver", "linear:0.1,0,0,60", "-o", "w.csv")
+    assert ended.code == 2
+    assert "the code at index 41 is 61; the driver takes whole codes from 0 to 60" in ended.err
+
+
 def test_times_come_from_the_file_or_the_user(run: Run, folder: Path) -> None:
     path = write_csv(folder / "plain.csv", "u", np.linspace(0.0, 1.0, 11))
     asked = ("waveform", path, "--column", "u", "--limits", "0,1", "-o")

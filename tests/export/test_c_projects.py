@@ -24,7 +24,7 @@ from limited_examples import history_of, limited_example, with_drive
 
 from hyst import InputError, Operator, PrandtlIshlinskii
 from hyst.control.tracking_controller import TrackingController
-from hyst.export import CProject, c_project
+from hyst.export import CProject, c_project, fmu, mex, rust, structured_text
 from hyst.export.c.block import block_of, stepper_of
 from hyst.models import LinearDynamics
 from hyst.models.stable_inverse import StableInverse
@@ -275,7 +275,16 @@ def test_what_looks_ahead_is_refused_with_the_reason(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("nonsense", [None, 1.0, [1.0], "model.json", Operator])
-def test_what_is_no_model_is_refused(nonsense: object, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="cannot be exported"):
-        c_project(nonsense, tmp_path / "out")  # type: ignore[arg-type]
+@pytest.mark.parametrize(
+    "nonsense", [None, 1.0, [1.0], "model.json", Path("a"), object(), Operator]
+)
+@pytest.mark.parametrize(
+    ("export", "out"),
+    [(c_project, "out"), (fmu, "a.fmu"), (mex, "out"), (rust, "out"), (structured_text, "a.st")],
+)
+def test_what_is_no_model_is_refused(
+    export: Callable[..., object], out: str, nonsense: object, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match="cannot be exported; give an operator"):
+        export(nonsense, tmp_path / out)
+    assert not (tmp_path / out).exists()

@@ -102,6 +102,26 @@ def test_codes_are_those_nearest_to_the_step(
     assert np.abs(volts - drives).max() <= 0.5 * driver.steps[1] + rounding
 
 
+def test_codes_at_the_limits_are_the_same_in_either_precision(tmp_path: Path) -> None:
+    """A record whose ends are volts of codes, which single precision rounds outwards or inwards."""
+    volts = np.linspace(-7.3, 151.1, 4096)
+    driver = hyst.Driver.linear(float(volts[1] - volts[0]), -7.3, 0, 4095)
+    for low, high in ((100, 4001), (101, 4002), (102, 4003), (103, 4004)):
+        ends = driver.volts([low, high])
+        about = hyst.ModelDescription(
+            input_unit="V", driver=driver, input_low=ends[0], input_high=ends[1]
+        )
+        for precision in ("double", "single"):
+            name = f"a{low}_{precision}"
+            project = c_project(
+                PLAYS.with_description(about), tmp_path / name, precision=precision, name="lens"
+            )
+            assert project.codes.startswith(f"{low} to {high} "), precision
+            assert project.drive.limits is not None
+            # Volt, slope, product and sum are rounded to half a place of 151 or less each.
+            assert np.abs(np.array(project.drive.limits) - ends).max() <= 4.0 * 2.0**-17
+
+
 def test_codes_of_python_track_as_the_target_does(tmp_path: Path, objects: Objects) -> None:
     """Within reach the actuator misses the reference by half a code, at the end as before."""
     driver = TABLES["linear"]

@@ -295,6 +295,18 @@ def test_names_that_rust_has_are_refused(name: str, said: str, tmp_path: Path) -
     assert not (tmp_path / "out").exists()
 
 
+@needs_cargo
+def test_crates_are_tested_whatever_they_are_called(tmp_path: Path) -> None:
+    names = ["drive", "drive_u", "expected", "k", "u", "vectors", "y"]
+    for name in names:
+        rust(INVERSE, tmp_path / name, name=name)
+    members = ", ".join(f'"{name}"' for name in names)
+    (tmp_path / "Cargo.toml").write_text(f'[workspace]\nresolver = "2"\nmembers = [{members}]\n')
+    cargo(tmp_path, "check", "--offline", "--tests", "--workspace", "-q")
+    readme = (tmp_path / "y" / "README.md").read_text()
+    assert "let answer = y.step(0.0);" in readme
+
+
 def test_words_of_rust_inside_become_raw() -> None:
     assert [rust_name(each) for each in ("loop", "as", "self", "u")] == [
         "r#loop", "r#as", "self_", "u",

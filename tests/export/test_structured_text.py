@@ -266,6 +266,13 @@ def test_a_name_that_structured_text_keeps_is_refused(name: str, tmp_path: Path)
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("name", ["numbers", "State", "i", "began", "ignored"])
+def test_a_name_that_the_block_has_inside_is_refused(name: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="a variable inside the block"):
+        structured_text(INVERSE, tmp_path / "out", name=name)
+    assert not (tmp_path / "out").exists()
+
+
 def test_an_estimator_is_refused_with_what_to_do(tmp_path: Path) -> None:
     estimator = JointEstimator(PrandtlIshlinskii([0.5, 0.2], [0.1, 0.3], 1.0))
     with pytest.raises(InputError, match="estimator is not written"):

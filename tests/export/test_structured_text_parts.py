@@ -45,7 +45,23 @@ def test_names_differ_by_more_than_case(names: list[str]) -> None:
     assert "abc" not in {each.lower() for each in given_names}
 
 
-@pytest.mark.parametrize("name", ["limit", "T", "end_if", "LREAL_TO_DINT", "to_real", "Bool"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "limit",
+        "T",
+        "end_if",
+        "LREAL_TO_DINT",
+        "to_real",
+        "Bool",
+        "any_real",
+        "CTU_DINT",
+        "add_time",
+        "concat_date_tod",
+        "XWORD",
+        "ltime_of_day",
+    ],
+)
 def test_words_of_the_language_are_no_names(name: str) -> None:
     assert is_taken(name)
     assert not is_taken(f"the_{name}")

@@ -267,6 +267,21 @@ def test_facts_tell_what_is_written_null_and_where_it_lies() -> None:
         ("typedef struct { int (*g)(int k); } row; static int a(int k) { return k; }\n"
          "static int b(int k) { return -k; } static const row first = {a}, last = {b};\n"
          "int f(int k) { return k ? first.g(k) : last.g(k); }", "which points to a or b"),
+        ("double f(double x) { return x * 0.1L; }", "the constant 0.1L of extended precision"),
+        ("double f(int k) { return (double)(k * 5L); }", "the constant 5L of type long"),
+        ("int f(unsigned k) { return k > 3000000000; }", "3000000000 of type long"),
+        ("int f(int k) { return k + 010; }", "the octal constant 010"),
+        ("static double g = 0.0; double f(double x) { g = x; return g; }",
+         "the variable g of the file"),
+        ("static const double *g = 0; double f(double x) { return g[0] * x; }",
+         "the variable g of the file"),
+        ("static int g(int *p) { *p = *p + 1; return *p; }\n"
+         "double f(double x) { int k = 0; double a[3] = {0.0}; a[g(&k)] += x; return a[1]; }",
+         "a call inside a place that is changed"),
+        ("int f(int k) { switch (k) { int n; case 1: n = k; return n; } return k; }",
+         "before the cases"),
+        ("int f(int k) { switch (k) case 1: return 2; return k; }", "a switch without a block"),
+        ("int f(int k, ...) { return k; }", "any number of arguments"),
     ],
 )  # fmt: skip
 def test_what_is_not_known_is_refused_by_function_and_construct(code: str, said: str) -> None:
@@ -275,6 +290,22 @@ def test_what_is_not_known_is_refused_by_function_and_construct(code: str, said:
     if isinstance(refused.value, UntranslatableError) and "union" not in said:
         assert str(refused.value).startswith("in f: ")
         assert "\n" not in str(refused.value)
+
+
+def test_a_member_of_some_bits_is_refused() -> None:
+    with pytest.raises(HystError, match="a member of some bits"):
+        program("typedef struct { int a : 3; } row; int f(row of) { return of.a; }")
+
+
+def test_a_structure_may_be_named_by_its_tag_alone() -> None:
+    code = "struct pair { double a; double b; }; double f(const struct pair *of) { return of->b; }"
+    assert list(program(code).structures) == ["pair"]
+
+
+def test_constants_of_whole_numbers_are_cut_off_towards_zero() -> None:
+    code = "enum { A = -7, B = A / 2, C = 7 / 2 }; double f(double x) { return x; }"
+    constants = program(code).constants
+    assert (constants["A"], constants["B"], constants["C"]) == (-7, -3, 3)
 
 
 def test_pointers_to_one_of_two_may_be_chosen_once() -> None:

@@ -95,6 +95,44 @@ def test_a_rate_that_is_proposed_fits() -> None:
         assert fits.u.size <= most
 
 
+@pytest.mark.parametrize(("samples", "rate", "points"), [(766, 136487.0, 99), (31, 791.1, 11)])
+def test_rates_that_are_proposed_fit_where_they_are_no_short_decimals(
+    samples: int, rate: float, points: int
+) -> None:
+    u, dt = sine(samples), 0.7e-5 * 9.0
+    with pytest.raises(InputError, match="a whole number of them") as refusal:
+        waveform(u, dt, controller_rate=rate, repeat=True, **WIDE)
+    for each in str(refusal.value).split("as at ")[1].removesuffix(" Hz").split(" or "):
+        fits = waveform(u, dt, controller_rate=float(each), repeat=True, **WIDE)
+        assert fits.u.size == round(float(each) * samples * dt)
+    with pytest.raises(InputError, match="are allowed") as refusal:
+        waveform(u, dt, points=points, **WIDE)
+    proposed = str(refusal.value).split("rate of ")[1].split(" Hz")[0]
+    fits = waveform(u, dt, controller_rate=float(proposed), points=points, **WIDE)
+    assert fits.u.size == points
+
+
+def test_one_point_is_no_matter_of_the_rate() -> None:
+    with pytest.raises(InputError, match="1 are allowed; give a shorter signal"):
+        waveform(sine(), 1e-3, points=1, **WIDE)
+
+
+def test_the_way_back_to_the_start_is_among_rates() -> None:
+    back = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 4.0, 3.0, 2.0])  # from 2 to 0 at once
+    assert waveform(back, 0.5, repeat=True, limits=(0, 5)).largest_rate == 4.0
+    assert waveform(back, 0.5, limits=(0, 5)).largest_rate == 2.0
+    # The wanted drive moves by 3, 2 and 1, its codes by 5 (from 5 to 0) and 5 back.
+    wave, coarse = np.array([2.4, 3.9, 2.6]), hyst.Driver.linear(5.0, 0.0, 0, 1)
+    told = waveform(wave, 0.5, repeat=True, slew=4.0, driver=coarse, limits=(0, 5)).sentences
+    assert "codes move by up to 10 per second" in told[-1]
+
+
+@pytest.mark.parametrize("given", [{"driver": "d.csv"}, {"model": "m.json"}])
+def test_texts_are_no_drivers_or_models(given: dict[str, Any]) -> None:
+    with pytest.raises(InputError, match="is a str; give"):
+        waveform(sine(), 1e-3, **(WIDE | given))
+
+
 def test_the_end_of_a_wave_that_repeats_is_checked_too() -> None:
     ramp = np.linspace(0.0, 100.0, 101)
     with pytest.raises(

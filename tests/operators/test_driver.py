@@ -190,6 +190,35 @@ def test_single_precision_is_refused_where_it_does_not_resolve_a_step() -> None:
     Driver.linear(2.0**-12, 0.0, 0, 2**16).require_resolved(single=True)
 
 
+@pytest.mark.parametrize(
+    ("volts", "said"),
+    [
+        ([-1.7e308, 1.7e308], "row 1 .* moderate size"),
+        ([0.0, 1e-310], "does not resolve"),  # fewer digits than steps of 1e-313 need
+    ],
+)
+def test_volts_that_numbers_do_not_take_are_refused(volts: list[float], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        Driver.from_table([0, 1000], volts)
+    large = Driver.from_table([0, 10], [0.0, 1e300])
+    with pytest.raises(InputError, match="beyond single precision; export in double"):
+        large.require_resolved(single=True)
+    small = Driver.from_table([0, 10], [0.0, 1e-44])
+    with pytest.raises(InputError, match="single precision does not resolve"):
+        small.require_resolved(single=True)
+
+
+@pytest.mark.parametrize("limits", [3, (1, 2, 3), (math.nan, 3), ("a", "b"), ([1], 3)])
+def test_limits_that_are_no_two_numbers_are_refused(limits: Any) -> None:
+    with pytest.raises(InputError, match=r"give the lowest and the highest volts|a limit"):
+        Driver.linear(1.0, 0.0, 0, 8).codes([1.0], limits)
+
+
+def test_limits_may_be_infinite() -> None:
+    driver = Driver.linear(1.0, 0.0, 0, 8)
+    assert driver.codes([-9.0, 9.0], (-math.inf, math.inf)).tolist() == [0, 8]
+
+
 def test_a_file_of_a_model_keeps_the_driver_and_is_read_by_its_own_version(tmp_path: Any) -> None:
     model = hyst.PrandtlIshlinskii(p=[0.5], r=[0.1], p0=1.0)
     driver = random_driver(3, falls=True)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 import typer
+from numpy.typing import NDArray
 
 import hyst
 from hyst.checks.numbers import as_positive
@@ -17,7 +19,7 @@ from hyst.cli.arguments import (
     require_same_unit,
 )
 from hyst.cli.console import note, show_files, show_table
-from hyst.cli.driver_option import DriverOfCommand, driver_for
+from hyst.cli.driver_option import DriverOfCommand, driver_for, driver_of, says_codes
 from hyst.cli.reading_options import reads_columns
 from hyst.cli.scheduled import ScheduleValue, loaded_at
 from hyst.report import Table
@@ -122,6 +124,7 @@ def waveform(
     if actuator is not None:
         require_same_unit(unit, about.output_unit, "the wanted output")
     else:
+        values, name, unit = _in_volts(values, name, unit, driver)
         about = hyst.ModelDescription(input_name=name, input_unit=unit)
     ends = None if limits is None else numbers(limits, "limits")
     if ends is not None and len(ends) != 2:
@@ -150,6 +153,14 @@ def _operator(file: Path, value: float | None) -> hyst.Operator:
     if not isinstance(found, hyst.Operator):
         raise hyst.InputError(f"{file} holds a {type(found).__name__}; give the file of a model")
     return found
+
+
+def _in_volts(
+    values: NDArray[np.float64], name: str, unit: str, typed: str | None
+) -> tuple[NDArray[np.float64], str, str]:
+    """Give a command with its name and unit, of a column that says codes the driver's volts."""
+    driver = driver_of(typed) if says_codes(name, unit) else None
+    return (values, name, unit) if driver is None else (driver.volts(values), "drive", driver.unit)
 
 
 def _sample_time(file: Path, rate: float | None, how: dict[str, Any]) -> float:

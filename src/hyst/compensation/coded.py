@@ -128,6 +128,8 @@ def in_codes(
     table = driver or model.description.driver
     if table is None:
         raise InputError("the model's description has no driver; give one")
+    if not isinstance(table, Driver):
+        raise InputError(f"driver is a {type(table).__name__}; give a hyst.Driver")
     codes = table.codes(done.u, limits)
     u = table.volts(codes)
     predicted = done.y_predicted + change_of_output(model, done.u, u, history)

@@ -2,126 +2,49 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated
-
 import typer
 
 import hyst
 from hyst.cli.arguments import DespiteVerdict, ModelFile, history_of, numbers
 from hyst.cli.console import show_table
 from hyst.cli.driver_option import DriverOfDrive, driver_or_word
+from hyst.cli.export.options import (
+    Binary,
+    Explicit,
+    FmiVersion,
+    Force,
+    ForTool,
+    History,
+    HistoryAt,
+    Inverse,
+    Layout,
+    Limits,
+    Name,
+    Out,
+    Precision,
+    Preview,
+    RateLimit,
+    SharedCore,
+)
 from hyst.cli.export.order import Order
 from hyst.cli.export.targets import TARGETS, takers
 from hyst.cli.relevant_options import refuse_irrelevant
 from hyst.cli.scheduled import ScheduleValue, loaded_at
 
-Layout = Annotated[
-    str,
-    typer.Option(
-        help="Of C: folder; flat, all that is compiled in one folder, as for Arduino; or "
-        "single-file, one header and one source."
-    ),
-]
-
-SharedCore = Annotated[
-    bool,
-    typer.Option(
-        "--shared-core",
-        help="Of C: exports of one folder share one copy of the core in each precision.",
-    ),
-]
-
-Limits = Annotated[
-    str,
-    typer.Option(
-        metavar="auto|none|LOW,HIGH",
-        help="Of the drive, which is the output of an inverse and the input of a model: auto for "
-        "its range in the record; where more is asked for, it is held, and the memory follows.",
-    ),
-]
-
-RateLimit = Annotated[
-    float | None,
-    typer.Option(
-        "--rate-limit",
-        metavar="R",
-        show_default=False,
-        help="The most the drive moves in a second.",
-    ),
-]
-
-History = Annotated[
-    str | None,
-    typer.Option(
-        metavar="A,B,..|FILE:COLUMN",
-        show_default=False,
-        help="Start after this: where the drive of the actuator turned, in time order; samples "
-        "where time counts.",
-    ),
-]
-
-HistoryAt = Annotated[
-    float | None,
-    typer.Option(
-        metavar="X",
-        show_default=False,
-        help="The second signal of a scheduled model during --history, as a temperature.",
-    ),
-]
-
-Preview = Annotated[
-    int | None,
-    typer.Option(
-        metavar="N",
-        show_default=False,
-        help="With --inverse: it knows the next N samples of the reference, and its command is as "
-        "many samples late; rate-dependent models and delays have no other inverse.",
-    ),
-]
-
 
 def export(
     context: typer.Context,
     model_file: ModelFile,
-    out: Annotated[
-        Path,
-        typer.Option(
-            "-o",
-            "--out",
-            metavar="PATH",
-            show_default=False,
-            help="What to write: a folder, a zip if it ends in .zip, or an FMU if in .fmu.",
-        ),
-    ],
-    target: Annotated[
-        str,
-        typer.Option(
-            help="; ".join(f"{name}, {each.purpose}" for name, each in TARGETS.items()) + "."
-        ),
-    ] = "c",
-    inverse: Annotated[bool, typer.Option("--inverse", help="Export the inverse.")] = False,
-    explicit: Annotated[
-        bool,
-        typer.Option(
-            "--explicit", help="Export the explicit inverse of a rate-dependent model; not exact."
-        ),
-    ] = False,
+    out: Out,
+    target: ForTool = "c",
+    inverse: Inverse = False,
+    explicit: Explicit = False,
     preview: Preview = None,
-    precision: Annotated[str, typer.Option(help="Of C or Rust: double or single.")] = "double",
-    name: Annotated[
-        str, typer.Option(metavar="NAME", help="Prefix of files, functions and types.")
-    ] = "stage",
-    force: Annotated[
-        bool, typer.Option("--force", help="Replace an earlier export, as a whole.")
-    ] = False,
-    fmi: Annotated[str, typer.Option(metavar="VERSION", help="Of an FMU: 2.0 or 3.0.")] = "2.0",
-    binary: Annotated[
-        bool,
-        typer.Option(
-            "--binary/--no-binary", help="Whether to compile an FMU's binary for this platform."
-        ),
-    ] = True,
+    precision: Precision = "double",
+    name: Name = "stage",
+    force: Force = False,
+    fmi: FmiVersion = "2.0",
+    binary: Binary = True,
     despite_verdict: DespiteVerdict = False,
     layout: Layout = "folder",
     shared_core: SharedCore = False,

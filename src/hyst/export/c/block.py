@@ -72,15 +72,14 @@ def block_of(model: Model, precision: Precision) -> Block:
             "the command beforehand with hyst compensate --method noncausal"
         )
     if not isinstance(model, Operator):
-        raise InputError(
-            f"{type(model).__name__} cannot be exported; give an operator, a tracking controller, "
-            "a joint estimator, or the model that an estimator has found"
-        )
+        raise _no_model(model)
     return operator_block(model, precision)
 
 
 def described(model: Model, description: ModelDescription | None) -> ModelDescription:
-    """Give the ``description`` asked for, or that of the ``model``, which can be exported."""
+    """Give the ``description`` asked for, or that of the ``model``; refuse what is no model."""
+    if not isinstance(model, Model):
+        raise _no_model(model)
     if description is not None or isinstance(model, StableInverse):
         return description or ModelDescription()
     return model.description
@@ -104,3 +103,11 @@ def refuse_unfit(model: Model, description: ModelDescription | None, despite_ver
     for about in (getattr(model, "description", None), description):
         verdict = about.verdict if isinstance(about, ModelDescription) else None
         refuse_if_unfit(verdict, "nothing is exported", despite_verdict)
+
+
+def _no_model(found: object) -> InputError:
+    name = f"the class {found.__name__}" if isinstance(found, type) else type(found).__name__
+    return InputError(
+        f"{name} cannot be exported; give an operator, a tracking controller, a joint estimator, "
+        "or the model that an estimator has found"
+    )

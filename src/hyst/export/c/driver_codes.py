@@ -70,18 +70,18 @@ class DriverCodes:
         else:
             low, high = max(low, limits[0]), min(high, limits[1])
             source = f"{source}, to whole codes"
-        codes = self._codes_within((low, high) if limits is None or low < high else limits)
+        # What a code gives does not depend on the target: its codes are those of double, and the
+        # limits its numbers for their volts.
+        codes = self.driver.codes_within(*((low, high) if limits is None or low < high else limits))
         ends = self.points.volts_of(np.array(codes))
         return (float(ends.min()), float(ends.max())), source
 
     def of(self, drive: DriveRange) -> DriverCodes:
         """Give it with the codes that a ``drive`` with limits may have."""
         assert drive.limits is not None  # asked before
-        lowest, highest = self._codes_within(drive.limits)
+        single = self.precision == "single"
+        lowest, highest = self.driver.codes_within(*drive.limits, single=single)
         return replace(self, lowest=lowest, highest=highest)
-
-    def _codes_within(self, limits: Limits) -> tuple[int, int]:
-        return self.driver.codes_within(*limits, single=self.precision == "single")
 
     def told(self) -> dict[str, Any]:
         """Give what a manifest says."""

@@ -218,10 +218,18 @@ class Plan:
         if not (isinstance(left, Number) and isinstance(right, Number)):
             return None
         if not (isinstance(of.type, Scalar) and of.type.is_real):
-            return Number(int(_WHOLE[of.operator](left.value, right.value)), of.type)
+            return _whole(of, int(left.value), int(right.value))
         number = np.float32 if of.type.name == "float" else np.float64
         value = _ARITHMETIC[of.operator](number(left.value), number(right.value))
         return Number(float(value), of.type)
+
+
+def _whole(of: Binary, left: int, right: int) -> Number | None:
+    """Give what two whole numbers make; None where Python and C need not agree."""
+    if of.operator not in _WHOLE or min(left, right) < 0 or (of.operator in "/%" and not right):
+        return None
+    value = int(_WHOLE[of.operator](left, right))
+    return Number(value, of.type) if 0 <= value < 2**31 else None
 
 
 _WHOLE: dict[str, Any] = {

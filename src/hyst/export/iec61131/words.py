@@ -20,7 +20,9 @@ _KEYWORDS = """
     var var_access var_config var_external var_global var_in_out var_inst var_input var_output
     var_stat var_temp volatile while with xor bit bool byte char date date_and_time dint dt
     dword ldate ldt lint lreal ltime ltod lword real sint string tod time time_of_day udint uint
-    ulint usint wchar word wstring int
+    ulint usint wchar word wstring int ldate_and_time ltime_of_day pvoid uxint xint xword
+    any_bit any_char any_chars any_date any_derived any_duration any_elementary any_int
+    any_magnitude any_num any_real any_signed any_string any_unsigned var_generic
 """
 # Standard functions and function blocks, operators of the vendors, and those of instruction lists.
 _FUNCTIONS = """
@@ -30,11 +32,17 @@ _FUNCTIONS = """
     replace ret retc retcn right rol ror round rs rtc sel sema shl shr sign sin sizeof sqrt sr
     st stn sub tan tof ton tp trunc trunc_int upper_bound xsizeof
 """
+# What the block has inside beside its signals, which give way themselves.
+_INSIDE = frozenset(["began", "i", "ignored", "numbers", "state"])
 # One letter alone means something in sequential charts, instruction lists or literals of time.
 _LETTERS = "d l n p r s t"
 RESERVED = frozenset((_KEYWORDS + _FUNCTIONS + _LETTERS).split())
 _ELEMENTARY = (
     "bool|byte|l?date|l?dt|d?word|lword|l?real|l?time|l?tod|u?[sdl]?int|string|wstring|w?char|bcd"
+)
+# Standard counters and functions of times by the type they are for: CTU_DINT, ADD_TIME.
+_BY_TYPE = re.compile(
+    r"ct(u|d|ud)_u?[sdl]?int|(add|sub|mul|div|concat|split)_l?(time|tod|dt|date)\w*"
 )
 _CONVERSION = re.compile(rf"({_ELEMENTARY})_(to|trunc|bcd)\w*|to_({_ELEMENTARY})")
 
@@ -42,7 +50,7 @@ _CONVERSION = re.compile(rf"({_ELEMENTARY})_(to|trunc|bcd)\w*|to_({_ELEMENTARY})
 def is_taken(name: str) -> bool:
     """Tell whether a name means something else in structured text, whatever its case."""
     low = name.lower()
-    return low in RESERVED or _CONVERSION.fullmatch(low) is not None
+    return low in RESERVED or any(each.fullmatch(low) for each in (_CONVERSION, _BY_TYPE))
 
 
 def as_block_name(name: str) -> str:
@@ -61,12 +69,16 @@ def as_block_name(name: str) -> str:
     Raises
     ------
     InputError
-        If structured text keeps it for something else.
+        If structured text keeps it for something else, or the block has it inside.
     """
     if is_taken(name):
         raise InputError(
             f"the name is {name!r}, a name that collides in the other language: structured text "
             "keeps it, in upper case or lower; give another, as stage"
+        )
+    if name.lower() in _INSIDE:
+        raise InputError(
+            f"the name is {name!r}, which a variable inside the block has; give another, as stage"
         )
     return name
 

@@ -245,9 +245,10 @@ def _readme(block: Block, common: dict[str, str], about: ModelDescription, test:
     rows |= provenance_row(about)
     given = ", ".join("0.0" for _ in block.inputs)
     output = common["output"]
-    step = f"let {output} = {own}.step({given}); // every sample: {common['inputs']}"
+    answer = "answer" if output == own else output
+    step = f"let {answer} = {own}.step({given}); // every sample: {common['inputs']}"
     if block.is_estimator:
-        step = f"{own}.update(0.0, 0.0); // learns from u and y\nlet u = {own}.command(0.0);"
+        step = f"{own}.update(0.0, 0.0); // learns from u and y\nlet {answer} = {own}.command(0.0);"
     single = common["precision"] == "single"
     more = {
         "rows": "\n".join(f"| {key} | {value} |" for key, value in rows.items()),

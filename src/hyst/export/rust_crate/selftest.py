@@ -24,13 +24,12 @@ def selftest_source(block: Block, places: dict[str, str]) -> str:
         f"let {rust_name(each)} = drive_{each}.next(k, {bad});"
         for each, bad in zip(driven, BAD, strict=False)
     ]
-    own = places["name"]
     if block.is_estimator:
         drawn += [
             "let measured = Real::from_bits(MEASURED[k]);",
             f"let y = if k % DRIVE_PERIOD == {BAD[1]} {{ Real::NAN }} else {{ measured }};",
-            f"let _ = {own}.update({rust_name(driven[0])}, y);",
-            f"let result = {own}.command(measured);",
+            f"let _ = block.update({rust_name(driven[0])}, y);",
+            "let result = block.command(measured);",
         ]
     else:
         if block.second:
@@ -38,7 +37,7 @@ def selftest_source(block: Block, places: dict[str, str]) -> str:
                 f"let s = if k % DRIVE_PERIOD == {BAD[1]} {{ Real::NAN }} else {{ "
                 f"Real::from_bits(SECOND[(k / {SECOND_RESTS}) % SECOND.len()]) }};"
             )
-        drawn.append(f"let result = {own}.step({places['inputs']});")
+        drawn.append(f"let result = block.step({places['inputs']});")
     more = {"drives": indented(drives), "drawn": indented("\n".join(drawn), 8)}
     return filled("rust/selftest.rs", places | more)
 

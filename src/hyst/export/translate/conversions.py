@@ -104,9 +104,17 @@ def decayed(value: Expression) -> Expression:
 
 
 def real_literal(text: str) -> Number:
-    """Give a floating constant of C, rounded as C rounds it."""
+    """Give a floating constant of C, rounded as C rounds it.
+
+    Raises
+    ------
+    UntranslatableError
+        If it is one of extended precision, which C computes with as no other number here.
+    """
+    if text[-1] in "lL":
+        raise refused(f"the constant {text} of extended precision")
     single = text[-1] in "fF" and not (text.lower().startswith("0x") and "p" not in text.lower())
-    digits = text.rstrip("fFlL")
+    digits = text.rstrip("fF")
     value = float.fromhex(digits) if digits.lower().startswith("0x") else float(digits)
     if not single:
         return Number(value, DOUBLE)
@@ -114,9 +122,21 @@ def real_literal(text: str) -> Number:
 
 
 def whole_literal(text: str) -> Number:
-    """Give a whole constant of C."""
-    suffix = text[len(text.rstrip("uUlL")) :].lower()
-    value = int(text.rstrip("uUlL"), 0)
+    """Give a whole constant of C.
+
+    Raises
+    ------
+    UntranslatableError
+        If its type is ``long``, whose size targets differ in, or its digits are octal.
+    """
+    digits = text.rstrip("uUlL")
+    suffix = text[len(digits) :].lower()
+    if digits[0] == "0" and digits.strip("0") and digits[1] not in "xX":
+        raise refused(f"the octal constant {text}")
+    value = int(digits, 0)
+    is_long = digits[0] != "0" and "u" not in suffix and 2**31 <= value < 2**32
+    if suffix.count("l") == 1 or is_long:
+        raise refused(f"the constant {text} of type long")
     if "ll" in suffix or value > 2**32 - 1:
         return Number(value, WIDE)
     return Number(value, UNSIGNED if "u" in suffix or value > 2**31 - 1 else INT)

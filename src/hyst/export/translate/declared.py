@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, final
 
 from hyst.errors import HystError
+from hyst.export.translate.conversions import whole_literal
 from hyst.export.translate.program import (
     BYTE,
     DOUBLE,
@@ -127,14 +128,20 @@ class Declared:
                 return self.names[names[0]]
             raise refused(f"the type {' '.join(names)}", node)
         if kind in ("Struct", "Union"):
-            return self._structure(node, node.type)
+            return self.structure(node, node.type)
         if kind == "Enum":
             self.enumerate(node.type)
             return INT
         raise refused(f"the type {kind}", node)
 
-    def _structure(self, node: c_ast.TypeDecl, declared: Any) -> CType:
-        """Take in a structure; one without a name gets that of what it is declared for."""
+    def structure(self, node: Any, declared: Any) -> CType:
+        """Take in a structure; one without a name gets that of what it is declared for.
+
+        Raises
+        ------
+        UntranslatableError
+            If a member has no counterpart.
+        """
         name = declared.name or node.declname
         if declared.decls is None:
             return Named(name)
@@ -142,6 +149,8 @@ class Declared:
             name = f"{name}_{len(self.structures)}"
         members: dict[str, CType] = {}
         for each in declared.decls:
+            if each.bitsize is not None:
+                raise refused("a member of some bits", each)
             members[each.name] = self.type_of(each.type, self.constant)
         if type(declared).__name__ == "Union":
             pattern = _pattern(members)
@@ -172,7 +181,8 @@ class Declared:
         """
         match type(node).__name__:
             case "Constant":
-                return int(node.value.rstrip("uUlL"), 0)
+                if "int" in node.type:
+                    return int(whole_literal(node.value).value)
             case "ID":
                 if node.name in self.enumerators:
                     return self.enumerators[node.name]
@@ -192,7 +202,8 @@ _ARITHMETIC = {
     "+": lambda a, b: a + b,
     "-": lambda a, b: a - b,
     "*": lambda a, b: a * b,
-    "/": lambda a, b: a // b,
+    # C cuts off towards zero.
+    "/": lambda a, b: a // b if (a < 0) == (b < 0) else -(-a // b),
     "<<": lambda a, b: a << b,
     "|": lambda a, b: a | b,
 }

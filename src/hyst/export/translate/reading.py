@@ -27,7 +27,7 @@ from hyst.export.translate.program import (
 )
 from hyst.export.translate.refusal import UntranslatableError, refused
 from hyst.export.translate.scope import Scope
-from hyst.export.translate.statements import Statements
+from hyst.export.translate.statements import Statements, is_constant
 from hyst.export.translate.unread import without_unread_pointers
 
 _STANDARD = "".join(
@@ -113,6 +113,8 @@ class _Reading:
             case "Decl":
                 if type(node.type).__name__ == "Enum":
                     self.declared.enumerate(node.type)
+                elif type(node.type).__name__ in ("Struct", "Union"):
+                    self.declared.structure(node, node.type)
                 elif node.init is not None:
                     self.constants[node.name] = node
 
@@ -172,6 +174,8 @@ class _Reading:
         given = definition.decl.type.args
         kinds: list[CType] = []
         for each in () if given is None else given.params:
+            if type(each).__name__ == "EllipsisParam":
+                raise refused(f"{name}, which takes any number of arguments,")
             kind = self.declared.type_of(each.type, self.declared.constant)
             if isinstance(kind, Array):
                 kind = Pointer(kind.of, "const" in each.type.type.quals)
@@ -232,6 +236,8 @@ class _Reading:
             if node is None:
                 return None
             kind = self.declared.type_of(node.type, self.declared.constant)
+            if not is_constant(node.type):
+                raise refused(f"the variable {name} of the file")
             expressions = Expressions(
                 self.declared, Scope(frozenset()), self._call_of, self._table, self._target
             )

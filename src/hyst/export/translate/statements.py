@@ -36,6 +36,7 @@ from hyst.export.translate.program import (
 )
 from hyst.export.translate.refusal import refused
 from hyst.export.translate.scope import Scope
+from hyst.export.translate.walk import inside
 
 
 class Statements:
@@ -116,7 +117,7 @@ class Statements:
         value = None if node.init is None else self.expressions.as_type(node.init, kind)
         if isinstance(kind, Array) and kind.count < 0:
             raise refused("an array without a length", node)
-        is_const = value is not None and "const" in _outer_qualifiers(node)
+        is_const = value is not None and is_constant(node.type)
         variable = self.scope.declare(node.name, kind, is_const)
         if pattern is not None:
             self.scope.bind(
@@ -128,7 +129,7 @@ class Statements:
         return self.all(node.decls)
 
     def _static(self, node: Any) -> None:
-        if node.init is None or "const" not in str(_all_qualifiers(node.type)):
+        if node.init is None or not is_constant(node.type):
             raise refused("a static variable", node)
         kind = self.declared.type_of(node.type, self.declared.constant)
         value = self.expressions.as_type(node.init, kind)
@@ -220,7 +221,11 @@ class Statements:
         _refuse_twice(chosen, node)
         branches: list[tuple[Expression | None, tuple[Statement, ...]]] = []
         labels: list[Expression] = []
-        for case in node.stmt.block_items:
+        if type(node.stmt).__name__ != "Compound":
+            raise refused("a switch without a block", node)
+        for case in node.stmt.block_items or ():
+            if type(case).__name__ not in ("Case", "Default"):
+                raise refused("what stands before the cases", case)
             is_default = type(case).__name__ == "Default"
             if not is_default:
                 label = self.expressions.value(case.expr)
@@ -281,14 +286,8 @@ def _breaks(body: tuple[Statement, ...]) -> bool:
 
 def _refuse_twice(place: Expression, node: Any) -> None:
     """Refuse what would be evaluated twice and calls something."""
-    match place:
-        case Call() | Initialiser():
-            raise refused("a call inside a place that is changed", node)
-        case Member(of=of):
-            _refuse_twice(of, node)
-        case Element(of=of, index=index):
-            _refuse_twice(of, node)
-            _refuse_twice(index, node)
+    if any(isinstance(each, Call | Initialiser) for each in inside(place)):
+        raise refused("a call inside a place that is changed", node)
 
 
 def _refuse_continue(node: Any) -> None:
@@ -300,20 +299,11 @@ def _refuse_continue(node: Any) -> None:
         _refuse_continue(child)
 
 
-def _outer_qualifiers(node: Any) -> list[str]:
-    """Give the qualifiers of a variable itself, not of what it points to."""
-    kind = node.type
+def is_constant(kind: Any) -> bool:
+    """Tell whether a variable of a type does not change itself, whatever it points to."""
     while type(kind).__name__ == "ArrayDecl":
         kind = kind.type
-    return list(getattr(kind, "quals", None) or [])
-
-
-def _all_qualifiers(kind: Any) -> list[str]:
-    found: list[str] = []
-    while kind is not None and hasattr(kind, "type"):
-        found += list(getattr(kind, "quals", None) or [])
-        kind = kind.type
-    return found
+    return "const" in (getattr(kind, "quals", None) or [])
 
 
 def _key(declared: Declared, pattern: Any) -> str:

@@ -57,9 +57,10 @@ class Kept:
             return
         steps = count if self.repeat else count - 1
         most = self.points if self.repeat else self.points - 1
+        slower = f"a controller's rate of {most / (steps * dt):.12g} Hz or less, or "
         raise InputError(
             f"the table has {count} points at {1.0 / dt:.6g} Hz, and {self.points} are allowed; "
-            f"give a controller's rate of {most / (steps * dt):.6g} Hz or less, or a shorter signal"
+            f"give {slower if most > 0 else ''}a shorter signal"
         )
 
     def within(self, u: Array, dt: float, unit: str) -> Array:

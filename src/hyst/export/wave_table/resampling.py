@@ -14,6 +14,7 @@ from hyst.errors import InputError
 Array = NDArray[np.float64]
 
 MOST_SAMPLES = 10_000_000
+# Rates that are proposed are given in 12 digits, so that they pass.
 _WHOLE = 1e-9  # of a number of samples: what sample times as decimals leave of a whole one
 
 
@@ -98,8 +99,8 @@ def _count(samples: float, repeat: bool, duration: float) -> int:
         low, high = max(math.floor(samples), 1), math.ceil(samples)
         raise InputError(
             f"the period of {duration:.9g} s is {samples:.9g} samples of the controller; a wave "
-            f"that repeats has a whole number of them, as at {low / duration:.9g} or "
-            f"{max(high, low + 1) / duration:.9g} Hz"
+            f"that repeats has a whole number of them, as at {low / duration:.12g} or "
+            f"{max(high, low + 1) / duration:.12g} Hz"
         )
     return whole
 

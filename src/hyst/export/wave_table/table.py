@@ -49,6 +49,8 @@ class Waveform:
     y_ref, y_predicted
         Wanted output and the model's, shape (N,), with a model only; of a wave that repeats, in the
         cycle that it comes to.
+    repeat
+        Whether the first point follows the last.
     error, first_error
         Of the output predicted against the wanted one: in that cycle, and in the first pass. What
         is held is told of models that any sample time suits; else it is as at the points.
@@ -66,6 +68,7 @@ class Waveform:
     y_predicted: Array | None = None
     error: HeldError | None = None
     first_error: HeldError | None = None
+    repeat: bool = False
 
     def __repr__(self) -> str:
         codes = "" if self.codes is None else f", codes {self.codes.min()} to {self.codes.max()}"
@@ -76,8 +79,8 @@ class Waveform:
 
     @property
     def largest_rate(self) -> float:
-        """Largest rate of the drive wanted, per second."""
-        return float(np.abs(np.diff(self.u)).max(initial=0.0)) / self.dt
+        """Largest rate of the drive wanted, per second; where it repeats, back to its start too."""
+        return _largest_step(self.u, self.repeat) / self.dt
 
     def columns(self, name: str = "u", unit: str = "") -> tuple[list[str], list[NDArray[Any]]]:
         """Give headers and columns of the table's file, as ``hyst.io.write_columns`` takes them.
@@ -169,6 +172,10 @@ def waveform(
     wanted = step
     if controller_rate is not None:
         wanted = 1.0 / as_positive(controller_rate, "controller_rate", "points per second")
+    if model is not None and not isinstance(model, Operator):
+        raise InputError(f"model is a {type(model).__name__}; give an operator")
+    if driver is not None and not isinstance(driver, Driver):
+        raise InputError(f"driver is a {type(driver).__name__}; give a hyst.Driver")
     about = ModelDescription() if model is None else model.description
     refuse_if_unfit(about.verdict, "no table is made", despite_verdict)
     table = driver if bits is not None else driver or about.driver
@@ -208,7 +215,13 @@ def _checked(
     codes = None if table is None else table.codes(u, kept.limits)
     played = u if codes is None or table is None else table.volts(codes)
     off = HeldError.of(played, u, kept.repeat)
-    return Waveform(u, codes, played, dt, table, kept.limits, off, ())
+    return Waveform(u, codes, played, dt, table, kept.limits, off, (), repeat=kept.repeat)
+
+
+def _largest_step(u: Array, repeat: bool) -> float:
+    """Give the largest way from point to point, the way back to the first one included."""
+    ends = np.append(u, u[0]) if repeat else u
+    return float(np.abs(np.diff(ends)).max(initial=0.0))
 
 
 def _predicted(
@@ -294,7 +307,7 @@ def _notes(given: Array, found: Waveform, kept: Kept) -> tuple[str, ...]:
             "wave that repeats to have that checked"
         )
     if kept.slew is not None:
-        fastest = float(np.abs(np.diff(found.played)).max(initial=0.0)) / found.dt
+        fastest = _largest_step(found.played, kept.repeat) / found.dt
         if fastest > kept.slew * (1.0 + 1e-9):
             told.append(
                 f"the drive wanted keeps the slew, its codes move by up to {fastest:.6g} per "

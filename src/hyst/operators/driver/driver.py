@@ -14,7 +14,7 @@ from hyst.checks.arrays import as_reals
 from hyst.checks.numbers import as_number, whole_number
 from hyst.errors import InputError
 from hyst.operators.driver.points import Points
-from hyst.operators.driver.table_rows import as_rows, unresolved_row
+from hyst.operators.driver.table_rows import as_ends, as_rows, unresolved_row
 from hyst.operators.plain_data import as_text
 
 LOWEST_CODE = -(2**31)
@@ -204,12 +204,12 @@ class Driver:
         Raises
         ------
         InputError
-            If a volt is not finite, or no code is within the limits.
+            If a volt is not finite, limits are no two numbers, or no code is within them.
         """
         wanted = as_reals(volts, "volts")
         if not np.isfinite(wanted).all():
             raise InputError("a volt is not finite; give finite volts")
-        low, high = self.code_range if limits is None else self.codes_within(*limits)
+        low, high = self.code_range if limits is None else self.codes_within(*as_ends(limits))
         return self.points.codes_of(wanted, low, high)
 
     def quantized(
@@ -237,8 +237,9 @@ class Driver:
         Raises
         ------
         InputError
-            If no code is within them.
+            If they are no numbers, or no code is within them.
         """
+        low, high = as_ends((low, high))
         points = Points.of(self.table_codes, self.table_volts, True) if single else None
         points = points or self.points
         ends = np.array([low, high], dtype=points.volts.dtype)
@@ -273,6 +274,11 @@ class Driver:
             If they do.
         """
         points = Points.of(self.table_codes, self.table_volts, single)
+        if not np.isfinite(points.volts).all():
+            raise InputError(
+                f"the driver's volts go from {self.volt_range[0]:.6g} to {self.volt_range[1]:.6g}, "
+                "beyond single precision; export in double"
+            )
         row = unresolved_row(points)
         if row is not None:
             kind = "single" if single else "double"

@@ -45,7 +45,8 @@ class Points:
         whole, real = np.array(codes, dtype=np.int64), np.array(volts)
         slopes = np.diff(real) / np.diff(whole).astype(np.float64)
         kind = np.float32 if single else np.float64
-        return cls(whole, real.astype(kind), slopes.astype(kind))
+        with np.errstate(over="ignore"):  # refused by unresolved_row
+            return cls(whole, real.astype(kind), slopes.astype(kind))
 
     @property
     def falls(self) -> bool:

@@ -12,6 +12,7 @@ from hyst.errors import InputError
 from hyst.operators.driver.points import Points
 
 MOST_ROWS = 65536
+_LARGEST = 1e300
 _RESOLVED = (
     4.0  # roundings of the largest volt: a code's volts have two of them, its neighbour's too
 )
@@ -44,6 +45,8 @@ def as_rows(codes: Any, volts: Any) -> tuple[tuple[int, ...], tuple[float, ...]]
     _refuse(given != np.floor(given), "code", given, "codes are whole numbers")
     _refuse((given < -(2.0**31)) | (given >= 2.0**31), "code", given, "codes are of 32 bits")
     _refuse(~np.isfinite(values), "volt", values, "give finite volts")
+    # So that the way from volt to volt is a number, too.
+    _refuse(abs(values) > _LARGEST, "volt", values, "give volts of moderate size")
     _refuse_turns(given, "code")
     _refuse_turns(values, "volt")
     order = slice(None) if given[1] > given[0] else slice(None, None, -1)
@@ -51,10 +54,34 @@ def as_rows(codes: Any, volts: Any) -> tuple[tuple[int, ...], tuple[float, ...]]
     return whole, tuple(values[order].tolist())
 
 
+def as_ends(limits: Any) -> tuple[float, float]:
+    """Check that limits are two numbers, either of which may be infinite.
+
+    Parameters
+    ----------
+    limits
+        As given.
+
+    Raises
+    ------
+    InputError
+        If they are something else.
+    """
+    try:
+        low, high = (as_reals(each, "a limit") for each in limits)
+    except (TypeError, ValueError):
+        raise InputError(f"limits is {limits!r}; give the lowest and the highest volts") from None
+    if low.ndim or high.ndim or np.isnan(low) or np.isnan(high):
+        raise InputError(f"limits is {limits!r}; give the lowest and the highest volts")
+    return float(low), float(high)
+
+
 def unresolved_row(points: Points) -> int | None:
     """Give the first piece whose volts move too little from code to code; None if there is none."""
-    least = _RESOLVED * float(np.finfo(points.volts.dtype).eps) * float(abs(points.volts).max())
-    small = ~(abs(points.slopes) >= least)
+    kind = np.finfo(points.volts.dtype)
+    # Below its least normal number a precision has fewer digits.
+    least = max(_RESOLVED * float(kind.eps) * float(abs(points.volts).max()), float(kind.tiny))
+    small = ~(abs(points.slopes).astype(np.float64) >= least)
     return int(small.argmax()) if small.any() else None
 
 
