@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import hashlib
 import json
+import os
 import shutil
 import subprocess
 from collections.abc import Callable, Sequence
@@ -47,8 +48,11 @@ class Objects:
         key = hashlib.sha256(content).hexdigest()
         result = self._home / f"{source.stem}-{key[:16]}.o"
         if not result.exists():
-            command = [*build, "-c", str(source), "-o", str(result)]
+            # In one step, for another process may want the same.
+            unfinished = result.with_suffix(f".{os.getpid()}")
+            command = [*build, "-c", str(source), "-o", str(unfinished)]
             compiled(command, project)
+            unfinished.replace(result)
         return result
 
 
@@ -78,7 +82,8 @@ def check_syntax(project: Path, driver: str, language: list[str]) -> None:
 
 def run_selftest(project: Path, objects: Objects) -> subprocess.CompletedProcess[str]:
     """Compile and run the self-test; the core's objects may come from an earlier project."""
-    build = [compiler("gcc"), *AS_C, "-O1", *STRICT]
+    # As for a library, so that they have the objects in common.
+    build = [compiler("gcc"), *AS_C, "-O1", "-fPIC", *STRICT]
     sources = sorted(project.glob("core/*.c"))
     parts = [str(objects.of(each, project, build)) for each in sources]
     own = sorted(each.name for each in project.glob("*.c"))

@@ -49,7 +49,8 @@ def ran(folder: Path, what: str, *options: str) -> subprocess.CompletedProcess[s
 def run_readme(folder: Path, what: str, program: str = "", *options: str) -> str:
     """What that command prints, after a `program` has been saved as the README says."""
     if program:
-        (folder / "example.c").write_text(program)
+        (place,) = re.findall(r"save it as `(\S+)`", readme_of(folder))
+        (folder / place).write_text(program)
     done = ran(folder, what, *options)
     assert done.returncode == 0, done.stderr + done.stdout
     return done.stdout

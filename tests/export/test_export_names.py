@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from pathlib import Path
 
@@ -20,7 +21,21 @@ MODEL = PrandtlIshlinskii([0.5, 0.2], [0.1, 0.3], 1.0)
 
 @pytest.mark.parametrize(
     "name",
-    ["stage", "Stage_2", "u", "y", "k", "state", "samples", "place", "pi_1", "check", "lens_pi"],
+    [
+        "stage",
+        "Stage_2",
+        "u",
+        "y",
+        "k",
+        "state",
+        "samples",
+        "place",
+        "pi_1",
+        "check",
+        "lens_pi",
+        "HIGH",
+        "loop",
+    ],
 )
 def test_names_that_are_c_compile(name: str, tmp_path: Path, objects: Objects) -> None:
     # Among them names that the generated code uses itself.
@@ -38,13 +53,32 @@ def test_names_that_are_c_compile(name: str, tmp_path: Path, objects: Objects) -
         "_stage", "__stage", "stage_", "my__stage", "hyst", "hyst_stage", "HYST", "hystage",
         "math", "string", "stdint", "stdio", "time", "core", "selftest", "test", "all", "CON",
         "memory", "x" * 41, "lens_core", "lens_core_pi", "LENS_CORE", "lens_clear", "lens_selftest",
-        "lens_selftest_vectors",
+        "lens_selftest_vectors", "main", "std", "EOF", "NULL", "NAN", "stdin", "printf", "puts",
+        "memcpy", "log2", "fabsf", "size_t", "uint8_t",
     ],
 )  # fmt: skip
 def test_other_names_are_refused(name: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="the name is"):
         c_project(MODEL, tmp_path / "out", name=name)
     assert not list(tmp_path.iterdir())
+
+
+def test_no_state_has_a_name_of_the_headers_it_stands_below() -> None:
+    """The program of a README calls the state as the export is called."""
+    headers = "".join(f"#include <{each}.h>\n" for each in ("stdio", "stddef", "stdint"))
+    gcc = [compiler("gcc"), "-std=c99", "-x", "c", "-E", "-"]
+    macros, text = (
+        subprocess.run(
+            [*gcc, *more], input=headers, text=True, capture_output=True, check=True
+        ).stdout
+        for more in (["-dM"], [])
+    )
+    names = re.findall(r"#define ([A-Za-z]\w*)", macros)
+    names += re.findall(r"^extern\b.*?\b([a-z]\w*) ?\(", text, re.MULTILINE)
+    assert {"EOF", "stdin", "NULL", "INT8_C", "printf", "remove"} < set(names)
+    for name in names:
+        with pytest.raises(InputError):
+            as_c_name(name)
 
 
 @pytest.mark.parametrize("nonsense", [None, 3, b"stage", ["stage"]])

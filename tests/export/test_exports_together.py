@@ -146,6 +146,22 @@ def test_a_sketch_of_arduino_with_two_exports(
     np.testing.assert_allclose(answered[:, 1], in_python("mirror", asked), rtol=0, atol=1e-4)
 
 
+@pytest.mark.parametrize(("driver", "language"), [("gcc", AS_C), ("clang++", AS_CXX)])
+def test_single_files_may_be_included_in_one_source(
+    driver: str, language: list[str], tmp_path: Path
+) -> None:
+    """As tools of PLCs and sketches do; two precisions, one of them twice."""
+    export_both(tmp_path, layout="single-file")
+    c_project(MIRROR.inverse(), tmp_path, name="third", precision="double", layout="single-file")
+    names = (*BOTH, "third")
+    (tmp_path / "all.c").write_text(
+        "".join(f'#include "{x}.c"\n#include "extras/{x}_step_response.c"\n' for x in names)
+        + f"int main(void) {{ return {' + '.join(f'{x}_selftest()' for x in names)}; }}\n"
+    )
+    compiled([compiler(driver), *language, *STRICT, "all.c", "-o", "all"], tmp_path)
+    assert subprocess.run([str(tmp_path / "all")], check=False).returncode == 0
+
+
 def symbols(objects: list[Path]) -> set[str]:
     """Names that the linker sees defined."""
     listed = subprocess.run(

@@ -71,6 +71,22 @@ def test_every_example_in_every_layout(name: str, precision: Precision, tmp_path
         CHECKED.add(kind)
 
 
+DEFINED = re.compile(
+    r"^static\s[\w\s\*]*?\b(\w+)\s*[(=\[]|^\}\s*(\w+);|^typedef\s[\w\s\*]*?(\w+);|#define\s+(\w+)"
+    r"|^    ([A-Z][A-Z0-9_]*)(?: = \w+)?,?(?: /\*.*)?$",
+    re.MULTILINE,
+)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_all_that_a_single_file_defines_has_its_name(name: str) -> None:
+    """So that any two of them can be included in one source."""
+    text = laid_out(block_of(EXAMPLES[name], "double"), "double", "single-file")["stage.c"]
+    found = {each for names in DEFINED.findall(text) for each in names if each}
+    assert len(found) > 2
+    assert not [each for each in found if not each.lower().startswith("stage_")]
+
+
 @pytest.mark.parametrize("language", [AS_C, AS_CXX])
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("name", ["inverse of nested", "inverse iwan", "jiles-atherton"])

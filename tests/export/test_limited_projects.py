@@ -312,6 +312,16 @@ def test_a_controller_starts_after_a_history(name: str, tmp_path: Path, objects:
     assert said in project.drive.said()
 
 
+def test_the_header_tells_what_a_step_gives_before_the_start(tmp_path: Path) -> None:
+    """The drive never leaves its limits, so 0 is no answer where it is not among them."""
+    for model, said in ((STAGE.inverse(), "1"), (STAGE, "0")):
+        project = c_project(model, tmp_path / said, limits=(1.0, 3.0))
+        assert f"Before stage_init: {said},\n * and a fault." in header_of(project)
+    for kind, estimator in estimators().items():
+        text = header_of(c_project(estimator, tmp_path / kind, limits=(1.0, 3.0)))
+        assert "stage_init: 1. It never leaves\n * STAGE_U_MIN to STAGE_U_MAX; no bit" in text
+
+
 def estimators() -> dict[str, JointEstimator | ScaleEstimator]:
     described = PI.with_description(ABOUT)
     return {"joint": JointEstimator(described), "scale": ScaleEstimator(described)}

@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+import structured_text_machine
 from c_builds import same_bits, stepped, wandering
+from structured_text_compiler import Compiler
 from structured_text_machine import Instance, Machine
 from structured_text_parser import StructuredTextError, units_of
 from test_repetitive_projects import BLOCKS
 
-from hyst import InputError, ModelDescription, Operator, PrandtlIshlinskii
+from hyst import (
+    DeadZone,
+    InputError,
+    ModelDescription,
+    ModifiedPrandtlIshlinskii,
+    Operator,
+    PrandtlIshlinskii,
+)
 from hyst.control.limited_drive.drive import LimitedDrive
 from hyst.control.limited_drive.schedule import LimitedSchedule
 from hyst.control.tracking_controller import TrackingController
@@ -21,6 +32,7 @@ from hyst.export import structured_text
 from hyst.export.c.block import block_of, stepper_of
 from hyst.export.c.numbers import Precision
 from hyst.export.iec61131.project import text_files
+from hyst.export.iec61131.words import is_taken
 from hyst.models import Scheduled
 from hyst.online import JointEstimator
 from reference.examples import EXAMPLES
@@ -101,6 +113,15 @@ def test_an_open_grammar_of_the_standard_takes_the_text(kind: str) -> None:
     parser = tree_sitter.Parser(tree_sitter.Language(grammar.language()))
     assert not parser.parse(text_of(KINDS[kind], "double").encode()).root_node.has_error
     assert parser.parse(b"FUNCTION f : LREAL\nf := ;\nEND_FUNCTION").root_node.has_error
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_variable_has_a_name_that_the_language_keeps(kind: str) -> None:
+    names = {
+        each.name for unit in units_of(text_of(KINDS[kind], "double")) for each in unit.variables
+    }
+    assert "numbers" in names
+    assert not {each for each in names if is_taken(each)}
 
 
 INVERSE = PrandtlIshlinskii([0.5, 0.2, 0.1], [0.1, 0.3, 0.7], 1.0).inverse()
@@ -257,6 +278,49 @@ def test_what_is_written(tmp_path: Path) -> None:
         structured_text(INVERSE, tmp_path / "out", name="lens")
     again = structured_text(INVERSE, tmp_path / "again", name="lens", description=about)
     assert (again.path / "lens.st").read_text() == text
+
+
+TEN = PrandtlIshlinskii(np.linspace(0.3, 0.05, 10), np.linspace(0.1, 2.0, 10), 1.0)
+TEN_AND_MAP = ModifiedPrandtlIshlinskii(
+    TEN, DeadZone([1.0, 0.2, 0.1, 0.3], [0.0, 0.5, 1.5, -0.4])
+).inverse()
+
+
+class _Counting(Compiler):
+    """Counts the statements that are run."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.lines.insert(0, "unsigned counted;")
+
+    def body(self, statements: list[Any]) -> None:
+        for each in statements:
+            self.lines.append("counted += 1;")
+            super().body([each])
+
+
+@pytest.mark.parametrize(
+    ("model", "limits", "most"),
+    [(TEN, None, 92), (TEN_AND_MAP, None, 128), (TEN_AND_MAP, (-1.5, 2.0), 173)],
+)
+def test_a_sample_costs_the_statements_that_the_page_tells(
+    model: Operator,
+    limits: tuple[float, float] | None,
+    most: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(structured_text_machine, "Compiler", _Counting)
+    written = structured_text(model, tmp_path / "out", name="lens", limits=limits)
+    lens = instance_of((written.path / "lens.st").read_text(), tmp_path)
+    counted = ctypes.c_uint.in_dll(lens.machine.library, "counted")
+    lens.run(("y",), u=0.0)
+    costs = []
+    for each in np.sin(np.arange(3000) / 50.0) * np.linspace(0.2, 4.0, 3000):
+        counted.value = 0
+        lens.run(("y",), u=each)
+        costs.append(counted.value)
+    assert max(costs) == most
 
 
 @pytest.mark.parametrize("name", ["limit", "Step", "LREAL", "t", "Real_to_dint", "AT", "trunc"])

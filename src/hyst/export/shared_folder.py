@@ -39,7 +39,7 @@ def add_to_folder(path: str | os.PathLike[str], files: Files, name: str, *, forc
         overwrite one that is not this export's, or the folder cannot be written to.
     """
     target = Path(path)
-    if target.suffix.lower() in (".zip", ".fmu") or not target.is_dir():
+    if target.suffix.lower() in (".zip", ".fmu") or not os.path.isdir(target):
         return write_export(target, files, name, force=force)
     there = _Exports.of(target, name)
     there.refuse_clashes(files, force)

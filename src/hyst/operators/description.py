@@ -63,7 +63,8 @@ class ModelDescription:
     driver
         Which volts the codes of the drive's converter give, if the record's input was in codes.
     is_inverse
-        Whether the output is the drive of an actuator and the input what it shall do.
+        Whether the output is the drive of an actuator and the input what it shall do; None where
+        that is not known, as of files before version 5 that do not show it.
 
     Raises
     ------
@@ -90,7 +91,7 @@ class ModelDescription:
     smallest_swing: float | None = None
     dynamics_errors: DynamicsErrors | None = None
     driver: Driver | None = None
-    is_inverse: bool = False
+    is_inverse: bool | None = False
 
     # Of the file format: entries that files of a version may have are those of it and before.
     ADDED: ClassVar[dict[str, int]] = {
@@ -126,6 +127,15 @@ class ModelDescription:
         return max([_ANY_DELAY, *(self.ADDED[name] for name in given)])
 
     @property
+    def _could_be_either(self) -> bool:
+        """Whether it fits a model as well as an inverse: ranges, but no swing, which inverses lack.
+
+        Before version 5 inverses were written so, too.
+        """
+        ranges = (self.input_low, self.input_high, self.output_low, self.output_high)
+        return self.smallest_swing is None and any(each is not None for each in ranges)
+
+    @property
     def is_unfit(self) -> bool:
         """Whether no command should come from the model, because its verdict says so."""
         return self.verdict is not None and self.verdict.level == UNFIT
@@ -138,7 +148,7 @@ class ModelDescription:
             plain[name] = None if given is None else given.to_dict()
         if self.delay_interval is not None:
             plain["delay_interval"] = list(self.delay_interval)
-        if not self.is_inverse:
+        if self.is_inverse is False and not self._could_be_either:
             del plain["is_inverse"]
         return {key: value for key, value in plain.items() if value not in (None, {})}
 
@@ -174,6 +184,8 @@ class ModelDescription:
             about = cls(**data)
         except InputError as error:
             raise InputError(f"in 'description', {error}") from None
+        if "is_inverse" not in data and about._could_be_either:
+            about = replace(about, is_inverse=None)
         if version < _ANY_DELAY and (about.delay < 0 or not isinstance(about.delay, int)):
             raise InputError(
                 f"in 'description', delay is {about.delay}; in files of this version it is a whole "
@@ -307,8 +319,8 @@ def _as_driver(name: str, value: Any) -> Driver | None:
     return value if value is None or isinstance(value, Driver) else Driver.from_dict(value)
 
 
-def _as_yes_or_no(name: str, value: Any) -> bool:
-    if not isinstance(value, bool):
+def _as_yes_or_no(name: str, value: Any) -> bool | None:
+    if value is not None and not isinstance(value, bool):
         raise InputError(f"{name} is {value!r}; give true or false")
     return value
 

@@ -14,6 +14,11 @@ Drive = Literal["input", "output"]
 
 NO_LIMITS = "none"
 
+SIDE_NOT_KNOWN = (
+    "the file of the operator, older than version 5, does not say whether it is a model or an "
+    "inverse, so it is not known which signal the drive is"
+)
+
 
 def as_drive(drive: Any, operator: Operator, forward: Any) -> Drive:
     """Say which signal of an operator the drive is.
@@ -40,6 +45,11 @@ def as_drive(drive: Any, operator: Operator, forward: Any) -> Drive:
         return "input" if drive == "input" else "output"
     if forward is not None:
         return "output"
+    if operator.description.is_inverse is None:
+        raise InputError(
+            f"{SIDE_NOT_KNOWN}; start from the file of the model and take its inverse, or say it "
+            "by is_inverse in the description"
+        )
     if operator.description != ModelDescription():
         return "output" if operator.description.is_inverse else "input"
     parts = [each for each in leaves_of(operator) if not each.is_map and not each.keeps_unit()]

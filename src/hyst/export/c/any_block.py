@@ -59,6 +59,8 @@ def any_block(
         If the model turns back within the limits.
     """
     about = described(model, description)
+    if isinstance(model, Operator) and about.is_inverse and not model.description.is_inverse:
+        model = model.with_description(about)  # which of its signals the drive is
     block = _block(model, precision, options, about)
     unit = about.output_unit if block.drive.side == "output" else about.input_unit
     block = replace(block, drive=replace(block.drive, unit=plain_text(unit)))

@@ -77,7 +77,22 @@ def block_of(model: Model, precision: Precision) -> Block:
 
 
 def described(model: Model, description: ModelDescription | None) -> ModelDescription:
-    """Give the ``description`` asked for, or that of the ``model``; refuse what is no model."""
+    """Give the ``description`` asked for, or that of the ``model``.
+
+    Parameters
+    ----------
+    model, description
+        As given to the export.
+
+    Returns
+    -------
+    ModelDescription
+
+    Raises
+    ------
+    InputError
+        If ``model`` is none.
+    """
     if not isinstance(model, Model):
         raise _no_model(model)
     if description is not None or isinstance(model, StableInverse):

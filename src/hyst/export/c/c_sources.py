@@ -54,6 +54,8 @@ def places(
         "word_bytes": str(WORD_BYTES[precision]),
         "zero": answer(block.virgin[1], precision),
         "rest": answer(block.virgin[1], precision),
+        "rest_said": f"{block.virgin[1]:.6g}",
+        "clamped": _clamped(block, name),
         "fault_there": _fault(block, name, "state"),
         "fault_here": _fault(block, name, "&state"),
         "identity": f"0x{block.identity(precision):08x}",
@@ -168,6 +170,14 @@ def _answered(block: Block, name: str) -> str:
         "    u = hyst_is_finite(u) ? u : state->y_last;\n"
         f"    u = u < {low} ? {low} : u;\n    return u > {high} ? {high} : u;\n"
     )
+
+
+def _clamped(block: Block, name: str) -> str:
+    """Say in a header what clamps an estimator's command."""
+    if block.drive.limits is None:
+        return ""
+    ends = f"{name.upper()}_U_MIN to {name.upper()}_U_MAX"
+    return f" It never leaves\n * {ends}; no bit of the fault tells that it would have."
 
 
 def _fault(block: Block, name: str, state: str) -> str:

@@ -27,6 +27,7 @@ from hyst.export.c.layout import Layout
 from hyst.export.c.names import as_c_name
 from hyst.export.c.numbers import as_precision
 from hyst.export.c.one_file import in_one_file
+from hyst.export.c.own_names import with_prefix
 from hyst.export.c.readme import readme
 from hyst.export.c.selftest import SelfTest
 from hyst.export.c.short_test import short_test_source
@@ -235,7 +236,9 @@ def project_files(
     short = layout.own(short_test_source(block, test, common, precision), layout.short_test_folder)
     core = layout.core.files(needed)
     if layout.form == "single-file":
-        compiled = {f"{name}.c": in_one_file(core, {f"{name}.c": layout.own(main)})}
+        # Tools and sketches include such sources in one: no name may be that of another's file.
+        whole = in_one_file(core, {f"{name}.c": layout.own(main)})
+        compiled, short = {f"{name}.c": with_prefix(whole, name)}, with_prefix(short, name)
     else:
         compiled = {f"{name}.c": layout.own(main)}
         compiled |= {layout.core_folder + each: text.decode("ascii") for each, text in core.items()}

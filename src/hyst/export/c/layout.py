@@ -20,6 +20,17 @@ SHARED_PREFIX = {"double": "hyst", "single": "hystf"}
 """Prefix of a core that exports share, by precision."""
 
 
+# Its builder knows no options: without this, a product and a sum may be one operation.
+_FOR_ARDUINO = """
+Arduino's builder leaves `extras` out, and takes options from its `platform.local.txt`:
+`compiler.c.extra_flags=-ffp-contract=off`. Without that, `@_selftest()` may tell of other bits on a
+processor that multiplies and adds at once, as a Cortex-M4F does.
+"""
+_ONE_BY_ONE = """
+Compile the sources one by one; for a tool that includes all of them in one, export `single-file`.
+"""
+
+
 @final
 @dataclass(frozen=True)
 class Layout:
@@ -125,11 +136,15 @@ class Layout:
             library += f" {self.core_folder}{self.core.prefix}_*.c"
         test = f"{self.test_folder}{self.name}_selftest.c"
         compiler, program = "cc -std=c99 -O2 -ffp-contract=off", f"{self.name}_test"
+        example = f"{self.test_folder}example.c"  # has a main, too
+        found = "-I. " if self.test_folder else ""
         return {
-            "build_example": f"example.c {library}",
+            "example": example,
+            "build_example": f"{found}{example} {library}",
             "test_command": f"{compiler} {test} {library} -o {program} && ./{program}",
             "with_cmake": self._with_cmake(),
             "own_files": self._own_files(),
+            "for_tools": self._for_tools(),
             "manifest": self.manifest,
             "core_prefix": f"{self.core.prefix}_",
             "selftest": test,
@@ -141,6 +156,12 @@ class Layout:
             return "or `cmake -S . -B build && cmake --build build && ctest --test-dir build`"
         test = f"{self.name}_selftest"
         return f"or `include({self.name}.cmake)` in a project of CMake, which then has `{test}`"
+
+    def _for_tools(self) -> str:
+        if self.form == "folder":
+            return ""
+        said = _FOR_ARDUINO.replace("@", self.name)
+        return said + (_ONE_BY_ONE if self.form == "flat" else "")
 
     def _own_files(self) -> str:
         if self.form == "flat":

@@ -37,6 +37,40 @@ _TAKEN = """
     lpt9 nul prn
     core selftest
 """
+# What a program that includes headers of the standard library has already: a state cannot be called
+# so, and one called as a function that compilers call by themselves, memcpy, would be run.
+_LIBRARY = """
+    main std
+    EOF FILE BUFSIZ L_ctermid L_tmpnam P_tmpdir FILENAME_MAX FOPEN_MAX TMP_MAX
+    SEEK_CUR SEEK_END SEEK_SET NULL NAN INFINITY
+    HUGE_VAL HUGE_VALF HUGE_VALL EXIT_FAILURE EXIT_SUCCESS RAND_MAX MB_CUR_MAX CHAR_BIT
+    CLOCKS_PER_SEC offsetof stdin stdout stderr clearerr fclose feof ferror fflush fgetc fgetpos
+    fgets fopen fprintf fputc fputs fread freopen fscanf fseek fsetpos ftell fwrite getc getchar
+    gets perror printf putc putchar puts remove rename rewind scanf setbuf setvbuf snprintf sprintf
+    sscanf tmpfile tmpnam ungetc vfprintf vfscanf vprintf vscanf vsnprintf vsprintf vsscanf
+    abort abs atexit atof atoi atol atoll bsearch calloc div exit free getenv labs ldiv llabs lldiv
+    malloc mblen mbstowcs mbtowc qsort rand realloc srand strtod strtof strtol strtold strtoll
+    strtoul strtoull system wcstombs wctomb
+    memchr memcmp memcpy memmove memset strcat strchr strcmp strcoll strcpy strcspn strerror strlen
+    strncat strncmp strncpy strpbrk strrchr strspn strstr strtok strxfrm
+    isalnum isalpha isblank iscntrl isdigit isgraph islower isprint ispunct isspace isupper isxdigit
+    tolower toupper asctime clock ctime difftime gmtime localtime mktime strftime raise longjmp
+    setjmp va_arg va_copy va_end va_start
+    fpclassify isfinite isgreater isgreaterequal isinf isless islessequal islessgreater isnan
+    isnormal isunordered signbit
+"""
+_MATHEMATICS = """
+    acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh erf erfc exp exp2 expm1 fabs
+    fdim floor fma fmax fmin fmod frexp hypot ilogb ldexp lgamma llrint llround log log10 log1p log2
+    logb lrint lround modf nan nearbyint nextafter nexttoward pow remainder remquo rint round
+    scalbln scalbn sin sinh sqrt tan tanh tgamma trunc
+"""
+_OF_THE_LIBRARY = frozenset(
+    _LIBRARY.split() + [each + kind for each in _MATHEMATICS.split() for kind in ("", "f", "l")]
+)
+_OF_STDINT = re.compile(
+    r"\w+_t|(U?INT(\d+|_(LEAST|FAST)\d+|PTR|MAX)|PTRDIFF|SIZE|WCHAR|WINT|SIG_ATOMIC)_(MIN|MAX|C)"
+)
 _KEYWORDS = frozenset((_C_KEYWORDS + _CXX_KEYWORDS).split())
 # What another export may define: lens has lens_core_..., lens_selftest and lens_clear_fault.
 _OF_ANOTHER = re.compile(
@@ -61,8 +95,9 @@ def as_c_name(name: str) -> str:
     Raises
     ------
     InputError
-        If it is no C identifier, is a word of C or C++ or reserved there, starts with "hyst", or
-        would name a file, a target or a function that something else has.
+        If it is no C identifier, is a word of C or C++ or reserved there, is in the standard
+        library, starts with "hyst", or would name a file, a target or a function that something
+        else has.
 
     Examples
     --------
@@ -87,6 +122,8 @@ def _objection(name: str) -> str:
         return "and C or C++ reserves names with an underscore first, last or twice"
     if is_word(name):
         return "a word of C or C++"
+    if name in _OF_THE_LIBRARY or _OF_STDINT.fullmatch(name):
+        return "which the standard library of C or C++ has or keeps for itself"
     if name.lower().startswith("hyst"):
         return "but names that start with hyst are those of the core"
     if name.lower() in _FILES:

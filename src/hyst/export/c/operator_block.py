@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from hyst.control.limited_drive.checked import SIDE_NOT_KNOWN
 from hyst.export.c.core_stage import core_stages
 from hyst.export.c.drive_range import DriveRange, Side
 from hyst.export.c.exported import Block
@@ -35,6 +36,8 @@ def operator_block(model: Operator, precision: Precision) -> Block:
     """
     code = StageCode(core_stages(model), precision)
     side: Side = "output" if model.description.is_inverse else "input"
+    if model.description.is_inverse is None:
+        side = ""
     block = Block(
         kind=model.kind,
         inputs=("u",),
@@ -51,6 +54,8 @@ def operator_block(model: Operator, precision: Precision) -> Block:
         stepper=model.stepper,
         drive=DriveRange(side),
     )
+    if side == "":
+        return replace(block, no_start=SIDE_NOT_KNOWN)
     if side == "output":
         return with_start(block, code, model, 0)
     passed = [Passed(model.stages(), 0, 0)]

@@ -54,7 +54,7 @@ def start_section(block: Block, name: str) -> str:
 {_WHY} So, at power-on:
 
 1. Drive the actuator to {ends}, as slowly as it needs.
-   What it remembered from before is then without effect.
+   What it remembered from before is then without effect, if it was never driven beyond.
 2. {told}
 3. Step. The first output goes on from the last of those drives.
 

@@ -40,23 +40,23 @@ VAR_INPUT
 END_VAR
 VAR
     size : {real};
-    n : DINT;
+    count : DINT;
 END_VAR
 size := x;
 IF x < {zero} THEN
     size := -x;
 END_IF;
-n := {real}_TO_DINT(size - {half});
-IF DINT_TO_{real}(n) > size THEN
-    n := n - 1;
+count := {real}_TO_DINT(size - {half});
+IF DINT_TO_{real}(count) > size THEN
+    count := count - 1;
 END_IF;
-IF size - DINT_TO_{real}(n) >= {one} THEN
-    n := n + 1;
+IF size - DINT_TO_{real}(count) >= {one} THEN
+    count := count + 1;
 END_IF;
 IF x < {zero} THEN
-    n := -n;
+    count := -count;
 END_IF;
-{name} := n;
+{name} := count;
 END_FUNCTION
 """
 

@@ -137,6 +137,13 @@ class Declared:
     def structure(self, node: Any, declared: Any) -> CType:
         """Take in a structure; one without a name gets that of what it is declared for.
 
+        Parameters
+        ----------
+        node
+            Of what it is declared for.
+        declared
+            Of the structure or the union.
+
         Raises
         ------
         UntranslatableError
