@@ -103,6 +103,15 @@ History = Annotated[
     ),
 ]
 
+HistoryAt = Annotated[
+    float | None,
+    typer.Option(
+        metavar="X",
+        show_default=False,
+        help="The second signal of a scheduled model during --history, as a temperature.",
+    ),
+]
+
 Preview = Annotated[
     int | None,
     typer.Option(
