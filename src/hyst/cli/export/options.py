@@ -25,15 +25,6 @@ ForTool = Annotated[
     typer.Option(help="; ".join(f"{name}, {each.purpose}" for name, each in TARGETS.items()) + "."),
 ]
 
-HistoryAt = Annotated[
-    float | None,
-    typer.Option(
-        metavar="X",
-        show_default=False,
-        help="The second signal of a scheduled model during --history, as a temperature.",
-    ),
-]
-
 Inverse = Annotated[bool, typer.Option("--inverse", help="Export the inverse.")]
 
 Explicit = Annotated[
