@@ -118,8 +118,6 @@ def test_what_exists_is_refused(tmp_path: Path) -> None:
 
 def test_force_replaces_an_earlier_export_as_a_whole(tmp_path: Path) -> None:
     out = c_project(MODEL, tmp_path / "out", name="before").path
-    (out / "build").mkdir()
-    (out / "build" / "before.o").write_text("")
     c_project(OTHER, out, force=True)
     assert contents(out) == contents(c_project(OTHER, tmp_path / "fresh").path)
     (tmp_path / "empty").mkdir()
@@ -128,6 +126,21 @@ def test_force_replaces_an_earlier_export_as_a_whole(tmp_path: Path) -> None:
     c_project(OTHER, tmp_path / "a.zip", force=True)
     c_project(OTHER, tmp_path / "b.zip", force=True)
     assert (tmp_path / "a.zip").read_bytes() == (tmp_path / "b.zip").read_bytes()
+
+
+def test_force_keeps_what_no_export_wrote(tmp_path: Path) -> None:
+    out = c_project(MODEL, tmp_path / "out", name="before").path
+    (out / "build").mkdir()
+    (out / "build" / "before.o").write_text("object")
+    (out / "example.c").write_text("mine")
+    c_project(OTHER, out, force=True)
+    own = {"build/before.o": b"object", "example.c": b"mine"}
+    assert contents(out) == contents(c_project(OTHER, tmp_path / "fresh").path) | own
+    before = contents(out)
+    (out / "other.h").write_text("mine, too")
+    with pytest.raises(InputError, match=r"other\.h is no file of the earlier export"):
+        c_project(OTHER, out, name="other", force=True)
+    assert contents(out) == before | {"other.h": b"mine, too"}
 
 
 def test_force_does_not_replace_what_is_no_export(tmp_path: Path) -> None:

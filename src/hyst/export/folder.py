@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import shutil
 import tempfile
 import zipfile
 from collections.abc import Mapping
@@ -32,7 +33,8 @@ def write_export(path: str | os.PathLike[str], files: Files, top: str, *, force:
     top
         The folder inside a zip; "" for none.
     force
-        Whether an earlier export at ``path`` is replaced, as a whole.
+        Whether an earlier export at ``path`` is replaced, as a whole; files in its folder that no
+        export wrote stay.
 
     Returns
     -------
@@ -133,6 +135,25 @@ def _as_manifest(text: bytes) -> dict[str, Any] | None:
     return content if ours else None
 
 
+def _keep_files_of_others(target: Path, new: Path) -> None:
+    """Copy what no export wrote, as a program beside it, to the folder that replaces ``target``."""
+    manifest = export_manifest(target / MANIFEST) or {}
+    written = {MANIFEST, *manifest.get("files", ())}
+    for folder, _, names in os.walk(target):
+        for name in names:
+            file = Path(folder) / name
+            place = file.relative_to(target)
+            if place.as_posix() in written:
+                continue
+            if os.path.lexists(new / place):
+                raise InputError(
+                    f"{file} is no file of the earlier export, and the new one has a file of that "
+                    "name; move it away, or name another folder"
+                )
+            (new / place).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(file, new / place, follow_symlinks=False)
+
+
 def _write_folder(target: Path, files: Files) -> None:
     parent = target.absolute().parent
     with tempfile.TemporaryDirectory(prefix=".hyst-", dir=parent) as temporary:
@@ -142,6 +163,7 @@ def _write_folder(target: Path, files: Files) -> None:
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(content)
         if target.exists():
+            _keep_files_of_others(target, new)
             target.rename(old)
         try:
             new.rename(target)
