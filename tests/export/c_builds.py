@@ -61,7 +61,7 @@ def build_library(
 ) -> Path:
     """Compile a project into a shared library; by gcc, one that needs nothing from elsewhere."""
     build = [compiler(driver), *language, "-O1", "-fPIC", *STRICT]
-    sources = sorted(project.glob("core/*.c"))
+    sources = sorted(project.glob("core/src/*.c"))
     parts = [str(objects.of(each, project, build)) for each in sources]
     name = project_name(project)
     own = project / f"{name}-{driver}.o"
@@ -84,7 +84,7 @@ def run_selftest(project: Path, objects: Objects) -> subprocess.CompletedProcess
     """Compile and run the self-test; the core's objects may come from an earlier project."""
     # As for a library, so that they have the objects in common.
     build = [compiler("gcc"), *AS_C, "-O1", "-fPIC", *STRICT]
-    sources = sorted(project.glob("core/*.c"))
+    sources = sorted(project.glob("core/src/*.c"))
     parts = [str(objects.of(each, project, build)) for each in sources]
     own = sorted(each.name for each in project.glob("*.c"))
     compiled([*build, *own, *parts, "-o", "selftest"], project)

@@ -280,7 +280,7 @@ def test_controllers_need_no_chain(tmp_path: Path) -> None:
     for name, parts in needed.items():
         project = c_project(CONTROLLERS[name], tmp_path / name)
         sources = {file for file in project.files if file.endswith(".c") and "/" in file}
-        assert sources == {f"core/stage_core_{part}.c" for part in parts}
+        assert sources == {f"core/src/stage_core_{part}.c" for part in parts}
 
 
 def test_what_looks_ahead_is_refused_with_the_reason(tmp_path: Path) -> None:

@@ -200,7 +200,7 @@ def test_libraries_of_two_precisions_link_in_either_order(tmp_path: Path) -> Non
     for name, precision, number in (("x", "double", "double"), ("s", "single", "float")):
         folder = c_project(LENS.inverse(), tmp_path / name, name=name, precision=precision).path
         (folder / "axis.c").write_text(AXIS.replace("@", name).replace("NUMBER", number))
-        sources = ["axis.c", f"{name}.c", *map(str, folder.glob("core/*.c"))]
+        sources = ["axis.c", f"{name}.c", *map(str, folder.glob("core/src/*.c"))]
         compiled([compiler("gcc"), *AS_C, *STRICT, "-c", *sources], folder)
         objects = sorted(folder.glob("*.o"))
         compiled([compiler("ar"), "rcs", f"../lib{name}.a", *map(str, objects)], folder)

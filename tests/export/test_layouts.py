@@ -50,7 +50,8 @@ def test_every_code_in_every_layout(name: str, precision: Precision, tmp_path: P
     folder = laid_out(block, precision, "folder")
     flat = laid_out(block, precision, "flat")
     assert {
-        path.removeprefix("core/"): text.replace('"core/', '"') for path, text in folder.items()
+        path.removeprefix("core/src/"): text.replace('"core/src/', '"')
+        for path, text in folder.items()
     } == flat
     prefix = "hystf" if precision == "single" else "hyst"
     renamed = {

@@ -239,7 +239,7 @@ def test_the_short_test_finds_one_bit_of_one_constant(precision: str, tmp_path: 
         '#include "lens.h"\nint main(void) { return lens_selftest(); }\n'
     )
     build = [compiler("gcc"), *AS_C, *STRICT, "main.c", "lens.c"]
-    core = [str(each) for each in folder.glob("core/*.c")]
+    core = [str(each) for each in folder.glob("core/src/*.c")]
     results = []
     for text in (source, source.replace(gain, beside)):
         (folder / "lens.c").write_text(text)

@@ -24,7 +24,7 @@ def c(order: Order) -> Done:
         **order.drive,
         driver=order.driver,
     )
-    of_the_core = re.compile(rf"(core/)?({order.name}_core|hystf?)_\w+\.[ch]")
+    of_the_core = re.compile(rf"(core/src/)?({order.name}_core|hystf?)_\w+\.[ch]")
     own = [each for each in project.files if not of_the_core.fullmatch(each)]
     folder, there = into_folder(order)
     start = f"{order.name}_init_after" if project.has_start else ""

@@ -129,8 +129,8 @@ def c_project(
     despite_verdict
         Export also a model whose verdict is ``unfit``.
     layout
-        "folder", with the core's files in ``core/``; "flat", all that is compiled in one folder, as
-        an Arduino library has it, and the self-test in ``extras/``; or "single-file", with the
+        "folder", with the core's files in ``core/src/``; "flat", all that is compiled in one
+        folder, as an Arduino library has it, and the self-test in ``extras/``; or "single-file", with the
         core's files inside the one source. Flat and single-file exports are added to a folder that
         is there, beside what it holds.
     shared_core

@@ -1,7 +1,8 @@
 """Where the files of a C project lie, and what they are called.
 
-Nothing needs a path of includes: a file includes what lies beside it or in ``core/`` below it. In a
-folder that several exports share, every file carries the name of its export or of the shared core.
+Nothing needs a path of includes: a file includes what lies beside it or in ``core/src/`` below it.
+In a folder that several exports share, every file carries the name of its export or of the shared
+core.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ class Layout:
     Parameters
     ----------
     form
-        "folder": the core's files in ``core/``. "flat": all that is compiled in one folder, the
+        "folder": the core's files in ``core/src/``. "flat": all that is compiled in one folder, the
         self-test apart in ``extras/``. "single-file": the core's files within the one source.
     shared_core
         Whether exports of one folder share one copy of the core in each precision.
@@ -82,7 +83,7 @@ class Layout:
     @property
     def core_folder(self) -> str:
         """Where the copy of the core lies, as seen from the source; with "/" at the end, or ""."""
-        return "core/" if self.form == "folder" else ""
+        return "core/src/" if self.form == "folder" else ""
 
     @property
     def test_folder(self) -> str:
