@@ -130,9 +130,9 @@ def c_project(
         Export also a model whose verdict is ``unfit``.
     layout
         "folder", with the core's files in ``core/src/``; "flat", all that is compiled in one
-        folder, as an Arduino library has it, and the self-test in ``extras/``; or "single-file", with the
-        core's files inside the one source. Flat and single-file exports are added to a folder that
-        is there, beside what it holds.
+        folder, as an Arduino library has it, and the self-test in ``extras/``; or "single-file",
+        with the core's files inside the one source. Flat and single-file exports are added to a
+        folder that is there, beside what it holds.
     shared_core
         Whether exports of one folder share one copy of the core in each precision; each is then
         added to a folder that is there.
