@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 import hyst
+from hyst.export.c.core_sources import core_folder
 from hyst.operators.driver.points import Points
 
-CORE = Path(hyst.__file__).parent / "core"
+CORE = core_folder()
 
 
 class Table(ctypes.Structure):

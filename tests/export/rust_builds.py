@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pwd
 import shutil
 import subprocess
 from pathlib import Path
@@ -13,7 +14,13 @@ import pytest
 from hyst.export.c.block import Model
 from hyst.export.rust_crate.crate import RustCrate, rust
 
-CARGO = shutil.which("cargo")
+# Where its installer puts it, which a clean environment does not say.
+_OWN = Path(pwd.getpwuid(os.getuid()).pw_dir)
+CARGO = shutil.which("cargo") or shutil.which("cargo", path=str(_OWN / ".cargo" / "bin"))
+_HOMES = {
+    "CARGO_HOME": os.environ.get("CARGO_HOME", str(_OWN / ".cargo")),
+    "RUSTUP_HOME": os.environ.get("RUSTUP_HOME", str(_OWN / ".rustup")),
+}
 
 needs_cargo = pytest.mark.skipif(CARGO is None, reason="cargo is not installed")
 
@@ -107,12 +114,13 @@ class Crates:
 
 def cargo(folder: Path, *arguments: str) -> str:
     """Run cargo, and give what it prints; warnings are errors."""
+    assert CARGO is not None
     done = subprocess.run(
-        ["cargo", *arguments],
+        [CARGO, *arguments],
         cwd=folder,
         capture_output=True,
         text=True,
-        env={**os.environ, "RUSTFLAGS": "-D warnings"},
+        env={**os.environ, **_HOMES, "RUSTFLAGS": "-D warnings"},
     )
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     return done.stdout
