@@ -79,7 +79,7 @@ def compile_model(project: Path, work: Path, store: ObjectStore, build: Build) -
     work.mkdir(parents=True, exist_ok=True)
     own = work / "stage.o"
     compile_source(project / "stage.c", own, (), build)
-    sources = sorted((project / "core").glob("*.c"))
+    sources = sorted((project / "core" / "src").glob("*.c"))
     return Objects(own, tuple(store.object_of(each, build) for each in sources))
 
 

@@ -91,7 +91,7 @@ def test_the_selftest_finds_no_difference(
     assert run_selftest(project.path, objects).stdout == "10000 samples, max difference 0\n"
     code = (project.path / "stage.c").read_text()
     assert "stage_core_repetitive_learn" in code
-    files = {each.name for each in (project.path / "core").glob("*.c")}
+    files = {each.name for each in (project.path / "core" / "src").glob("*.c")}
     assert "stage_core_repetitive_memory.c" in files
     assert not files & {"stage_core_chain.c", "stage_core_repetitive_controller.c"}
 
