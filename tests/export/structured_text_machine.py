@@ -61,8 +61,8 @@ class Machine:
                    str(source), "-o", str(library), "-lm"]  # fmt: skip
         finished = subprocess.run(command, capture_output=True, text=True, check=False)
         assert finished.returncode == 0, finished.stderr
-        self.library = ctypes.CDLL(str(library))
-        self.library.size_of.restype = ctypes.c_size_t
+        self.compiled = ctypes.CDLL(str(library))
+        self.compiled.size_of.restype = ctypes.c_size_t
 
     def instance(self) -> Instance:
         return Instance(self)
@@ -71,15 +71,15 @@ class Machine:
 class Instance:
     def __init__(self, machine: Machine) -> None:
         self.machine = machine
-        self.bytes = ctypes.create_string_buffer(machine.library.size_of())
-        machine.library.begin(self.bytes)
+        self.bytes = ctypes.create_string_buffer(machine.compiled.size_of())
+        machine.compiled.begin(self.bytes)
 
     def set(self, name: str, values: Any) -> None:
         """Give an input that is an array; what is not given is 0."""
         of = self.machine.arrays[name]
         all_of_them = np.zeros(of.high - of.low + 1, NUMPY[of.of])
         all_of_them[: np.size(values)] = values
-        getattr(self.machine.library, f"set_{name}")(
+        getattr(self.machine.compiled, f"set_{name}")(
             self.bytes, all_of_them.ctypes.data_as(ctypes.c_void_p)
         )
 
@@ -95,7 +95,7 @@ class Instance:
             arrays[name] = np.empty(samples, NUMPY[signals[name].type])
         pointers = [arrays[n].ctypes.data if n in arrays else None for n in signals]
         runs = np.array([n in arrays for n in signals], np.int8)
-        line = self.machine.library.run(
+        line = self.machine.compiled.run(
             self.bytes,
             ctypes.c_size_t(samples),
             (ctypes.c_void_p * len(pointers))(*pointers),

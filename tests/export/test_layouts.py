@@ -101,3 +101,5 @@ def test_a_single_file_by_every_compiler(
         (tmp_path / path).write_text(text)
     for driver in ("gcc", "clang") if language is AS_C else ("g++", "clang++"):
         compiled([compiler(driver), *language, *STRICT, "-O1", "-c", "stage.c"], tmp_path)
+        assert (tmp_path / "stage.o").stat().st_size > 0
+        (tmp_path / "stage.o").unlink()

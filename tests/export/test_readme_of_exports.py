@@ -205,8 +205,9 @@ def test_any_name_makes_a_program_that_compiles(name: str, unit: str, tmp_path: 
     folder = c_project(MODEL, tmp_path / "out", name="lens", description=about).path
     (folder / "example.c").write_text(program_of(folder))
     for driver, language in (("gcc", AS_C), ("g++", AS_CXX), ("gcc", ["-std=gnu99"])):
-        flags = [*language, *STRICT, "-fsyntax-only"]
-        compiled([compiler(driver), *flags, "example.c"], folder)
+        compiled([compiler(driver), *language, *STRICT, "-c", "example.c"], folder)
+        assert (folder / "example.o").stat().st_size > 0
+        (folder / "example.o").unlink()
 
 
 @pytest.mark.parametrize(

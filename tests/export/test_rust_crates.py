@@ -217,8 +217,9 @@ def test_a_start_is_that_of_python_and_a_saved_state_that_of_c(
     )
     (crates.folder / "held" / "tests" / "start.rs").write_text(text)
     # Also the crate's own self-test, and what clippy finds.
-    cargo(crates.folder, "test", "--offline", "-q", "-p", "held")
-    cargo(crates.folder, "clippy", "--offline", "-q", "-p", "held", "-p", "estimator")
+    told = cargo(crates.folder, "test", "--offline", "-q", "-p", "held")
+    assert told.count("test result: ok. 1 passed") >= 2
+    assert cargo(crates.folder, "clippy", "--offline", "-q", "-p", "held", "-p", "estimator") == ""
 
 
 _START_AT = """
@@ -248,8 +249,9 @@ def test_a_start_at_a_value_of_the_second_signal(crates: Crates) -> None:
         count=started.size, memory=", ".join(hex(each) for each in started.view(np.uint64).tolist())
     )
     (crates.folder / "moving" / "tests" / "start.rs").write_text(text)
-    cargo(crates.folder, "test", "--offline", "-q", "-p", "moving")
-    cargo(crates.folder, "clippy", "--offline", "-q", "-p", "moving")
+    told = cargo(crates.folder, "test", "--offline", "-q", "-p", "moving")
+    assert told.count("test result: ok. 1 passed") >= 2
+    assert cargo(crates.folder, "clippy", "--offline", "-q", "-p", "moving") == ""
 
 
 @needs_cargo

@@ -314,7 +314,7 @@ def test_a_sample_costs_the_statements_that_the_page_tells(
     monkeypatch.setattr(structured_text_machine, "Compiler", _Counting)
     written = structured_text(model, tmp_path / "out", name="lens", limits=limits)
     lens = instance_of((written.path / "lens.st").read_text(), tmp_path)
-    counted = ctypes.c_uint.in_dll(lens.machine.library, "counted")
+    counted = ctypes.c_uint.in_dll(lens.machine.compiled, "counted")
     lens.run(("y",), u=0.0)
     costs = []
     for each in np.sin(np.arange(3000) / 50.0) * np.linspace(0.2, 4.0, 3000):
