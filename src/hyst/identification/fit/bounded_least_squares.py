@@ -15,6 +15,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from hyst.identification.fit.bounded_quadratic import least_within
+from hyst.identification.fit.normal_equations import NormalEquations
 
 Array = NDArray[np.float64]
 Linearize = Callable[[Array], tuple[Array, Array]]
@@ -70,6 +71,9 @@ class Problem:
         A sum of squared residuals that is nothing but rounding.
     is_linear
         Whether the residual is an affine function of theta.
+    normal
+        Gives the normal equations at theta without a Jacobian of all samples, for records that are
+        too long for one; None where ``linearize`` makes them.
     """
 
     linearize: Linearize
@@ -79,6 +83,15 @@ class Problem:
     canonical: Callable[[Array], Array]
     negligible: float = 0.0
     is_linear: bool = False
+    normal: Callable[[Array], NormalEquations] | None = None
+
+    def at(self, theta: Array) -> NormalEquations:
+        """Give the normal equations at theta."""
+        return (
+            NormalEquations.of(*self.linearize(theta))
+            if self.normal is None
+            else self.normal(theta)
+        )
 
 
 def minimize(
@@ -113,14 +126,13 @@ def minimize(
     theta = problem.canonical(np.clip(theta, problem.lower, problem.upper))
     if problem.is_linear:
         return _least(problem, theta)
-    residual, jacobian = problem.linearize(theta)
-    cost, damping, growth = float(residual @ residual), 1e-4, 2.0
+    here = problem.at(theta)
+    cost, damping, growth = here.cost, 1e-4, 2.0
     costs = [cost]
     for iteration in range(1, max_iterations + 1):
-        normal, gradient = jacobian.T @ jacobian, jacobian.T @ residual
-        step, promise = _projected_step(problem, theta, normal, gradient, damping)
+        step, promise = _projected_step(problem, theta, here.matrix, here.gradient, damping)
         # A damped step promises little because it is short, not because there is nothing to gain.
-        settled = abs(promise) * (1.0 + damping) <= tolerance * cost / residual.size
+        settled = abs(promise) * (1.0 + damping) <= tolerance * cost / here.residuals
         if settled or cost <= problem.negligible:
             return Solution(theta, cost, iteration, CONVERGED)
         trial = problem.canonical(np.clip(theta + step, problem.lower, problem.upper))
@@ -128,8 +140,8 @@ def minimize(
         gain = (cost - float(trial_residual @ trial_residual)) / promise
         if promise > 0.0 and gain > 1e-4:
             theta = trial
-            residual, jacobian = problem.linearize(theta)
-            cost = float(residual @ residual)
+            here = problem.at(theta)
+            cost = here.cost
             damping *= max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3)
             damping = max(damping, LEAST_DAMPING)
             growth = 2.0
@@ -139,25 +151,35 @@ def minimize(
                 return Solution(theta, cost, iteration, CONVERGED)
         costs.append(cost)
         earlier = costs[-1 - PATIENCE] if iteration >= PATIENCE else np.inf
-        if earlier - cost <= tolerance * cost / residual.size:
+        if earlier - cost <= tolerance * cost / here.residuals:
             return Solution(theta, cost, iteration, CONVERGED)
     return Solution(theta, cost, max_iterations, ITERATION_LIMIT)
 
 
 def _least(problem: Problem, theta: Array) -> Solution:
     """Solve a linear problem: once, and once more for the digits that the normal matrix lost."""
-    residual, jacobian = problem.linearize(theta)
-    normal = jacobian.T @ jacobian
-    cost, refined = float(residual @ residual), theta
+    at = _on_a_line(problem, theta) if problem.normal is None else problem.normal
+    here, refined = at(theta), theta
     for _ in range(2):
-        moment = normal @ refined - jacobian.T @ residual
-        trial = least_within(normal, moment, problem.lower, problem.upper, refined)
-        trial_residual = residual + jacobian @ (trial - refined)
-        trial_cost = float(trial_residual @ trial_residual)
-        if not trial_cost < cost:
+        moment = here.matrix @ refined - here.gradient
+        trial = least_within(here.matrix, moment, problem.lower, problem.upper, refined)
+        there = at(trial)
+        if not there.cost < here.cost:
             break
-        refined, residual, cost = trial, trial_residual, trial_cost
-    return Solution(refined, cost, 1, CONVERGED)
+        refined, here = trial, there
+    return Solution(refined, here.cost, 1, CONVERGED)
+
+
+def _on_a_line(problem: Problem, theta: Array) -> Callable[[Array], NormalEquations]:
+    """Give the normal equations of a linear problem anywhere, from one Jacobian."""
+    residual, jacobian = problem.linearize(theta)
+    matrix = jacobian.T @ jacobian
+
+    def at(there: Array) -> NormalEquations:
+        errors = residual + jacobian @ (there - theta)
+        return NormalEquations(matrix, jacobian.T @ errors, float(errors @ errors), errors.size)
+
+    return at
 
 
 def _projected_step(

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.families.family import Fit
-from hyst.identification.fit.problem import Evaluation, model_output
+from hyst.identification.fit.evaluation import Evaluation
+from hyst.identification.fit.problem import model_output
 from hyst.identification.record_use.used_samples import Data
 
 Array = NDArray[np.float64]
