@@ -127,6 +127,16 @@ class Evaluation:
                 yield Block(number, slice(first, stop), rows @ self._parametrization.transform)
                 first = stop
 
+    def jacobian_at(self, theta: Array, rows: NDArray[np.intp]) -> Array:
+        """Give the derivative at some of the samples used, ascending, shape (rows, m)."""
+        if rows.size == sum(self._lengths):
+            return self.jacobian(theta)
+        result = np.empty((rows.size, theta.size))
+        for block in self.blocks(theta):
+            here = slice(*np.searchsorted(rows, [block.rows.start, block.rows.stop]))
+            result[here] = block.jacobian[rows[here] - block.rows.start]
+        return result
+
     def _blocks_of(self, each: _Pass) -> Iterator[Array]:
         """Give the derivatives by all constants of the samples of one record that are used."""
         state, start = self._start.copy(), each.window.start
