@@ -10,13 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst import _engine
-from hyst.identification.fit.bounded_least_squares import Problem
+from hyst.identification.fit.bounded_least_squares import NormalEquations, Problem
 from hyst.identification.fit.nuisance import Beside
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.record_use.used_samples import Data
 from hyst.operators import Operator
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.bool_]
+Places = NDArray[np.intp]
 
 ROUNDING = 1e-12
 """A residual of this share of the output range is rounding."""
@@ -26,6 +28,13 @@ HOLDS_A_GAUGE = 10.0
 
 NO_STEP_TO = 1e3
 """Residual, over the norm of the centred output, of a theta that makes no operator."""
+
+FEW_CONSTANTS = 2
+"""Times the free parameters: up to so many constants their products are summed, and taken to theta
+after that; of more, every sample's derivatives are taken to theta first."""
+
+SHORT_RUN = 200
+"""Samples: rows in runs that are shorter on average are gathered, and summed together."""
 
 
 def model_output(data: Data, operator: Operator) -> Array:
@@ -148,6 +157,48 @@ class Evaluation:
             row += length
         return result
 
+    def products(
+        self, theta: Array, errors: Array, chosen: Rows | None = None, root: Array | None = None
+    ) -> tuple[Array, Array]:
+        """Give ``J'J`` and ``J'e`` of some samples, J being the derivative by theta.
+
+        Parameters
+        ----------
+        theta
+            Canonical.
+        errors
+            Shape (samples chosen,), with their weights.
+        chosen
+            Shape (samples used,): which samples count; all if left out.
+        root
+            Shape (samples chosen,): square root of every sample's weight; 1 if left out.
+        """
+        self._set(theta)
+        transform = self._parametrization.transform
+        late = len(transform) <= FEW_CONSTANTS * theta.size
+        size = len(transform) if late else theta.size
+        matrix, gradient = np.zeros((size, size)), np.zeros(size)
+        first = 0
+        for each, pieces in zip(self._passes, self._pieces(chosen), strict=True):
+            by_constants = self._rows[: each.u.size]
+            each.chain.jacobian(self._start.copy(), each.u, by_constants)
+            for piece in pieces:
+                rows = by_constants[piece] if late else by_constants[piece] @ transform
+                place = slice(first, first + len(rows))
+                rows = rows if root is None else root[place, None] * rows
+                matrix += rows.T @ rows
+                gradient += rows.T @ errors[place]
+                first = place.stop
+        if late:
+            return transform.T @ matrix @ transform, transform.T @ gradient
+        return matrix, gradient
+
+    def _pieces(self, chosen: Rows | None) -> list[list[slice] | list[Places]]:
+        """Give for each record the rows of its samples that are chosen, and count."""
+        ends = np.cumsum(self._lengths)[:-1]
+        parts = [None] * len(self._passes) if chosen is None else np.split(chosen, ends)
+        return [_pieces_of(each, part) for each, part in zip(self._passes, parts, strict=True)]
+
     def _set(self, theta: Array) -> None:
         constants = self._parametrization.constants(theta)
         for chain in self._chains:
@@ -159,6 +210,22 @@ class Evaluation:
         return np.empty(
             (max(each.u.size for each in self._passes), self._chains[0].parameter_count)
         )
+
+
+def _pieces_of(record: _Pass, chosen: Rows | None) -> list[slice] | list[Places]:
+    """Give rows of one record as runs, which need no copy, or all at once if they are short."""
+    if record.counts is None and chosen is None:
+        return [record.window]
+    rows = np.zeros(record.window.stop, dtype=bool)
+    used = rows[record.window]
+    used[slice(None) if record.counts is None else record.counts] = (
+        True if chosen is None else chosen
+    )
+    edges = np.flatnonzero(np.diff(rows, prepend=False, append=False))
+    runs = [slice(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
+    if len(runs) * SHORT_RUN <= np.count_nonzero(rows):
+        return runs
+    return [np.flatnonzero(rows)]
 
 
 def _sample_times(data: Data, operator: Operator) -> list[float]:
@@ -226,6 +293,14 @@ def problem_of(
         more = [by_theta for _, by_theta in beside(theta)]
         return residual(theta), np.concatenate([jacobian, *more]) if more else jacobian
 
+    def summed(theta: Array) -> NormalEquations:
+        left = residual(theta)
+        matrix, gradient = evaluation.products(theta, left[: target.size], chosen, root)
+        for values, by_theta in beside(theta):
+            matrix += by_theta.T @ by_theta
+            gradient += by_theta.T @ values
+        return NormalEquations(matrix, gradient, float(left @ left), left.size)
+
     return Problem(
         linearize,
         residual,
@@ -234,6 +309,7 @@ def problem_of(
         parametrization.canonical,
         negligible=float(target.size * (ROUNDING * np.ptp(y)) ** 2),
         is_linear=parametrization.is_linear,
+        summed=summed if columns is None else None,
     )
 
 
