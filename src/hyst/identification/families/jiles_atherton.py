@@ -203,20 +203,19 @@ def _over_coupling(problem: Problem) -> Problem:
         left, jacobian = problem.linearize(plain)
         return left, jacobian @ _by_coupled(plain)
 
-    def normal(theta: Array) -> NormalEquations:
+    def summed(theta: Array) -> NormalEquations:
         plain = _uncoupled(theta)
-        return problem.at(plain).over(_by_coupled(plain))
+        return problem.normal_equations(plain).over(_by_coupled(plain))
 
     lower, upper = problem.lower.copy(), problem.upper.copy()
     lower[4], upper[4] = 0.0, MOST_COUPLING
-    streamed = None if problem.normal is None else normal
     return replace(
         problem,
         linearize=linearize,
         residual=residual,
         lower=lower,
         upper=upper,
-        normal=streamed,
+        summed=summed,
     )
 
 

@@ -19,6 +19,15 @@ from hyst.identification.record_use.used_samples import Data
 from hyst.operators import Operator
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.bool_]
+Places = NDArray[np.intp]
+
+FEW_CONSTANTS = 2
+"""Times the free parameters: up to so many constants their products are summed, and taken to theta
+after that; of more, every sample's derivatives are taken to theta first."""
+
+SHORT_RUN = 200
+"""Samples: rows in runs that are shorter on average are gathered, and summed together."""
 
 BLOCK = 4096
 """Samples: derivatives by thirty constants fit in a cache of 1 MB."""
@@ -127,6 +136,48 @@ class Evaluation:
                 yield Block(number, slice(first, stop), rows @ self._parametrization.transform)
                 first = stop
 
+    def products(
+        self, theta: Array, errors: Array, chosen: Rows | None = None, root: Array | None = None
+    ) -> tuple[Array, Array]:
+        """Give ``J'J`` and ``J'e`` of some samples, J being the derivative by theta.
+
+        Parameters
+        ----------
+        theta
+            Canonical.
+        errors
+            Shape (samples chosen,), with their weights.
+        chosen
+            Shape (samples used,): which samples count; all if left out.
+        root
+            Shape (samples chosen,): square root of every sample's weight; 1 if left out.
+        """
+        self._set(theta)
+        transform = self._parametrization.transform
+        late = len(transform) <= FEW_CONSTANTS * theta.size
+        size = len(transform) if late else theta.size
+        matrix, gradient = np.zeros((size, size)), np.zeros(size)
+        first = 0
+        for each, pieces in zip(self._passes, self._pieces(chosen), strict=True):
+            by_constants = self._rows[: each.u.size]
+            each.chain.jacobian(self._start.copy(), each.u, by_constants)
+            for piece in pieces:
+                rows = by_constants[piece] if late else by_constants[piece] @ transform
+                place = slice(first, first + len(rows))
+                rows = rows if root is None else root[place, None] * rows
+                matrix += rows.T @ rows
+                gradient += rows.T @ errors[place]
+                first = place.stop
+        if late:
+            return transform.T @ matrix @ transform, transform.T @ gradient
+        return matrix, gradient
+
+    def _pieces(self, chosen: Rows | None) -> list[list[slice] | list[Places]]:
+        """Give for each record the rows of its samples that are chosen, and count."""
+        ends = np.cumsum(self._lengths)[:-1]
+        parts = [None] * len(self._passes) if chosen is None else np.split(chosen, ends)
+        return [_pieces_of(each, part) for each, part in zip(self._passes, parts, strict=True)]
+
     def jacobian_at(self, theta: Array, rows: NDArray[np.intp]) -> Array:
         """Give the derivative at some of the samples used, ascending, shape (rows, m)."""
         if rows.size == sum(self._lengths):
@@ -163,6 +214,22 @@ class Evaluation:
         return np.empty(
             (max(each.u.size for each in self._passes), self._chains[0].parameter_count)
         )
+
+
+def _pieces_of(record: _Pass, chosen: Rows | None) -> list[slice] | list[Places]:
+    """Give rows of one record as runs, which need no copy, or all at once if they are short."""
+    if record.counts is None and chosen is None:
+        return [record.window]
+    rows = np.zeros(record.window.stop, dtype=bool)
+    used = rows[record.window]
+    used[slice(None) if record.counts is None else record.counts] = (
+        True if chosen is None else chosen
+    )
+    edges = np.flatnonzero(np.diff(rows, prepend=False, append=False))
+    runs = [slice(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
+    if len(runs) * SHORT_RUN <= np.count_nonzero(rows):
+        return runs
+    return [np.flatnonzero(rows)]
 
 
 def _sample_times(data: Data, operator: Operator) -> list[float]:

@@ -23,14 +23,14 @@ class NormalEquations:
         ``J'e``, shape (m,).
     cost
         ``e'e``.
-    residuals
-        How many there are.
+    count
+        Number of residuals.
     """
 
     matrix: Array
     gradient: Array
     cost: float
-    residuals: int
+    count: int
 
     @classmethod
     def of(cls, residual: Array, jacobian: Array) -> Self:
@@ -55,7 +55,7 @@ class NormalEquations:
             Shape (m, n), derivative of the parameters by the others.
         """
         return NormalEquations(
-            change.T @ self.matrix @ change, change.T @ self.gradient, self.cost, self.residuals
+            change.T @ self.matrix @ change, change.T @ self.gradient, self.cost, self.count
         )
 
     def plus(self, residual: Array, jacobian: Array) -> NormalEquations:
@@ -71,7 +71,7 @@ class NormalEquations:
             self.matrix + more.matrix,
             self.gradient + more.gradient,
             self.cost + more.cost,
-            self.residuals + more.residuals,
+            self.count + more.count,
         )
 
 

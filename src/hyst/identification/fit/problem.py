@@ -136,15 +136,20 @@ def problem_of(
         more = [by_theta for _, by_theta in beside(theta)]
         return residual(theta), np.concatenate([jacobian, *more]) if more else jacobian
 
+    is_long = target.size * parametrization.transform.shape[0] > LARGEST_JACOBIAN
     streamed = Streamed(evaluation, rows, root, columns)
 
-    def normal(theta: Array) -> NormalEquations:
+    def summed(theta: Array) -> NormalEquations:
         errors = residual(theta)
-        more = [by_theta for _, by_theta in beside(theta)]
-        own = streamed.normal(theta, errors_of, errors[: target.size])
-        return own.plus(errors[target.size :], np.concatenate(more)) if more else own
+        own, more = errors[: target.size], [by_theta for _, by_theta in beside(theta)]
+        if is_long:
+            normal = streamed.normal(theta, errors_of, own)
+        else:
+            normal = NormalEquations(
+                *evaluation.products(theta, own, chosen, root), float(own @ own), own.size
+            )
+        return normal.plus(errors[own.size :], np.concatenate(more)) if more else normal
 
-    is_long = target.size * parametrization.transform.shape[0] > LARGEST_JACOBIAN
     return Problem(
         linearize,
         residual,
@@ -153,7 +158,7 @@ def problem_of(
         parametrization.canonical,
         negligible=float(target.size * (ROUNDING * np.ptp(y)) ** 2),
         is_linear=parametrization.is_linear,
-        normal=normal if is_long else None,
+        summed=summed if is_long or columns is None else None,
     )
 
 
