@@ -15,7 +15,7 @@ from hyst.io.own_times import refuse_own_times
 from hyst.io.record_of_table import Wanted, choose_columns, refuse_unusable, step_of_rows
 from hyst.io.table import Table
 from hyst.io.unit_of_stamps import unit_of_stamps
-from hyst.io.usable_rows import refuse_row_of_units, require_samples
+from hyst.io.usable_rows import FEWEST_SAMPLES, refuse_row_of_units, require_samples
 from hyst.signals import Record
 
 _REMEDY = ", or read the record as a whole with read_record and repair"
@@ -78,7 +78,7 @@ def survey(columns: Columns, wanted: Wanted) -> Survey:
         low, high = min(low, piece.values[1].min()), max(high, piece.values[1].max())
         first = piece if first is None else first
         samples += piece.size
-    require_samples(table, np.arange(samples))
+    require_samples(table, np.arange(min(samples, FEWEST_SAMPLES)))
     codes.refuse(_REMEDY)
     if stamps is not None:
         dt, noted = stamps.result()
