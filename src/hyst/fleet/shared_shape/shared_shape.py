@@ -19,6 +19,7 @@ from hyst.fleet.shared_shape.free_constants import (
     FreeConstants,
     free_constants,
     independent,
+    scale_columns,
     with_offset,
 )
 from hyst.fleet.shared_shape.population import Population
