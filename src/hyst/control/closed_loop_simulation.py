@@ -151,7 +151,8 @@ def simulate_closed_loop(
         return simulate_settled(
             simulate_closed_loop, r, time, controller, plant, hysteresis,
             _record(spread, r.size), delay,
-            inverse=inverse, observer=observer, disturbance=_record(d, r.size), disturbance_at=disturbance_at,
+            inverse=inverse, observer=observer, disturbance=_record(d, r.size),
+            disturbance_at=disturbance_at,
             settle=settled, limit=limit,
         )  # fmt: skip
     before, behind = (d, _NOTHING) if disturbance_at == "hysteresis" else (_NOTHING, d)
@@ -212,9 +213,11 @@ def _sampled(
     after = chain, controller.initial_state(), state, *signals
     if isinstance(controller, RepetitiveController):
         return _engine.run_repetitive_loop(step, controller.compiled, *after)
-    E, F = controller.E, controller.F
-    told = ([], 0.0, 0.0) if E is None or F is None else (E.tolist(), float(F[0]), float(F[1]))
-    return _engine.run_sampled_loop(step, controller.compiled, *told, *after)
+    E = np.zeros(0) if controller.E is None else controller.E
+    F = np.zeros(2) if controller.F is None else controller.F
+    return _engine.run_sampled_loop(
+        step, controller.compiled, E.tolist(), float(F[0]), float(F[1]), *after
+    )
 
 
 def _estimated(
