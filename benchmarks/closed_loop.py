@@ -4,7 +4,7 @@ Prints, for one machine and one run of the repaired example of S1 (two-mode plan
 printed observer, 10 plays, inverse at 0.7),
 - nanoseconds a step with the controller in continuous time and as a target runs it, and ratios to
   the same equations in a NumPy loop, compiled by numba, and in python-control, by hand and as
-  ``closed_loop_system`` joins them there,
+  ``closed_loop_system`` joins them there; matrices and reference are made anew by hyst and numba,
 - the step of the TrackingController from Python,
 - outputs over dt against the finest, with either controller.
 """
@@ -84,7 +84,7 @@ def print_times() -> None:
 
         compiled = numba.njit(plain_loop)
         constants = (EXACT.p0, EXACT.p, EXACT.r, HYSTERESIS.p0, HYSTERESIS.p, HYSTERESIS.r)
-        works["numba"] = lambda: compiled(*joint, reference(many, DT), *constants)
+        works["numba"] = lambda: compiled(*joint_matrices(DT), reference(many, DT), *constants)
         steps["numba"] = many
     times = interleaved(works, seconds=6.0)
     print("                            ns a step   over hyst")
