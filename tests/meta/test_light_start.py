@@ -85,3 +85,10 @@ def test_a_bank_loads_no_scipy() -> None:
     loaded = modules_loaded_by(BANK)
     assert "hyst.models" in loaded
     assert not {"scipy", "hyst.identification", "hyst.compensation"} & loaded
+
+
+def test_identification_loads_no_statistics_filters_or_figures() -> None:
+    loaded = modules_loaded_by(IDENTIFIED)
+    assert "hyst.identification" in loaded
+    heavy = {"scipy.stats", "scipy.signal", "matplotlib", "pandas", "pyarrow"}
+    assert not (heavy | {"hyst.control", "hyst.online", "hyst.report", "hyst.export"}) & loaded
