@@ -9,16 +9,17 @@ Array = NDArray[np.float64]
 
 # Below it every sample is drawn.
 _MOST = 50_000
-# Evenly spaced samples, and stretches whose lowest and highest samples are drawn too: a panel is
-# some 400 pixels wide.
-_EVEN, _STRETCHES = 20_000, 2_500
+# Samples all over a record, and stretches whose lowest and highest samples are drawn too: a panel
+# is some 400 pixels wide.
+_EVEN, _STRETCHES = 40_000, 2_500
+_GOLDEN = 0.6180339887498949
 # No two points nearer than this share of the range are told apart.
 _CELLS = 2_000
-_RUN = 4_000
+_RUN, _RUNS = 4_000, 25
 
 
 def drawn_samples(*signals: Array) -> NDArray[np.intp]:
-    """Choose samples for points, and for lines over time: even ones and extremes of each signal.
+    """Choose samples for points, and for lines over time: spread ones and extremes of each signal.
 
     Parameters
     ----------
@@ -35,7 +36,7 @@ def drawn_samples(*signals: Array) -> NDArray[np.intp]:
     >>> signal = np.zeros(1_000_000)
     >>> signal[123_456] = 1.0
     >>> chosen = drawn_samples(signal)
-    >>> chosen.size < 50_000, 123_456 in chosen
+    >>> chosen.size < 60_000, 123_456 in chosen
     (True, True)
     """
     count = signals[0].size
@@ -43,7 +44,10 @@ def drawn_samples(*signals: Array) -> NDArray[np.intp]:
         return np.arange(count)
     length = -(-count // _STRETCHES)
     whole = count // length * length
-    chosen = [np.arange(0, count, -(-count // _EVEN)), np.array([count - 1])]
+    # Each somewhere in its share of the record: even steps would fall in with periods.
+    places = np.arange(_EVEN)
+    even = (places + places * _GOLDEN % 1.0) * (count / _EVEN)
+    chosen = [even.astype(np.intp), np.array([0, count - 1])]
     for signal in signals:
         rows, rest = signal[:whole].reshape(-1, length), signal[whole:]
         starts = np.arange(0, whole, length)
@@ -77,7 +81,7 @@ def drawn_path(x: Array, y: Array) -> tuple[Array, Array]:
     x, y = x[kept], y[kept]
     if x.size <= _MOST:
         return x, y
-    runs = np.linspace(0, x.size - _RUN, _MOST // _RUN).astype(np.intp)
+    runs = np.linspace(0, x.size - _RUN, _RUNS).astype(np.intp)
     around = np.array([x.argmin(), x.argmax(), y.argmin(), y.argmax()]) - _RUN // 2
     starts = np.unique(np.concatenate([runs, np.clip(around, 0, x.size - _RUN)]))
     gap = [np.nan]
