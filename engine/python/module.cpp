@@ -19,6 +19,7 @@
 #include "../jacobian.hpp"
 #include "limited_drive_binding.hpp"
 #include "moving_binding.hpp"
+#include "number_text_binding.hpp"
 #include "online_binding.hpp"
 #include "../parallel.hpp"
 #include "rate_dependent_binding.hpp"
@@ -263,6 +264,7 @@ NB_MODULE(_engine, module) {
     hyst::bind_repetitive(module);
     hyst::bind_limited_drive(module);
     hyst::bind_moving(module);
+    hyst::bind_number_text(module);
     hyst::bind_online_estimation(module);
     hyst::bind_rate_dependent_inversion(module);
     if (!hyst::register_stepper(module.ptr())) throw nb::python_error();
