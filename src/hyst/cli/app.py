@@ -22,6 +22,7 @@ from hyst.cli.exit_codes import BAD_INPUT, DONE, FAILURE
 from hyst.cli.export.command import export
 from hyst.cli.family_options import FamilyCommand
 from hyst.cli.fit import fit
+from hyst.cli.fleet.command import fleet
 from hyst.cli.identify import identify
 from hyst.cli.info import info
 from hyst.cli.learn.command import learn
@@ -37,14 +38,15 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     help="From a measured hysteresis loop to a model, its exact inverse and a command.",
-    epilog="Exit code: 0 done, 3 done but no command should come from the model, 2 bad input, "
-    "1 failure.",
+    epilog="Exit code: 0 done, 3 done but no command should come from the model, or devices fail, "
+    "2 bad input, 1 failure.",
 )
 VERBS = (
     diagnose,
     excite,
     columns,
     identify,
+    fleet,
     fit,
     compare,
     adapt,
@@ -61,7 +63,7 @@ VERBS = (
     demo,
 )
 for verb in VERBS:
-    app.command(verb.__name__, cls=FamilyCommand if verb is identify else None)(verb)
+    app.command(verb.__name__, cls=FamilyCommand if verb in (identify, fleet) else None)(verb)
 
 
 def _show_version(wanted: bool) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -183,7 +183,9 @@ def _family_and_size(looks: Sequence[Look]) -> tuple[str, int | None, str]:
         alone = _most(each.family for each in looks)
         plays = _most(each.plays for each in looks if each.family == alone)
         return alone, plays, "the one most often found in"
-    kinds = {(each.family, each.plays): each.parameters for look in compared for each in look.candidates}
+    kinds = {
+        (each.family, each.plays): each.parameters for look in compared for each in look.candidates
+    }
     excess = {kind: np.array([_excess(kind, each) for each in compared]) for kind in kinds}
     kept = max(1, math.ceil((1.0 - LEFT_ASIDE) * len(compared)))
     pooled = {kind: float(np.sort(each)[:kept].mean()) for kind, each in excess.items()}
@@ -204,7 +206,9 @@ def _excess(kind: tuple[str, int], look: Look) -> float:
     best = min(scores.values())
     own = scores.get(kind)
     if own is None:
-        smaller = [score for (name, plays), score in scores.items() if name == kind[0] and plays < kind[1]]
+        smaller = [
+            score for (name, plays), score in scores.items() if name == kind[0] and plays < kind[1]
+        ]
         if not smaller:
             return _WORST
         own = min(smaller)
@@ -241,6 +245,8 @@ def _creep(looks: Sequence[Look]) -> tuple[int | None, str]:
     return count, f"Every model creeps with {count} lags, as most of the records do."
 
 
-def _most(values: Any) -> Any:
-    given = [each for each in values if each not in ("", None)]
-    return max(dict.fromkeys(given), key=given.count) if given else ("" if values is None else None)
+def _most(values: Iterable[Any]) -> Any:
+    """Give the most frequent of what is given; None, or empty text, where nothing is."""
+    listed = list(values)
+    given = [each for each in listed if each not in ("", None)]
+    return max(dict.fromkeys(given), key=given.count) if given else next(iter(listed), None)

@@ -43,7 +43,7 @@ class Models(Mapping[str, Operator]):
 
     def __getitem__(self, identifier: str) -> Operator:
         found = self._models[identifier]
-        return found if isinstance(found, Operator) else load(found)  # type: ignore[no-any-return]
+        return found if isinstance(found, Operator) else load(found)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._models)
@@ -174,7 +174,9 @@ class Fleet:
         folder
             Of the fleet.
         """
-        limits = {name: {q: list(pair) for q, pair in own.items()} for name, own in self.limits.items()}
+        limits = {
+            name: {q: list(pair) for q, pair in own.items()} for name, own in self.limits.items()
+        }
         order = [each.identifier for each in self.devices]
         state = {"asked": self.asked, "choice": choice_to_dict(self.choice)}
         folder.write_state({**state, "limits": limits, "order": order})
@@ -201,7 +203,9 @@ class Fleet:
         there = ResultFolder(Path(folder))
         state = there.read_state()
         if state is None:
-            raise InputError(f"{folder} holds no fleet: it has no {STATE}; give a folder of hyst fleet")
+            raise InputError(
+                f"{folder} holds no fleet: it has no {STATE}; give a folder of hyst fleet"
+            )
         entries = there.entries()
         missing = [each for each in state.get("order", ()) if each not in entries]
         if missing or "order" not in state:

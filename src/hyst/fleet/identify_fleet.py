@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import itertools
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -106,10 +107,8 @@ def identify(
     --------
     >>> import numpy as np, hyst
     >>> u = np.sin(np.linspace(0.0, 20.0, 300)) * np.linspace(1.0, 0.5, 300)
-    >>> records = {
-    ...     f"unit {k}": hyst.Record(u, hyst.PrandtlIshlinskii([0.5], [0.2], 1.0 + 0.01 * k)(u), 1e-3)
-    ...     for k in range(3)
-    ... }
+    >>> models = [hyst.PrandtlIshlinskii([0.5], [0.2], 1.0 + 0.01 * k) for k in range(3)]
+    >>> records = {f"unit {k}": hyst.Record(u, each(u), 1e-3) for k, each in enumerate(models)}
     >>> found = identify(records, family="pi", plays=1, scheduler="threads", delay=0, creep=None)
     >>> found.counts()["good"], f"{found.table.row('unit 2')['gain']:.3f}"
     (3, '1.470')
@@ -166,7 +165,9 @@ class _Work:
             devices[device.identifier] = replace(device, model=None)
         if self.folder is not None:
             models = {
-                name: self.folder.model_file(name) for name, each in devices.items() if not each.failure
+                name: self.folder.model_file(name)
+                for name, each in devices.items()
+                if not each.failure
             }
         order = [devices[each.identifier] for each in measured]
         fleet = fleet_of(order, choice, limits, models, asked)
@@ -227,7 +228,7 @@ def _settled(asked: Mapping[str, Any], choice: Choice, shape: Any) -> Settled:
 def _for_family(options: dict[str, Any], choice: Choice) -> dict[str, Any]:
     """Give the options with the family chosen, and without those of others that were compared."""
     takes = hyst.families.option
-    general = set(hyst.identification.identify.__kwdefaults__)
+    general = set(inspect.signature(hyst.identification.identify).parameters)
     own = {
         name: value
         for name, value in options.items()
@@ -288,11 +289,11 @@ def _resumed(
         return {}, None
     if state.get("asked") != asked:
         before = state.get("asked")
-        other = [
-            each
-            for each in sorted({*asked, *before})
-            if asked.get(each) != before.get(each)
-        ] if isinstance(before, dict) else ["all"]
+        other = (
+            [each for each in sorted({*asked, *before}) if asked.get(each) != before.get(each)]
+            if isinstance(before, dict)
+            else ["all"]
+        )
         raise InputError(
             f"{folder.path} holds a fleet with other options ({', '.join(other)}); write to "
             "another folder, or begin anew with --force (force=True in Python)"

@@ -34,6 +34,9 @@ FEWEST, FEWEST_NEAR = 8, 30
 SHARE_OF_A_KIND, LEAST_OF_A_KIND = 0.02, 3
 """More devices than this share of the fleet, and this number, that are odd alike are a kind."""
 
+MOST_REASONS = 3
+"""That are told of one device."""
+
 _QUARTERS = tuple((POINTS - 1) * k // 4 for k in (1, 2, 3))
 _TO_DEVIATION = 1.4826
 _EFFICIENCY = 0.37
@@ -82,6 +85,10 @@ _COMPARED = (
 )
 
 
+_Reason = tuple[int, float, str]
+"""Which quantity is odd, by how many robust deviations, and the same in words."""
+
+
 @dataclass(frozen=True, eq=False)
 class Judged:
     """What the comparison of a fleet gave.
@@ -125,7 +132,7 @@ def judge_fleet(devices: Sequence[Device]) -> Judged:
     outliers, distances = [], dict(nothing)
     for k, each in enumerate(compared):
         distances[each.identifier] = float(max(odd[k], near[k]))
-        told = (*turned[k], *reasons[k], *near_reasons[k])
+        told = (*turned[k], *_oddest((*reasons[k], *near_reasons[k])))
         if told:
             outliers.append(Outlier(each.identifier, distances[each.identifier], told))
     outliers.sort(key=lambda each: -each.distance)
@@ -138,6 +145,16 @@ def _sentence(count: int, odd: int) -> str:
         f"{what} odd among the {count} with a model; of devices that only scatter normally "
         f"{FALSE_ALARMS:g} in a whole fleet would be named by mistake."
     )
+
+
+def _oddest(reasons: Sequence[_Reason]) -> tuple[str, ...]:
+    """Give the oddest quantities in words, each once."""
+    ordered = sorted(reasons, key=lambda each: -each[1])
+    return tuple({q: text for q, _, text in reversed(ordered)}[q] for q in _first(ordered))
+
+
+def _first(ordered: Sequence[_Reason]) -> list[int]:
+    return list(dict.fromkeys(q for q, _, _ in ordered))[:MOST_REASONS]
 
 
 def _features(device: Device) -> list[float]:
@@ -155,7 +172,7 @@ def _features(device: Device) -> list[float]:
     ]
 
 
-def _against_all(x: Array) -> tuple[Array, list[tuple[str, ...]]]:
+def _against_all(x: Array) -> tuple[Array, list[tuple[_Reason, ...]]]:
     count = len(x)
     floors = np.array([each.floor for each in _COMPARED])
     center = np.median(x, axis=0)
@@ -163,15 +180,16 @@ def _against_all(x: Array) -> tuple[Array, list[tuple[str, ...]]]:
     scale = np.maximum(_TO_DEVIATION * np.median(np.abs(off), axis=0), floors)
     deviations = off / scale
     size = np.abs(deviations)
-    size[:, [each.upper_only for each in _COMPARED]] = np.maximum(
-        deviations[:, [each.upper_only for each in _COMPARED]], 0.0
-    )
+    upper = [each.upper_only for each in _COMPARED]
+    size[:, upper] = np.maximum(deviations[:, upper], 0.0)
     limit = _limit(count, 2 * len(_COMPARED))
     odd = size > limit
-    reasons: list[tuple[str, ...]] = []
+    reasons: list[tuple[_Reason, ...]] = []
     for k in range(count):
         found = [q for q in np.argsort(-size[k]) if odd[k, q] and _is_alone(x, k, q, odd, scale)]
-        reasons.append(tuple(_reason(q, x[k, q], center[q], size[k, q], "fleet's") for q in found))
+        reasons.append(
+            tuple(_reason(q, x[k, q], center[q], size[k, q], "of the fleet") for q in found)
+        )
     return size.max(axis=1), reasons
 
 
@@ -185,9 +203,9 @@ def _most_alike(count: int) -> int:
     return max(LEAST_OF_A_KIND, math.ceil(SHARE_OF_A_KIND * count))
 
 
-def _against_like(x: Array) -> tuple[Array, list[tuple[str, ...]]]:
+def _against_like(x: Array) -> tuple[Array, list[tuple[_Reason, ...]]]:
     count, floors = len(x), np.array([each.floor for each in _COMPARED])
-    none: list[tuple[str, ...]] = [()] * count
+    none: list[tuple[_Reason, ...]] = [()] * count
     if count < FEWEST_NEAR:
         return np.zeros(count), none
     from scipy.spatial import cKDTree  # slow to import, and for large fleets only
@@ -210,23 +228,23 @@ def _against_like(x: Array) -> tuple[Array, list[tuple[str, ...]]]:
     return size, reasons
 
 
-def _like_reasons(own: Array, others: Array, scale: Array) -> tuple[str, ...]:
+def _like_reasons(own: Array, others: Array, scale: Array) -> tuple[_Reason, ...]:
     """Say in what a device is furthest from those most like it."""
     center = np.median(others, axis=0)
     size = np.abs(own - center) / scale
     most = np.argsort(-size)[:2]
     return tuple(
-        _reason(q, own[q], center[q], size[q], "one of the devices most like it, their") for q in most
+        _reason(q, own[q], center[q], size[q], "of the devices most like it") for q in most
     )
 
 
-def _reason(q: int, value: float, center: float, size: float, whose: str) -> str:
+def _reason(q: int, value: float, center: float, size: float, whose: str) -> _Reason:
     each = _COMPARED[q]
     if each.factor:
-        what = f"{math.exp(value - center):.3g} times the {whose} median"
+        what = f"{math.exp(value - center):.3g} times the median {whose}"
     else:
-        what = f"{100 * value:.3g} % of its height, the {whose} median {100 * center:.3g} %"
-    return f"{each.words}: {what} ({size:.3g} robust deviations)"
+        what = f"{100 * value:.3g} % of its height, the median {whose} {100 * center:.3g} %"
+    return int(q), float(size), f"{each.words}: {what} ({size:.3g} robust deviations)"
 
 
 def _against_sign(devices: Sequence[Device]) -> list[tuple[str, ...]]:

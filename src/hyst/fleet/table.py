@@ -159,7 +159,9 @@ def _broken(
     return unfit + broken_limits({**device.numbers, **parameters}, limits)
 
 
-def _passed(identifier: str, broken: Mapping[str, tuple[str, ...]], limits: Mapping[str, Any]) -> str:
+def _passed(
+    identifier: str, broken: Mapping[str, tuple[str, ...]], limits: Mapping[str, Any]
+) -> str:
     if not limits.get(identifier):
         return ""
     return FAIL if broken[identifier] else PASS

@@ -124,7 +124,7 @@ def in_cluster(client: Any, work: Work, jobs: Iterable[Job]) -> Iterator[Done]:
 def _threads_of(client: Any) -> int:
     try:
         client.wait_for_workers(1, timeout=SECONDS)
-        return max(1, sum(client.nthreads().values()))
+        return max(1, int(sum(client.nthreads().values())))
     except (OSError, TimeoutError) as error:
         raise UnreachableError(
             f"the scheduler has no worker within {SECONDS} s; start some (dask worker ADDRESS)"
