@@ -7,3 +7,5 @@ from hyst.fleet.limits import parse_limit as parse_limit
 from hyst.fleet.outliers import Outlier as Outlier
 from hyst.fleet.sources import MeasurementSource as MeasurementSource
 from hyst.fleet.table import FleetTable as FleetTable
+from hyst.fleet.shared_shape.device_result import SharedIdentified as SharedIdentified
+from hyst.fleet.shared_shape.shared_shape import SharedShape as SharedShape
