@@ -108,17 +108,23 @@ def spread_order(count: int) -> list[int]:
     return list(dict.fromkeys((*spread, *range(count))))
 
 
-def look_at(work: tuple[Measurement, Mapping[str, Any]]) -> Look:
+def look_at(work: tuple[Measurement, Mapping[str, Any] | None]) -> Look:
     """Identify one record alone, with everything that is not given chosen by it.
 
     Parameters
     ----------
     work
-        The device, and keyword arguments of ``hyst.identify``.
+        The device, and keyword arguments of ``hyst.identify``; None where only its units matter.
     """
     measurement, options = work
     try:
         record = measurement.load()
+        if options is None:
+            return Look(
+                measurement.identifier,
+                input_unit=record.input_unit,
+                output_unit=record.output_unit,
+            )
         found = identify(record, **options)
     except Exception as error:
         # It is told with the device when its turn comes.
@@ -170,6 +176,21 @@ def choose(looks: Sequence[Look], count: int, asked: Mapping[str, Any]) -> Choic
     sentences += [each for each in (about_delay, about_creep) if each]
     units = (_most(each.input_unit for each in useful), _most(each.output_unit for each in useful))
     return Choice(family, plays, delay, creep, *units, tuple(sentences))
+
+
+def units_only(looks: Sequence[Look], sentence: str) -> Choice:
+    """Give the units of a fleet for which there is nothing to choose.
+
+    Parameters
+    ----------
+    looks
+        At a part of the fleet.
+    sentence
+        Why there is nothing.
+    """
+    useful = [each for each in looks if not each.failure]
+    units = (_most(each.input_unit for each in useful), _most(each.output_unit for each in useful))
+    return Choice("", None, None, None, units[0] or "", units[1] or "", (sentence,))
 
 
 def _named(family: str, plays: int | None) -> str:

@@ -102,7 +102,7 @@ class ResultFolder:
 
     def begin_anew(self) -> None:
         """Forget what an earlier run did; its models are replaced one by one."""
-        for name in (STATE, JOURNAL):
+        for name in (STATE, JOURNAL, "shape.json"):
             (self.path / name).unlink(missing_ok=True)
 
     def entries(self) -> dict[str, Entry]:

@@ -12,7 +12,16 @@ from typing import Any
 
 import hyst
 from hyst.errors import InputError
-from hyst.fleet.choice import LOOKED_AT, MOST_TRIED, Choice, Look, choose, look_at, spread_order
+from hyst.fleet.choice import (
+    LOOKED_AT,
+    MOST_TRIED,
+    Choice,
+    Look,
+    choose,
+    look_at,
+    spread_order,
+    units_only,
+)
 from hyst.fleet.device import Device
 from hyst.fleet.device_fit import Settled, failed, fit_device
 from hyst.fleet.fleet import Fleet, fleet_of
@@ -27,6 +36,7 @@ from hyst.fleet.limits import as_limits
 from hyst.fleet.running.choose import PROCESSES, THREADS, running_on
 from hyst.fleet.running.jobs import Run
 from hyst.fleet.running.processes import NoProcessesError
+from hyst.fleet.shape_of_fleet import as_shape, estimated_shape
 from hyst.fleet.sources import Measurement, measurements_of
 from hyst.identification import chosen_families
 from hyst.identification.families.family import Family
@@ -34,6 +44,11 @@ from hyst.operators import Operator
 from hyst.operators.plain_data import as_plain
 
 Say = Callable[[str], None]
+
+_GENERAL = set(inspect.signature(hyst.identification.identify).parameters) - {"options"}
+"""Options of ``hyst.identify`` that are of no family."""
+
+_NOT_HERE = ("records", "validation", "driver", "progress")
 
 
 def identify(
@@ -62,8 +77,9 @@ def identify(
         One record a device: a list of ``hyst.Record``, or of objects with ``identifier`` and
         ``load()`` that gives one (``MeasurementSource``), or a mapping of identifiers to either.
     shape
-        A shape that all devices share, so that each needs few samples: a shared shape with
-        ``identify(record)``; None: each device has its own.
+        A shape that all devices share, so that each needs few samples: ``"shared"``, estimated from
+        up to 200 records of this fleet; a ``SharedShape`` of another one; a model, whose shape is
+        held. None: each device has its own.
     scheduler
         ``"processes"``; ``"threads"``, which hardly share the work, as most of it is Python;
         ``"dask"``, a cluster made here for this run; ``"tcp://HOST:PORT"`` or a client of
@@ -113,10 +129,13 @@ def identify(
     >>> found.counts()["good"], f"{found.table.row('unit 2')['gain']:.3f}"
     (3, '1.470')
     """
+    for each in _NOT_HERE:
+        if each in options:
+            raise InputError(f"{each} is no option of a fleet; leave it out")
     measured = measurements_of(records, identifiers)
     own_limits = _limits(measured, as_limits(limits))
-    chosen_families(family, options)
-    _require_shape(shape)
+    chosen_families(family, {k: v for k, v in options.items() if k not in _GENERAL})
+    shape = as_shape(shape)
     asked = {"family": family, **options}
     there = None if folder is None else ResultFolder(Path(folder))
     kept, choice = _resumed(there, measured, _asked(asked, shape), force)
@@ -155,7 +174,13 @@ class _Work:
                 self.folder.write_state({"asked": asked, "choice": choice_to_dict(choice)})
         for each in choice.sentences:
             self.say(each)
-        settled = _settled(self.asked, choice, self.shape)
+        settled = _settled(self.asked, choice)
+        if isinstance(self.shape, str):
+            self.say("shape")
+            shared = estimated_shape(measured, settled, self.folder)
+            settled = replace(settled, shape=shared)
+        elif self.shape is not None:
+            settled = replace(settled, shape=self.shape)
         devices = dict(self.kept)
         models: dict[str, Operator | Path] = {}
         for device in self._fitted(run, measured, settled):
@@ -177,8 +202,7 @@ class _Work:
 
     def _chosen(self, run: Run, measured: Sequence[Measurement]) -> Choice:
         """Look at records until as many as are wanted could be used."""
-        if self.shape is not None:
-            return Choice("", None, None, None, "", "", ("All devices have the shape given.",))
+        options = self._options_to_choose_with()
         order = iter(spread_order(len(measured))[:MOST_TRIED])
         looks: list[Look] = []
         while missing := LOOKED_AT - sum(not each.failure for each in looks):
@@ -186,11 +210,24 @@ class _Work:
             if not batch:
                 break
             self.say(f"looking at {len(batch)} of {len(measured)} records")
-            jobs = ((each.identifier, (each, self.asked)) for each in batch)
+            jobs = ((each.identifier, (each, options)) for each in batch)
             for done in run(look_at, jobs):
                 looks.append(done.value or Look(done.name, done.failure))
         looks.sort(key=lambda each: each.identifier)
+        if options is None:
+            given = "as the shape given has it" if self.shape is not None else "as asked for"
+            return units_only(looks, f"Family and size are {given}.")
         return choose(looks, len(measured), self.asked)
+
+    def _options_to_choose_with(self) -> Mapping[str, Any] | None:
+        """Give what records are looked at with; None where there is nothing to choose."""
+        if self.shape is not None and not isinstance(self.shape, str):
+            return None
+        families = chosen_families(
+            self.asked["family"], {k: v for k, v in self.asked.items() if k not in _GENERAL}
+        )
+        is_given = len(families) == 1 and len(families[0].sizes()) == 1
+        return None if is_given and {"delay", "creep"} <= set(self.asked) else self.asked
 
     def _fitted(
         self, run: Run, measured: Sequence[Measurement], settled: Settled
@@ -214,7 +251,7 @@ class _Work:
             yield device
 
 
-def _settled(asked: Mapping[str, Any], choice: Choice, shape: Any) -> Settled:
+def _settled(asked: Mapping[str, Any], choice: Choice) -> Settled:
     """Give what every device is fitted with."""
     options = dict(asked)
     if choice.family:
@@ -222,30 +259,21 @@ def _settled(asked: Mapping[str, Any], choice: Choice, shape: Any) -> Settled:
             options = _for_family(options, choice)
         if "creep" not in asked:
             options["creep"] = choice.creep
-    return Settled(options, choice.delay, shape, choice.input_unit, choice.output_unit)
+    return Settled(options, choice.delay, None, choice.input_unit, choice.output_unit)
 
 
 def _for_family(options: dict[str, Any], choice: Choice) -> dict[str, Any]:
     """Give the options with the family chosen, and without those of others that were compared."""
     takes = hyst.families.option
-    general = set(inspect.signature(hyst.identification.identify).parameters)
     own = {
         name: value
         for name, value in options.items()
-        if name in general or takes(choice.family, name) is not None
+        if name in _GENERAL or takes(choice.family, name) is not None
     }
     own["family"] = choice.family
     if choice.plays is not None and takes(choice.family, "plays") is not None:
         own["plays"] = choice.plays
     return own
-
-
-def _require_shape(shape: Any) -> None:
-    if shape is not None and not callable(getattr(shape, "identify", None)):
-        raise InputError(
-            f"shape is of type {type(shape).__name__}; give a shared shape, which identifies a "
-            "record by few constants"
-        )
 
 
 def _limits(measured: Sequence[Measurement], common: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,12 +1,14 @@
 """Which devices are odd against their fleet, and in what.
 
 Compared are quantities without scale: gain, opening and bend of the loop at a quarter, the half and
-three quarters of the drive, and the error. Two rules, each with half of the chance of a false
-alarm:
+three quarters of the drive, and the error, by two rules:
 
-- against the whole fleet: |x - median| / (1.4826 MAD) of each quantity;
-- against the devices most like it: the distance to the k-th nearest other device, the quantities in
-  units of the scatter between nearest neighbours. It finds what lies between several kinds.
+- against the whole fleet: |x - median| / (1.4826 MAD) of each quantity, the limit such that normal
+  scatter exceeds it 0.05 times in a fleet;
+- against the devices most like it, for what lies between several kinds: three times as far from its
+  nearest as they are from theirs (the k-th nearest, in units of the scatter between nearest), and 8
+  robust deviations away from them in one quantity. Simulated fleets of one to twelve kinds have at
+  most 0.05 such devices.
 
 What more than a few devices have in common is a kind of its own and no outlier.
 """
@@ -26,7 +28,10 @@ from hyst.fleet.loop_of_model import POINTS
 Array = NDArray[np.float64]
 
 FALSE_ALARMS = 0.05
-"""Expected number of devices named in a whole fleet of devices that scatter normally."""
+"""Devices named in a whole fleet of such that scatter normally, to be expected of each rule."""
+
+APART, FAR = 3.15, 8.0
+"""Of the second rule: times as far as others are from theirs, and robust deviations."""
 
 FEWEST, FEWEST_NEAR = 8, 30
 """Devices below which nothing can be judged, and below which none is compared with its like."""
@@ -41,9 +46,6 @@ _QUARTERS = tuple((POINTS - 1) * k // 4 for k in (1, 2, 3))
 _TO_DEVIATION = 1.4826
 _EFFICIENCY = 0.37
 """Of the median absolute deviation: how many of the devices it is as good as a deviation of."""
-
-_FLOOR_OF_DISTANCE = 0.15
-"""Scatter of the logarithm of distances to neighbours, at least."""
 
 
 @dataclass(frozen=True)
@@ -143,7 +145,7 @@ def _sentence(count: int, odd: int) -> str:
     what = "No device is" if not odd else f"{odd} device{'s are' if odd > 1 else ' is'}"
     return (
         f"{what} odd among the {count} with a model; of devices that only scatter normally "
-        f"{FALSE_ALARMS:g} in a whole fleet would be named by mistake."
+        f"about {2 * FALSE_ALARMS:g} in a whole fleet would be named by mistake."
     )
 
 
@@ -182,7 +184,7 @@ def _against_all(x: Array) -> tuple[Array, list[tuple[_Reason, ...]]]:
     size = np.abs(deviations)
     upper = [each.upper_only for each in _COMPARED]
     size[:, upper] = np.maximum(deviations[:, upper], 0.0)
-    limit = _limit(count, 2 * len(_COMPARED))
+    limit = _limit(count)
     odd = size > limit
     reasons: list[tuple[_Reason, ...]] = []
     for k in range(count):
@@ -204,37 +206,51 @@ def _most_alike(count: int) -> int:
 
 
 def _against_like(x: Array) -> tuple[Array, list[tuple[_Reason, ...]]]:
-    count, floors = len(x), np.array([each.floor for each in _COMPARED])
-    none: list[tuple[_Reason, ...]] = [()] * count
+    count = len(x)
     if count < FEWEST_NEAR:
-        return np.zeros(count), none
+        return np.zeros(count), [()] * count
     from scipy.spatial import cKDTree  # slow to import, and for large fleets only
 
-    alike = _most_alike(count)
+    scale = _scatter_between_nearest(x)
+    alike = _most_alike(count) + 2
+    distances, nearest = cKDTree(x / scale).query(x / scale, k=2 * alike)
+    far = np.log(np.maximum(distances[:, alike - 1], 1e-12))
+    apart = far - np.median(far[nearest[:, 1:alike]], axis=1)
+    size, reasons = np.zeros(count), []
+    for k in range(count):
+        found = _like_reasons(x[k], x[nearest[k, 1:]], scale)
+        size[k] = found[0][1]
+        reasons.append(found if apart[k] > math.log(APART) and size[k] > FAR else ())
+    return size, reasons
+
+
+def _scatter_between_nearest(x: Array) -> Array:
+    """Give the scatter of each quantity between devices that are most alike."""
+    from scipy.spatial import cKDTree  # as above
+
+    floors = np.array([each.floor for each in _COMPARED])
     scale = np.maximum(_TO_DEVIATION * np.median(np.abs(x - np.median(x, axis=0)), axis=0), floors)
     for _ in range(2):
         _, nearest = cKDTree(x / scale).query(x / scale, k=2)
         between = np.abs(x - x[nearest[:, 1]])
         scale = np.maximum(_TO_DEVIATION * np.median(between, axis=0) / math.sqrt(2.0), floors)
-    distances, nearest = cKDTree(x / scale).query(x / scale, k=alike + 2)
-    far = np.log(np.maximum(distances[:, -1], 1e-12))
-    spread = max(_TO_DEVIATION * float(np.median(np.abs(far - np.median(far)))), _FLOOR_OF_DISTANCE)
-    size = np.maximum((far - np.median(far)) / spread, 0.0)
-    limit = _limit(count, 2)
-    reasons = [
-        _like_reasons(x[k], x[nearest[k, 1:]], scale) if size[k] > limit else ()
-        for k in range(count)
-    ]
-    return size, reasons
+    return np.asarray(scale)
 
 
 def _like_reasons(own: Array, others: Array, scale: Array) -> tuple[_Reason, ...]:
     """Say in what a device is furthest from those most like it."""
     center = np.median(others, axis=0)
-    size = np.abs(own - center) / scale
-    most = np.argsort(-size)[:2]
+    scatter = np.maximum(_TO_DEVIATION * np.median(np.abs(others - center), axis=0), scale)
+    off = (own - center) / scatter
+    size = np.array(
+        [
+            max(each, 0.0) if q.upper_only else abs(each)
+            for each, q in zip(off, _COMPARED, strict=True)
+        ]
+    )
     return tuple(
-        _reason(q, own[q], center[q], size[q], "of the devices most like it") for q in most
+        _reason(q, own[q], center[q], size[q], "of the devices most like it")
+        for q in np.argsort(-size)[:2]
     )
 
 
@@ -257,7 +273,7 @@ def _against_sign(devices: Sequence[Device]) -> list[tuple[str, ...]]:
     return [(f"its output {what}",) if each else () for each in fewer]
 
 
-def _limit(count: int, chances: int) -> float:
+def _limit(count: int) -> float:
     """Give the deviations that a fleet of this size exceeds by chance as seldom as is wanted.
 
     A median absolute deviation of a few devices is itself not known well: Student's t.
@@ -265,4 +281,4 @@ def _limit(count: int, chances: int) -> float:
     from scipy.special import stdtrit  # as above
 
     freedom = max(_EFFICIENCY * (count - 1), 1.0)
-    return float(-stdtrit(freedom, FALSE_ALARMS / (count * chances)))
+    return float(-stdtrit(freedom, FALSE_ALARMS / (2 * len(_COMPARED) * count)))

@@ -9,6 +9,7 @@ import typer
 
 import hyst
 from hyst.cli.arguments import (
+    load_operator,
     number_or_auto,
     refuse_inputs_as_outputs,
     whole_auto_or_none,
@@ -52,6 +53,15 @@ LimitsFile = Annotated[
         metavar="FILE",
         show_default=False,
         help="Limits in TOML or JSON, by quantity: min, max or both.",
+    ),
+]
+Shape = Annotated[
+    str | None,
+    typer.Option(
+        metavar="MODEL|DIR|shared",
+        show_default=False,
+        help="Shape that all devices share: estimated from this fleet (shared), of a fleet in a "
+        "folder that was, or of a model.",
     ),
 ]
 Scheduler = Annotated[
@@ -106,6 +116,7 @@ def fleet(
     delay: Chosen = None,
     creep: Creeping = None,
     start: Start = "auto",
+    shape: Shape = None,
     leave_disturbances: LeaveDisturbances = False,
     scheduler: Scheduler = "processes",
     workers: Workers = None,
@@ -132,6 +143,7 @@ def fleet(
     with at_work("fleet") as say:
         found = hyst.fleet.identify(
             sources,
+            shape=_shape(shape),
             scheduler=scheduler,
             limits=common,
             folder=folder,
@@ -160,6 +172,14 @@ def _sources(records: list[str] | None, devices: Path | None, how: dict[str, Any
     if devices is not None:
         return devices_of_table(devices, read)
     return devices_of_files(records or (), read)
+
+
+def _shape(text: str | None) -> Any:
+    if text is None or text == "shared":
+        return text
+    if Path(text).is_dir():
+        return hyst.fleet.shape_of_folder(Path(text))
+    return load_operator(Path(text))
 
 
 def _table_number(text: str) -> int:

@@ -33,6 +33,8 @@ MOST_NAMED = len(COLOURS)
 
 _MOST_LINES = 600
 _CENTRAL = 0.995
+_FAR = 1.0
+"""Widths of the range of the others beyond which odd devices are drawn at the edge."""
 
 
 @drawn
@@ -80,6 +82,9 @@ def _histogram(axes: Axes, values: Array, is_odd: NDArray[np.bool_]) -> None:
         # What is beyond counts in the outermost bars: none is left out.
         axes.hist(np.clip(usual, low, high), bins=bins.tolist(), color=MEASURED, label="devices")
     if odd.size:
+        if usual.size:
+            # One far out would squeeze the others into a bar; the table has its value.
+            odd = np.clip(odd, low - _FAR * (high - low), high + _FAR * (high - low))
         axes.plot(
             odd,
             np.full(odd.size, 0.03),

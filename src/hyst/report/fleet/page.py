@@ -146,7 +146,7 @@ def _pictures(fleet: Fleet) -> dict[str, tuple[bytes, str]]:
         DISTRIBUTIONS: (
             draw_fleet_distributions(fleet),
             "How many devices have which value; marks at the bottom are odd devices, broken lines "
-            "limits. What lies far out counts in the outermost bar.",
+            "limits. What lies far out is drawn at the edge.",
         ),
         LOOPS: (
             draw_fleet_loops(fleet),
