@@ -5,6 +5,7 @@ from hyst import compensation as compensation
 from hyst import control as control
 from hyst import diagnosis as diagnosis
 from hyst import export as export
+from hyst import fleet as fleet
 from hyst import identification as identification
 from hyst import io as io
 from hyst import jax as jax

@@ -20,8 +20,8 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     help="From a measured hysteresis loop to a model, its exact inverse and a command.",
-    epilog="Exit code: 0 done, 3 done but no command should come from the model, 2 bad input, "
-    "1 failure.",
+    epilog="Exit code: 0 done, 3 done but no command should come from the model, or devices fail, "
+    "2 bad input, 1 failure.",
 )
 for verb, (_, about) in VERBS.items():
     app.command(verb, help=about)(is_carried_out)

@@ -29,6 +29,10 @@ VERBS: dict[str, tuple[str, str]] = {
         "hyst.cli.identify",
         "Identify a model from measured records, and write model, numbers, figures and a report.",
     ),
+    "fleet": (
+        "hyst.cli.fleet.command",
+        "Identify one model for each of many records, and name the odd ones.",
+    ),
     "fit": (
         "hyst.cli.fit",
         "Fit the constants of a model to records, from its own values, and report as identify "
@@ -90,7 +94,9 @@ VERBS: dict[str, tuple[str, str]] = {
 """For each verb its module and the first line of its help, in the order of the help."""
 
 # Verbs whose options are not all in their own file.
-_KINDS = {"identify": ("hyst.cli.family_options", "FamilyCommand")}
+_KINDS = {
+    verb: ("hyst.cli.family_options", "FamilyCommand") for verb in ("identify", "fleet")
+}
 
 
 class Verbs(TyperGroup):
