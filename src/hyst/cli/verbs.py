@@ -94,3 +94,35 @@ VERBS: dict[str, tuple[str, str]] = {
 """For each verb its module and the first line of its help, in the order of the help."""
 
 # Verbs whose options are not all in their own file.
+_KINDS = dict.fromkeys(("identify", "fleet"), ("hyst.cli.family_options", "FamilyCommand"))
+
+
+class Verbs(TyperGroup):
+    """The program, which imports a verb when it is carried out."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Find the verb that was typed, with all its options."""
+        name, command, rest = super().resolve_command(ctx, args)
+        return name, command and command_of(str(command.name)), rest
+
+
+def command_of(verb: str) -> Any:
+    """Import a verb and give its command.
+
+    Parameters
+    ----------
+    verb
+        Its name.
+    """
+    module = importlib.import_module(VERBS[verb][0])
+    kind = None
+    if verb in _KINDS:
+        home, name = _KINDS[verb]
+        kind = getattr(importlib.import_module(home), name)
+    app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    app.command(verb, cls=kind)(getattr(module, verb))
+    return typer.main.get_command(app)
+
+
+def is_carried_out() -> None:
+    """Stand for a verb in the list of them."""
