@@ -2,14 +2,14 @@
 
 Each fleet has 60 devices with 500 samples each, from which ``SharedShape`` is estimated; its first
 shape is what ``hyst.identify`` finds in the first of these records, with 12 plays in families that
-have them: a fleet tells more of them than a record of its own would pay for. Then new devices are identified
-three ways: from 200 samples by the shape of the fleet, from 200 samples alone, from 5,000 samples
-alone (the last two: ``hyst.identify`` with the same family, which chooses its own size). Errors are
-rms against the noise-free truth over the drive, after its first half, as a share of the output's
-range; the noise is 0.3 % of it. ``expected`` is what the result itself says of its error, a bound
-of Bayesian kind given the population: no estimate from these 200 samples does better on average.
-``gain``: one scatter of 5 % of all of the output. ``each``: 5 % of every weight or constant by
-itself.
+have them: a fleet tells more of them than a record of its own would pay for. Then new devices are
+identified three ways: from 200 samples by the shape of the fleet, from 200 samples alone, from
+5,000 samples alone (the last two: ``hyst.identify`` with the same family, which chooses its own
+size). Errors are rms against the noise-free truth over the drive, after its first two fifths, as a
+share of the output's range; the noise is 0.3 % of it. ``expected`` is what the result itself says
+of its error: where the truth is in the class, no estimate from these 200 samples does better on
+average. ``gain``: one scatter of 5 % of all of the output. ``each``: 5 % of every weight or
+constant by itself.
 """
 
 from __future__ import annotations
