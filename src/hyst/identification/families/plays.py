@@ -168,8 +168,9 @@ class PlayBank(Family):
         records = overview.data.records
         kinks = np.unique(np.concatenate([half_swings(fit.operator, each.u) for each in records]))
         problem = fit.problem(overview.data, overview.kept)
-        plays = layout_of(fit).plays
-        found = search_radii(problem, fit.solution, plays, kinks, max_iterations)
+        found = search_radii(
+            problem, fit.solution, layout_of(fit).basis, kinks, max_iterations
+        )
         return replace(fit, solution=found)
 
     @final

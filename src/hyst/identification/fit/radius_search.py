@@ -3,7 +3,9 @@
 The output bends where a radius passes half a swing of the input, so the cost has a kink at every
 half swing, some of them local minima that a derivative cannot leave. Each radius in turn is moved
 across the next kinks, and some way towards its neighbours, and that of the play with least weight
-between any others if it has next to none, and a short fit is tried from there.
+between any others if it has next to none. What a move promises is told by a linear step after it;
+from those that promise most a short fit is tried. The search ends where none promises more than the
+noise, or none keeps its promise.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.fit.bounded_least_squares import Problem, Solution, minimize
+from hyst.identification.fit.moved_plays import MovedPlays
 
 Array = NDArray[np.float64]
 
@@ -33,22 +36,27 @@ REVIVED = 5e-2
 """Share of all weights it gets there: with next to none it would not know where to move."""
 
 TRIAL_ITERATIONS = 2
+MOST_TRIALS = 8
+"""Moves of a round that are tried, of those that promise anything."""
+
 MOST_ROUNDS = 5
+Move = tuple[int, Array]
+"""Which play moves, counted from 0, and theta after it."""
 
 
 def search_radii(
-    problem: Problem, solution: Solution, plays: int, kinks: Array, max_iterations: int
+    problem: Problem, solution: Solution, basis: Array, kinks: Array, max_iterations: int
 ) -> Solution:
     """Improve a fit by moving its radii across kinks, until no move helps.
 
     Parameters
     ----------
     problem
-        The least squares problem; theta starts with p0, p_1 .. p_n, r_1 .. r_n.
+        The least squares problem; theta starts with a_0 .. a_n, r_1 .. r_n.
     solution
         A converged fit.
-    plays
-        Number of plays n.
+    basis
+        Shape (n + 1, n + 1), of ``(p0, p) = basis @ a``.
     kinks
         Half swings of the input of the plays, ascending, in its units.
     max_iterations
@@ -60,15 +68,13 @@ def search_radii(
         At least as good as ``solution``.
     """
     for _ in range(MOST_ROUNDS):
-        trials = [
-            minimize(problem, theta, TRIAL_ITERATIONS)
-            for theta in _moves(problem, solution.theta, plays, kinks)
-        ]
-        if not trials:
-            return solution
-        best = min(trials, key=lambda trial: trial.cost)
         # A lower cost by one residual variance is worth it; less is within the noise.
         noise = solution.cost / problem.residual(solution.theta).size
+        if solution.cost <= problem.negligible:
+            return solution
+        moves = _promising(problem, solution, basis, kinks, noise)
+        trials = [minimize(problem, theta, TRIAL_ITERATIONS) for theta in moves]
+        best = min(trials, key=lambda trial: trial.cost, default=solution)
         if best.cost > solution.cost - noise:
             return solution
         improved = minimize(problem, best.theta, max_iterations)
@@ -76,7 +82,20 @@ def search_radii(
     return solution
 
 
-def _moves(problem: Problem, theta: Array, plays: int, kinks: Array) -> Iterator[Array]:
+def _promising(
+    problem: Problem, solution: Solution, basis: Array, kinks: Array, noise: float
+) -> list[Array]:
+    """Give theta after those moves that promise to lower the cost most."""
+    moves = list(_moves(problem, solution.theta, len(basis) - 1, kinks))
+    if not moves:
+        return []
+    moved = MovedPlays(problem, solution.theta, basis)
+    costs = np.array([moved.cost(i, float(theta[len(basis) + i])) for i, theta in moves])
+    order = np.argsort(costs, kind="stable")[:MOST_TRIALS]
+    return [moves[k][1] for k in order if costs[k] < solution.cost - noise]
+
+
+def _moves(problem: Problem, theta: Array, plays: int, kinks: Array) -> Iterator[Move]:
     at = slice(plays + 1, 2 * plays + 1)
     r, lower, upper = theta[at], problem.lower[at], problem.upper[at]
     for i in np.flatnonzero(lower < upper):
@@ -87,11 +106,11 @@ def _moves(problem: Problem, theta: Array, plays: int, kinks: Array) -> Iterator
         for place in np.concatenate([places, _next_intervals(float(r[i]), kinks)]):
             moved = theta.copy()
             moved[plays + 1 + i] = place
-            yield moved
+            yield int(i), moved
     yield from _revivals(theta, plays, lower, upper)
 
 
-def _revivals(theta: Array, plays: int, lower: Array, upper: Array) -> Iterator[Array]:
+def _revivals(theta: Array, plays: int, lower: Array, upper: Array) -> Iterator[Move]:
     """Put the play with least weight, if it has next to none, into every gap between the others."""
     weights, r = theta[1 : plays + 1], theta[plays + 1 : 2 * plays + 1]
     movable = np.flatnonzero(lower < upper)
@@ -102,7 +121,7 @@ def _revivals(theta: Array, plays: int, lower: Array, upper: Array) -> Iterator[
     for place in _gaps(np.delete(r, i), float(lower[i]), float(upper[i])):
         moved = theta.copy()
         moved[plays + 1 + i], moved[1 + i] = place, REVIVED * total
-        yield moved
+        yield i, moved
 
 
 def _gaps(others: Array, lower: float, upper: float) -> Array:
