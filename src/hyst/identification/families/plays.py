@@ -169,7 +169,12 @@ class PlayBank(Family):
         kinks = np.unique(np.concatenate([half_swings(fit.operator, each.u) for each in records]))
         problem = fit.problem(overview.data, overview.kept)
         found = search_radii(
-            problem, fit.solution, layout_of(fit).basis, kinks, max_iterations
+            problem,
+            fit.solution,
+            layout_of(fit).basis,
+            kinks,
+            max_iterations,
+            one_amplitude=not overview.shows_minor_loops,
         )
         return replace(fit, solution=found)
 

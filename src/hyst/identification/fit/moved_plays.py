@@ -1,8 +1,11 @@
 """What it promises to move one play of a bank, at the price of one output of the model.
 
-The play is taken out and put elsewhere with the weight that suits it there; all other parameters
+The play is taken out and put elsewhere with the weight that suits it there; the other parameters
 follow in one linear step. So of a move only the column is new that the play adds where it comes to
 stand: the others, and their products, are those of the fit, shared by all moves.
+
+The other radii follow in one forecast and stay in another. Next to a kink a linear step promises
+what no step can keep, so what it promises without any move is taken off.
 """
 
 from __future__ import annotations
@@ -31,17 +34,20 @@ class _Without:
     Parameters
     ----------
     kept
-        Which columns stay.
+        Which columns follow.
     factor, moment
         Lower factor of their scaled products, and their products with what is left through it.
     cost
-        Squared errors after a linear step of what stays.
+        Squared errors after a linear step of what follows.
+    promised
+        By which a linear step lowers the squared error of the fit as it is.
     """
 
     kept: NDArray[np.intp]
     factor: Array
     moment: Array
     cost: float
+    promised: float
 
 
 class MovedPlays:
@@ -67,7 +73,7 @@ class MovedPlays:
         self._normal = self._columns.T @ self._columns
         self._gradient = self._columns.T @ self._errors
         self._scale = np.sqrt(np.maximum(np.diag(self._normal), np.finfo(np.float64).tiny))
-        self._without: dict[int, _Without] = {}
+        self._without: dict[tuple[int, bool], _Without] = {}
 
     def cost(self, i: int, place: float) -> float:
         """Forecast the sum of squared residuals with one play elsewhere.
@@ -79,31 +85,43 @@ class MovedPlays:
         place
             Its radius there.
         """
-        if i not in self._without:
-            self._without[i] = self._bare(i)
-        bare, weight = self._without[i], float(self._weights[1 + i])
         column = self._column(i, place)
         products = self._columns.T @ column
-        others = (products / self._scale)[bare.kept]
-        along = scipy.linalg.solve_triangular(bare.factor, others, lower=True, check_finite=False)
-        size = float(column @ column - along @ along)
-        slope = float(column @ self._errors - weight * products[1 + i] - along @ bare.moment)
-        if size <= RIDGE * float(column @ column):
-            return bare.cost
-        best = self._possible(i, -slope / size)
-        return bare.cost + 2.0 * slope * best + size * best**2
+        left = float(column @ self._errors - self._weights[1 + i] * products[1 + i])
+        size = float(column @ column)
+        return min(
+            self._after(i, follows, products / self._scale, left, size) for follows in (True, False)
+        )
 
-    def _bare(self, i: int) -> _Without:
-        weight = self._weights[1 + i]
-        kept = np.delete(np.arange(self._theta.size), [1 + i, 1 + self._plays + i])
+    def _after(self, i: int, follows: bool, products: Array, left: float, square: float) -> float:
+        """Give the least squares with a column in place of play i, the other radii free or not."""
+        if (i, follows) not in self._without:
+            self._without[i, follows] = self._bare(i, follows)
+        bare = self._without[i, follows]
+        others = products[bare.kept]
+        along = scipy.linalg.solve_triangular(bare.factor, others, lower=True, check_finite=False)
+        size, slope = square - float(along @ along), left - float(along @ bare.moment)
+        if size <= RIDGE * square:
+            return bare.cost + bare.promised
+        best = self._possible(i, -slope / size)
+        return bare.cost + bare.promised + 2.0 * slope * best + size * best**2
+
+    def _bare(self, i: int, follows: bool) -> _Without:
+        weight, weights = self._weights[1 + i], self._weights.size
+        radii = np.arange(weights, 2 * weights - 1)
+        own = [1 + i, weights + i] if follows else [1 + i, *radii]
+        kept = np.delete(np.arange(self._theta.size), own)
         scale = self._scale[kept]
         normal = self._normal[np.ix_(kept, kept)] / np.outer(scale, scale)
         factor = np.linalg.cholesky(normal + RIDGE * np.eye(kept.size))
         moved = (self._gradient - weight * self._normal[1 + i])[kept] / scale
-        moment = scipy.linalg.solve_triangular(factor, moved, lower=True, check_finite=False)
+        both = np.column_stack([moved, self._gradient[kept] / scale])
+        moment, still = scipy.linalg.solve_triangular(
+            factor, both, lower=True, check_finite=False
+        ).T
         errors = float(self._errors @ self._errors)
         errors += weight * float(weight * self._normal[1 + i, 1 + i] - 2.0 * self._gradient[1 + i])
-        return _Without(kept, factor, moment, errors - float(moment @ moment))
+        return _Without(kept, factor, moment, errors - float(moment @ moment), float(still @ still))
 
     def _column(self, i: int, place: float) -> Array:
         """Give what the play adds to the output at another place, per weight."""

@@ -3,20 +3,25 @@
 The output bends where a radius passes half a swing of the input, so the cost has a kink at every
 half swing, some of them local minima that a derivative cannot leave. Each radius in turn is moved
 across the next kinks, and some way towards its neighbours, and that of the play with least weight
-between any others if it has next to none. What a move promises is told by a linear step after it;
-from those that promise most a short fit is tried. The search ends where none promises more than the
-noise, or none keeps its promise.
+between any others if it has next to none, and a short fit is tried from there.
+
+While what the fit leaves is not white, a better minimum may lie where no linear step tells of it,
+so every move is tried. As soon as it is white, only those are that promise to lower the cost by
+more than a residual variance: a forecast sees what one part in a hundred of the variance hides from
+the test of whiteness. Where nothing is gained the search ends.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.fit.bounded_least_squares import Problem, Solution, minimize
 from hyst.identification.fit.moved_plays import MovedPlays
+from hyst.identification.fit.whiteness import is_white
 
 Array = NDArray[np.float64]
 
@@ -36,8 +41,8 @@ REVIVED = 5e-2
 """Share of all weights it gets there: with next to none it would not know where to move."""
 
 TRIAL_ITERATIONS = 2
-MOST_TRIALS = 8
-"""Moves of a round that are tried, of those that promise anything."""
+MOST_PROMISING, MOST_OF_A_PLAY = 12, 2
+"""Moves of a round that are tried where only promising ones are, and of one play of them."""
 
 MOST_ROUNDS = 5
 Move = tuple[int, Array]
@@ -45,7 +50,13 @@ Move = tuple[int, Array]
 
 
 def search_radii(
-    problem: Problem, solution: Solution, basis: Array, kinks: Array, max_iterations: int
+    problem: Problem,
+    solution: Solution,
+    basis: Array,
+    kinks: Array,
+    max_iterations: int,
+    *,
+    one_amplitude: bool = False,
 ) -> Solution:
     """Improve a fit by moving its radii across kinks, until no move helps.
 
@@ -61,6 +72,9 @@ def search_radii(
         Half swings of the input of the plays, ascending, in its units.
     max_iterations
         Of the fit after a move that helped.
+    one_amplitude
+        Whether all strokes are equally long: they repeat what a fit misses of them, and a few
+        errors at the same places are soon taken for white ones. Then all moves are always tried.
 
     Returns
     -------
@@ -68,12 +82,15 @@ def search_radii(
         At least as good as ``solution``.
     """
     for _ in range(MOST_ROUNDS):
+        residual = problem.residual(solution.theta)
         # A lower cost by one residual variance is worth it; less is within the noise.
-        noise = solution.cost / problem.residual(solution.theta).size
+        noise = solution.cost / residual.size
         if solution.cost <= problem.negligible:
             return solution
-        moves = _promising(problem, solution, basis, kinks, noise)
-        trials = [minimize(problem, theta, TRIAL_ITERATIONS) for theta in moves]
+        moves = list(_moves(problem, solution.theta, len(basis) - 1, kinks))
+        if not one_amplitude and is_white(residual):
+            moves = _promising(problem, solution, basis, moves)
+        trials = [minimize(problem, theta, TRIAL_ITERATIONS) for _, theta in moves]
         best = min(trials, key=lambda trial: trial.cost, default=solution)
         if best.cost > solution.cost - noise:
             return solution
@@ -83,16 +100,19 @@ def search_radii(
 
 
 def _promising(
-    problem: Problem, solution: Solution, basis: Array, kinks: Array, noise: float
-) -> list[Array]:
-    """Give theta after those moves that promise to lower the cost most."""
-    moves = list(_moves(problem, solution.theta, len(basis) - 1, kinks))
-    if not moves:
-        return []
+    problem: Problem, solution: Solution, basis: Array, moves: Sequence[Move]
+) -> list[Move]:
+    """Give those moves that promise more than the noise, the best of all and of every play."""
+    noise = solution.cost / problem.residual(solution.theta).size
     moved = MovedPlays(problem, solution.theta, basis)
     costs = np.array([moved.cost(i, float(theta[len(basis) + i])) for i, theta in moves])
-    order = np.argsort(costs, kind="stable")[:MOST_TRIALS]
-    return [moves[k][1] for k in order if costs[k] < solution.cost - noise]
+    promising, of_play = list[Move](), Counter[int]()
+    for k in np.argsort(costs, kind="stable"):
+        i = moves[k][0]
+        of_play[i] += 1
+        if costs[k] < solution.cost - noise and of_play[i] <= MOST_OF_A_PLAY:
+            promising.append(moves[k])
+    return promising[:MOST_PROMISING]
 
 
 def _moves(problem: Problem, theta: Array, plays: int, kinks: Array) -> Iterator[Move]:
@@ -103,7 +123,8 @@ def _moves(problem: Problem, theta: Array, plays: int, kinks: Array) -> Iterator
         above = r[i + 1] if i + 1 < plays else upper[i]
         shares = np.array(SHARES)
         places = r[i] + shares * np.where(shares > 0.0, above - r[i], r[i] - below)
-        for place in np.concatenate([places, _next_intervals(float(r[i]), kinks)]):
+        places = np.concatenate([places, _next_intervals(float(r[i]), kinks)])
+        for place in np.unique(np.clip(places, lower[i], upper[i])):
             moved = theta.copy()
             moved[plays + 1 + i] = place
             yield int(i), moved
