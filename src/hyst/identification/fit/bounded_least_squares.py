@@ -15,6 +15,7 @@ import scipy.linalg.lapack
 from numpy.typing import NDArray
 
 from hyst.identification.fit.bounded_quadratic import least_within
+from hyst.identification.fit.normal_equations import NormalEquations
 
 Array = NDArray[np.float64]
 Linearize = Callable[[Array], tuple[Array, Array]]
@@ -50,32 +51,6 @@ class Solution:
     cost: float
     iterations: int
     status: str
-
-
-@dataclass(frozen=True, eq=False)
-class NormalEquations:
-    """What a step needs of residual e (N,) and Jacobian J (N, m).
-
-    Parameters
-    ----------
-    matrix, gradient
-        ``J'J``, shape (m, m), and ``J'e``, shape (m,).
-    cost
-        ``e'e``.
-    count
-        Number of residuals N.
-    """
-
-    matrix: Array
-    gradient: Array
-    cost: float
-    count: int
-
-    @classmethod
-    def of(cls, residual: Array, jacobian: Array) -> NormalEquations:
-        """Sum them from residual and Jacobian."""
-        cost = float(residual @ residual)
-        return cls(jacobian.T @ jacobian, jacobian.T @ residual, cost, residual.size)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,14 @@
+"""Many records: a model for each device of a fleet, and what all of them share.
+
+The names are loaded when first used; the stub ``__init__.pyi`` lists them.
+"""
+
+from __future__ import annotations
+
+from hyst._lazy import attach
+
+__getattr__, __all__ = attach(__name__, __file__)
+
+
+def __dir__() -> list[str]:
+    return __all__
