@@ -33,7 +33,7 @@ def is_white(errors: Array) -> bool:
     errors = errors - errors.mean()
     power, n = float(errors @ errors), errors.size
     if power <= np.finfo(np.float64).tiny or n < 4 * LAGS:
-        return power <= np.finfo(np.float64).tiny
+        return bool(power <= np.finfo(np.float64).tiny)
     most = n // LONG
     spectrum = np.abs(scipy.fft.rfft(errors, scipy.fft.next_fast_len(n + most, real=True))) ** 2
     alike = np.asarray(scipy.fft.irfft(spectrum))[1 : most + 1] / power
