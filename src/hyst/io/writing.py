@@ -77,7 +77,7 @@ def rows_of_text(columns: Sequence[NDArray[Any]]) -> Iterator[bytes]:
     --------
     >>> import numpy as np
     >>> b"".join(rows_of_text([np.array([0.1, 1e22]), np.array([2, 3])]))
-    b'0.1,2\\n1e+22,3\\n'
+    b'0.1,2\n1e+22,3\n'
     """
     sizes = {column.size for column in columns}
     if len(sizes) > 1:
