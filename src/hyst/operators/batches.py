@@ -176,8 +176,9 @@ def _sets(
         )
     # A NaN is not within bounds. What cannot be told here, the constructor allows or refuses.
     within = (rows >= own.lower) & (rows <= own.upper) & np.isfinite(rows)
-    for i, (row, inside) in enumerate(zip(rows, within.all(axis=1).tolist(), strict=True)):
-        if not inside or model.nearest_parameters(row).tobytes() != row.tobytes():
+    inside: NDArray[np.bool_] = np.logical_and.reduce(within, axis=1)
+    for i, row in enumerate(rows):
+        if not inside[i] or model.nearest_parameters(row).tobytes() != row.tobytes():
             _build(model, row, i)
     return rows.shape[0], rows
 
