@@ -21,7 +21,7 @@ import scipy.signal
 from numpy.typing import NDArray
 
 import hyst
-from benchmarks.timing import interleaved, ratio
+from benchmarks.timing import interleaved, ratio, report, spread
 from hyst.control import TrackingController, closed_loop_system, simulate_closed_loop
 
 Array = NDArray[np.float64]
@@ -90,6 +90,8 @@ def print_times() -> None:
     print("                            ns a step   over hyst")
     for name, each in times.items():
         over = ratio(times, name, "hyst") * steps["hyst"] / steps[name]
+        if name != "hyst":
+            report(f"{name} over hyst, a step", over, spread=spread(times, name, "hyst"))
         print(f"{name:26s} {1e9 * np.median(each) / steps[name]:10.0f} {over:11.2f}")
     print_control(1e9 * float(np.median(times["hyst"])) / many)
     step = sampled.stepper()

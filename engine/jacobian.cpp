@@ -1,22 +1,8 @@
 #include "jacobian.hpp"
 
-#include <utility>
-#include <vector>
-
-#include "dual/derivative.hpp"
+#include "said.hpp"
 
 namespace hyst {
-namespace {
-
-Said said_of(const kinds::Given &given) {
-    std::vector<Said> inside;
-    for (const kinds::Given &each : given.inside) inside.push_back(said_of(each));
-    return {given.kind, given.form, given.constants, given.fixed, given.choices, given.dt,
-            std::move(inside)};
-}
-
-}  // namespace
-
 void jacobian(const Chain &chain, double *state, const double *u, std::size_t samples,
               Derivative derivative, double *jacobian) {
     std::vector<double> signal(u, u + samples);
@@ -40,7 +26,11 @@ void carry_jacobian(const Chain &chain, double *state, double *memory, double *s
     for (std::size_t i = 0; i < chain.stages().size(); ++i) {
         const Stage &stage = chain.stages()[i];
         const std::size_t length = stage.state_length();
-        kernel_jacobian(said_of(chain.given(i)), {state, memory, stride}, length, tangents);
+        if (length == 0 && stage.kind->jacobian != nullptr) {  // nothing to carry
+            stage.kind->jacobian(stage.model, stage.dt, state, tangents);
+        } else {
+            kernel_jacobian(said_of(chain.given(i)), {state, memory, stride}, length, tangents);
+        }
         tangents.incoming += stage.parameters;
         state += length;
         memory += length * stride;
