@@ -40,7 +40,11 @@ void carry_jacobian(const Chain &chain, double *state, double *memory, double *s
     for (std::size_t i = 0; i < chain.stages().size(); ++i) {
         const Stage &stage = chain.stages()[i];
         const std::size_t length = stage.state_length();
-        kernel_jacobian(said_of(chain.given(i)), {state, memory, stride}, length, tangents);
+        if (length == 0 && stage.kind->jacobian != nullptr) {  // nothing to carry
+            stage.kind->jacobian(stage.model, stage.dt, state, tangents);
+        } else {
+            kernel_jacobian(said_of(chain.given(i)), {state, memory, stride}, length, tangents);
+        }
         tangents.incoming += stage.parameters;
         state += length;
         memory += length * stride;

@@ -17,7 +17,7 @@ enum class Derivative { automatic, kernel };
 void jacobian(const Chain &chain, double *state, const double *u, std::size_t samples,
               Derivative derivative, double *jacobian);
 
-// The same by the kernel, from a memory that depends on the constants: `memory`, state length x
+// The same, by the kernel for every stage with a memory, from a memory that depends on the constants: `memory`, state length x
 // parameter_count, row-major, holds its derivatives. State and derivatives go on with the record, so
 // that the next stretch of it takes up where this one ends; `signal`, u on entry, is y on exit. Where
 // constants change in between, the derivatives are those of the path that was taken.

@@ -15,6 +15,7 @@
 #include "../records/evaluation.hpp"
 #include "../records/gradient.hpp"
 #include "../records/gram.hpp"
+#include "../records/in_place.hpp"
 #include "../jacobian.hpp"
 #include "limited_drive_binding.hpp"
 #include "moving_binding.hpp"
@@ -53,19 +54,27 @@ void require_record(const hyst::Chain &chain, const Matrix &state, const Batch &
     require(y.shape(0) == u.shape(0) && y.shape(1) == u.shape(1), "y must have the shape of u");
     require(state.shape(0) == u.shape(0) && state.shape(1) == chain.state_length(),
             "state has the wrong shape");
+}
+
+void require_apart(const Batch &u, const Matrix &y) {
     const double *y_end = y.data() + y.size(), *u_end = u.data() + u.size();
     require(y_end <= u.data() || u_end <= y.data(), "y must not overlap u");
 }
 
-// Flat index of the first sample that is not finite or overflows, and nothing done; or -1.
+// Flat index of the first sample that is not finite or overflows, and nothing done; or -1. y may be u,
+// which then is not what it was.
 std::ptrdiff_t run(const hyst::Chain &chain, Matrix state, Batch u, Matrix y,
                    const std::string &engine, std::size_t threads) {
     require_record(chain, state, u, y);
     const hyst::Options options{engine_named(engine), threads};
     const std::size_t rows = u.shape(0), samples = u.shape(1);
+    const bool in_place = u.data() == y.data();
+    if (!in_place) require_apart(u, y);
     const nb::gil_scoped_release released;
-    const std::size_t bad = hyst::evaluate(chain, state.data(), u.data(), y.data(), rows, samples,
-                                           options, nullptr);
+    const std::size_t bad =
+        in_place ? hyst::evaluate_in_place(chain, state.data(), y.data(), rows, samples, options)
+                 : hyst::evaluate(chain, state.data(), u.data(), y.data(), rows, samples, options,
+                                  nullptr);
     return bad < rows * samples ? static_cast<std::ptrdiff_t>(bad) : -1;
 }
 
@@ -74,6 +83,7 @@ std::ptrdiff_t run(const hyst::Chain &chain, Matrix state, Batch u, Matrix y,
 nb::tuple explain(const hyst::Chain &chain, Matrix state, Batch u, Matrix y,
                  const std::string &engine) {
     require_record(chain, state, u, y);
+    require_apart(u, y);
     std::vector<hyst::Choice> choices;
     const std::size_t bad = hyst::evaluate(chain, state.data(), u.data(), y.data(), u.shape(0),
                                            u.shape(1), {engine_named(engine), 1}, &choices);

@@ -34,6 +34,7 @@ from hyst.identification.schedule.identified_schedule import (
 from hyst.identification.schedule.identify_scheduled import (
     identify_scheduled as identify_scheduled,
 )
+from hyst.io import open_record as open_record
 from hyst.io import read_frequency_response as read_frequency_response
 from hyst.io import read_record as read_record
 from hyst.models import *

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hyst.io.chunked import RecordFile, open_record
 from hyst.io.driver_file import read_driver
 from hyst.io.formats import FORMATS, read_table, read_tables
 from hyst.io.frequency_response_file import read_frequency_response
@@ -19,8 +20,10 @@ __all__ = [
     "LONGEST_GAP",
     "ColumnSummary",
     "FileSummary",
+    "RecordFile",
     "Table",
     "join_unit",
+    "open_record",
     "read_column",
     "read_driver",
     "read_frequency_response",

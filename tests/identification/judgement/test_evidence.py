@@ -29,7 +29,7 @@ RNG = np.random.default_rng(0)
 
 def part(u: np.ndarray, error: np.ndarray | None = None) -> Part:
     y = np.zeros(u.size) if error is None else error
-    return Part(np.empty(0), u, y, np.zeros(u.size), np.arange(u.size), 0.01, 1)
+    return Part(np.empty(0), u, y, np.zeros(u.size), np.arange(u.size), 0.01, 1, np.arange(u.size))
 
 
 def coloured(pole: float, samples: int = 100_000) -> np.ndarray:

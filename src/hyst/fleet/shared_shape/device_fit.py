@@ -21,6 +21,9 @@ AT_REST = 0.1
 """Of twice the logarithm of the likelihood: what a further step may still gain; it moves the device
 by less than a third of a standard error."""
 
+PATIENCE = 3
+"""Steps in a row that gain no more, where kinks keep a step from what it promises."""
+
 ANYWHERE = 1e3
 """Share of a constant by which a device without a population may differ from the shape."""
 
@@ -84,21 +87,24 @@ def fit_device(
     """
     known = population is not None
     z, best, lowest = np.zeros(constants.size), None, np.inf
+    patience = PATIENCE
     for step in range(1, MOST_STEPS + 1):
         equations = equations_of(constants, used, z, output_range)
         around = anywhere(equations) if population is None else population
         means, covariances = around.posterior(equations)
         cost = _cost(equations, population, z)
         if best is None or cost <= lowest:
-            lowest = cost
-            target = constants.within(_limited(means[0], z), covariances[0])
+            gained, lowest = lowest - cost, cost
+            patience = PATIENCE if gained > AT_REST else patience - 1
+            wanted = means[0] if known else _limited(means[0], z)
+            target = constants.within(wanted, covariances[0])
             rests = cost - _promised(equations, population, target) <= AT_REST
             best = DeviceFit(z, covariances[0], equations, around, known, step, rests)
         else:
             # A kink lies between: half the way back to the best device so far.
-            target = (z + best.z) / 2.0
+            target, patience = (z + best.z) / 2.0, patience - 1
             rests = cost - lowest <= AT_REST
-        if rests:
+        if rests or patience == 0:
             return replace(best, steps=step, converged=True)
         z = target
     assert best is not None, "the first step is always the best so far"
@@ -130,18 +136,13 @@ def _cost(
         # With a variance of its own, the likeliest one.
         samples = int(equations.samples[0])
         return samples * math.log(max(left / samples, SMALLEST_VARIANCE))
-    return left / float(population.noise.of(equations)[0]) + _cost_of_prior(population, z)
+    return left / float(population.noise.of(equations)[0]) + float(z @ population.precision @ z)
 
 
 def _promised(equations: Equations, population: Population | None, z: Array) -> float:
     """Give the same as the linearised record promises it elsewhere."""
     missed = equations.along[0] - equations.rows[0] @ z
     return _cost(equations, population, z, float(equations.left[0]) + float(missed @ missed))
-
-
-def _cost_of_prior(population: Population, z: Array) -> float:
-    along = np.linalg.lstsq(population.root, z, rcond=1e-10)[0]
-    return float(along @ along)
 
 
 def _limited(wanted: Array, z: Array) -> Array:

@@ -25,6 +25,9 @@ MATTERS = 0.01
 NOISIER = 1.5
 """Times the noise of the fleet, from which it is told."""
 
+DRAWN = 1.25
+"""Times what a device's own constants leave, from which it is told."""
+
 UNSURE = 0.01
 """Of the output's range: a larger predicted error is told."""
 
@@ -100,7 +103,7 @@ def judge_device(seen: Seen) -> Verdict:
     reason = _unfit(seen, outside, white)
     if reason:
         return Verdict("unfit", (f"No command should come from this model. {reason}", *outside))
-    told = outside + _noisier(seen, white) + _left(seen, white) + _unsure(seen)
+    told = outside + _drawn(seen) + _noisier(seen, white) + _left(seen, white) + _unsure(seen)
     level: Level = "fair" if told else "good"
     first = f"The model leaves {seen.said(seen.rms)} rms"
     if not told:
@@ -146,6 +149,16 @@ def _unfit(seen: Seen, outside: tuple[str, ...], white: bool) -> str:
     if outside and beside > MATTERS * seen.y_range:
         return f"It is of another kind than the fleet: {leaves}."
     return ""
+
+
+def _drawn(seen: Seen) -> tuple[str, ...]:
+    """Say that the device's own constants would do clearly better."""
+    if seen.rms <= DRAWN * seen.own or seen.rms <= SMALLEST_PART * seen.y_range:
+        return ()
+    return (
+        f"Constants of its own would leave {seen.said(seen.own)} rms: the fleet draws them too "
+        "far, or the search stopped early; identify it from a longer record.",
+    )
 
 
 def _noisier(seen: Seen, white: bool) -> tuple[str, ...]:

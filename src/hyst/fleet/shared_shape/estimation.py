@@ -11,9 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.errors import InputError
 from hyst.fleet.shared_shape.device_equations import Equations, equations_of
-from hyst.fleet.shared_shape.free_constants import FreeConstants, effects_of
+from hyst.fleet.shared_shape.free_constants import SCALES, FreeConstants
 from hyst.fleet.shared_shape.middle_devices import (
     UNLIKELY,
     Middle,
@@ -24,7 +23,6 @@ from hyst.fleet.shared_shape.middle_devices import (
 from hyst.fleet.shared_shape.population import Population
 from hyst.fleet.shared_shape.signals_used import Used
 from hyst.fleet.shared_shape.variance_components import Scatter
-from hyst.operators import Operator
 
 Array = NDArray[np.float64]
 
@@ -36,17 +34,11 @@ MOST_ROUNDS = 8
 AT_REST = 0.05
 """Standard errors of the mean by which it still moves."""
 
-SHOW_DIRECTIONS = 12
-"""Devices that tell what scales do."""
-
-MISSED = 0.02
-"""Share of what a scale does to the output that constants which are not held may miss."""
-
 WORSE, HARDLY_BETTER = 1.001, 0.999
 """Times the squared error of most devices: more is no step forward, and more than the second one is
 hardly one."""
 
-LARGEST_STEP = 0.3
+LARGEST_STEP = 1.0
 """Share of a constant by which the mean moves at once."""
 
 
@@ -113,19 +105,15 @@ def estimate(constants: FreeConstants, fleet: list[Used], output_range: float) -
     output_range
         Unit of the output.
     """
-    shown = evenly(fleet, SHOW_DIRECTIONS)
-    directions, names = directions_of(constants, shown, output_range)
-    scales = np.isin([name.split(".")[-1] for name in names], ("gain", "input scale", "offset"))
+    names = constants.directions()
+    scales = np.isin([name.split(".")[-1] for name in names], [*SCALES, "offset"])
     first = np.where(scales, FIRST_SCATTER, FIRST_OF_ONE) ** 2
-    scatter = Scatter(directions, first, np.zeros(constants.size), np.eye(0), -np.inf)
+    scatter = Scatter(np.eye(constants.size), first, np.zeros(constants.size), np.eye(0), -np.inf)
     at, share, best = np.zeros((len(fleet), constants.size)), 1.0, None
     for _ in range(MOST_ROUNDS):
         equations = linearized(constants, fleet, at, output_range)
         cost = _error_of_most(equations)
         if best is None or cost <= WORSE * best.cost:
-            directions, now = directions_of(constants, shown, output_range)
-            if now == names:
-                scatter = replace(scatter, directions=directions)
             middle = middle_of(equations, scatter)
             settled = best is not None and cost >= HARDLY_BETTER * best.cost
             best, share = _Round(constants, equations, middle, cost), 1.0
@@ -190,66 +178,6 @@ def evenly(fleet: list[Used], most: int) -> list[Used]:
     """
     places = np.linspace(0, len(fleet) - 1, min(len(fleet), most)).round()
     return [fleet[int(i)] for i in np.unique(places)]
-
-
-def directions_of(
-    constants: FreeConstants, fleet: list[Used], output_range: float
-) -> tuple[Array, tuple[str, ...]]:
-    """Give directions along which devices may scatter: scales of both signals, every constant.
-
-    Parameters
-    ----------
-    constants
-        The mean.
-    fleet
-        Some of the devices.
-    output_range
-        Unit of the output.
-
-    Returns
-    -------
-    directions : numpy.ndarray
-        Shape (q, k), each as long as a change of a constant by its own size.
-    names : tuple of str
-    """
-    scales = {"gain": (1.0, 2.0), "input scale": (2.0, 1.0)}
-    columns, names = [], []
-    effects = effects_of(constants.model, fleet, output_range)
-    across = constants.basis.T @ effects
-    for name, ends in scales.items():
-        along = scale_direction(constants.model, *ends)
-        if along is None:
-            continue
-        # Constants that are held may take part: what does the same to the output is as good.
-        z = np.linalg.lstsq(across @ constants.basis, across @ along, rcond=1e-12)[0]
-        missed = along - constants.basis @ z
-        if missed @ effects @ missed <= MISSED**2 * (along @ effects @ along):
-            columns.append(z)
-            names.append(name)
-    single = np.count_nonzero(constants.basis, axis=0) == 1
-    for i in range(constants.size):
-        at = int(np.abs(constants.basis[:, i]).argmax())
-        names.append(constants.names[at] if single[i] else f"direction {i + 1}")
-        columns.append(np.eye(constants.size)[i])
-    return np.column_stack(columns), tuple(names)
-
-
-def scale_direction(model: Operator, input_scale: float, output_scale: float) -> Array | None:
-    """Give the derivative of the constants by the logarithm of a scale; None without one.
-
-    Parameters
-    ----------
-    model
-        The mean.
-    input_scale, output_scale
-        Of which one is 2 and the other 1.
-    """
-    try:
-        factors = model.parameter_scales(input_scale, output_scale)
-    except InputError:
-        return None
-    # Every factor is a power of the scale.
-    return np.asarray(np.log2(factors) * model.parameters().values)
 
 
 def _restarted(scatter: Scatter) -> Scatter:

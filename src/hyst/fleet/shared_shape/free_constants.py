@@ -23,6 +23,9 @@ from hyst.operators.stage import Stage
 
 Array = NDArray[np.float64]
 
+SCALES = {"gain": (1.0, 2.0), "input scale": (2.0, 1.0)}
+"""Factors of input and output."""
+
 MOST_DIRECTIONS = 40
 """Beyond, constants are taken together to the directions that move the output most."""
 
@@ -49,10 +52,13 @@ class FreeConstants:
         The mean device.
     basis
         Shape (constants, q).
+    scales
+        Which scales of signals are its first columns, of ``SCALES``: they move with the mean.
     """
 
     model: Operator
     basis: Array
+    scales: tuple[str, ...] = ()
 
     @property
     def size(self) -> int:
@@ -108,19 +114,33 @@ class FreeConstants:
         return y[0, used.window], by_constants[used.window] @ self.basis
 
     def constants(self, z: Array) -> Array:
-        """Give the constants of a device, in the order and within the bounds of its class."""
+        """Give the constants of a device within the bounds of its class."""
         low, high = self._bounds
-        moved = np.clip(self.values + self.basis @ z, low, high)
-        return np.asarray(self.model.nearest_parameters(moved))
+        return np.asarray(np.clip(self.values + self.basis @ z, low, high))
 
     def operator(self, z: Array) -> Operator:
-        """Give a device as an operator, as near to z as its class allows."""
-        made: Operator = self.model.with_parameters(self.constants(z))
+        """Give a device as an operator, with constants in the order that its class asks for."""
+        ordered = self.model.nearest_parameters(self.constants(z))
+        made: Operator = self.model.with_parameters(ordered)
         return made
 
     def moved(self, z: Array) -> Self:
         """Give the same directions around another mean."""
-        return replace(self, model=self.operator(z).with_description(self.model.description))
+        model = self.operator(z).with_description(self.model.description)
+        columns = scale_columns(model)
+        basis = self.basis.copy()
+        for i, name in enumerate(self.scales):
+            basis[:, i] = columns[name]
+        return replace(self, model=model, basis=basis)
+
+    def directions(self) -> tuple[str, ...]:
+        """Give names of the directions: scales, constants, and mixtures of them by number."""
+        single = np.count_nonzero(self.basis, axis=0) == 1
+        largest = np.abs(self.basis).argmax(axis=0)
+        others = range(len(self.scales), self.size)
+        return self.scales + tuple(
+            self.names[largest[i]] if single[i] else f"direction {i + 1}" for i in others
+        )
 
     @functools.cached_property
     def _bounds(self) -> tuple[Array, Array]:
@@ -214,7 +234,27 @@ def free_constants(model: Operator, fleet: list[Used], output_range: float) -> F
         largest = np.arange(sizes.size)[::-1][:MOST_DIRECTIONS]
         largest = largest[sizes[largest] > REDUCED * sizes[-1]]
         basis = basis @ vectors[:, largest]
-    return FreeConstants(model, basis)
+    columns = scale_columns(model)
+    return FreeConstants(model, np.column_stack([*columns.values(), basis]), tuple(columns))
+
+
+def scale_columns(model: Operator) -> dict[str, Array]:
+    """Give the derivatives of the constants by the logarithms of the scales they can take.
+
+    Parameters
+    ----------
+    model
+        The mean.
+    """
+    columns = {}
+    for name, ends in SCALES.items():
+        try:
+            factors = model.parameter_scales(*ends)
+        except InputError:
+            continue
+        # Every factor is a power of the scale, and the scale is 2.
+        columns[name] = np.asarray(np.log2(factors) * model.parameters().values)
+    return columns
 
 
 def effects_of(model: Operator, fleet: list[Used], output_range: float) -> Array:

@@ -15,6 +15,10 @@ from hyst.fleet.shared_shape.noise import Noise
 Array = NDArray[np.float64]
 
 
+SMALLEST = 1e-10
+"""Of the largest eigenvalue of a covariance: along smaller ones devices do not differ."""
+
+
 @dataclass(frozen=True, eq=False)
 class Population:
     """Devices of a fleet: ``z ~ N(0, covariance)``.
@@ -35,10 +39,9 @@ class Population:
     stretch: float = 1.0
 
     @functools.cached_property
-    def root(self) -> Array:
-        """A root L of the covariance, ``L L' = covariance``, shape (q, q)."""
-        values, vectors = np.linalg.eigh(self.covariance)
-        return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
+    def precision(self) -> Array:
+        """The pseudoinverse of the covariance, shape (q, q)."""
+        return np.asarray(np.linalg.pinv(self.covariance, rcond=SMALLEST, hermitian=True))
 
     def posterior(self, equations: Equations) -> tuple[Array, Array]:
         """Give what is known of devices with their records.

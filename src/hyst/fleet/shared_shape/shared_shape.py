@@ -14,11 +14,12 @@ from hyst.checks.numbers import as_number, as_positive
 from hyst.errors import HystError, InputError
 from hyst.fleet.shared_shape.device_fit import fit_device
 from hyst.fleet.shared_shape.device_result import SharedIdentified
-from hyst.fleet.shared_shape.estimation import Estimated, estimate, evenly, scale_direction
+from hyst.fleet.shared_shape.estimation import Estimated, estimate, evenly
 from hyst.fleet.shared_shape.free_constants import (
     FreeConstants,
     free_constants,
     independent,
+    scale_columns,
     with_offset,
 )
 from hyst.fleet.shared_shape.population import Population
@@ -331,12 +332,7 @@ def _scales(model: Operator, used: Used, output_range: float) -> FreeConstants:
     own = model.parameters()
     offset = np.zeros(len(own))
     offset[[i for i, name in enumerate(own.names) if name.split(".")[-1] == "offset"][-1]] = 1.0
-    along = [
-        scale_direction(model, 1.0, 2.0),
-        output_range * offset,
-        scale_direction(model, 2.0, 1.0),
-    ]
-    basis = np.column_stack([each for each in along if each is not None])
+    basis = np.column_stack([output_range * offset, *scale_columns(model).values()])
     every = FreeConstants(model, basis)
     effect = every.linearized(used, np.zeros(every.size))[1] / output_range
     kept = independent(effect.T @ effect, np.arange(every.size))

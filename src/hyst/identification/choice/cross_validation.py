@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hyst.identification.choice.blocks import Block, blocks_of
 from hyst.identification.families.family import Fit
 from hyst.identification.fit.bounded_least_squares import minimize
-from hyst.identification.fit.problem import Evaluation
+from hyst.identification.fit.evaluation import Evaluation
 from hyst.identification.record_use.outlying import winsorised
 from hyst.identification.record_use.overview import Overview
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from hyst.identification.creep.lags import answers, grid_of, in_use, signals_that_creep
 from hyst.identification.creep.rate_dependence import widening_loops
 from hyst.identification.families.family import Fit
+from hyst.identification.fit.evaluation import Evaluation
 from hyst.identification.fit.non_negative import non_negative
 from hyst.identification.fit.nuisance import (
     Beside,
@@ -27,7 +28,7 @@ from hyst.identification.fit.nuisance import (
     Nuisances,
     Settling,
 )
-from hyst.identification.fit.problem import Evaluation, model_output
+from hyst.identification.fit.problem import model_output
 from hyst.identification.fit.projection import Basis
 from hyst.identification.judgement.general_loops import general_loops
 from hyst.identification.judgement.regression import chance, correlation_time

@@ -27,9 +27,10 @@ def widening_loops(remainder: Remainder) -> Array:
     radii = 0.5 * remainder.input_range * np.array(RADII)
 
     def of_part(part: Part) -> Array:
-        rate = _rate(part)[part.places] / fastest
+        places = part.places[part.rows]
+        rate = _rate(part)[places] / fastest
         wider, narrower = (
-            play_outputs(part, part.whole, radii * (1.0 + each))
+            play_outputs(part.whole, radii * (1.0 + each), places)
             for each in (EITHER_WAY, -EITHER_WAY)
         )
         root = np.sign(rate) * np.sqrt(np.abs(rate))

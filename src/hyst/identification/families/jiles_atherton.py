@@ -15,6 +15,7 @@ from hyst.errors import NotIdentifiableError
 from hyst.identification.families.family import Family, Fit, Start, Words
 from hyst.identification.families.option import choice, option
 from hyst.identification.fit.bounded_least_squares import Problem, Solution
+from hyst.identification.fit.normal_equations import NormalEquations
 from hyst.identification.fit.parametrization import Parametrization, selection
 from hyst.identification.fit.problem import model_output
 from hyst.identification.record_use.overview import Overview
@@ -200,16 +201,31 @@ def _over_coupling(problem: Problem) -> Problem:
     def linearize(theta: Array) -> tuple[Array, Array]:
         plain = _uncoupled(theta)
         left, jacobian = problem.linearize(plain)
-        saturation, a, alpha = plain[0], plain[1], plain[4]
-        changed = jacobian.copy()
-        changed[:, 0] -= alpha / saturation * jacobian[:, 4]
-        changed[:, 1] += alpha / a * jacobian[:, 4]
-        changed[:, 4] *= 3.0 * a / saturation
-        return left, changed
+        return left, jacobian @ _by_coupled(plain)
+
+    def summed(theta: Array) -> NormalEquations:
+        plain = _uncoupled(theta)
+        return problem.normal_equations(plain).over(_by_coupled(plain))
 
     lower, upper = problem.lower.copy(), problem.upper.copy()
     lower[4], upper[4] = 0.0, MOST_COUPLING
-    return replace(problem, linearize=linearize, residual=residual, lower=lower, upper=upper)
+    return replace(
+        problem,
+        linearize=linearize,
+        residual=residual,
+        lower=lower,
+        upper=upper,
+        summed=summed,
+    )
+
+
+def _by_coupled(plain: Array) -> Array:
+    """Give the derivative of what ``_uncoupled`` gives by what it takes, shape (m, m)."""
+    saturation, a, alpha = plain[0], plain[1], plain[4]
+    change = np.eye(plain.size)
+    change[4, 0], change[4, 1] = -alpha / saturation, alpha / a
+    change[4, 4] = 3.0 * a / saturation
+    return change
 
 
 def _coercive_field(overview: Overview) -> float:

@@ -1,8 +1,8 @@
 """Levenberg-Marquardt with bounds: a projected Gauss-Newton step on the normal equations.
 
 Invariant: every iterate lies within the bounds, and the cost never rises. The normal matrix is
-small (tens of parameters), so a step costs a Cholesky factor; the record is touched only to
-evaluate residual and Jacobian.
+small (tens of parameters), so a step costs a Cholesky factor; the record is touched only to sum
+the normal equations and the cost, which need neither residual nor Jacobian as a whole.
 """
 
 from __future__ import annotations
@@ -11,10 +11,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
+import scipy.linalg.lapack
 from numpy.typing import NDArray
 
 from hyst.identification.fit.bounded_quadratic import least_within
+from hyst.identification.fit.normal_equations import NormalEquations
 
 Array = NDArray[np.float64]
 Linearize = Callable[[Array], tuple[Array, Array]]
@@ -70,6 +71,12 @@ class Problem:
         A sum of squared residuals that is nothing but rounding.
     is_linear
         Whether the residual is an affine function of theta.
+    summed
+        Gives the normal equations at theta without a Jacobian in memory; they are made of
+        ``linearize`` if left out.
+    squares
+        Gives the sum of squared residuals without a residual in memory; it is made of ``residual``
+        if left out.
     """
 
     linearize: Linearize
@@ -79,6 +86,21 @@ class Problem:
     canonical: Callable[[Array], Array]
     negligible: float = 0.0
     is_linear: bool = False
+    summed: Callable[[Array], NormalEquations] | None = None
+    squares: Callable[[Array], float] | None = None
+
+    def normal_equations(self, theta: Array) -> NormalEquations:
+        """Give the normal equations at canonical theta."""
+        if self.summed is not None:
+            return self.summed(theta)
+        return NormalEquations.of(*self.linearize(theta))
+
+    def cost(self, theta: Array) -> float:
+        """Give the sum of squared residuals at canonical theta."""
+        if self.squares is not None:
+            return self.squares(theta)
+        residual = self.residual(theta)
+        return float(residual @ residual)
 
 
 def minimize(
@@ -113,76 +135,82 @@ def minimize(
     theta = problem.canonical(np.clip(theta, problem.lower, problem.upper))
     if problem.is_linear:
         return _least(problem, theta)
-    residual, jacobian = problem.linearize(theta)
-    cost, damping, growth = float(residual @ residual), 1e-4, 2.0
-    costs = [cost]
+    normal = problem.normal_equations(theta)
+    damping, growth = 1e-4, 2.0
+    costs = [normal.cost]
     for iteration in range(1, max_iterations + 1):
-        normal, gradient = jacobian.T @ jacobian, jacobian.T @ residual
-        step, promise = _projected_step(problem, theta, normal, gradient, damping)
+        step, promise = _projected_step(problem, theta, normal, damping)
         # A damped step promises little because it is short, not because there is nothing to gain.
-        settled = abs(promise) * (1.0 + damping) <= tolerance * cost / residual.size
-        if settled or cost <= problem.negligible:
-            return Solution(theta, cost, iteration, CONVERGED)
+        noticed = tolerance * normal.cost / normal.count
+        if abs(promise) * (1.0 + damping) <= noticed or normal.cost <= problem.negligible:
+            return Solution(theta, normal.cost, iteration, CONVERGED)
         trial = problem.canonical(np.clip(theta + step, problem.lower, problem.upper))
-        trial_residual = problem.residual(trial)
-        gain = (cost - float(trial_residual @ trial_residual)) / promise
+        gain = (normal.cost - problem.cost(trial)) / promise
         if promise > 0.0 and gain > 1e-4:
-            theta = trial
-            residual, jacobian = problem.linearize(theta)
-            cost = float(residual @ residual)
+            theta, normal = trial, problem.normal_equations(trial)
             damping *= max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3)
             damping = max(damping, LEAST_DAMPING)
             growth = 2.0
         else:
             damping, growth = damping * growth, growth * 2.0
             if damping > 1e12:
-                return Solution(theta, cost, iteration, CONVERGED)
-        costs.append(cost)
+                return Solution(theta, normal.cost, iteration, CONVERGED)
+        costs.append(normal.cost)
         earlier = costs[-1 - PATIENCE] if iteration >= PATIENCE else np.inf
-        if earlier - cost <= tolerance * cost / residual.size:
-            return Solution(theta, cost, iteration, CONVERGED)
-    return Solution(theta, cost, max_iterations, ITERATION_LIMIT)
+        if earlier - normal.cost <= tolerance * normal.cost / normal.count:
+            return Solution(theta, normal.cost, iteration, CONVERGED)
+    return Solution(theta, normal.cost, max_iterations, ITERATION_LIMIT)
 
 
 def _least(problem: Problem, theta: Array) -> Solution:
     """Solve a linear problem: once, and once more for the digits that the normal matrix lost."""
-    residual, jacobian = problem.linearize(theta)
-    normal = jacobian.T @ jacobian
-    cost, refined = float(residual @ residual), theta
+    normal = problem.normal_equations(theta)
     for _ in range(2):
-        moment = normal @ refined - jacobian.T @ residual
-        trial = least_within(normal, moment, problem.lower, problem.upper, refined)
-        trial_residual = residual + jacobian @ (trial - refined)
-        trial_cost = float(trial_residual @ trial_residual)
-        if not trial_cost < cost:
+        moment = normal.matrix @ theta - normal.gradient
+        trial = least_within(normal.matrix, moment, problem.lower, problem.upper, theta)
+        there = problem.normal_equations(trial)
+        if not there.cost < normal.cost:
             break
-        refined, residual, cost = trial, trial_residual, trial_cost
-    return Solution(refined, cost, 1, CONVERGED)
+        theta, normal = trial, there
+    return Solution(theta, normal.cost, 1, CONVERGED)
 
 
 def _projected_step(
-    problem: Problem, theta: Array, normal: Array, gradient: Array, damping: float
+    problem: Problem, theta: Array, normal: NormalEquations, damping: float
 ) -> tuple[Array, float]:
     """Step of the free parameters and the decrease of the cost the linear model promises."""
-    held = ((theta <= problem.lower) & (gradient > 0.0)) | (
-        (theta >= problem.upper) & (gradient < 0.0)
-    )
-    step = np.zeros_like(theta)
-    while not held.all():
-        free = ~held
-        matrix = normal[np.ix_(free, free)]
-        scale = np.sqrt(np.maximum(np.diag(matrix), 1e-30 * max(np.diag(normal).max(), 1e-300)))
-        damped = matrix / np.outer(scale, scale) + damping * np.eye(scale.size)
-        step[:] = 0.0
-        step[free] = -scipy.linalg.solve(damped, gradient[free] / scale, assume_a="pos") / scale
+    matrix, gradient = normal.matrix, normal.gradient
+    at_lower, at_upper = theta <= problem.lower, theta >= problem.upper
+    free = ~((at_lower & (gradient > 0.0)) | (at_upper & (gradient < 0.0)))
+    diagonal = matrix.diagonal()
+    scale = np.sqrt(np.maximum(diagonal, 1e-30 * max(float(diagonal.max()), 1e-300)))
+    damped = matrix / scale[:, None] / scale
+    damped[np.diag_indices_from(damped)] += damping
+    while free.any():
+        step = _solved(damped, -gradient / scale, free) / scale
         # A parameter on its bound that the step would push out is held as well.
-        stuck = free & (
-            ((theta <= problem.lower) & (step < 0.0)) | ((theta >= problem.upper) & (step > 0.0))
-        )
+        stuck = free & ((at_lower & (step < 0.0)) | (at_upper & (step > 0.0)))
         if not stuck.any():
             break
-        held |= stuck
+        free &= ~stuck
     else:
-        step[:] = 0.0
+        step = np.zeros_like(theta)
     moved = np.clip(theta + step, problem.lower, problem.upper) - theta
-    return moved, -float(2.0 * gradient @ moved + moved @ normal @ moved)
+    return moved, -float(2.0 * gradient @ moved + moved @ matrix @ moved)
+
+
+def _solved(matrix: Array, right: Array, free: NDArray[np.bool_]) -> Array:
+    """Solve for the free unknowns of a positive definite system, the others being 0."""
+    solution = np.zeros_like(right)
+    if not free.all():
+        places = np.flatnonzero(free)
+        matrix, right = matrix[places[:, None], places], right[places]
+    # The routine itself: what scipy.linalg asks before it takes ten times as long.
+    posv = scipy.linalg.lapack.dposv
+    _, found, failed = posv(np.asarray_chkfinite(matrix), right)
+    ridge = LEAST_DAMPING
+    while failed:  # rounding has made it indefinite
+        ridge *= 10.0
+        _, found, failed = posv(matrix + ridge * np.eye(len(matrix)), right)
+    solution[free] = found
+    return solution

@@ -274,11 +274,30 @@ class Beside:
         coefficients
             Of each record, shape (q,).
         """
-        parts = []
-        for moments, root, each in zip(self._moments, self._roots, coefficients, strict=True):
-            by_theta = self._nuisances.slopes(moments, theta, each)
-            parts.append(by_theta if root is None else root[:, None] * by_theta)
+        parts = [
+            self.slopes_of(record, slice(None), theta, each)
+            for record, each in enumerate(coefficients)
+        ]
         return np.concatenate(parts)
+
+    def slopes_of(self, record: int, rows: slice, theta: Array, coefficients: Array) -> Array:
+        """Give the derivative of what the columns make by theta over some samples of one record.
+
+        Parameters
+        ----------
+        record
+            Counted from 0.
+        rows
+            Which of its samples that count.
+        theta
+            Shape (m,).
+        coefficients
+            Shape (q,).
+        """
+        moments, root = self._moments[record], self._roots[record]
+        some = replace(moments, places=moments.places[rows])
+        by_theta = self._nuisances.slopes(some, theta, coefficients)
+        return by_theta if root is None else root[rows, None] * by_theta
 
 
 def moments_of(data: Data) -> list[Moments]:

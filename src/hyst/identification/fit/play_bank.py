@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,6 +11,9 @@ from hyst import _engine
 from hyst.identification.record_use.used_samples import Data
 
 Array = NDArray[np.float64]
+
+BLOCK = 2**15
+"""Samples: a bank over all of a long record takes many times the memory of the record."""
 
 
 def bank_matrix(data: Data, r: Array) -> Array:
@@ -27,12 +32,33 @@ def bank_matrix(data: Data, r: Array) -> Array:
         Shape (samples used, 1 + n): the input, then the play outputs, of all records one after the
         other.
     """
-    blocks = []
-    for record, window in zip(data.records, data.windows(), strict=True):
-        z = np.empty((len(record), r.size))
-        _engine.play_outputs(r.tolist(), np.zeros(r.size), record.u, z)
-        blocks.append(np.column_stack([record.u[window], z[window]]))
-    return data.joined(blocks)
+    return np.concatenate([rows for _, rows in bank_blocks(data, r)])
+
+
+def bank_blocks(data: Data, r: Array) -> Iterator[tuple[slice, Array]]:
+    """Give the same block by block, each with which of the samples used it is of.
+
+    Parameters
+    ----------
+    data, r
+        As of ``bank_matrix``.
+    """
+    done = 0
+    for record, window, counts in zip(data.records, data.windows(), data.counted(), strict=True):
+        memory = np.zeros(r.size)
+        for first in range(0, window.stop, BLOCK):
+            u = np.ascontiguousarray(record.u[first : min(first + BLOCK, window.stop)])
+            z = np.empty((u.size, r.size))
+            _engine.play_outputs(r.tolist(), memory, u, z)
+            skipped = max(window.start - first, 0)
+            if skipped >= u.size:
+                continue
+            rows = np.column_stack([u, z])[skipped:]
+            if counts is not None:
+                begun = first + skipped - window.start
+                rows = rows[counts[begun : begun + len(rows)]]
+            yield slice(done, done + len(rows)), rows
+            done += len(rows)
 
 
 def bank_gram(data: Data, r: Array, u_origin: float = 0.0, y_origin: float = 0.0) -> Array:

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst import _engine
 from hyst.identification.fit.bounded_least_squares import Problem
+from hyst.identification.fit.evaluation import Evaluation
+from hyst.identification.fit.normal_equations import NormalEquations
 from hyst.identification.fit.nuisance import Beside
 from hyst.identification.fit.parametrization import Parametrization
+from hyst.identification.fit.streamed import Streamed
 from hyst.identification.record_use.used_samples import Data
 from hyst.operators import Operator
 
@@ -23,6 +23,9 @@ ROUNDING = 1e-12
 
 HOLDS_A_GAUGE = 10.0
 """Weight of a gauge beside the norm of the centred output: a scale must not drift."""
+
+LARGEST_JACOBIAN = 2**20
+"""Entries, 8 MB: above, normal equations are summed block by block and no Jacobian is stored."""
 
 NO_STEP_TO = 1e3
 """Residual, over the norm of the centred output, of a theta that makes no operator."""
@@ -72,99 +75,6 @@ def model_jacobian(data: Data, operator: Operator) -> Array:
             for r, w in zip(data.records, data.windows(), strict=True)
         ]
     )
-
-
-@dataclass(frozen=True, eq=False)
-class _Pass:
-    """One record: the chain at its sample time, its input, its window, and what counts of it."""
-
-    chain: _engine.Chain
-    u: Array
-    window: slice
-    counts: NDArray[np.bool_] | None
-
-
-class Evaluation:
-    """Model outputs and their derivatives by theta over the samples used.
-
-    The engine is given the constants as one vector; no operator is built or checked, for the bounds
-    of a parametrization and its canonical form keep every theta one that makes an operator.
-
-    Parameters
-    ----------
-    data
-        The records.
-    parametrization
-        Free parameters of a model.
-    """
-
-    def __init__(self, data: Data, parametrization: Parametrization) -> None:
-        self._parametrization = parametrization
-        self._joined = data.joined
-        self._lengths = data.lengths()
-        self._start = parametrization.template.initial_state()
-        chains = {
-            dt: _engine.Chain(parametrization.template.at_sample_time(dt).stages())
-            for dt in _sample_times(data, parametrization.template)
-        }
-        self._chains = tuple(chains.values())
-        self._passes = [
-            _Pass(
-                chains.get(record.dt, self._chains[0]),
-                np.ascontiguousarray(record.u[: window.stop]),
-                window,
-                counts,
-            )
-            for record, window, counts in zip(
-                data.records, data.windows(), data.counted(), strict=True
-            )
-        ]
-
-    def output(self, theta: Array) -> Array:
-        """Give the output of the model of canonical theta, shape (samples used,)."""
-        self._set(theta)
-        parts = []
-        for each in self._passes:
-            y = np.empty((1, each.u.size))
-            if each.chain.run(self._start[None, :].copy(), each.u[None, :], y) >= 0:
-                self._parametrization.operator(theta)(each.u)  # names the sample that overflows
-            parts.append(y[0, each.window])
-        return self._joined(parts)
-
-    def jacobian(self, theta: Array) -> Array:
-        """Give its derivative by theta, shape (samples used, m)."""
-        self._set(theta)
-        result = np.empty((sum(self._lengths), theta.size))
-        row = 0
-        for each, length in zip(self._passes, self._lengths, strict=True):
-            by_constants = self._rows[: each.u.size]
-            each.chain.jacobian(self._start.copy(), each.u, by_constants)
-            rows = by_constants[each.window]
-            np.matmul(
-                rows if each.counts is None else rows[each.counts],
-                self._parametrization.transform,
-                out=result[row : row + length],
-            )
-            row += length
-        return result
-
-    def _set(self, theta: Array) -> None:
-        constants = self._parametrization.constants(theta)
-        for chain in self._chains:
-            chain.set_parameters(constants)
-
-    @functools.cached_property
-    def _rows(self) -> Array:
-        """Room for the derivatives by all constants; fresh memory costs more than to fill it."""
-        return np.empty(
-            (max(each.u.size for each in self._passes), self._chains[0].parameter_count)
-        )
-
-
-def _sample_times(data: Data, operator: Operator) -> list[float]:
-    """Give the sample times at which an operator differs; one for one that has none."""
-    times = dict.fromkeys(record.dt for record in data.records)
-    return list(times) if operator.dt is not None else [data.records[0].dt]
 
 
 def problem_of(
@@ -226,6 +136,20 @@ def problem_of(
         more = [by_theta for _, by_theta in beside(theta)]
         return residual(theta), np.concatenate([jacobian, *more]) if more else jacobian
 
+    is_long = target.size * parametrization.transform.shape[0] > LARGEST_JACOBIAN
+    streamed = Streamed(evaluation, rows, root, columns)
+
+    def summed(theta: Array) -> NormalEquations:
+        errors = residual(theta)
+        own, more = errors[: target.size], [by_theta for _, by_theta in beside(theta)]
+        if is_long:
+            normal = streamed.normal(theta, errors_of, own)
+        else:
+            normal = NormalEquations(
+                *evaluation.products(theta, own, chosen, root), float(own @ own), own.size
+            )
+        return normal.plus(errors[own.size :], np.concatenate(more)) if more else normal
+
     return Problem(
         linearize,
         residual,
@@ -234,6 +158,7 @@ def problem_of(
         parametrization.canonical,
         negligible=float(target.size * (ROUNDING * np.ptp(y)) ** 2),
         is_linear=parametrization.is_linear,
+        summed=summed if is_long or columns is None else None,
     )
 
 

@@ -10,6 +10,10 @@ from hyst.identification.judgement.drive_cycles import last_turns
 from hyst.identification.judgement.remainder import Part, Remainder
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.intp]
+
+BLOCK = 2**15
+"""Samples: plays over all of a long record would take more memory than the record."""
 
 RADII = (0.02, 0.05, 0.1, 0.17, 0.25, 0.35, 0.5, 0.65, 0.8)
 """Of half the input's range."""
@@ -29,7 +33,7 @@ def general_loops(remainder: Remainder) -> Array:
     """
 
     def of_part(part: Part) -> Array:
-        last, before = last_turns(part)
+        last, before = (each[part.rows] for each in last_turns(part))
         loops = loops_of_part(remainder, part)
         return np.column_stack([loops, last, before, np.abs(last - before)])
 
@@ -37,7 +41,7 @@ def general_loops(remainder: Remainder) -> Array:
 
 
 def loops_of_part(remainder: Remainder, part: Part) -> Array:
-    """Give plays and plays of bent inputs over all samples of one part, shape (n, 22).
+    """Give plays and plays of bent inputs over the rows of one part, shape (rows, 22).
 
     Parameters
     ----------
@@ -46,37 +50,55 @@ def loops_of_part(remainder: Remainder, part: Part) -> Array:
     part
         One of its parts.
     """
-    return remainder.once(("loops", part.number), lambda: _loops_of_part(remainder, part))
+    return remainder.once(("loops", part.number), lambda: loops_at(remainder, part, part.rows))
 
 
-def _loops_of_part(remainder: Remainder, part: Part) -> Array:
-    low, high = float(remainder.u.min()), float(remainder.u.max())
-    middle, half = (low + high) / 2.0, (high - low) / 2.0
-    columns = [part.u[:, None], play_outputs(part, part.whole, half * np.array(RADII))]
-    for knot in KNOTS:
-        bent = np.maximum(part.whole - (middle + knot * half), 0.0)
-        radii = (1.0 - knot) * half / 2.0 * np.array(RADII_OF_BENT)
-        columns += [bent[part.places, None], play_outputs(part, bent, radii)]
-    return np.column_stack(columns)
-
-
-def play_outputs(part: Part, drive: Array, r: Array) -> Array:
-    """Give outputs of plays over the samples used of a part, from a drive over all of them.
+def loops_at(remainder: Remainder, part: Part, rows: Rows) -> Array:
+    """Give plays and plays of bent inputs over some samples of one part, shape (rows, 22).
 
     Parameters
     ----------
+    remainder
+        What a fit leaves.
     part
-        The part.
+        One of its parts.
+    rows
+        Which of its samples, ascending.
+    """
+    low, high = float(remainder.u.min()), float(remainder.u.max())
+    middle, half = (low + high) / 2.0, (high - low) / 2.0
+    places = part.places[rows]
+    columns = [part.u[rows, None], play_outputs(part.whole, half * np.array(RADII), places)]
+    for knot in KNOTS:
+        bent = np.maximum(part.whole - (middle + knot * half), 0.0)
+        radii = (1.0 - knot) * half / 2.0 * np.array(RADII_OF_BENT)
+        columns += [bent[places, None], play_outputs(bent, radii, places)]
+    return np.column_stack(columns)
+
+
+def play_outputs(drive: Array, r: Array, places: Rows) -> Array:
+    """Give outputs of plays at some samples, from a drive over all samples before them.
+
+    Parameters
+    ----------
     drive
-        Shape (k + n,), one number for each of its samples and of those before them.
+        Shape (k,).
     r
         Shape (m,), radii.
+    places
+        Shape (n,), which samples, ascending.
 
     Returns
     -------
     numpy.ndarray
         Shape (n, m).
     """
-    z = np.empty((drive.size, r.size))
-    _engine.play_outputs(r.tolist(), np.zeros(r.size), drive, z)
-    return z[part.places]
+    memory, result = np.zeros(r.size), np.empty((places.size, r.size))
+    stop = int(places[-1]) + 1 if places.size else 0
+    for first in range(0, stop, BLOCK):
+        block = np.ascontiguousarray(drive[first : min(first + BLOCK, stop)])
+        z = np.empty((block.size, r.size))
+        _engine.play_outputs(r.tolist(), memory, block, z)
+        here = slice(*np.searchsorted(places, [first, first + block.size]))
+        result[here] = z[places[here] - first]
+    return result

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.families.family import Fit
-from hyst.identification.fit.problem import Evaluation, model_output
+from hyst.identification.fit.evaluation import Evaluation
+from hyst.identification.fit.problem import model_output
 from hyst.identification.record_use.used_samples import Data
 
 Array = NDArray[np.float64]
@@ -20,9 +21,6 @@ Found = TypeVar("Found")
 
 MOST_ROWS = 10_000
 """Samples that regressions take, spread evenly: more would cost time and change no verdict."""
-
-LARGEST_TANGENT = 3_000_000
-"""Entries of the model's Jacobian; without it the amounts of causes come from general loops."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +40,8 @@ class Part:
         Time between samples of the record, s.
     number
         Of the record, counted from 1.
+    rows
+        Which of its samples regressions take.
     """
 
     whole: Array
@@ -51,6 +51,7 @@ class Part:
     places: NDArray[np.intp]
     dt: float
     number: int
+    rows: NDArray[np.intp]
 
     @property
     def error(self) -> Array:
@@ -72,7 +73,7 @@ class Remainder:
     parts
         One for each record that has samples in use.
     tangent
-        Shape (samples, m), by which the model's output moves with its free constants, those on a
+        Shape (rows, m), by which the model's output moves with its free constants, those on a
         bound left out.
     output_range
         What percentages refer to.
@@ -121,9 +122,7 @@ class Remainder:
     @functools.cached_property
     def rows(self) -> NDArray[np.intp]:
         """Samples that regressions take."""
-        total = self.error.size
-        count = min(total, MOST_ROWS)
-        return np.round(np.linspace(0, total - 1, count)).astype(np.intp)
+        return _rows(self.error.size)
 
     @functools.cached_property
     def input_range(self) -> float:
@@ -131,8 +130,8 @@ class Remainder:
         return float(np.ptp(self.u))
 
     def columns(self, of_part: Callable[[Part], Array]) -> Array:
-        """Give columns over the rows from a function that gives them over all samples of a part."""
-        return np.concatenate([of_part(each) for each in self.parts])[self.rows]
+        """Give columns over all rows from a function that gives them over the rows of a part."""
+        return np.concatenate([of_part(each) for each in self.parts])
 
     def said(self, amount: float) -> str:
         """Say an amount of output in the user's unit, with its share of the range."""
@@ -161,6 +160,7 @@ def remainder_of(data: Data, fit: Fit, output_range: float) -> Remainder:
     parametrization, theta = fit.parametrization, fit.solution.theta
     out = _power_of_two(float(np.ptp(measured)))
     into = _power_of_two(max(float(np.ptp(each.u)) for each in data.records))
+    rows = _rows(measured.size)
     parts, first = [], 0
     passes = zip(data.records, data.windows(), data.counted(), strict=True)
     for number, (record, window, counts) in enumerate(passes, start=1):
@@ -179,19 +179,23 @@ def remainder_of(data: Data, fit: Fit, output_range: float) -> Remainder:
                     places,
                     record.dt,
                     number,
+                    rows[slice(*np.searchsorted(rows, [here.start, here.stop]))] - here.start,
                 )
             )
-    tangent = np.empty((measured.size, 0))
-    if measured.size * theta.size <= LARGEST_TANGENT:
-        # What lies on a bound does not move: an error along it is none the model makes up for.
-        moving = parametrization.inside(theta)
-        tangent = _without_unit(Evaluation(data, parametrization).jacobian(theta)[:, moving])
+    # What lies on a bound does not move: an error along it is none the model makes up for.
+    moving = parametrization.inside(theta)
+    tangent = _without_unit(Evaluation(data, parametrization).jacobian_at(theta, rows)[:, moving])
     record = data.records[0]
     held = 1.0 - float(np.mean(parametrization.inside(theta))) if theta.size else 0.0
     has_memory = fit.family.has_memory
     units = record.input_unit, record.output_unit
     span = output_range / out
     return Remainder(tuple(parts), tangent, span, into, out, *units, has_memory, held)
+
+
+def _rows(total: int) -> NDArray[np.intp]:
+    """Give the samples that regressions take of so many."""
+    return np.round(np.linspace(0, total - 1, min(total, MOST_ROWS))).astype(np.intp)
 
 
 def _power_of_two(span: float) -> float:

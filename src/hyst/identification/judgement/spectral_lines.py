@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.judgement.drive_cycles import cycles_of
-from hyst.identification.judgement.general_loops import loops_of_part
+from hyst.identification.judgement.general_loops import loops_at
 from hyst.identification.judgement.remainder import Part, Remainder
 
 Array = NDArray[np.float64]
@@ -53,7 +53,7 @@ def _lines(remainder: Remainder) -> tuple[float, ...]:
         return ()
     k = np.arange(n, dtype=np.float64)
     trend = np.column_stack([np.ones(n), k / n, (k / n) ** 2])
-    columns = np.column_stack([trend, loops_of_part(remainder, part)[:n]])
+    columns = np.column_stack([trend, loops_at(remainder, part, np.arange(n))])
     error = part.error[:n]
     found = list[float]()
     while len(found) < MOST_LINES:

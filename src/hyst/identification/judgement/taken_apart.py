@@ -142,7 +142,7 @@ def _from_neighbours(rest: Array) -> float:
 def _groups(remainder: Remainder, inner: NDArray[np.bool_]) -> dict[str, Array]:
     """Give the columns of the model's own freedom and of all causes over the rows in use."""
     tangent = remainder.tangent
-    own = tangent[remainder.rows] if tangent.shape[1] else remainder.u[remainder.rows, None]
+    own = tangent if tangent.shape[1] else remainder.u[remainder.rows, None]
     groups = {TANGENT: own} | {each.name: each.columns(remainder) for each in CAUSES}
     return {name: each[inner] for name, each in groups.items() if each.shape[1]}
 

@@ -7,10 +7,13 @@ in a hundred of the residuals is none.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.fit.play_bank import bank_matrix
+from hyst.identification.fit.play_bank import bank_blocks
 from hyst.identification.record_use.used_samples import Data
 
 Array = NDArray[np.float64]
@@ -18,6 +21,9 @@ Rows = NDArray[np.bool_]
 
 PLAYS = 12
 KNOTS = 5
+
+RAMPED = [0, 1 + PLAYS // 3]
+"""Columns with ramps over them: the input and one of the plays."""
 
 FAR = 6.0
 """Robust standard deviations; noise alone goes so far once in half a billion samples."""
@@ -47,11 +53,10 @@ def rows_to_fit(data: Data) -> Rows | None:
         Shape (samples used,), false for outlying ones; None if there are none.
     """
     y = data.measured()
-    regressors = _regressors(data)
+    regressors = Regressors.of(data)
     kept = np.ones(y.size, dtype=bool)
     for _ in range(MOST_ROUNDS):
-        residual = y - regressors @ _least_squares(regressors[kept], y[kept])
-        good = ~_apart(residual, kept)
+        good = ~_apart(regressors.residual(y, kept), kept)
         if (good == kept).all():
             break
         kept = good
@@ -88,24 +93,75 @@ def _apart(residual: Array, kept: Rows) -> Rows:
     return np.asarray(size > _limit(size, APART))
 
 
-def _least_squares(matrix: Array, y: Array) -> Array:
+@dataclass(frozen=True, eq=False)
+class Regressors:
+    """Columns richer than any family, made block by block: all of them would be 25 records.
+
+    Parameters
+    ----------
+    data
+        The records.
+    r
+        Shape (n,), radii of plays, input units.
+    knots
+        Where the ramps over the input, and over one of the plays, begin.
+    means
+        Shape (m - 1,), of all columns but the constant one.
+    """
+
+    data: Data
+    r: Array
+    knots: tuple[Array, Array]
+    means: Array
+
+    @classmethod
+    def of(cls, data: Data) -> Regressors:
+        """Make those that suit records."""
+        r = data.half_range * np.arange(1, PLAYS + 1) / (PLAYS + 1)
+        low, high = np.full(2, np.inf), np.full(2, -np.inf)
+        for _, bank in bank_blocks(data, r):
+            low = np.minimum(low, bank[:, RAMPED].min(axis=0, initial=np.inf))
+            high = np.maximum(high, bank[:, RAMPED].max(axis=0, initial=-np.inf))
+        knots = tuple(np.linspace(*ends, KNOTS + 2)[1:-1] for ends in zip(low, high, strict=True))
+        plain = cls(data, r, (knots[0], knots[1]), np.zeros(PLAYS + 2 + 2 * KNOTS))
+        sums = [rows[:, :-1].sum(axis=0) for _, rows in plain._blocks()]
+        return replace(plain, means=np.sum(sums, axis=0) / sum(data.lengths()))
+
+    def residual(self, y: Array, kept: Rows) -> Array:
+        """Give what the columns, fitted to the samples kept, leave of all.
+
+        Parameters
+        ----------
+        y
+            Shape (samples used,).
+        kept
+            Shape (samples used,).
+        """
+        width = self.means.size + 1
+        gram, moment = np.zeros((width, width)), np.zeros(width)
+        for here, rows in self._blocks():
+            chosen = rows[kept[here]]
+            gram += chosen.T @ chosen
+            moment += chosen.T @ y[here][kept[here]]
+        weights, left = _solved(gram, moment), y.copy()
+        for here, rows in self._blocks():
+            left[here] -= rows @ weights
+        return left
+
+    def _blocks(self) -> Iterator[tuple[slice, Array]]:
+        half, total = self.data.half_range, sum(self.data.lengths())
+        drift = half * np.linspace(-1.0, 1.0, total)
+        for here, bank in bank_blocks(self.data, self.r):
+            ramps = [
+                np.maximum(bank[:, at, None] - knots, 0.0)
+                for at, knots in zip(RAMPED, self.knots, strict=True)
+            ]
+            rows = np.column_stack([bank, *ramps, drift[here]]) - self.means
+            yield here, np.column_stack([rows, np.full(len(rows), half)])
+
+
+def _solved(gram: Array, moment: Array) -> Array:
     """Solve the normal equations, scaled, with a ridge: only what is left counts here."""
-    gram, moment = matrix.T @ matrix, matrix.T @ y
     scale = np.sqrt(np.maximum(np.diag(gram), np.finfo(float).tiny))
     normal = gram / np.outer(scale, scale) + RIDGE * np.eye(scale.size)
     return np.asarray(np.linalg.solve(normal, moment / scale) / scale)
-
-
-def _regressors(data: Data) -> Array:
-    r = data.half_range * np.arange(1, PLAYS + 1) / (PLAYS + 1)
-    bank = bank_matrix(data, r)
-    drift = data.half_range * np.linspace(-1.0, 1.0, len(bank))
-    columns = [bank, _ramps(bank[:, 0]), _ramps(bank[:, 1 + PLAYS // 3]), drift]
-    matrix = np.column_stack(columns)
-    matrix = matrix - matrix.mean(axis=0)
-    return np.column_stack([matrix, np.full(len(bank), data.half_range)])
-
-
-def _ramps(signal: Array) -> Array:
-    knots = np.linspace(signal.min(), signal.max(), KNOTS + 2)[1:-1]
-    return np.asarray(np.maximum(signal[:, None] - knots, 0.0))

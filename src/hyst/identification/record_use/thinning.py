@@ -106,15 +106,7 @@ def _remembered(u: Array, tolerance: float) -> Indices:
 
     A loop inside another is passed over while it is smaller by less than the tolerance.
     """
-    highest, lowest = int(u.argmax()), int(u.argmin())
-    kept = sorted({highest, lowest})
-    rises = kept[-1] == lowest
-    while kept[-1] < u.size - 1:
-        after = kept[-1] + 1
-        rest = u[after:]
-        kept.append(after + int(rest.argmax() if rises else rest.argmin()))
-        rises = not rises
-    places = np.array(kept, dtype=np.intp)
+    places = _extremes_left(u)
     values = u[places]
     chosen, last = [0, 1][: places.size], 1
     for i in range(2, places.size - 1, 2):
@@ -125,3 +117,30 @@ def _remembered(u: Array, tolerance: float) -> Indices:
     # From the last whole loop to the present: one branch, or a turn and the branch after it.
     open_end = places[-1:] if places.size % 2 else places[-2:]
     return np.unique(np.concatenate([places[chosen], open_end]))
+
+
+def _extremes_left(u: Array) -> Indices:
+    """Give the extremes that later ones have not wiped out, and the last sample.
+
+    From the last extreme of all on, each is the highest or lowest of what comes after the one
+    before; the first of equals. The highest of every rest is found once, backwards.
+    """
+    highest, lowest = int(u.argmax()), int(u.argmin())
+    kept = sorted({highest, lowest})
+    base = kept[-1] + 1
+    highs, lows = _records_from_the_end(u[base:]), _records_from_the_end(-u[base:])
+    rises = kept[-1] == lowest
+    while kept[-1] < u.size - 1:
+        records = highs if rises else lows
+        next_one = np.searchsorted(records, kept[-1] + 1 - base)
+        kept.append(base + int(records[next_one]))
+        rises = not rises
+    return np.array(kept, dtype=np.intp)
+
+
+def _records_from_the_end(u: Array) -> Indices:
+    """Give where a signal is at least as high as everything after it.
+
+    The first of these from any place on is the highest sample of that rest, the first of equals.
+    """
+    return np.flatnonzero(u == np.maximum.accumulate(u[::-1])[::-1])

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.identification.families.family import Estimates, Fit
+from hyst.identification.fit.evaluation import Evaluation
 from hyst.identification.fit.nuisance import Beside
-from hyst.identification.fit.problem import Evaluation, projected
+from hyst.identification.fit.problem import projected
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.lateness import moves_of
 from hyst.identification.result.standard_errors import (

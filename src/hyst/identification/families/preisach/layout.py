@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from hyst import models
 from hyst.identification.families.preisach.cells import Cells
 from hyst.identification.families.preisach.smoothness import LinearFit
+from hyst.identification.fit.evaluation import Evaluation
 from hyst.identification.fit.parametrization import SMALLEST_SLOPE, Parametrization
-from hyst.identification.fit.problem import Evaluation
 from hyst.identification.record_use.overview import Overview
 from hyst.operators import Affine, Composition, Operator
 from hyst.operators.composition import leaves_of

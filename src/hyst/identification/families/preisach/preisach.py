@@ -45,7 +45,7 @@ from hyst.identification.families.preisach.layout import (
     weights_of,
 )
 from hyst.identification.families.preisach.told import estimates_of
-from hyst.identification.fit.problem import Evaluation
+from hyst.identification.fit.evaluation import Evaluation
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.strokes import shows_minor_loops, stroke_lengths
 from hyst.identification.record_use.thinning import thinned

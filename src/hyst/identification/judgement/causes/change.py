@@ -22,8 +22,9 @@ def _columns(remainder: Remainder) -> Array:
         return np.empty((remainder.rows.size, 0))
 
     def of_part(part: Part) -> Array:
-        z = play_outputs(part, part.whole, np.array([0.2 * remainder.input_range]))
-        return np.column_stack([np.ones(part.u.size), part.u, part.u - z[:, 0]])
+        u, r = part.u[part.rows], np.array([0.2 * remainder.input_range])
+        z = play_outputs(part.whole, r, part.places[part.rows])
+        return np.column_stack([np.ones(u.size), u, u - z[:, 0]])
 
     columns = remainder.columns(of_part)
     after = remainder.rows >= _place(columns, remainder)

@@ -25,11 +25,12 @@ def _columns(remainder: Remainder) -> Array:
         # Places count from the first sample of the record: creep began with the drive.
         duration = float(part.places[-1] + 1)
         cycle = duration / max(cycles_of(part), 1.0)
-        settling = [np.exp(-part.places / (share * duration)) for share in OF_THE_RECORD]
+        places = part.places[part.rows]
+        settling = [np.exp(-places / (share * duration)) for share in OF_THE_RECORD]
         # Over a whole cycle, so that what follows it is no loop.
         mean = scipy.ndimage.uniform_filter1d(part.whole, max(round(cycle), 1), mode="nearest")
-        following = [low_passed(mean, share * cycle)[part.places] for share in OF_A_CYCLE]
-        logarithm = np.log1p(part.places / max(0.1 * cycle, 1.0))
+        following = [low_passed(mean, share * cycle)[places] for share in OF_A_CYCLE]
+        logarithm = np.log1p(places / max(0.1 * cycle, 1.0))
         return np.column_stack([*settling, *following, logarithm])
 
     return remainder.columns(of_part)

@@ -22,7 +22,7 @@ def _columns(remainder: Remainder) -> Array:
         return np.empty((remainder.rows.size, 0))
 
     def of_part(part: Part) -> Array:
-        return np.asarray((part.time - part.time.mean()) / longest)[:, None]
+        return np.asarray((part.time - part.time.mean())[part.rows] / longest)[:, None]
 
     return remainder.columns(of_part)
 

@@ -27,9 +27,10 @@ def _columns(remainder: Remainder) -> Array:
 
     def of_part(part: Part) -> Array:
         u = part.whole
-        lagged = [np.concatenate([np.full(each, u[0]), u])[: u.size] - u for each in LAGS]
-        slow = [low_passed(u, each) - u for each in TIME_CONSTANTS]
-        return np.column_stack([*lagged, *slow])[part.places]
+        at = part.places[part.rows]
+        lagged = [u[np.maximum(at - each, 0)] - u[at] for each in LAGS]
+        slow = [low_passed(u, each)[at] - u[at] for each in TIME_CONSTANTS]
+        return np.column_stack([*lagged, *slow])
 
     return remainder.columns(of_part)
 

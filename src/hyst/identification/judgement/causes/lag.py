@@ -23,8 +23,8 @@ def _columns(remainder: Remainder) -> Array:
 
     def of_part(part: Part) -> Array:
         if part.modelled.size < 3:
-            return np.zeros((part.modelled.size, 1))
-        return -np.gradient(part.modelled)[:, None]
+            return np.zeros((part.rows.size, 1))
+        return -np.gradient(part.modelled)[part.rows, None]
 
     return remainder.columns(of_part)
 

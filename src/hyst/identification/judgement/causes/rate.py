@@ -24,10 +24,11 @@ def _columns(remainder: Remainder) -> Array:
 
     def of_part(part: Part) -> Array:
         # Loops whose weights change with the logarithm of the frequency.
-        relative = np.log2(branch_frequencies(part)) - middle
+        relative = np.log2(branch_frequencies(part)[part.rows]) - middle
         loops = loops_of_part(remainder, part)
         speed = np.gradient(part.u) / part.dt if part.u.size > 2 else np.zeros(part.u.size)
         speed = speed / (np.abs(speed).max(initial=0.0) or 1.0)
+        speed = speed[part.rows]
         root = np.sign(speed) * np.sqrt(np.abs(speed))
         return np.column_stack([relative[:, None] * loops, speed, root])
 

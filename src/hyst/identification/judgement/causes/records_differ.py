@@ -25,11 +25,12 @@ def _columns(remainder: Remainder) -> Array:
         return np.empty((remainder.rows.size, 0))
 
     def of_part(part: Part) -> Array:
-        columns = np.zeros((part.u.size, 2 * count))
+        columns = np.zeros((part.rows.size, 2 * count))
         at = 2 * remainder.parts.index(part)
-        z = play_outputs(part, part.whole, np.array([0.2 * remainder.input_range]))
-        columns[:, at] = part.u - part.u.mean()
-        columns[:, at + 1] = part.u - z[:, 0] - np.mean(part.u - z[:, 0])
+        r = np.array([0.2 * remainder.input_range])
+        width = part.u - play_outputs(part.whole, r, part.places)[:, 0]
+        columns[:, at] = (part.u - part.u.mean())[part.rows]
+        columns[:, at + 1] = (width - width.mean())[part.rows]
         return columns
 
     return remainder.columns(of_part)

@@ -25,10 +25,10 @@ def _columns(remainder: Remainder) -> Array:
         return np.empty((remainder.rows.size, 0))
 
     def of_part(part: Part) -> Array:
-        columns = np.zeros((part.u.size, count, len(lines), 2))
-        phase = 2.0 * np.pi * np.outer(part.time, lines)
+        columns = np.zeros((part.rows.size, count, len(lines), 2))
+        phase = 2.0 * np.pi * np.outer(part.time[part.rows], lines)
         columns[:, remainder.parts.index(part)] = np.stack([np.cos(phase), np.sin(phase)], axis=-1)
-        return columns.reshape(part.u.size, -1)
+        return columns.reshape(part.rows.size, -1)
 
     return remainder.columns(of_part)
 

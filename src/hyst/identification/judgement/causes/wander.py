@@ -29,18 +29,18 @@ def _columns(remainder: Remainder) -> Array:
 
     def of_part(part: Part) -> Array:
         at = remainder.parts.index(part)
-        columns = np.zeros((part.u.size, width))
+        columns = np.zeros((part.rows.size, width))
         if pieces[at]:
             first = sum(pieces[:at])
-            columns[:, first : first + pieces[at]] = _hats(part.u.size, pieces[at])
+            columns[:, first : first + pieces[at]] = _hats(part, pieces[at])
         return columns
 
     return remainder.columns(of_part)
 
 
-def _hats(samples: int, count: int) -> Array:
+def _hats(part: Part, count: int) -> Array:
     """Give piecewise linear functions that are 1 at one knot each and 0 at the others."""
-    at = np.linspace(0.0, count - 1.0, samples)
+    at = np.linspace(0.0, count - 1.0, part.u.size)[part.rows]
     return np.maximum(1.0 - np.abs(at[:, None] - np.arange(count)), 0.0)
 
 

@@ -19,7 +19,7 @@ def _columns(remainder: Remainder) -> Array:
         return np.empty((remainder.rows.size, 0))
 
     def of_part(part: Part) -> Array:
-        columns = np.zeros((part.u.size, count))
+        columns = np.zeros((part.rows.size, count))
         columns[:, remainder.parts.index(part)] = 1.0
         return columns
 
