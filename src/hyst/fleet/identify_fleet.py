@@ -127,7 +127,7 @@ def identify(
     >>> records = {f"unit {k}": hyst.Record(u, each(u), 1e-3) for k, each in enumerate(models)}
     >>> found = identify(records, family="pi", plays=1, scheduler="threads", delay=0, creep=None)
     >>> found.counts()["good"], f"{found.table.row('unit 2')['gain']:.3f}"
-    (3, '1.470')
+    (3, '1.412')
     """
     for each in _NOT_HERE:
         if each in options:
