@@ -139,7 +139,7 @@ def minimize(
     damping, growth = 1e-4, 2.0
     costs = [normal.cost]
     for iteration in range(1, max_iterations + 1):
-        step, promise = _projected_step(problem, theta, normal, damping)
+        step, promise = projected_step(problem, theta, normal, damping)
         # A damped step promises little because it is short, not because there is nothing to gain.
         noticed = tolerance * normal.cost / normal.count
         if abs(promise) * (1.0 + damping) <= noticed or normal.cost <= problem.negligible:
@@ -178,10 +178,22 @@ def _least(problem: Problem, theta: Array) -> Solution:
     return Solution(theta, normal.cost, 1, CONVERGED)
 
 
-def _projected_step(
+def projected_step(
     problem: Problem, theta: Array, normal: NormalEquations, damping: float
 ) -> tuple[Array, float]:
-    """Step of the free parameters and the decrease of the cost the linear model promises."""
+    """Give the step of the free parameters, and the decrease of the cost the linear model promises.
+
+    Parameters
+    ----------
+    problem
+        For its bounds.
+    theta
+        Within them.
+    normal
+        The normal equations there.
+    damping
+        Of the scaled normal matrix.
+    """
     matrix, gradient = normal.matrix, normal.gradient
     at_lower, at_upper = theta <= problem.lower, theta >= problem.upper
     free = ~((at_lower & (gradient > 0.0)) | (at_upper & (gradient < 0.0)))

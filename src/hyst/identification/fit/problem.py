@@ -112,7 +112,7 @@ def problem_of(
     evaluation = Evaluation(data, parametrization)
     spread = float(np.linalg.norm(y - y.mean()))
     is_allowed = parametrization.is_allowed
-    beside = _beside_the_records(parametrization, spread)
+    beside = beside_the_records(parametrization, spread)
     nuisances = parametrization.nuisances
     columns = None if nuisances is None else Beside(data, nuisances, chosen, root_weights)
 
@@ -179,10 +179,18 @@ def projected(columns: Beside, theta: Array, errors: Array, jacobian: Array) -> 
     return projection.out_of(jacobian - slopes)
 
 
-def _beside_the_records(
+def beside_the_records(
     parametrization: Parametrization, spread: float
 ) -> Callable[[Array], list[tuple[Array, Array]]]:
-    """Give what gives the residuals that no sample makes, with their derivative: gauges, prior."""
+    """Give what gives the residuals that no sample makes, with their derivative: gauges, prior.
+
+    Parameters
+    ----------
+    parametrization
+        Free parameters of a family.
+    spread
+        Norm of the centred output, in which they are weighted.
+    """
     gauges = parametrization.gauges
     prior = None if parametrization.prior is None else spread * parametrization.prior
 
