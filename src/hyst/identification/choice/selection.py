@@ -15,10 +15,10 @@ from hyst.identification.choice.cross_validation import (
     leaves_white_noise,
     score_in_sample,
 )
+from hyst.identification.choice.fewer_samples import for_a_look
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.fit.bounded_least_squares import CONVERGED, Solution
 from hyst.identification.record_use.overview import Overview
-from hyst.identification.record_use.thinning import thinned
 from hyst.identification.result.identified import Candidate
 
 SMALLEST_GAIN = 1e-3
@@ -38,8 +38,8 @@ ROUNDING = 1e-6
 NEAR = 1.2
 """Times the rms of the best so far: what leaves more from its best guess is not scored."""
 
-LOOK_SAMPLES, CLEARLY = 2000, 1.2
-"""Samples that tell whether it comes near, and times that from which on it clearly does not."""
+CLEARLY = 1.2
+"""Times that, from which on few samples tell that it is not near."""
 
 SAME_COST = 0.01
 """Costs that differ by this share of the residual variance are equal."""
@@ -123,7 +123,7 @@ def best_of_starts(
 
 
 def _serves(known: Fit, max_iterations: int) -> bool:
-    """Tell whether a fit from the first start is what one with other steps at most would come to."""
+    """Tell whether a fit is what one with other steps at most would come to."""
     ended = known.solution
     return ended.status == CONVERGED and ended.iterations <= max_iterations
 
@@ -251,9 +251,9 @@ def in_reserve(
 
 
 def _comes_near(family: Family, overview: Overview, size: int, chosen: Contender) -> bool:
-    """Tell whether a family leaves hardly more than what was chosen; few samples tell most of it."""
+    """Tell whether a family leaves hardly more than what was chosen."""
     most = NEAR**2 * _left(chosen.fit, chosen.overview)
-    fewer = _fewer(overview)
+    fewer = for_a_look(overview)
     if family.is_linear or fewer is overview:
         return _left(first_fit(family, overview, size), overview) <= most
     look = first_fit(family, fewer, size)
@@ -266,18 +266,6 @@ def _comes_near(family: Family, overview: Overview, size: int, chosen: Contender
         return replace(look, solution=family.solve(problem, look.solution.theta, 100))
 
     return _left(overview.once(("first fit", family, size), to_all), overview) <= most
-
-
-def _fewer(overview: Overview) -> Overview:
-    """Give an overview of fewer samples, with the memory they need."""
-    if overview.rates_matter:
-        return overview
-
-    def found() -> Overview:
-        data = thinned(overview.data, LOOK_SAMPLES)
-        return overview if data is overview.data else Overview(data, overview.delay)
-
-    return overview.once("fewer", found)
 
 
 def _left(fit: Fit, overview: Overview) -> float:
