@@ -19,8 +19,10 @@
 #include "../jacobian.hpp"
 #include "limited_drive_binding.hpp"
 #include "moving_binding.hpp"
+#include "number_text_binding.hpp"
 #include "online_binding.hpp"
 #include "../parallel.hpp"
+#include "../reverse.hpp"
 #include "rate_dependent_binding.hpp"
 #include "repetitive_binding.hpp"
 #include "../simd/kernels.hpp"
@@ -165,6 +167,21 @@ void jacobian(const hyst::Chain &chain, Vector state, Signal u, Matrix result,
     hyst::jacobian(chain, state.data(), u.data(), u.shape(0), way, result.data());
 }
 
+// Rows of records, each with its state; signal is in and out.
+void reverse(const hyst::Chain &chain, Rows state, Batch u, Matrix signal, Matrix by_constants) {
+    const std::size_t rows = u.shape(0), samples = u.shape(1), length = chain.state_length();
+    require(state.shape(0) == rows && state.shape(1) == length, "state has the wrong shape");
+    require(signal.shape(0) == rows && signal.shape(1) == samples, "signal must have the shape of u");
+    require(by_constants.shape(0) == rows && by_constants.shape(1) == chain.parameter_count(),
+            "the derivatives have the wrong shape");
+    const nb::gil_scoped_release released;
+    for (std::size_t i = 0; i < rows; ++i) {
+        hyst::reverse(chain, state.data() + i * length, u.data() + i * samples, samples,
+                      signal.data() + i * samples,
+                      by_constants.data() + i * chain.parameter_count());
+    }
+}
+
 void carry_jacobian(const hyst::Chain &chain, Vector state, Matrix memory, Vector signal,
                     Matrix result) {
     const std::size_t columns = chain.parameter_count();
@@ -240,6 +257,8 @@ NB_MODULE(_engine, module) {
              nb::arg("gradient").noconvert(), nb::arg("engine") = "auto", nb::arg("threads") = 1)
         .def("jacobian", &jacobian, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
              nb::arg("result").noconvert(), nb::arg("derivative") = "auto")
+        .def("reverse", &reverse, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
+             nb::arg("signal").noconvert(), nb::arg("by_constants").noconvert())
         .def("carry_jacobian", &carry_jacobian, nb::arg("state").noconvert(),
              nb::arg("memory").noconvert(), nb::arg("signal").noconvert(),
              nb::arg("result").noconvert());
@@ -263,6 +282,7 @@ NB_MODULE(_engine, module) {
     hyst::bind_repetitive(module);
     hyst::bind_limited_drive(module);
     hyst::bind_moving(module);
+    hyst::bind_number_text(module);
     hyst::bind_online_estimation(module);
     hyst::bind_rate_dependent_inversion(module);
     if (!hyst::register_stepper(module.ptr())) throw nb::python_error();

@@ -1,4 +1,4 @@
-"""Many records: a model for each device of a fleet, and what all of them share.
+"""Fleets: many actuators, one record and one model each, in one table, the odd ones named.
 
 The names are loaded when first used; the stub ``__init__.pyi`` lists them.
 """

@@ -10,6 +10,7 @@ from hyst.io.header import split_unit
 from hyst.io.reading import read_column, read_record, read_records
 from hyst.io.summary import ColumnSummary, FileSummary, summarize_file
 from hyst.io.table import Table
+from hyst.io.text_rows import read_text_rows
 from hyst.io.time_step import read_time_column, read_time_step
 from hyst.io.usable_rows import LONGEST_GAP
 from hyst.io.writing import join_unit, write_columns
@@ -30,6 +31,7 @@ __all__ = [
     "read_records",
     "read_table",
     "read_tables",
+    "read_text_rows",
     "read_time_column",
     "read_time_step",
     "split_unit",
