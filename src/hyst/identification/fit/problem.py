@@ -145,9 +145,8 @@ def problem_of(
         if is_long:
             normal = streamed.normal(theta, errors_of, own)
         else:
-            normal = NormalEquations(
-                *evaluation.products(theta, own, chosen, root), float(own @ own), own.size
-            )
+            products = evaluation.products(theta, own, chosen, root)
+            normal = NormalEquations(*products, float(own @ own), own.size)
         return normal.plus(errors[own.size :], np.concatenate(more)) if more else normal
 
     return Problem(
