@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "batch_binding.hpp"
 #include "chain_binding.hpp"
 #include "closed_loop_binding.hpp"
 #include "../records/evaluation.hpp"
@@ -19,8 +20,9 @@
 #include "../jacobian.hpp"
 #include "limited_drive_binding.hpp"
 #include "moving_binding.hpp"
+#include "number_text_binding.hpp"
 #include "online_binding.hpp"
-#include "../parallel.hpp"
+#include "../reverse.hpp"
 #include "rate_dependent_binding.hpp"
 #include "repetitive_binding.hpp"
 #include "../simd/kernels.hpp"
@@ -107,25 +109,6 @@ double loss_gradient(const hyst::Chain &chain, Vector state, Signal u, Signal ta
                                gradient.data());
 }
 
-// The first set whose output overflows, or -1.
-std::ptrdiff_t run_parameter_sets(Signal p0, Batch p, Batch r, Signal u, Matrix y,
-                                  std::size_t threads) {
-    const std::size_t sets = p0.shape(0), plays = p.shape(1), samples = u.shape(0);
-    require(p.shape(0) == sets && r.shape(0) == sets && r.shape(1) == plays,
-            "p0, p and r do not fit each other");
-    require(y.shape(0) == sets && y.shape(1) == samples, "y has the wrong shape");
-    const nb::gil_scoped_release released;
-    std::vector<char> finite(sets);
-    hyst::parallel(sets, threads, [&](std::size_t set) {
-        const hyst_pi bank{plays, p0(set), p.data() + set * plays, r.data() + set * plays};
-        std::vector<double> z(plays, 0.0);
-        finite[set] = hyst::evaluate_stage(hyst::stage_of(bank), z.data(), u.data(), y.data() + set * samples,
-                                           samples, {});
-    });
-    const auto bad = std::find(finite.begin(), finite.end(), 0);
-    return bad == finite.end() ? -1 : bad - finite.begin();
-}
-
 std::ptrdiff_t first_non_finite(Signal values) {
     const std::size_t bad = hyst::kernels().first_non_finite(values.data(), values.shape(0));
     return bad < values.shape(0) ? static_cast<std::ptrdiff_t>(bad) : -1;
@@ -163,6 +146,21 @@ void jacobian(const hyst::Chain &chain, Vector state, Signal u, Matrix result,
     const hyst::Derivative way = derivative_named(derivative);
     const nb::gil_scoped_release released;
     hyst::jacobian(chain, state.data(), u.data(), u.shape(0), way, result.data());
+}
+
+// Rows of records, each with its state; signal is in and out.
+void reverse(const hyst::Chain &chain, Rows state, Batch u, Matrix signal, Matrix by_constants) {
+    const std::size_t rows = u.shape(0), samples = u.shape(1), length = chain.state_length();
+    require(state.shape(0) == rows && state.shape(1) == length, "state has the wrong shape");
+    require(signal.shape(0) == rows && signal.shape(1) == samples, "signal must have the shape of u");
+    require(by_constants.shape(0) == rows && by_constants.shape(1) == chain.parameter_count(),
+            "the derivatives have the wrong shape");
+    const nb::gil_scoped_release released;
+    for (std::size_t i = 0; i < rows; ++i) {
+        hyst::reverse(chain, state.data() + i * length, u.data() + i * samples, samples,
+                      signal.data() + i * samples,
+                      by_constants.data() + i * chain.parameter_count());
+    }
 }
 
 void carry_jacobian(const hyst::Chain &chain, Vector state, Matrix memory, Vector signal,
@@ -240,6 +238,8 @@ NB_MODULE(_engine, module) {
              nb::arg("gradient").noconvert(), nb::arg("engine") = "auto", nb::arg("threads") = 1)
         .def("jacobian", &jacobian, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
              nb::arg("result").noconvert(), nb::arg("derivative") = "auto")
+        .def("reverse", &reverse, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
+             nb::arg("signal").noconvert(), nb::arg("by_constants").noconvert())
         .def("carry_jacobian", &carry_jacobian, nb::arg("state").noconvert(),
              nb::arg("memory").noconvert(), nb::arg("signal").noconvert(),
              nb::arg("result").noconvert());
@@ -251,18 +251,17 @@ NB_MODULE(_engine, module) {
     module.def("run_with_thresholds", &run_with_thresholds, nb::arg("p0"), nb::arg("p"),
                nb::arg("r").noconvert(), nb::arg("z").noconvert(), nb::arg("u").noconvert(),
                nb::arg("y").noconvert());
-    module.def("run_parameter_sets", &run_parameter_sets, nb::arg("p0").noconvert(),
-               nb::arg("p").noconvert(), nb::arg("r").noconvert(), nb::arg("u").noconvert(),
-               nb::arg("y").noconvert(), nb::arg("threads") = 1);
     module.def("first_non_finite", &first_non_finite, nb::arg("values").noconvert());
     module.def("instruction_sets", &instruction_sets);
     module.def("instruction_set", [] { return hyst::kernels().name; });
     module.def("use_instruction_set", &use_instruction_set, nb::arg("name"));
     module.def("stepper", &stepper, nb::arg("chain"), nb::arg("state"), nb::arg("y_safe"));
+    hyst::bind_batches(module);
     hyst::bind_closed_loop(module);
     hyst::bind_repetitive(module);
     hyst::bind_limited_drive(module);
     hyst::bind_moving(module);
+    hyst::bind_number_text(module);
     hyst::bind_online_estimation(module);
     hyst::bind_rate_dependent_inversion(module);
     if (!hyst::register_stepper(module.ptr())) throw nb::python_error();

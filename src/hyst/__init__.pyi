@@ -8,11 +8,13 @@ from hyst import export as export
 from hyst import fleet as fleet
 from hyst import identification as identification
 from hyst import io as io
+from hyst import jax as jax
 from hyst import models as models
 from hyst import online as online
 from hyst import operators as operators
 from hyst import report as report
 from hyst import signals as signals
+from hyst import torch as torch
 from hyst._loading import load as load
 from hyst.diagnosis import Diagnosis as Diagnosis
 from hyst.diagnosis import diagnose as diagnose
@@ -46,6 +48,8 @@ from hyst.operators import ModelDescription as ModelDescription
 from hyst.operators import Operator as Operator
 from hyst.operators import Play as Play
 from hyst.operators import Stop as Stop
+from hyst.operators.batches import batch_loss_gradient as batch_loss_gradient
+from hyst.operators.batches import evaluate_batch as evaluate_batch
 from hyst.signals import Record as Record
 
 __version__: str

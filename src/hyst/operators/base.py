@@ -21,6 +21,7 @@ from hyst.operators.inverses import Inverses
 from hyst.operators.model_file import MODEL, write_file
 from hyst.operators.portrait import LOOP, Portrait
 from hyst.operators.registry import compose
+from hyst.operators.reverse import Reverse
 from hyst.operators.stage import Stage
 from hyst.operators.stepper import Stepper
 from hyst.operators.traits import Traits
@@ -28,7 +29,7 @@ from hyst.operators.traits import Traits
 Array = NDArray[np.float64]
 
 
-class Operator(Inverses, Constants, ABC):
+class Operator(Inverses, Constants, Reverse, ABC):
     """A causal operator with a finite state; ``y = operator(u)``.
 
     Concrete operators are frozen dataclasses that say what they are (constants, traits, state,
