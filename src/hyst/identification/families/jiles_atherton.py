@@ -216,6 +216,7 @@ def _over_coupling(problem: Problem) -> Problem:
         lower=lower,
         upper=upper,
         summed=summed,
+        blocks=None,
     )
 
 

@@ -14,6 +14,7 @@ import numpy as np
 import scipy.linalg.lapack
 from numpy.typing import NDArray
 
+from hyst.identification.fit.block import Blocks
 from hyst.identification.fit.bounded_quadratic import least_within
 from hyst.identification.fit.normal_equations import NormalEquations
 
@@ -77,6 +78,9 @@ class Problem:
     squares
         Gives the sum of squared residuals without a residual in memory; it is made of ``residual``
         if left out.
+    blocks
+        Gives what gives the derivative of the residual block by block; None where it is over other
+        parameters than a model's.
     """
 
     linearize: Linearize
@@ -88,6 +92,7 @@ class Problem:
     is_linear: bool = False
     summed: Callable[[Array], NormalEquations] | None = None
     squares: Callable[[Array], float] | None = None
+    blocks: Callable[[Array], Blocks] | None = None
 
     def normal_equations(self, theta: Array) -> NormalEquations:
         """Give the normal equations at canonical theta."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.identification.fit.block import BESIDE, Block, Blocks, blocks_of
 from hyst.identification.fit.bounded_least_squares import Problem
 from hyst.identification.fit.evaluation import Evaluation
 from hyst.identification.fit.normal_equations import NormalEquations
@@ -150,6 +152,15 @@ def problem_of(
             )
         return normal.plus(errors[own.size :], np.concatenate(more)) if more else normal
 
+    def blocks(theta: Array) -> Blocks:
+        more = [by_theta for _, by_theta in beside(theta)]
+        held = np.concatenate([np.empty((0, theta.size)), *more])
+        last = Block(BESIDE, slice(target.size, target.size + len(held)), held)
+        if is_long:
+            return lambda: itertools.chain(streamed.projected(theta, errors_of), [last])
+        own = blocks_of(linearize(theta)[1][: target.size], data.lengths(chosen))
+        return lambda: [*own, last]
+
     return Problem(
         linearize,
         residual,
@@ -159,6 +170,7 @@ def problem_of(
         negligible=float(target.size * (ROUNDING * np.ptp(y)) ** 2),
         is_linear=parametrization.is_linear,
         summed=summed if is_long or columns is None else None,
+        blocks=blocks,
     )
 
 
