@@ -66,3 +66,18 @@ def of_records(blocks: Blocks, columns: NDArray[np.bool_]) -> Iterator[Block]:
     for each in blocks():
         if each.record != BESIDE:
             yield replace(each, jacobian=each.jacobian[:, columns])
+
+
+def lengths_of(lengths: Sequence[int], chosen: NDArray[np.bool_] | None) -> list[int]:
+    """Give how many samples of each record are chosen.
+
+    Parameters
+    ----------
+    lengths
+        Samples of each record.
+    chosen
+        Shape (N,), of all records in a row; all if None.
+    """
+    if chosen is None:
+        return list(lengths)
+    return [int(each.sum()) for each in np.split(chosen, np.cumsum(lengths)[:-1])]

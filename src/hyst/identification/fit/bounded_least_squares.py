@@ -14,7 +14,7 @@ import numpy as np
 import scipy.linalg.lapack
 from numpy.typing import NDArray
 
-from hyst.identification.fit.block import Blocks
+from hyst.identification.fit.block import Blocks, blocks_of
 from hyst.identification.fit.bounded_quadratic import least_within
 from hyst.identification.fit.normal_equations import NormalEquations
 
@@ -79,8 +79,8 @@ class Problem:
         Gives the sum of squared residuals without a residual in memory; it is made of ``residual``
         if left out.
     blocks
-        Gives what gives the derivative of the residual block by block; None where it is over other
-        parameters than a model's.
+        Gives what gives the derivative of the residual block by block, without a Jacobian in memory
+        where the records are long; it is made of ``linearize`` if left out.
     """
 
     linearize: Linearize
@@ -99,6 +99,13 @@ class Problem:
         if self.summed is not None:
             return self.summed(theta)
         return NormalEquations.of(*self.linearize(theta))
+
+    def blocks_at(self, theta: Array) -> Blocks:
+        """Give what gives the derivative at canonical theta block by block."""
+        if self.blocks is not None:
+            return self.blocks(theta)
+        jacobian = self.linearize(theta)[1]
+        return lambda: blocks_of(jacobian, [len(jacobian)])
 
     def cost(self, theta: Array) -> float:
         """Give the sum of squared residuals at canonical theta."""

@@ -161,7 +161,15 @@ class Evaluation:
         return [_pieces_of(each, part) for each, part in zip(self._passes, parts, strict=True)]
 
     def jacobian_at(self, theta: Array, rows: NDArray[np.intp]) -> Array:
-        """Give the derivative at some of the samples used, ascending, shape (rows, m)."""
+        """Give the derivative at some of the samples used, shape (rows, m).
+
+        Parameters
+        ----------
+        theta
+            Canonical.
+        rows
+            Which of them, ascending.
+        """
         if rows.size == sum(self._lengths):
             return self.jacobian(theta)
         result = np.empty((rows.size, theta.size))

@@ -65,7 +65,13 @@ class Streamed:
         return NormalEquations(total, gradient.total, float(residual @ residual), residual.size)
 
     def projected(self, theta: Array, errors_of: Callable[[Array], Array]) -> Iterator[Block]:
-        """Give the derivative of the residual of samples that count, the columns taken out."""
+        """Give the derivative of the residual of samples that count, the columns taken out.
+
+        Parameters
+        ----------
+        theta, errors_of
+            As of ``normal``.
+        """
         if self._columns is None:
             yield from self.blocks(theta, errors_of)
             return
@@ -76,7 +82,13 @@ class Streamed:
             yield replace(block, jacobian=along.out_of(block))
 
     def blocks(self, theta: Array, errors_of: Callable[[Array], Array]) -> Iterator[Block]:
-        """Give the derivative of the residual of samples that count; columns are still in it."""
+        """Give the derivative of the residual of samples that count; columns are still in it.
+
+        Parameters
+        ----------
+        theta, errors_of
+            As of ``normal``.
+        """
         coefficients = None
         if self._columns is not None:
             coefficients = self._columns.at(theta).coefficients(errors_of(theta))

@@ -220,21 +220,12 @@ class Data:
     def _later(self, u: Array, part: float) -> Array:
         return later(u, part, self.keeps_corners)
 
-    def lengths(self, chosen: NDArray[np.bool_] | None = None) -> list[int]:
-        """Give the number of samples of each record that count.
-
-        Parameters
-        ----------
-        chosen
-            Shape (samples used,): which of them do; all if left out.
-        """
-        whole = [
+    def lengths(self) -> list[int]:
+        """Give the number of samples of each record that count."""
+        return [
             window.stop - window.start if counts is None else int(np.count_nonzero(counts))
             for window, counts in zip(self.windows(), self.counted(), strict=True)
         ]
-        if chosen is None:
-            return whole
-        return [int(each.sum()) for each in np.split(chosen, np.cumsum(whole)[:-1])]
 
     def in_units(self, input_scale: float, output_scale: float) -> Data:
         """Give the same records in smaller units, in which their numbers are larger.

@@ -157,7 +157,7 @@ def spread_of_fit(data: Data, fit: Fit, delay: DelayEvidence | None = None) -> F
     taken_out = 0
     if parametrization.nuisances is not None:
         taken_out = Beside(data, parametrization.nuisances, None, root).at(theta).directions
-    blocks = problem.blocks(theta)
+    blocks = problem.blocks_at(theta)
     sums = ScoreSums.of(lambda: of_records(blocks, inside), residual, data.lengths())
     if parametrization.prior is not None:
         y = data.measured()

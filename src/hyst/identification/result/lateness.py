@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.identification.families.family import Family, Fit
+from hyst.identification.fit.block import lengths_of
 from hyst.identification.fit.nuisance import Beside
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.fit.problem import model_output, problem_of
@@ -155,8 +156,8 @@ def lateness_of(
     if fit.family.rate_between_samples:
         own = _between_samples(data, parametrization, theta, chosen, root)
         columns[: own.size, 1] = own
-    tangent = Tangent.of(problem.blocks(theta), parametrization.inside(theta))
-    return _joint(tangent, columns, residual, data.lengths(chosen))
+    tangent = Tangent.of(problem.blocks_at(theta), parametrization.inside(theta))
+    return _joint(tangent, columns, residual, lengths_of(data.lengths(), chosen))
 
 
 def _joint(tangent: Tangent, columns: Array, residual: Array, lengths: list[int]) -> Lateness:
