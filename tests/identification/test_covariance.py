@@ -9,7 +9,7 @@ import pytest
 from scipy.signal import lfilter
 
 from hyst.identification.fit.block import Block, blocks_of
-from hyst.identification.result.covariance import ScoreSums, _BartlettSum, robust_covariance
+from hyst.identification.result.covariance import BartlettSum, ScoreSums, robust_covariance
 
 
 def test_white_residuals_give_the_textbook_covariance() -> None:
@@ -29,7 +29,7 @@ def test_window_sums_equal_the_sum_over_lags() -> None:
     for lag in range(1, bandwidth):
         gamma = scores[lag:].T @ scores[:-lag]
         direct += (1.0 - lag / bandwidth) * (gamma + gamma.T)
-    summed = _BartlettSum(bandwidth, 2)
+    summed = BartlettSum(bandwidth, 2)
     for first, last in ((0, 20), (20, 23), (23, 50)):  # blocks, one shorter than the window
         summed.add(0, scores[first:last])
     np.testing.assert_allclose(summed.total(), direct, rtol=1e-12)

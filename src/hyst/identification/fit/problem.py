@@ -141,7 +141,7 @@ class _Residual:
         self._evaluation = Evaluation(data, parametrization)
         self._spread = float(np.linalg.norm(y - y.mean()))
         self._is_allowed = parametrization.is_allowed
-        self._beside = _beside_the_records(parametrization, self._spread)
+        self._beside = beside_the_records(parametrization, self._spread)
         nuisances = parametrization.nuisances
         self.columns = None if nuisances is None else Beside(data, nuisances, chosen, root_weights)
         entries = self._target.size * parametrization.transform.shape[0]
@@ -212,10 +212,18 @@ def projected(columns: Beside, theta: Array, errors: Array, jacobian: Array) -> 
     return projection.out_of(jacobian - slopes)
 
 
-def _beside_the_records(
+def beside_the_records(
     parametrization: Parametrization, spread: float
 ) -> Callable[[Array], list[tuple[Array, Array]]]:
-    """Give what gives the residuals that no sample makes, with their derivative: gauges, prior."""
+    """Give what gives the residuals that no sample makes, with their derivative: gauges, prior.
+
+    Parameters
+    ----------
+    parametrization
+        With its gauges and its prior.
+    spread
+        Norm of the centred output.
+    """
     gauges = parametrization.gauges
     prior = None if parametrization.prior is None else spread * parametrization.prior
 

@@ -64,7 +64,7 @@ class ScoreSums:
         noise = float(np.ldexp(1.0, np.frexp(np.abs(residual).max(initial=0.0))[1]))
         errors = residual / noise
         gram = LongSum((unit.size, unit.size))
-        scores = _BartlettSum(_bandwidth(errors, lengths), unit.size)
+        scores = BartlettSum(_bandwidth(errors, lengths), unit.size)
         for each in blocks():
             scaled = each.jacobian / unit
             gram.add(scaled.T @ scaled)
@@ -155,22 +155,40 @@ def robust_covariance(
 
 
 def _bandwidth(residual: Array, lengths: Sequence[int]) -> int:
-    """Choose the number of lags, at most a quarter of the shortest record."""
     before = np.ones(residual.size, dtype=bool)
     before[np.cumsum(lengths) - 1] = False
     now, after = residual[:-1][before[:-1]], residual[1:][before[:-1]]
-    power = float(residual @ residual)
-    rho = float(np.clip(now @ after / power, -0.99, 0.99)) if power > 0.0 else 0.0
+    return bandwidth_of(float(residual @ residual), float(now @ after), residual.size, min(lengths))
+
+
+def bandwidth_of(power: float, product: float, samples: int, shortest: int) -> int:
+    """Choose the number of lags, at most a quarter of the shortest record.
+
+    Parameters
+    ----------
+    power, product
+        Of the residual: sum of squares, and of products of neighbours.
+    samples, shortest
+        Of all records, and of the shortest.
+    """
+    rho = float(np.clip(product / power, -0.99, 0.99)) if power > 0.0 else 0.0
     alpha = 4.0 * rho**2 / ((1.0 - rho) ** 2 * (1.0 + rho) ** 2)
-    lags = 1.1447 * (alpha * residual.size) ** (1.0 / 3.0)
-    return int(np.clip(np.ceil(lags), 1, max(min(lengths) // 4, 1)))
+    lags = 1.1447 * (alpha * samples) ** (1.0 / 3.0)
+    return int(np.clip(np.ceil(lags), 1, max(shortest // 4, 1)))
 
 
-class _BartlettSum:
+class BartlettSum:
     """Sum of the autocovariances of scores with weights 1 - |lag| / bandwidth.
 
     The sum over all windows of ``bandwidth`` samples of (window sum)(window sum)' is exactly that,
     times the bandwidth, and needs one matrix product instead of one for each lag.
+
+    Parameters
+    ----------
+    bandwidth
+        Samples.
+    columns
+        Of the scores, m.
     """
 
     def __init__(self, bandwidth: int, columns: int) -> None:
@@ -180,7 +198,15 @@ class _BartlettSum:
         self._past = np.zeros((bandwidth, columns))
 
     def add(self, record: int, scores: Array) -> None:
-        """Go on with the scores of some samples, shape (n, m)."""
+        """Go on with the scores of some samples.
+
+        Parameters
+        ----------
+        record
+            Which one they are of.
+        scores
+            Shape (n, m).
+        """
         if record != self._record:
             self._end()
             self._record = record

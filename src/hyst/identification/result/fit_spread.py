@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -159,16 +159,37 @@ def spread_of_fit(data: Data, fit: Fit, delay: DelayEvidence | None = None) -> F
         taken_out = Beside(data, parametrization.nuisances, None, root).at(theta).directions
     blocks = problem.blocks_at(theta)
     sums = ScoreSums.of(lambda: of_records(blocks, inside), residual, data.lengths())
+    y = data.measured()
+    found = spread_from_sums(sums, fit, float(np.linalg.norm(y - y.mean())), taken_out)
+    return found if found.bounds_hold else replace(found, moves=moves_of(data, fit, delay))
+
+
+def spread_from_sums(
+    sums: ScoreSums, fit: Fit, output_spread: float, taken_out: int = 0
+) -> FitSpread:
+    """Find how sure the free parameters of a fit are from sums over the samples.
+
+    Parameters
+    ----------
+    sums
+        Of the residual and its derivative by the parameters inside their bounds.
+    fit
+        The fit.
+    output_spread
+        Norm of the centred output.
+    taken_out
+        Directions that were projected out of both.
+    """
+    theta, parametrization = fit.solution.theta, fit.parametrization
+    inside = parametrization.inside(theta)
+    left = np.sqrt(sums.power) * sums.noise
     if parametrization.prior is not None:
-        y = data.measured()
-        held_by = float(np.linalg.norm(y - y.mean())) * parametrization.prior[:, inside]
+        held_by = output_spread * parametrization.prior[:, inside]
         under = spread_under_prior(sums, held_by, taken_out)
-        freedom = max(residual.size - parametrization.free_count - taken_out, 1)
-        rms = float(np.linalg.norm(residual) / np.sqrt(freedom))
-        return FitSpread(under, inside, rms, bounds_hold=True)
+        freedom = max(sums.samples - parametrization.free_count - taken_out, 1)
+        return FitSpread(under, inside, float(left / np.sqrt(freedom)), bounds_hold=True)
     gauges = parametrization.gauges
     held = np.empty((0, theta.size)) if gauges is None else gauges(theta)[1]
     spread = spread_of_estimates(sums, theta[inside], held[:, inside], taken_out)
-    freedom = max(residual.size - int(inside.sum()) + len(held) - taken_out, 1)
-    rms = float(np.linalg.norm(residual) / np.sqrt(freedom))
-    return FitSpread(spread, inside, rms, moves=moves_of(data, fit, delay))
+    freedom = max(sums.samples - int(inside.sum()) + len(held) - taken_out, 1)
+    return FitSpread(spread, inside, float(left / np.sqrt(freedom)))
