@@ -34,7 +34,7 @@ export CC CXX
 
 .DEFAULT_GOAL := help
 .PHONY: help venv install demo test core-test fuzz soak embedded embedded-table misra lint types \
-	bench clean distclean
+	bench bench-peers clean distclean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -81,8 +81,11 @@ lint: $(installed_dev) ## style, formatting and import direction
 types: $(installed_dev) ## strict type check
 	$(bin)/mypy
 
-bench: $(installed_dev) ## timings and accuracy against peers
+bench: $(installed_dev) ## timings and accuracy against peers, and what got worse since recorded
 	$(bin)/python -m benchmarks
+
+bench-peers: $(installed_dev) ## the versions of the peers that ratios are recorded against
+	$(bin)/python -m pip install --quiet --disable-pip-version-check -r benchmarks/peers.txt
 
 clean: ## remove everything built, but not .venv
 	rm -rf build dist demo .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

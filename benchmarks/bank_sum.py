@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 import hyst
 from benchmarks.export import run_of
-from benchmarks.timing import interleaved, ratio
+from benchmarks.timing import interleaved, report_times
 from hyst.export import c_project
 
 Array = NDArray[np.float64]
@@ -69,13 +69,17 @@ def main() -> None:
             for n in SIZES:
                 place = Path(folder) / precision / str(n)
                 place.mkdir(parents=True)
-                print_row(n, interleaved(programs(n, precision, u, place), rounds=60))
+                times = interleaved(programs(n, precision, u, place), rounds=60)
+                print_row(n, precision, times)
 
 
-def print_row(n: int, times: dict[str, list[float]]) -> None:
+def print_row(n: int, precision: str, times: dict[str, list[float]]) -> None:
     """Print what one bank took."""
     cells = [f"{1e9 * np.median(each) / SAMPLES:10.2f}" for each in times.values()]
-    cells += [f"{ratio(times, 'export', other):10.2f}" for other in ("plain", "one sum")]
+    for other in ("plain", "one sum"):
+        name = f"export over {other}, {n} plays, {precision}"
+        over = report_times(name, times, "export", other, better="smaller")
+        cells.append(f"{over:10.2f}")
     print(f"  {'':8s}{n:10d}{''.join(cells)}")
 
 

@@ -4,7 +4,7 @@ Prints, for one machine and one run of the repaired example of S1 (two-mode plan
 printed observer, 10 plays, inverse at 0.7),
 - nanoseconds a step with the controller in continuous time and as a target runs it, and ratios to
   the same equations in a NumPy loop, compiled by numba, and in python-control, by hand and as
-  ``closed_loop_system`` joins them there,
+  ``closed_loop_system`` joins them there; matrices and reference are made anew by hyst and numba,
 - the step of the TrackingController from Python,
 - outputs over dt against the finest, with either controller.
 """
@@ -21,7 +21,7 @@ import scipy.signal
 from numpy.typing import NDArray
 
 import hyst
-from benchmarks.timing import interleaved, ratio
+from benchmarks.timing import interleaved, ratio, report, spread
 from hyst.control import TrackingController, closed_loop_system, simulate_closed_loop
 
 Array = NDArray[np.float64]
@@ -84,12 +84,14 @@ def print_times() -> None:
 
         compiled = numba.njit(plain_loop)
         constants = (EXACT.p0, EXACT.p, EXACT.r, HYSTERESIS.p0, HYSTERESIS.p, HYSTERESIS.r)
-        works["numba"] = lambda: compiled(*joint, reference(many, DT), *constants)
+        works["numba"] = lambda: compiled(*joint_matrices(DT), reference(many, DT), *constants)
         steps["numba"] = many
     times = interleaved(works, seconds=6.0)
     print("                            ns a step   over hyst")
     for name, each in times.items():
         over = ratio(times, name, "hyst") * steps["hyst"] / steps[name]
+        if name != "hyst":
+            report(f"{name} over hyst, a step", over, spread=spread(times, name, "hyst"))
         print(f"{name:26s} {1e9 * np.median(each) / steps[name]:10.0f} {over:11.2f}")
     print_control(1e9 * float(np.median(times["hyst"])) / many)
     step = sampled.stepper()

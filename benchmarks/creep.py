@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import hyst
-from benchmarks.timing import interleaved, ratio
+from benchmarks.timing import interleaved, report_times
 
 Array = NDArray[np.float64]
 
@@ -53,7 +53,12 @@ def times_of_records() -> None:
                 "default": lambda bank=bank, u=u: bank.run(u),
             }
             times = interleaved(works, seconds=2.0, rounds=400)
-            cells = [f"{ratio(times, 'both', each):.2f}" for each in list(works)[1:]]
+            way = "inverse" if backwards else "forward"
+            cells = []
+            for each in list(works)[1:]:
+                name = f"{lags} lags over {each}, {way}"
+                over = report_times(name, times, "both", each, better="smaller")
+                cells.append(f"{over:.2f}")
             print(
                 f"| {lags} | {1 + lags / 2:.1f} | {backwards} | {' | '.join(cells)} |", flush=True
             )

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import hyst
-from benchmarks.timing import interleaved, ratio
+from benchmarks.timing import interleaved, report_times
 from hyst import _engine
 from hyst.models import LinearDynamics, MemoryElement, MemoryFunction, RambergOsgood
 
@@ -51,14 +51,15 @@ def jacobian(operator: hyst.Operator, u: Array, derivative: str) -> None:
     chain.jacobian(operator.initial_state(), u, result, derivative)
 
 
-def row(name: str, operator: hyst.Operator, u: Array, ways: tuple[str, ...]) -> str:
+def row(kind: str, name: str, operator: hyst.Operator, u: Array, ways: tuple[str, ...]) -> str:
     times = interleaved(
         {way: lambda way=way: jacobian(operator, u, way) for way in ways}, seconds=0.5
     )
     columns = len(operator.parameters().values)
     told = "".join(f"{1e9 * float(np.median(times[way])) / u.size:10.1f}" for way in ways)
     if len(ways) == 2:
-        told += f"{ratio(times, 'kernel', 'auto'):8.1f}"
+        what = f"by kernel over by hand, {name}, {kind}"
+        told += f"{report_times(what, times, 'kernel', 'auto', better='smaller'):8.1f}"
     return f"{name:22s}{columns:8d}{told}"
 
 
@@ -71,6 +72,6 @@ def main() -> None:
     for kind, u in records.items():
         print(f"{kind + ', ' + _engine.instruction_set():22s} columns   by hand by kernel   ratio")
         for name, operator in BY_HAND.items():
-            print(row(name, operator, u, ("auto", "kernel")))
+            print(row(kind, name, operator, u, ("auto", "kernel")))
         for name, operator in BY_KERNEL.items():
-            print(row(name, operator, u, ("kernel",)))
+            print(row(kind, name, operator, u, ("kernel",)))

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.signal
 
 import hyst
-from benchmarks.timing import interleaved, ratio
+from benchmarks.timing import interleaved, report_times
 from hyst.identification.families.hammerstein import fit_markov
 from hyst.models import LinearDynamics, StableInverse
 from hyst.signals import Record, multisine
@@ -42,7 +42,9 @@ def filters() -> None:
             "lfilter": functools.partial(scipy.signal.lfilter, b, a, u),
         }
         times = interleaved(works)
-        print(f"  order {order:2d}: {ratio(times, 'hyst', 'lfilter'):.2f}")
+        name = f"state space over lfilter, order {order}"
+        over = report_times(name, times, "hyst", "lfilter", better="smaller")
+        print(f"  order {order:2d}: {over:.2f}")
 
 
 def steps() -> None:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 import hyst
 from benchmarks import peers
-from benchmarks.timing import interleaved, ratio
+from benchmarks.timing import interleaved, report_times
 
 SAMPLES = 400_000
 CELLS = 40
@@ -66,10 +66,13 @@ def print_record(spacing: str, name: str, u: Array) -> None:
         f"{work} {1e9 * float(np.median(spent)) / SAMPLES:.1f}" for work, spent in times.items()
     )
     print(f"{spacing} thresholds, {name} input, ns a sample: {each}")
-    print(f"  inverse / forward {ratio(times, 'inverse', 'forward'):.2f}")
+    pairs = [("inverse", "forward")]
     if numba is not None:
-        for work in ("forward", "inverse"):
-            print(f"  {work} / ten plays in numba {ratio(times, work, 'numba, ten plays'):.2f}")
+        pairs += [("forward", "numba, ten plays"), ("inverse", "numba, ten plays")]
+    for work, other in pairs:
+        told = f"{work} over {other}, {spacing}, {name}"
+        over = report_times(told, times, work, other, better="smaller")
+        print(f"  {work} / {other} {over:.2f}")
 
 
 def print_jacobian() -> None:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.timing import interleaved, ratio
+from benchmarks.timing import interleaved, report_times
 from hyst.io import read_record, read_table
 
 ROWS = 1_000_000
@@ -42,7 +42,9 @@ def main() -> None:
                 f"{np.median(times[each]):13.3f}" if each in times else f"{'-':>13s}"
                 for each in head[:4]
             ]
-            row += [f"{ratio(times, each, peer):13.2f}" for each in head[:2]]
+            for each in head[:2]:
+                told = f"{each} over {peer}, written with {name}"
+                row.append(f"{report_times(told, times, each, peer, better='smaller'):13.2f}")
             print(f"  {name:26s}{''.join(row)}")
 
 

@@ -1,22 +1,8 @@
 #include "jacobian.hpp"
 
-#include <utility>
-#include <vector>
-
-#include "dual/derivative.hpp"
+#include "said.hpp"
 
 namespace hyst {
-namespace {
-
-Said said_of(const kinds::Given &given) {
-    std::vector<Said> inside;
-    for (const kinds::Given &each : given.inside) inside.push_back(said_of(each));
-    return {given.kind, given.form, given.constants, given.fixed, given.choices, given.dt,
-            std::move(inside)};
-}
-
-}  // namespace
-
 void jacobian(const Chain &chain, double *state, const double *u, std::size_t samples,
               Derivative derivative, double *jacobian) {
     std::vector<double> signal(u, u + samples);

@@ -10,7 +10,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#ifdef HYST_TAPE
+#define HYST_REAL_HEADER "dual/tape.h"
+#else
 #define HYST_REAL_HEADER "dual/real.h"
+#endif
 #define HYST_POWER_HEADER "dual/power.h"
 #define HYST_ROOT_HEADER "dual/root.h"
 

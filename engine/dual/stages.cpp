@@ -5,21 +5,14 @@
 #define HYST_OTHER_NUMBER
 #include "kinds.inc"  // made by CMakeLists.txt: the files of engine/kinds
 
+#include "given.hpp"
+
 namespace hyst {
 namespace HYST_KINDS {
 
 extern const Pass run_pass;
 
 const Pass run_pass = pass;
-
-// Stages inside have constants among those of the stage around them; their own tell how many.
-static Given given_of(const Said &said)
-{
-    Given given{said.kind, said.form, {}, said.fixed, said.choices, said.dt};
-    for (double constant : said.constants) given.constants.emplace_back(constant);
-    for (const Said &each : said.inside) given.inside.push_back(given_of(each));
-    return given;
-}
 
 // Runs columns `at` of the Jacobian of the stage that is said, from the memory `start`.
 void run_columns(const Said &said, const Remembered &memory, const double *start, const Columns &at,

@@ -54,6 +54,7 @@ tangents() {
     $cxx $strict -g0 -Wno-psabi -Icore/src -Iengine -I"$to" -DHYST_TANGENTS="$count" \
         -DHYST_KINDS="$name" "$@" -c "engine/dual/$source.cpp" -o "$to/$name.o"
 }
+tangents reverse 1 taped -DHYST_TAPE
 for count in 4 8 16; do
     tangents stages $count $count
     tangents pass $count ${count}_avx2 -mavx2 -mfma

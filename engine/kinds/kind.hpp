@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "constants.hpp"
+#include "cotangents.hpp"
 #include "hyst/kind.h"
 #include "hyst/prandtl_ishlinskii.h"
 #include "tangents.hpp"
@@ -53,6 +54,8 @@ struct Kind {
     // the core's loop with the core's bits, faster; u and y may be the same:
     void (*run)(const void *model, double *state, const double *u, double *y, std::size_t samples);
     const Plays *plays;
+    // the own derivative from the output back to input and constants:
+    void (*reverse)(const void *model, const Cotangents &given) = nullptr;
 };
 
 // A stage inside another one.

@@ -108,7 +108,8 @@ const Kind play = {"play",
                    {"hyst/play.h", "$signal = hyst_play_step($r, $memory, $signal);"},
                    HYST_IN_DOUBLE(play_jacobian),
                    nullptr,
-                   HYST_IN_DOUBLE(&lanes_of_play)};
+                   HYST_IN_DOUBLE(&lanes_of_play),
+                   HYST_IN_DOUBLE(play_reverse)};
 
 const Kind stop = {"stop",
                    &hyst_stop_kind,
@@ -117,7 +118,8 @@ const Kind stop = {"stop",
                    {"hyst/play.h", "$signal = hyst_stop_step($r, $memory, $signal);"},
                    HYST_IN_DOUBLE(stop_jacobian),
                    nullptr,
-                   HYST_IN_DOUBLE(&lanes_of_stop)};
+                   HYST_IN_DOUBLE(&lanes_of_stop),
+                   HYST_IN_DOUBLE(stop_reverse)};
 
 const Kind pi = {
     "pi",
@@ -127,7 +129,8 @@ const Kind pi = {
     {"hyst/prandtl_ishlinskii.h", "$signal = hyst_pi_step(&$model, $memory, $signal);"},
     HYST_IN_DOUBLE(pi_jacobian),
     nullptr,
-    HYST_IN_DOUBLE(&lanes_of_pi)};
+    HYST_IN_DOUBLE(&lanes_of_pi),
+    HYST_IN_DOUBLE(pi_reverse)};
 
 const Kind maxwell_slip = {
     "maxwell_slip",

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "../tasks/closed_loop.hpp"
+#include "loop_signals.hpp"
 
 namespace nb = nanobind;
 
@@ -20,7 +20,6 @@ namespace {
 using Vector = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Signal = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Matrix = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using Rows = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
 void require(bool holds, const char *message) {
     if (!holds) throw std::invalid_argument(message);
@@ -31,7 +30,7 @@ class Controller {
 public:
     Controller(std::vector<double> a, std::vector<double> b, std::vector<double> c, double d_ref,
                double d, const Chain &inverse)
-        : a_(std::move(a)), b_(std::move(b)), c_(std::move(c)) {
+        : a_(std::move(a)), b_(std::move(b)), c_(std::move(c)), inverse_(&inverse) {
         const std::size_t n = c_.size();
         require(n <= HYST_LARGEST_ORDER && a_.size() == n * n && b_.size() == 2 * n,
                 "the matrices of the controller do not fit each other");
@@ -51,6 +50,7 @@ public:
 
     bool is_limited() const { return is_limited_; }
     const hyst_tracking_controller &view() const { return view_; }
+    const Chain &inverse() const { return *inverse_; }
     const hyst_limited_tracking &limited_view() const { return limited_view_; }
     std::size_t state_length() const {
         return is_limited_ ? hyst_limited_tracking_state_length(&limited_view_)
@@ -66,6 +66,7 @@ public:
 
 private:
     std::vector<double> a_, b_, c_, w_;
+    const Chain *inverse_;
     hyst_tracking_controller view_;
     hyst_limited_tracking limited_view_{};
     bool is_limited_ = false;
@@ -161,17 +162,6 @@ private:
     Steps steps_;
 };
 
-// in: r, noise, disturbance before and behind the hysteresis. out: v, u, eta, y, d_hat.
-LoopSignals signals_of(const Matrix &in, const Rows &out) {
-    const std::size_t samples = in.shape(1);
-    require(in.shape(0) == 4 && out.shape(0) == 5 && out.shape(1) == samples,
-            "the signals have the wrong shape");
-    const double *i = in.data();
-    double *o = out.data();
-    return {i,           i + samples,     i + 2 * samples, i + 3 * samples, o,
-            o + samples, o + 2 * samples, o + 3 * samples, o + 4 * samples, samples};
-}
-
 std::vector<double> copied(const Signal &state, std::size_t length) {
     require(state.shape(0) == length, "state has the wrong length");
     return {state.data(), state.data() + length};
@@ -184,9 +174,9 @@ nb::tuple told(const LoopResult &result) {
 }
 
 nb::tuple continuous(Matrix step, bool delayed, const Chain &inverse, const Chain &hysteresis,
-                     Signal inverse_state, Signal hysteresis_state, Matrix in, Rows out,
-                     double limit) {
-    const LoopSignals signals = signals_of(in, out);
+                     Signal inverse_state, Signal hysteresis_state, LoopRecord r, LoopRecord noise,
+                     LoopRecord before, LoopRecord behind, LoopOutputs out, double limit) {
+    const LoopSignals signals = LoopRecords{r, noise, before, behind}.with(out);
     require(step.shape(0) == step.shape(1) && step.shape(0) >= 3, "step has the wrong shape");
     std::vector<double> first = copied(inverse_state, inverse.state_length());
     std::vector<double> second = copied(hysteresis_state, hysteresis.state_length());
@@ -199,10 +189,14 @@ nb::tuple continuous(Matrix step, bool delayed, const Chain &inverse, const Chai
     return told(result);
 }
 
-nb::tuple sampled(Matrix step, const Controller &controller, const Chain &hysteresis,
-                  Signal controller_state, Signal hysteresis_state, Matrix in, Rows out,
-                  double limit) {
-    const LoopSignals signals = signals_of(in, out);
+// e: empty where the controller does not tell its estimate.
+nb::tuple sampled(Matrix step, const Controller &controller, const std::vector<double> &e,
+                  double f_ref, double f, const Chain &hysteresis, Signal controller_state,
+                  Signal hysteresis_state, LoopRecord r, LoopRecord noise, LoopRecord before,
+                  LoopRecord behind, LoopOutputs out, double limit) {
+    const LoopSignals signals = LoopRecords{r, noise, before, behind}.with(out);
+    const bool tells = !e.empty();
+    require(!tells || e.size() == controller.view().order, "the estimate does not fit");
     require(step.shape(0) == step.shape(1) && step.shape(0) >= 1, "step has the wrong shape");
     std::vector<double> first = copied(controller_state, controller.state_length());
     std::vector<double> second = copied(hysteresis_state, hysteresis.state_length());
@@ -213,8 +207,9 @@ nb::tuple sampled(Matrix step, const Controller &controller, const Chain &hyster
         result = controller.is_limited()
                      ? run_limited_loop(n, step.data(), controller.limited_view(), hysteresis,
                                         first, second, signals, limit)
-                     : run_sampled_loop(n, step.data(), controller.view(), hysteresis, first,
-                                        second, signals, limit);
+                     : run_sampled_loop(n, step.data(), controller.view(), controller.inverse(),
+                                        {tells ? e.data() : nullptr, {f_ref, f}}, hysteresis,
+                                        first, second, signals, limit);
     }
     return told(result);
 }
@@ -245,11 +240,13 @@ void bind_closed_loop(nb::module_ &module) {
         .def("__call__", &ControllerStepper::step, nb::arg("y_ref"), nb::arg("y"));
     module.def("run_continuous_loop", &continuous, nb::arg("step").noconvert(), nb::arg("delayed"),
                nb::arg("inverse"), nb::arg("hysteresis"), nb::arg("inverse_state").noconvert(),
-               nb::arg("hysteresis_state").noconvert(), nb::arg("inputs").noconvert(),
+               nb::arg("hysteresis_state").noconvert(), nb::arg("r").noconvert(), nb::arg("noise").noconvert(),
+               nb::arg("before").noconvert(), nb::arg("behind").noconvert(),
                nb::arg("outputs").noconvert(), nb::arg("limit"));
     module.def("run_sampled_loop", &sampled, nb::arg("step").noconvert(), nb::arg("controller"),
-               nb::arg("hysteresis"), nb::arg("controller_state").noconvert(),
-               nb::arg("hysteresis_state").noconvert(), nb::arg("inputs").noconvert(),
+               nb::arg("e"), nb::arg("f_ref"), nb::arg("f"), nb::arg("hysteresis"), nb::arg("controller_state").noconvert(),
+               nb::arg("hysteresis_state").noconvert(), nb::arg("r").noconvert(), nb::arg("noise").noconvert(),
+               nb::arg("before").noconvert(), nb::arg("behind").noconvert(),
                nb::arg("outputs").noconvert(), nb::arg("limit"));
 }
 

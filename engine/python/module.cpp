@@ -15,11 +15,14 @@
 #include "../records/evaluation.hpp"
 #include "../records/gradient.hpp"
 #include "../records/gram.hpp"
+#include "../records/in_place.hpp"
 #include "../jacobian.hpp"
 #include "limited_drive_binding.hpp"
 #include "moving_binding.hpp"
+#include "number_text_binding.hpp"
 #include "online_binding.hpp"
 #include "../parallel.hpp"
+#include "../reverse.hpp"
 #include "rate_dependent_binding.hpp"
 #include "repetitive_binding.hpp"
 #include "../simd/kernels.hpp"
@@ -53,19 +56,27 @@ void require_record(const hyst::Chain &chain, const Matrix &state, const Batch &
     require(y.shape(0) == u.shape(0) && y.shape(1) == u.shape(1), "y must have the shape of u");
     require(state.shape(0) == u.shape(0) && state.shape(1) == chain.state_length(),
             "state has the wrong shape");
+}
+
+void require_apart(const Batch &u, const Matrix &y) {
     const double *y_end = y.data() + y.size(), *u_end = u.data() + u.size();
     require(y_end <= u.data() || u_end <= y.data(), "y must not overlap u");
 }
 
-// Flat index of the first sample that is not finite or overflows, and nothing done; or -1.
+// Flat index of the first sample that is not finite or overflows, and nothing done; or -1. y may be u,
+// which then is not what it was.
 std::ptrdiff_t run(const hyst::Chain &chain, Matrix state, Batch u, Matrix y,
                    const std::string &engine, std::size_t threads) {
     require_record(chain, state, u, y);
     const hyst::Options options{engine_named(engine), threads};
     const std::size_t rows = u.shape(0), samples = u.shape(1);
+    const bool in_place = u.data() == y.data();
+    if (!in_place) require_apart(u, y);
     const nb::gil_scoped_release released;
-    const std::size_t bad = hyst::evaluate(chain, state.data(), u.data(), y.data(), rows, samples,
-                                           options, nullptr);
+    const std::size_t bad =
+        in_place ? hyst::evaluate_in_place(chain, state.data(), y.data(), rows, samples, options)
+                 : hyst::evaluate(chain, state.data(), u.data(), y.data(), rows, samples, options,
+                                  nullptr);
     return bad < rows * samples ? static_cast<std::ptrdiff_t>(bad) : -1;
 }
 
@@ -74,6 +85,7 @@ std::ptrdiff_t run(const hyst::Chain &chain, Matrix state, Batch u, Matrix y,
 nb::tuple explain(const hyst::Chain &chain, Matrix state, Batch u, Matrix y,
                  const std::string &engine) {
     require_record(chain, state, u, y);
+    require_apart(u, y);
     std::vector<hyst::Choice> choices;
     const std::size_t bad = hyst::evaluate(chain, state.data(), u.data(), y.data(), u.shape(0),
                                            u.shape(1), {engine_named(engine), 1}, &choices);
@@ -155,6 +167,21 @@ void jacobian(const hyst::Chain &chain, Vector state, Signal u, Matrix result,
     hyst::jacobian(chain, state.data(), u.data(), u.shape(0), way, result.data());
 }
 
+// Rows of records, each with its state; signal is in and out.
+void reverse(const hyst::Chain &chain, Rows state, Batch u, Matrix signal, Matrix by_constants) {
+    const std::size_t rows = u.shape(0), samples = u.shape(1), length = chain.state_length();
+    require(state.shape(0) == rows && state.shape(1) == length, "state has the wrong shape");
+    require(signal.shape(0) == rows && signal.shape(1) == samples, "signal must have the shape of u");
+    require(by_constants.shape(0) == rows && by_constants.shape(1) == chain.parameter_count(),
+            "the derivatives have the wrong shape");
+    const nb::gil_scoped_release released;
+    for (std::size_t i = 0; i < rows; ++i) {
+        hyst::reverse(chain, state.data() + i * length, u.data() + i * samples, samples,
+                      signal.data() + i * samples,
+                      by_constants.data() + i * chain.parameter_count());
+    }
+}
+
 void carry_jacobian(const hyst::Chain &chain, Vector state, Matrix memory, Vector signal,
                     Matrix result) {
     const std::size_t columns = chain.parameter_count();
@@ -230,6 +257,8 @@ NB_MODULE(_engine, module) {
              nb::arg("gradient").noconvert(), nb::arg("engine") = "auto", nb::arg("threads") = 1)
         .def("jacobian", &jacobian, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
              nb::arg("result").noconvert(), nb::arg("derivative") = "auto")
+        .def("reverse", &reverse, nb::arg("state").noconvert(), nb::arg("u").noconvert(),
+             nb::arg("signal").noconvert(), nb::arg("by_constants").noconvert())
         .def("carry_jacobian", &carry_jacobian, nb::arg("state").noconvert(),
              nb::arg("memory").noconvert(), nb::arg("signal").noconvert(),
              nb::arg("result").noconvert());
@@ -253,6 +282,7 @@ NB_MODULE(_engine, module) {
     hyst::bind_repetitive(module);
     hyst::bind_limited_drive(module);
     hyst::bind_moving(module);
+    hyst::bind_number_text(module);
     hyst::bind_online_estimation(module);
     hyst::bind_rate_dependent_inversion(module);
     if (!hyst::register_stepper(module.ptr())) throw nb::python_error();

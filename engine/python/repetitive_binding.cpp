@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "../tasks/closed_loop.hpp"
+#include "loop_signals.hpp"
 
 namespace nb = nanobind;
 
@@ -20,7 +20,6 @@ namespace {
 using Vector = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Signal = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Matrix = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using Rows = nb::ndarray<double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
 void demand(bool holds, const char *message) {
     if (!holds) throw std::invalid_argument(message);
@@ -141,22 +140,14 @@ private:
     Samples steps_;
 };
 
-// in: r, noise, disturbance before and behind the hysteresis. out: v, u, eta, y, d_hat.
 nb::tuple loop(Matrix step, const Repetitive &block, const Chain &hysteresis,
-               Signal controller_state, Signal hysteresis_state, Matrix in, Rows out,
-               double limit) {
-    const std::size_t samples = in.shape(1);
-    demand(in.shape(0) == 4 && out.shape(0) == 5 && out.shape(1) == samples,
-           "the signals have the wrong shape");
+               Signal controller_state, Signal hysteresis_state, LoopRecord r, LoopRecord noise,
+               LoopRecord before, LoopRecord behind, LoopOutputs out, double limit) {
+    const LoopSignals signals = LoopRecords{r, noise, before, behind}.with(out);
     demand(step.shape(0) == step.shape(1) && step.shape(0) >= 1, "step has the wrong shape");
     demand(controller_state.shape(0) == block.state_length() &&
                hysteresis_state.shape(0) == hysteresis.state_length(),
            "state has the wrong length");
-    const double *i = in.data();
-    double *o = out.data();
-    const LoopSignals signals = {
-        i, i + samples, i + 2 * samples, i + 3 * samples, o, o + samples, o + 2 * samples,
-        o + 3 * samples, o + 4 * samples, samples};
     std::vector<double> first(controller_state.data(),
                               controller_state.data() + controller_state.shape(0));
     std::vector<double> second(hysteresis_state.data(),
@@ -197,7 +188,8 @@ void bind_repetitive(nb::module_ &module) {
         .def("__call__", &RepetitiveSteps::step, nb::arg("y_ref"), nb::arg("y"));
     module.def("run_repetitive_loop", &loop, nb::arg("step").noconvert(), nb::arg("controller"),
                nb::arg("hysteresis"), nb::arg("controller_state").noconvert(),
-               nb::arg("hysteresis_state").noconvert(), nb::arg("inputs").noconvert(),
+               nb::arg("hysteresis_state").noconvert(), nb::arg("r").noconvert(), nb::arg("noise").noconvert(),
+               nb::arg("before").noconvert(), nb::arg("behind").noconvert(),
                nb::arg("outputs").noconvert(), nb::arg("limit"));
 }
 

@@ -1,6 +1,7 @@
 #include "evaluation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "hyst/guard.h"
@@ -62,27 +63,43 @@ bool in_blocks(std::size_t samples, const Work &work) {
     return true;
 }
 
+// Where to cut a record whose memory curve goes on in what is copied next, and no bit tells: at a
+// reversal, where a movement ends anyway. Usually a block away from `first`, rarely further.
+std::size_t unseen_cut(const double *u, std::size_t first, std::size_t samples) {
+    const auto turns_at = [u](std::size_t k) {
+        return (u[k - 1] > u[k - 2] && u[k] < u[k - 1]) || (u[k - 1] < u[k - 2] && u[k] > u[k - 1]);
+    };
+    if (samples - first <= kBlock) return samples;
+    std::size_t k = first + kBlock;
+    while (k > first + 2 && !turns_at(k)) --k;
+    if (k > first + 2) return k;
+    for (k = first + kBlock + 1; k < samples && !turns_at(k);) ++k;
+    return k;
+}
+
 struct Way {
     Engine engine;
-    double limit = kHuge;  // of the sums along a memory curve
+    double limit = kHuge;    // of the sums along a memory curve
+    bool is_record = false;  // whether what the curve overwrites is the record itself
 };
 
 // This and all that follow return whether all of u and y were finite; along the memory curve also
 // false where that is left to the core's order of operations.
 bool along_curve(const hyst_pi &pi, const double *state, const double *u, double *y,
-                 std::size_t samples, double limit) {
+                 std::size_t samples, Way way) {
     MemoryCurve curve(pi, state);
-    bool finite = false;
+    bool finite = true;
     if (u != y) {
         finite = curve.run(u, y, samples);
     } else {
-        std::vector<double> copy(std::min(samples, kBlock));
-        finite = in_blocks(samples, [&](std::size_t first, std::size_t count) {
-            std::copy(u + first, u + first + count, copy.begin());
-            return curve.run(copy.data(), y + first, count);
-        });
+        std::vector<double> copy;
+        for (std::size_t k = 0, end = 0; k < samples && finite; k = end) {
+            end = way.is_record ? unseen_cut(u, k, samples) : std::min(k + kBlock, samples);
+            copy.assign(u + k, u + end);
+            finite = curve.run(copy.data(), y + k, end - k);
+        }
     }
-    return finite && curve.largest() <= headroom(pi, state, limit);
+    return finite && curve.largest() <= headroom(pi, state, way.limit);
 }
 
 bool in_loop(const Stage &stage, double *state, const double *u, double *y,
@@ -107,7 +124,7 @@ bool run_part(const Stage &stage, Way way, double *state, const double *u, doubl
     const hyst_pi &bank = *stage.kind->plays->bank(stage.model);
     std::vector<double> end(state, state + bank.count);
     Lanes(stage).jump(end.data(), u, samples);
-    const bool finite = along_curve(bank, state, u, y, samples, way.limit);
+    const bool finite = along_curve(bank, state, u, y, samples, way);
     std::copy(end.begin(), end.end(), state);
     return finite;
 }
@@ -202,6 +219,15 @@ Choice choose(const Stage &stage, const double *state, const double *u, std::siz
         choice.reason = "asked for";
     }
     return choice;
+}
+
+bool run_curve_in_place(const Stage &stage, double *state, double *y, std::size_t samples,
+                        std::size_t threads) {
+    const double room = headroom(*stage.kind->plays->bank(stage.model), state, kHuge);
+    std::size_t beyond = 0;  // counted, for compilers do not put a maximum side by side
+    for (std::size_t k = 0; k < samples; ++k) beyond += !(std::abs(y[k]) <= room);
+    return beyond == 0 &&
+           run_parts(stage, {Engine::memory_curve, kHuge, true}, state, y, y, samples, threads);
 }
 
 bool evaluate_stage(const Stage &stage, double *state, const double *u, double *y,

@@ -39,6 +39,11 @@ std::size_t evaluate(const Chain &chain, double *states, const double *u, double
                      std::size_t rows, std::size_t samples, const Options &options,
                      std::vector<Choice> *choices);
 
+// A bank that the memory curve takes, from y into y. Returns false, and nothing is done, where a sample
+// is not finite or so large that y may be left to the core, which needs what y held.
+bool run_curve_in_place(const Stage &stage, double *state, double *y, std::size_t samples,
+                        std::size_t threads);
+
 // One stage, one record; u and y may be the same. Returns whether u and y were finite; if not, state
 // and y are meaningless.
 bool evaluate_stage(const Stage &stage, double *state, const double *u, double *y,

@@ -1,4 +1,5 @@
 // Compiled once per instruction set, without contraction; the table of all its kernels.
+#include "columns_kernel.hpp"
 #include "curve_gradient_kernel.hpp"
 #include "jump_kernel.hpp"
 #include "kernels.hpp"
@@ -69,6 +70,7 @@ const Kernels kKernelTable = {HYST_TEXT(HYST_INSTRUCTION_SET),
                               sum_gradient,
                               derivative_rows,
                               play_rows,
-                              sum_gram};
+                              sum_gram,
+                              add_columns};
 
 }  // namespace hyst::HYST_INSTRUCTION_SET

@@ -76,6 +76,9 @@ struct Branch {
     double share, start, output, twice;
 };
 
+// What is added to: what is in the sums, 0, or nothing, so that a first product keeps its sign of zero.
+enum class Begin { from_sums, from_zero, from_first };
+
 struct Kernels {
     const char *name;
     std::size_t width;  // lanes
@@ -125,6 +128,9 @@ struct Kernels {
     // gram += rows' rows, lower triangle and a little more. stride: a multiple of width.
     void (*add_gram)(const double *rows, std::size_t samples, std::size_t width, std::size_t stride,
                      double *gram);
+    // sums = a matrix of `count` columns, one after the other, times z. rows: a multiple of four.
+    void (*add_columns)(const double *columns, std::size_t rows, const double *z,
+                        std::size_t count, Begin begin, double *sums);
 };
 
 // The kernels in use: the widest this processor runs, unless another set was asked for.

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <limits>
+
+#include "flat_chain.hpp"
+#include "product.hpp"
 
 namespace hyst {
 namespace {
@@ -16,82 +19,30 @@ bool within(double limit, double y, double v, double u, double eta) {
            std::fabs(u) <= kBeyondMeasure && std::fabs(eta) <= kBeyondMeasure;
 }
 
-// sums += columns times z, for rows known to the compiler: the sums stay in registers, which takes
-// half the time of loops whose short length is only known when they run.
-template <std::size_t rows>
-void accumulate(const double *columns, std::size_t, const double *z, std::size_t count,
-                double *sums) {
-    double held[rows];
-    std::copy_n(sums, rows, held);
-    for (std::size_t j = 0; j < count; ++j, columns += rows) {
-        for (std::size_t i = 0; i < rows; ++i) held[i] += columns[i] * z[j];
-    }
-    std::copy_n(held, rows, sums);
-}
-
-void accumulate_any(const double *columns, std::size_t rows, const double *z, std::size_t count,
-                    double *sums) {
-    for (std::size_t j = 0; j < count; ++j, columns += rows) {
-        for (std::size_t i = 0; i < rows; ++i) sums[i] += columns[i] * z[j];
-    }
-}
-
-// step times z, column after column: the sums of all rows run side by side. Rows of zeros fill up
-// to a multiple of four, so sums has rows() entries.
-class Product {
-public:
-    Product(std::size_t rows, std::size_t columns, const double *row_after_row)
-        : rows_((rows + 3) / 4 * 4), values_(rows_ * columns, 0.0) {
-        for (std::size_t i = 0; i < rows; ++i) {
-            for (std::size_t j = 0; j < columns; ++j) {
-                values_[j * rows_ + i] = row_after_row[i * columns + j];
-            }
-        }
-        constexpr Accumulate known[] = {accumulate<4>, accumulate<8>, accumulate<12>,
-                                        accumulate<16>, accumulate<20>};
-        const std::size_t fours = rows_ / 4 - 1;
-        accumulate_ = fours < std::size(known) ? known[fours] : accumulate_any;
-    }
-    std::size_t rows() const { return rows_; }
-    double at(std::size_t i, std::size_t j) const { return values_[j * rows_ + i]; }
-    void clear_and_add(double *sums, const double *z, std::size_t count) const {
-        std::fill_n(sums, rows_, 0.0);
-        accumulate_(values_.data(), rows_, z, count, sums);
-    }
-    void add_column(double *sums, std::size_t j, double z) const {
-        accumulate_(values_.data() + j * rows_, rows_, &z, 1, sums);
-    }
-
-private:
-    using Accumulate = void (*)(const double *, std::size_t, const double *, std::size_t, double *);
-    std::size_t rows_;
-    std::vector<double> values_;
-    Accumulate accumulate_;
-};
-
 // v -> w through inverse and hysteresis, with states of its own for trials.
 class Actuator {
 public:
     Actuator(const Chain &inverse, const Chain &hysteresis, std::vector<double> &inverse_state,
              std::vector<double> &hysteresis_state)
-        : inverse_(inverse.view()), hysteresis_(hysteresis.view()), inverse_state_(inverse_state),
-          hysteresis_state_(hysteresis_state), inverse_trial_(inverse_state),
-          hysteresis_trial_(hysteresis_state) {}
+        : inverse_state_(inverse_state), hysteresis_state_(hysteresis_state),
+          inverse_trial_(inverse_state), hysteresis_trial_(hysteresis_state),
+          inverse_(inverse, inverse_state.data()), hysteresis_(hysteresis, hysteresis_state.data()),
+          inverse_tried_(inverse, inverse_trial_.data()),
+          hysteresis_tried_(hysteresis, hysteresis_trial_.data()) {}
 
-    double drive(double v) { return hyst_chain_step(&inverse_, inverse_state_.data(), v); }
-    double answer(double u) { return hyst_chain_step(&hysteresis_, hysteresis_state_.data(), u); }
+    double drive(double v) { return inverse_.step(v); }
+    double answer(double u) { return hysteresis_.step(u); }
     // What the answer to v would be; the states stay as they are.
     double trial(double v, double before) {
         std::copy(inverse_state_.begin(), inverse_state_.end(), inverse_trial_.begin());
         std::copy(hysteresis_state_.begin(), hysteresis_state_.end(), hysteresis_trial_.begin());
-        const double u = hyst_chain_step(&inverse_, inverse_trial_.data(), v);
-        return hyst_chain_step(&hysteresis_, hysteresis_trial_.data(), u + before);
+        return hysteresis_tried_.step(inverse_tried_.step(v) + before);
     }
 
 private:
-    hyst_chain inverse_, hysteresis_;
     std::vector<double> &inverse_state_, &hysteresis_state_;
     std::vector<double> inverse_trial_, hysteresis_trial_;
+    FlatChain inverse_, hysteresis_, inverse_tried_, hysteresis_tried_;
 };
 
 // Root of a function that rises from minus to plus infinity, by the Illinois method: the hysteresis
@@ -134,26 +85,69 @@ bool rising_root(const Function &f, double start, double &root) {
     return true;
 }
 
+constexpr auto nothing = [](std::size_t) {};
+
+// The linear part of a controller and its estimate, with the bits of hyst_tracking_controller_linear.
+class LinearPart {
+public:
+    LinearPart(const hyst_tracking_controller &controller, const Estimate &estimate, const double *x)
+        : order_(controller.order),
+          product_(order_ + 2, order_ + 2,
+                   [&](auto i, auto j) { return entry(controller, estimate, i, j); }),
+          z_(2 + product_.rows(), 0.0), next_(z_) {
+        std::copy_n(x, order_, z_.begin() + 2);
+    }
+    // v; NaN where something is not finite.
+    double step(double y_ref, double y) {
+        z_[0] = y_ref, z_[1] = y;
+        double *const sums = &next_[2];
+        product_.set(sums, z_.data(), order_ + 2, Begin::from_first);
+        double zero = 0.0;  // unless something is not finite: then NaN
+        for (std::size_t i = 0; i <= order_; ++i) zero += sums[i] - sums[i];
+        z_.swap(next_);
+        return zero == 0.0 ? sums[order_] : std::numeric_limits<double>::quiet_NaN();
+    }
+    double estimate() const { return z_[2 + order_ + 1]; }
+
+private:
+    // Rows: x+, v, d_hat. Columns: y_ref, y, x.
+    static double entry(const hyst_tracking_controller &of, const Estimate &estimate, std::size_t i,
+                        std::size_t j) {
+        const std::size_t n = of.order;
+        if (i < n) return j < 2 ? of.b[j * n + i] : of.a[(j - 2) * n + i];
+        if (i == n) return j < 2 ? of.d[j] : of.c[j - 2];
+        if (estimate.e == nullptr) return 0.0;
+        return j < 2 ? estimate.f[j] : estimate.e[j - 2];
+    }
+    std::size_t order_;
+    Product product_;
+    std::vector<double> z_, next_;  // y_ref, y, x, v, d_hat; sums go into the other one
+};
+
 // A sampled controller, `answer`, from (y_ref, y) to u and v, around a plant.
-template <typename Answer>
-LoopResult run_around(std::size_t n, const double *step, const Answer &answer,
+// tell is called for each sample that is good.
+template <typename Answer, typename Tell>
+LoopResult run_around(std::size_t n, const double *step, const Answer &answer, const Tell &tell,
                       const Chain &hysteresis, std::vector<double> &hysteresis_state,
                       const LoopSignals &signals, double limit) {
-    const Product product(n + 1, n + 1, step);
-    const hyst_chain plant_hysteresis = hysteresis.view();
-    std::vector<double> z(n + 1, 0.0), sums(product.rows(), 0.0);
+    const Product product(n + 1, n + 1, [&](auto i, auto j) { return step[i * (n + 1) + j]; });
+    const FlatChain actuator(hysteresis, hysteresis_state.data());
+    // What is summed up is the next z, without a copy: processors wait for what they have just written
+    // in pieces.
+    std::vector<double> z(product.rows(), 0.0), next(z);
     for (std::size_t k = 0; k < signals.samples; ++k) {
         double y = product.at(n, n) * z[n];
         for (std::size_t j = 0; j < n; ++j) y += product.at(n, j) * z[j];
         double v = 0.0;
         const double u = answer(signals.r[k], y + signals.noise[k], v);
-        const double eta = hyst_chain_step(&plant_hysteresis, hysteresis_state.data(),
-                                           u + signals.before[k]);
+        const double eta = actuator.step(u + signals.before[k]);
         if (!within(limit, y, v, u, eta)) return {LoopEnd::diverged, k};
         signals.v[k] = v, signals.u[k] = u, signals.eta[k] = eta, signals.y[k] = y;
+        tell(k);
         z[n] = eta + signals.behind[k];
-        product.clear_and_add(sums.data(), z.data(), n + 1);
-        std::copy_n(sums.begin(), n, z.begin());
+        product.set(next.data(), z.data(), n + 1, Begin::from_zero);
+        next[n] = z[n];
+        z.swap(next);
     }
     return {LoopEnd::done, signals.samples};
 }
@@ -165,14 +159,14 @@ LoopResult run_continuous_loop(std::size_t n, const double *step, bool delayed,
                                std::vector<double> &inverse_state,
                                std::vector<double> &hysteresis_state, const LoopSignals &signals,
                                double limit) {
-    const Product product(n + 3, n + 3, step);
+    const Product product(n + 3, n + 3, [&](auto i, auto j) { return step[i * (n + 3) + j]; });
     Actuator actuator(inverse, hysteresis, inverse_state, hysteresis_state);
-    std::vector<double> z(n + 2, 0.0), sums(product.rows(), 0.0);
+    std::vector<double> z(product.rows(), 0.0), sums(z);  // the sums are the next z
     const double feedthrough = product.at(n, n + 2);  // of w to v
     double w = 0.0, v_before = 0.0;
     for (std::size_t k = 0; k < signals.samples; ++k) {
         z[n] = signals.r[k], z[n + 1] = signals.noise[k];
-        product.clear_and_add(sums.data(), z.data(), n + 2);
+        product.set(sums.data(), z.data(), n + 2, Begin::from_zero);
         const double before = signals.before[k], behind = signals.behind[k];
         double v = sums[n];
         if (feedthrough != 0.0 && delayed) {
@@ -189,23 +183,29 @@ LoopResult run_continuous_loop(std::size_t n, const double *step, bool delayed,
         if (!within(limit, sums[n + 1], v, u, eta)) return {LoopEnd::diverged, k};
         signals.v[k] = v, signals.u[k] = u, signals.eta[k] = eta;
         signals.y[k] = sums[n + 1], signals.d_hat[k] = sums[n + 2];
-        std::copy_n(sums.begin(), n, z.begin());
+        z.swap(sums);
         v_before = v;
     }
     return {LoopEnd::done, signals.samples};
 }
 
 LoopResult run_sampled_loop(std::size_t n, const double *step,
-                            const hyst_tracking_controller &controller, const Chain &hysteresis,
+                            const hyst_tracking_controller &controller, const Chain &inverse,
+                            const Estimate &estimate, const Chain &hysteresis,
                             std::vector<double> &controller_state,
                             std::vector<double> &hysteresis_state, const LoopSignals &signals,
                             double limit) {
-    double *const x = controller_state.data(), *const memory = x + controller.order;
+    LinearPart linear(controller, estimate, controller_state.data());
+    const FlatChain drive(inverse, controller_state.data() + controller.order);
     const auto answer = [&](double y_ref, double y, double &v) {
-        v = hyst_tracking_controller_linear(&controller, x, y_ref, y);
-        return hyst_chain_step(&controller.inverse, memory, v);
+        v = linear.step(y_ref, y);
+        return drive.step(v);
     };
-    return run_around(n, step, answer, hysteresis, hysteresis_state, signals, limit);
+    double *d_hat = signals.d_hat;
+    const auto tell = [&](std::size_t k) {
+        if (estimate.e != nullptr) d_hat[k] = linear.estimate();
+    };
+    return run_around(n, step, answer, tell, hysteresis, hysteresis_state, signals, limit);
 }
 
 LoopResult run_limited_loop(std::size_t n, const double *step,
@@ -221,7 +221,7 @@ LoopResult run_limited_loop(std::size_t n, const double *step,
                                           &guard, y_ref, y, &v, &excess);
     };
     LoopResult result =
-        run_around(n, step, answer, hysteresis, hysteresis_state, signals, limit);
+        run_around(n, step, answer, nothing, hysteresis, hysteresis_state, signals, limit);
     result.held = guard.limited != 0;
     return result;
 }
@@ -243,7 +243,7 @@ LoopResult run_repetitive_loop(std::size_t n, const double *step,
                                                   before.data(), &guard, y_ref, y, &v, &changed);
     };
     LoopResult result =
-        run_around(n, step, answer, hysteresis, hysteresis_state, signals, limit);
+        run_around(n, step, answer, nothing, hysteresis, hysteresis_state, signals, limit);
     result.held = guard.limited != 0;
     return result;
 }

@@ -11,10 +11,17 @@
 
 namespace hyst {
 
+// A record, stride 1, or a number for all samples, stride 0.
+struct LoopInput {
+    const double *values;
+    std::size_t stride;
+    double operator[](std::size_t k) const { return values[k * stride]; }
+};
+
 // What enters a loop and what comes out, N samples each.
 struct LoopSignals {
-    const double *r, *noise;          // reference, measurement noise
-    const double *before, *behind;    // disturbances before the hysteresis and behind it
+    LoopInput r, noise;               // reference, measurement noise
+    LoopInput before, behind;         // disturbances before the hysteresis and behind it
     double *v, *u, *eta, *y, *d_hat;  // eta: output of the hysteresis, behind not added
     std::size_t samples;
 };
@@ -38,10 +45,17 @@ LoopResult run_continuous_loop(std::size_t n, const double *step, bool delayed,
                                std::vector<double> &hysteresis_state, const LoopSignals &signals,
                                double limit);
 
+// d_hat = e x + f [y_ref; y] of a sampled controller; e is null where it does not tell.
+struct Estimate {
+    const double *e;
+    double f[2];
+};
+
 // A sampled controller around a plant [x+; y] = step [x; w], (n + 1) rows of n + 1. At sample k the
 // controller is given y before its new drive acts: feedthrough of the plant shows w_{k-1}.
 LoopResult run_sampled_loop(std::size_t n, const double *step,
-                            const hyst_tracking_controller &controller, const Chain &hysteresis,
+                            const hyst_tracking_controller &controller, const Chain &inverse,
+                            const Estimate &estimate, const Chain &hysteresis,
                             std::vector<double> &controller_state,
                             std::vector<double> &hysteresis_state, const LoopSignals &signals,
                             double limit);

@@ -5,13 +5,16 @@ from hyst import compensation as compensation
 from hyst import control as control
 from hyst import diagnosis as diagnosis
 from hyst import export as export
+from hyst import fleet as fleet
 from hyst import identification as identification
 from hyst import io as io
+from hyst import jax as jax
 from hyst import models as models
 from hyst import online as online
 from hyst import operators as operators
 from hyst import report as report
 from hyst import signals as signals
+from hyst import torch as torch
 from hyst._loading import load as load
 from hyst.diagnosis import Diagnosis as Diagnosis
 from hyst.diagnosis import diagnose as diagnose
@@ -33,6 +36,7 @@ from hyst.identification.schedule.identified_schedule import (
 from hyst.identification.schedule.identify_scheduled import (
     identify_scheduled as identify_scheduled,
 )
+from hyst.io import open_record as open_record
 from hyst.io import read_frequency_response as read_frequency_response
 from hyst.io import read_record as read_record
 from hyst.models import *

@@ -35,6 +35,7 @@ class Chain:
         threads: int = 1,
     ) -> float: ...
     def jacobian(self, state: Array, u: Array, result: Array, derivative: str = "auto") -> None: ...
+    def reverse(self, state: Array, u: Array, signal: Array, by_constants: Array) -> None: ...
     def carry_jacobian(self, state: Array, memory: Array, signal: Array, result: Array) -> None: ...
 
 def kinds() -> list[str]: ...
@@ -238,17 +239,26 @@ def run_continuous_loop(
     hysteresis: Chain,
     inverse_state: Array,
     hysteresis_state: Array,
-    inputs: Array,
+    r: Array,
+    noise: Array,
+    before: Array,
+    behind: Array,
     outputs: Array,
     limit: float,
 ) -> tuple[str, int, bool]: ...
 def run_sampled_loop(
     step: Array,
     controller: TrackingController,
+    e: Sequence[float],
+    f_ref: float,
+    f: float,
     hysteresis: Chain,
     controller_state: Array,
     hysteresis_state: Array,
-    inputs: Array,
+    r: Array,
+    noise: Array,
+    before: Array,
+    behind: Array,
     outputs: Array,
     limit: float,
 ) -> tuple[str, int, bool]: ...
@@ -258,7 +268,10 @@ def run_repetitive_loop(
     hysteresis: Chain,
     controller_state: Array,
     hysteresis_state: Array,
-    inputs: Array,
+    r: Array,
+    noise: Array,
+    before: Array,
+    behind: Array,
     outputs: Array,
     limit: float,
 ) -> tuple[str, int, bool]: ...
@@ -415,3 +428,8 @@ class ScaleEstimation:
     ) -> None: ...
 
 def project_radii(r: Array, most: float) -> None: ...
+def has_number_text() -> bool: ...
+def rows_as_text(columns: Sequence[Array], start: int, stop: int) -> bytes: ...
+def text_as_rows(
+    text: bytes, start: int, stop: int, separator: str, used: Sequence[int], values: Array
+) -> bool: ...

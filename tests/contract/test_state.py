@@ -32,6 +32,20 @@ def test_two_halves_are_the_whole(operators: st.SearchStrategy, data: st.DataObj
 
 @every_operator
 @given(data=st.data())
+def test_an_output_may_be_given(operators: st.SearchStrategy, data: st.DataObject) -> None:
+    operator, u = data.draw(operators), data.draw(signals())
+    y, end = operator.run(u)
+    apart, in_place = np.empty_like(u), u.copy()
+    given, state = operator.run(u, out=apart)
+    assert given is apart
+    assert given.tobytes() == y.tobytes()
+    assert state.tobytes() == end.tobytes()
+    assert operator(in_place, out=in_place) is in_place
+    assert in_place.tobytes() == y.tobytes()
+
+
+@every_operator
+@given(data=st.data())
 def test_stepping_is_running(operators: st.SearchStrategy, data: st.DataObject) -> None:
     operator, u = data.draw(operators), data.draw(signals())
     y, end = operator.run(u)

@@ -54,8 +54,13 @@ def test_arrays_are_never_converted(arguments: tuple[np.ndarray, ...]) -> None:
 
 @pytest.mark.parametrize(
     "arguments",
-    [(z[:, :1].copy(), u, y), (z, u, y[:, :5].copy()), (z, u, u), (np.zeros((2, 2)), u, y)],
-    ids=["short state", "short y", "y is u", "state of two records"],
+    [
+        (z[:, :1].copy(), u, y),
+        (z, u, y[:, :5].copy()),
+        (z, u[:, 1:], u[:, :-1]),
+        (np.zeros((2, 2)), u, y),
+    ],
+    ids=["short state", "short y", "y overlaps u", "state of two records"],
 )
 def test_shapes_must_fit(arguments: tuple[np.ndarray, ...]) -> None:
     with pytest.raises(ValueError, match=r"must|shape"):

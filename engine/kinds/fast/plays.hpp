@@ -14,6 +14,11 @@ void pi_jacobian(const void *bank, double dt, const double *state, const Tangent
 void rate_dependent_pi_jacobian(const void *model, double dt, const double *state,
                                 const Tangents &tangents);
 
+// From the output back.
+void play_reverse(const void *r, const Cotangents &given);
+void stop_reverse(const void *r, const Cotangents &given);
+void pi_reverse(const void *bank, const Cotangents &given);
+
 extern const HYST_KINDS::Plays lanes_of_play, lanes_of_stop, lanes_of_pi, lanes_of_rate_dependent_pi;
 
 }  // namespace hyst

@@ -11,57 +11,20 @@ import typer
 
 import hyst
 from hyst._typed_command import carrying_out
-from hyst.cli.adapt.command import adapt
-from hyst.cli.columns import columns
-from hyst.cli.compare import compare
-from hyst.cli.compensate import compensate
-from hyst.cli.demo import demo
-from hyst.cli.diagnose import diagnose
-from hyst.cli.excite import excite
 from hyst.cli.exit_codes import BAD_INPUT, DONE, FAILURE
-from hyst.cli.export.command import export
-from hyst.cli.family_options import FamilyCommand
-from hyst.cli.fit import fit
-from hyst.cli.identify import identify
-from hyst.cli.info import info
-from hyst.cli.learn.command import learn
-from hyst.cli.loop import loop
-from hyst.cli.observer.command import observer
-from hyst.cli.reproduce import reproduce
-from hyst.cli.simulate import simulate
-from hyst.cli.watch.command import watch
-from hyst.cli.waveform import waveform
+from hyst.cli.verbs import VERBS, Verbs, is_carried_out
 
 app = typer.Typer(
+    cls=Verbs,
     add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     help="From a measured hysteresis loop to a model, its exact inverse and a command.",
-    epilog="Exit code: 0 done, 3 done but no command should come from the model, 2 bad input, "
-    "1 failure.",
+    epilog="Exit code: 0 done, 3 done but no command should come from the model, or devices fail, "
+    "2 bad input, 1 failure.",
 )
-VERBS = (
-    diagnose,
-    excite,
-    columns,
-    identify,
-    fit,
-    compare,
-    adapt,
-    watch,
-    simulate,
-    loop,
-    compensate,
-    learn,
-    observer,
-    export,
-    waveform,
-    info,
-    reproduce,
-    demo,
-)
-for verb in VERBS:
-    app.command(verb.__name__, cls=FamilyCommand if verb is identify else None)(verb)
+for verb, (_, about) in VERBS.items():
+    app.command(verb, help=about)(is_carried_out)
 
 
 def _show_version(wanted: bool) -> None:

@@ -1,4 +1,7 @@
-"""What the verbs say: tables, notes, and that they are still at work."""
+"""What the verbs say: tables, notes, and that they are still at work.
+
+rich, which draws on terminals, is loaded where there is one.
+"""
 
 from __future__ import annotations
 
@@ -8,18 +11,17 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-from rich.table import Table as RichTable
-from rich.text import Text
-
 if TYPE_CHECKING:
+    from rich.table import Table as RichTable
+
     from hyst.report.table import Table
 
 
 def show_table(table: Table) -> None:
     """Print a table: ruled on a terminal, aligned plain text elsewhere."""
     if sys.stdout.isatty():
+        from rich.console import Console
+
         Console().print(_ruled(table))
     else:
         print(f"\n{table.title}")
@@ -42,6 +44,9 @@ def at_work(what: str) -> Iterator[Callable[[str], None]]:
     if not sys.stderr.isatty():
         yield _say_nothing
         return
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
     columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task(what, total=None)
@@ -54,6 +59,9 @@ def progress_bar(what: str) -> Iterator[Callable[[float], None]]:
     if not sys.stderr.isatty():
         yield _say_nothing
         return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task(what, total=1.0)
@@ -65,6 +73,9 @@ def _say_nothing(_: object) -> None:
 
 
 def _ruled(table: Table) -> RichTable:
+    from rich.table import Table as RichTable
+    from rich.text import Text
+
     # Text instead of markup: names from the user's file may hold brackets.
     ruled = RichTable(title=Text(table.title), title_justify="left", title_style="bold")
     for index, heading in enumerate(table.header):

@@ -20,9 +20,20 @@ def demo(
     folder: Annotated[
         Path, typer.Option("-o", "--out", metavar="DIR", help="Where to write.")
     ] = Path("demo"),
+    fleet: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            show_default=False,
+            help="Write records of N simulated actuators for hyst fleet, and nothing else.",
+        ),
+    ] = None,
 ) -> None:
     """Tell the whole story on a simulated stage: measure, identify, invert, track, compare."""
     require_folder(folder)
+    if fleet is not None:
+        _write_fleet(folder, fleet)
+        return
     with at_work("demo") as say:
         story = hyst.demo.tell(say=say)
         say("report")
@@ -49,6 +60,20 @@ def demo(
         f"-o {folder / 'again'}\n"
         f"  hyst compensate {folder / 'model.json'} {folder / 'reference.csv'} --column reference "
         f"--history {folder / 'history.csv'}:drive --with-delay -o {folder / 'command.csv'}"
+    )
+
+
+def _write_fleet(folder: Path, count: int) -> None:
+    with at_work("demo"):
+        odd = hyst.demo.write_simulated_fleet(folder, count)
+    print(hyst.demo.BANNER)
+    print(f"wrote {count} records in {folder}; on purpose not like the others are")
+    for each in odd:
+        print(f"  {each.identifier}: {each.oddness}")
+    print(
+        "go on with\n"
+        f'  hyst fleet "{folder}/*.csv" --input drive --output position --time time '
+        f"-o {folder}-fleet"
     )
 
 

@@ -35,6 +35,8 @@ Start: TypeAlias = Literal["rest", "settled"]
 # An output this many times larger than the reference has left for good.
 _FAR = 1e6
 
+_NOTHING = np.zeros(1)
+
 
 def simulate_closed_loop(
     reference: ArrayLike,
@@ -147,16 +149,16 @@ def simulate_closed_loop(
     spread, d = _noise(noise, r.size, seed), _signal(disturbance, r.size, "disturbance")
     if start == "settled":
         return simulate_settled(
-            simulate_closed_loop, r, time, controller, plant, hysteresis, spread, delay,
-            inverse=inverse, observer=observer, disturbance=d, disturbance_at=disturbance_at,
+            simulate_closed_loop, r, time, controller, plant, hysteresis,
+            _record(spread, r.size), delay,
+            inverse=inverse, observer=observer, disturbance=_record(d, r.size),
+            disturbance_at=disturbance_at,
             settle=settled, limit=limit,
         )  # fmt: skip
-    # Rows: r, noise, disturbance before and behind the hysteresis.
-    inputs, outputs = np.zeros((4, r.size)), np.zeros((5, r.size))
-    inputs[0], inputs[1] = r, spread
-    inputs[2 if disturbance_at == "hysteresis" else 3] = d
+    before, behind = (d, _NOTHING) if disturbance_at == "hysteresis" else (_NOTHING, d)
+    outputs = np.empty((5, r.size))
     actuator = _chain(hysteresis, "hysteresis", time), _start(hysteresis)
-    signals = inputs, outputs, _limit(limit, r, spread)
+    signals = r, spread, before, behind, outputs, _limit(limit, r, spread)
     if isinstance(controller, TrackingController | RepetitiveController):
         if inverse is not None or observer is not None:
             raise InputError(
@@ -172,10 +174,10 @@ def simulate_closed_loop(
             step, late, first, actuator[0], _start(inverse), actuator[1], *signals
         )
     _refuse_unsolved(end, good * time)
-    r, spread, d = r[:good], spread[:good], d[:good]
+    r, spread, d = (_record(each, r.size)[:good] for each in (r, spread, d))
     v, u, eta, y, d_hat = outputs[:, :good]
-    if isinstance(controller, TrackingController) and controller.E is not None and good:
-        d_hat = controller.estimate(r, y + spread)
+    if isinstance(controller, TrackingController | RepetitiveController):
+        d_hat = _estimated(controller, d_hat, r, y, spread)
     diverged_at = good * time if end == "diverged" else None
     return ClosedLoop(time, r, y, spread, v, u, eta, d_hat, d, settled, diverged_at, held)
 
@@ -200,7 +202,7 @@ def _sampled(
     controller: TrackingController | RepetitiveController,
     plant: SampledPlant,
     actuator: tuple[_engine.Chain, Array],
-    signals: tuple[Array, Array, float],
+    signals: tuple[Array, Array, Array, Array, Array, float],
 ) -> tuple[str, int, bool]:
     if abs(controller.dt - plant.dt) > 1e-6 * plant.dt:
         raise InputError(
@@ -211,7 +213,24 @@ def _sampled(
     after = chain, controller.initial_state(), state, *signals
     if isinstance(controller, RepetitiveController):
         return _engine.run_repetitive_loop(step, controller.compiled, *after)
-    return _engine.run_sampled_loop(step, controller.compiled, *after)
+    E = np.zeros(0) if controller.E is None else controller.E
+    F = np.zeros(2) if controller.F is None else controller.F
+    return _engine.run_sampled_loop(
+        step, controller.compiled, E.tolist(), float(F[0]), float(F[1]), *after
+    )
+
+
+def _estimated(
+    controller: TrackingController | RepetitiveController,
+    in_loop: Array,
+    r: Array,
+    y: Array,
+    noise: Array,
+) -> Array:
+    """Give the estimates; with a drive that is limited they are not told in the loop."""
+    if isinstance(controller, RepetitiveController) or controller.E is None or not r.size:
+        return np.zeros(r.size)
+    return in_loop if controller.W is None else controller.estimate(r, y + noise)
 
 
 def _settling(settle: float, samples: int, dt: float) -> float:
@@ -227,12 +246,19 @@ def _refuse_other(given: str, allowed: tuple[str, ...], name: str) -> None:
 
 
 def _signal(values: ArrayLike, samples: int, name: str) -> Array:
+    """Check samples, or a number for all of them, which stays a single one."""
     if np.ndim(values) == 0:
-        return np.full(samples, as_number(values, name))
+        return np.array([as_number(values, name)])
     record = one_record(values, name)
     if record.size != samples:
         raise InputError(f"{name} has {record.size} samples, the reference {samples}; give as many")
     return record
+
+
+def _record(signal: Array, samples: int) -> Array:
+    if signal.size == samples:
+        return signal
+    return np.full(samples, signal[0]) if signal[0] else np.zeros(samples)  # whose pages are free
 
 
 def _noise(noise: ArrayLike, samples: int, seed: int) -> Array:
@@ -241,7 +267,7 @@ def _noise(noise: ArrayLike, samples: int, seed: int) -> Array:
     deviation = as_not_negative(noise, "noise", "a standard deviation")
     draw = whole_number(seed, "seed", 0)
     if deviation == 0.0:
-        return np.zeros(samples)
+        return _NOTHING
     return deviation * np.random.default_rng(draw).standard_normal(samples)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hyst.io.chunked import RecordFile, open_record
 from hyst.io.driver_file import read_driver
 from hyst.io.formats import FORMATS, read_table, read_tables
 from hyst.io.frequency_response_file import read_frequency_response
@@ -9,6 +10,7 @@ from hyst.io.header import split_unit
 from hyst.io.reading import read_column, read_record, read_records
 from hyst.io.summary import ColumnSummary, FileSummary, summarize_file
 from hyst.io.table import Table
+from hyst.io.text_rows import read_text_rows
 from hyst.io.time_step import read_time_column, read_time_step
 from hyst.io.usable_rows import LONGEST_GAP
 from hyst.io.writing import join_unit, write_columns
@@ -18,8 +20,10 @@ __all__ = [
     "LONGEST_GAP",
     "ColumnSummary",
     "FileSummary",
+    "RecordFile",
     "Table",
     "join_unit",
+    "open_record",
     "read_column",
     "read_driver",
     "read_frequency_response",
@@ -27,6 +31,7 @@ __all__ = [
     "read_records",
     "read_table",
     "read_tables",
+    "read_text_rows",
     "read_time_column",
     "read_time_step",
     "split_unit",

@@ -61,6 +61,8 @@ class Entry:
         Gives the values, of any real type; masked where there is none.
     gap
         What a masked value is called in messages; empty for no value.
+    part
+        Gives those of some rows, first and one past the last; None where only all can be read.
     """
 
     header: str
@@ -69,6 +71,7 @@ class Entry:
     size: int
     read: Callable[[], NDArray[Any]]
     gap: str = ""
+    part: Callable[[int, int], NDArray[Any]] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,13 +148,21 @@ class Contents:
             unit = self.units.get(path, "") or unit
             size = max(stored.shape, default=0)
             for tail, selector in selectors:
-                read = _reading(stored, selector)
-                found.append(Entry(path + tail, name + tail, unit, size, read, stored.gap))
+                read, part = _reading(stored, selector), _reading_part(stored, selector)
+                found.append(Entry(path + tail, name + tail, unit, size, read, stored.gap, part))
         return found
 
 
 def _reading(stored: Stored, selector: Selector) -> Callable[[], NDArray[Any]]:
     return lambda: stored.read(selector)
+
+
+def _reading_part(stored: Stored, selector: Selector) -> Callable[[int, int], NDArray[Any]]:
+    def read(start: int, stop: int) -> NDArray[Any]:
+        rows = slice(start, stop)
+        return stored.read(tuple(rows if isinstance(k, slice) else k for k in selector))
+
+    return read
 
 
 def _name_and_unit(path: str, separator: str, label: str) -> tuple[str, str]:
@@ -270,7 +281,10 @@ def table_of_entries(
     if wanted.columns is not None:
         chosen = {find_column(table, column) for column in wanted.columns}
     refuse_too_many(source, sum(entries[k].size for k in chosen), wanted.most)
-    read = [_vector(entry) if k in chosen else (empty, None) for k, entry in enumerate(entries)]
+    read = [
+        vector_of_entry(entry.read, entry.gap) if k in chosen else (empty, None)
+        for k, entry in enumerate(entries)
+    ]
     return replace(
         table,
         columns=tuple(vector for vector, _ in read),
@@ -309,11 +323,19 @@ def _because(left_out: dict[str, str]) -> str:
     return f": {'; '.join(reasons[:_SHOWN])}"
 
 
-def _vector(entry: Entry) -> tuple[NDArray[np.float64], Flaw | None]:
-    """Read a column as doubles that nobody can change, and find its first flaw."""
+def vector_of_entry(
+    read: Callable[[], NDArray[Any]], gap: str
+) -> tuple[NDArray[np.float64], Flaw | None]:
+    """Read a column as doubles that nobody can change, and find its first flaw.
+
+    Parameters
+    ----------
+    read, gap
+        As of ``Entry``.
+    """
     # What is scaled beyond the range of a double is infinite, and refused as such.
     with np.errstate(over="ignore", invalid="ignore"):
-        values = entry.read()
+        values = read()
     masked = np.ma.getmaskarray(values) if np.ma.is_masked(values) else None
     vector = np.array(np.ma.getdata(values), dtype=np.float64, order="C").reshape(-1)
     if masked is not None:
@@ -321,5 +343,5 @@ def _vector(entry: Entry) -> tuple[NDArray[np.float64], Flaw | None]:
     vector.flags.writeable = False
     flaw = first_flaw(vector)
     if flaw is not None and masked is not None and masked.reshape(-1)[flaw.row]:
-        flaw = Flaw(flaw.row, entry.gap)
+        flaw = Flaw(flaw.row, gap)
     return vector, flaw

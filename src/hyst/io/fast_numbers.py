@@ -1,17 +1,14 @@
-"""Parse rows of plain numbers at the speed of C: by pyarrow where it is there, else by NumPy."""
+"""Parse rows of plain numbers at the speed of C: by the engine, or by NumPy where it cannot."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-# Loading pyarrow takes as long as NumPy needs for some megabytes.
-_WORTH_LOADING = 1 << 22
-_BLOCK = 1 << 20
+from hyst._engine import has_number_text, text_as_rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,43 +69,18 @@ def parse_numbers(
     array([[  nan,   nan],
            [-1.25,  0.75]])
     """
-    columns, rows = None, body.rows()
-    if separator is not None and body.size >= _WORTH_LOADING:
-        columns = _by_arrow(body, count, separator, used)
-    if columns is None:
-        columns = _by_numpy(body, count, separator, used)
+    rows = body.rows()
+    values = np.full((count, rows), np.nan) if len(used) < count else np.empty((count, rows))
+    if has_number_text():
+        stop = body.start + body.size
+        found = text_as_rows(body.data, body.start, stop, separator or "", list(used), values)
+        return values if found else None
+    columns = _by_numpy(body, count, separator, used)
     if columns is None or any(column.size != rows for column in columns):
         return None
-    values = np.full((count, rows), np.nan) if len(used) < count else np.empty((count, rows))
     for k, column in zip(used, columns, strict=True):
         values[k] = column
     return values
-
-
-def _by_arrow(
-    body: Body, count: int, separator: str, used: Sequence[int]
-) -> list[NDArray[np.float64]] | None:
-    try:
-        import pyarrow as arrow
-        from pyarrow import csv
-    except ImportError:
-        return None
-    names = [str(k) for k in range(count)]
-    wanted = [names[k] for k in used]
-    try:
-        table: Any = csv.read_csv(
-            arrow.BufferReader(arrow.py_buffer(body.data).slice(body.start, body.size)),
-            csv.ReadOptions(column_names=names, use_threads=False, block_size=_BLOCK),
-            csv.ParseOptions(delimiter=separator, quote_char=False, ignore_empty_lines=False),
-            csv.ConvertOptions(
-                column_types=dict.fromkeys(wanted, arrow.float64()),
-                include_columns=wanted,
-                null_values=[],
-            ),
-        )
-    except (arrow.ArrowException, ValueError):
-        return None
-    return [table.column(name).to_numpy() for name in wanted]
 
 
 def _by_numpy(

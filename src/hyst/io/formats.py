@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -140,6 +141,20 @@ def read_tables(
     MissingExtraError
         If the format needs a package that is not installed.
     """
+    wanted = Wanted(None if columns is None else tuple(columns), int(max_samples))
+    with regular_file(path, format) as file:
+        return _read(file, format, repair, wanted)
+
+
+@contextlib.contextmanager
+def regular_file(path: str | os.PathLike[str], format: str | None) -> Iterator[Path]:
+    """Give the path of a file that is there, is not empty, and may be of a format.
+
+    Raises
+    ------
+    InputError
+        If it is not so, and for what the system refuses while the file is read.
+    """
     file = Path(path)
     if format is not None and format not in FORMATS:
         raise InputError(f"format is {format!r}; give one of {', '.join(FORMATS)}")
@@ -149,14 +164,28 @@ def read_tables(
         raise InputError(f"{file} is a folder; name a file in it")
     if not file.is_file():
         raise InputError(f"{file} is a device or a pipe, not a regular file; save it as a file")
-    wanted = Wanted(None if columns is None else tuple(columns), int(max_samples))
     try:
         if file.stat().st_size == 0:
             raise InputError(f"{file} is empty; give a file with columns of numbers")
-        return _read(file, format, repair, wanted)
+        yield file
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise InputError(f"{file} cannot be read: {reason}; check the file") from error
+
+
+def format_of(file: Path, format: str | None) -> tuple[str, bool]:
+    """Tell the format of a file, and whether it is packed.
+
+    Parameters
+    ----------
+    file
+        Which.
+    format
+        What the user says; None for what content and suffix say.
+    """
+    with file.open("rb") as opened:
+        head = opened.read(_HEAD)
+    return format or _format(head, file.suffix.lower()), is_compressed(head)
 
 
 def choose_table(tables: tuple[Table, ...], table: int | None) -> Table:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from hyst.errors import HystError, InputError, MissingExtraError
-from hyst.io.entries import MOST_SAMPLES, Contents, Stored, Wanted, table_of_entries
+from hyst.io.entries import MOST_SAMPLES, Contents, Entry, Stored, Wanted, table_of_entries
 from hyst.io.hdf5_heap import has_endless_heap
 from hyst.io.hdf5_values import NotAllThere, reading, stored_text
 from hyst.io.mat_objects import label_signals, object_refused
@@ -27,6 +29,8 @@ _MATLAB_NUMBERS = frozenset(
 )
 # Where MATLAB keeps what its cells, struct arrays and objects refer to.
 _KEPT = "#"
+# A part of a chunk is read from here, and the chunk not unpacked again.
+_CACHE = 1 << 25
 _DEEPEST, _MOST_REFERENCES = 16, 100_000
 
 
@@ -66,6 +70,28 @@ def read_hdf5(path: Path, wanted: Wanted, separator: str = "/") -> Table:
     MissingExtraError
         If h5py is not installed.
     """
+    with opened_entries(path, separator) as (entries, left_out):
+        return table_of_entries(str(path), entries, wanted, left_out)
+
+
+@contextlib.contextmanager
+def opened_entries(
+    path: Path, separator: str = "/"
+) -> Iterator[tuple[list[Entry], dict[str, str]]]:
+    """Open an HDF5 file, give the columns it holds, and what is no column and why; close it.
+
+    Parameters
+    ----------
+    path, separator
+        As of ``read_hdf5``.
+
+    Raises
+    ------
+    InputError
+        If the file is damaged or no HDF5 file; also for what goes wrong while it is open.
+    MissingExtraError
+        If h5py is not installed.
+    """
     try:
         import h5py
     except ImportError as error:
@@ -75,7 +101,7 @@ def read_hdf5(path: Path, wanted: Wanted, separator: str = "/") -> Table:
     if has_endless_heap(path):
         raise InputError(f"{path} is damaged (the texts in it); save it again")
     try:
-        with h5py.File(path, "r") as file:
+        with h5py.File(path, "r", rdcc_nbytes=_CACHE) as file:
             contents = Contents()
             walk = _Walk(file, separator, contents, set())
             for name in file:
@@ -84,7 +110,7 @@ def read_hdf5(path: Path, wanted: Wanted, separator: str = "/") -> Table:
             if separator == ".":
                 label_signals(contents)
             entries = contents.entries(separator)
-            return table_of_entries(str(path), entries, wanted, contents.left_out)
+            yield entries, contents.left_out
     except HystError:
         raise
     # A damaged file fails anywhere in the HDF5 library, with any exception.

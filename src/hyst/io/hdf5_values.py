@@ -121,4 +121,4 @@ def _written(item: Any, chosen: Selector) -> NDArray[np.bool_]:
         rows[chunk.chunk_offset[axis] :][: item.chunks[axis]] = True
 
     item.id.chunk_iter(mark)
-    return rows
+    return rows[chosen[axis]]

@@ -95,12 +95,17 @@ def _entries(
         said = stated.get(b"unit", stated.get(b"units", b"")).decode("utf-8", "replace")
 
         def read(column: Callable[[], Any] = column, kind: Any = field.type) -> Any:
-            return _vector(column(), kind, arrow, compute)
+            return vector_of(column(), kind, arrow, compute)
 
-        if arrow.types.is_timestamp(field.type) or arrow.types.is_duration(field.type):
+        if is_clock(field.type, arrow.types):
             unit = "s"
         entries.append(Entry(field.name, name, unit or said, rows, read))
     return entries, left_out
+
+
+def is_clock(kind: Any, types: Any) -> bool:
+    """Tell whether a type is that of dates or durations."""
+    return bool(types.is_timestamp(kind) or types.is_duration(kind))
 
 
 def _is_numeric(kind: Any, types: Any) -> bool:
@@ -115,11 +120,27 @@ def _is_numeric(kind: Any, types: Any) -> bool:
     return any(test(kind) for test in tests)
 
 
-def _vector(column: Any, kind: Any, arrow: Any, compute: Any) -> NDArray[np.float64]:
-    if arrow.types.is_timestamp(kind) or arrow.types.is_duration(kind):
+def vector_of(
+    column: Any, kind: Any, arrow: Any, compute: Any, earliest: Any = None
+) -> NDArray[np.float64]:
+    """Give a column as doubles, dates and durations as seconds since the earliest.
+
+    Parameters
+    ----------
+    column
+        Of arrow.
+    kind
+        Its type.
+    arrow, compute
+        The two modules.
+    earliest
+        Whole ticks from which dates count; by default the least in the column.
+    """
+    if is_clock(kind, arrow.types):
         ticks = column.cast(arrow.int64())
         # Subtracting whole ticks first: seconds since 1970 leave a double too few digits.
-        since_first = compute.subtract(ticks, compute.min(ticks))
+        since = compute.min(ticks) if earliest is None else arrow.scalar(earliest, arrow.int64())
+        since_first = compute.subtract(ticks, since)
         return _doubles(since_first, arrow) / _TICKS_PER_SECOND[kind.unit]
     return _doubles(column, arrow)
 

@@ -55,23 +55,23 @@ def read_plain(
     """
     if len(data) < large:
         return None
-    found = _head(data[: data.rfind(b"\n", 0, _HEAD) + 1], source)
+    found = head_of(data[: data.rfind(b"\n", 0, _HEAD) + 1], source)
     if found is None:
         return None
     page, block = found
     number = page.lines.numbers[block.first]
-    start = _start_of_line(data, number)
-    body = _plain_body(data, start, page.writing)
+    start = start_of_line(data, number)
+    body = plain_body(data, start, page.writing)
     if body is None:
         return None
-    preview = _table(page, block, np.zeros((block.count, 2)), number)
+    preview = titled(page, block, np.zeros((block.count, 2)), number)
     used = list(range(block.count))
     if columns is not None:
         used = sorted({find_column(preview, column) for column in columns})
     values = parse_numbers(body, block.count, page.writing.separator, used)
     if values is None or not np.isfinite(values[used]).all():
         return None
-    table = _table(page, block, values, number)
+    table = titled(page, block, values, number)
     if len(used) == block.count:
         return table
     none = np.empty(0)
@@ -79,7 +79,7 @@ def read_plain(
     return replace(table, columns=tuple(kept))
 
 
-def _head(data: bytes, source: str) -> tuple[Page, Block] | None:
+def head_of(data: bytes, source: str) -> tuple[Page, Block] | None:
     """Find out how the file is written; None unless all lines after the head are plain rows."""
     try:
         text = decode(data, source)
@@ -102,7 +102,7 @@ def _head(data: bytes, source: str) -> tuple[Page, Block] | None:
     return Page(source, lines, kinds, writing), block
 
 
-def _plain_body(data: bytes, start: int, writing: Writing) -> Body | None:
+def plain_body(data: bytes, start: int, writing: Writing) -> Body | None:
     """Give rows with a decimal point and plain line ends; None if there is more than numbers."""
     decimal, separator = writing.decimal.encode(), (writing.separator or "\t").encode()
     if decimal == separator:
@@ -122,14 +122,26 @@ def _plain_body(data: bytes, start: int, writing: Writing) -> Body | None:
     return Body(body if decimal == b"." else body.replace(b",", b"."))
 
 
-def _start_of_line(data: bytes, number: int) -> int:
+def start_of_line(data: bytes, number: int) -> int:
+    """Give the byte at which a line begins, counted from 1."""
     start = 0
     for _ in range(number - 1):
         start = data.index(b"\n", start) + 1
     return start
 
 
-def _table(page: Page, block: Block, values: NDArray[np.float64], number: int) -> Table:
+def titled(page: Page, block: Block, values: NDArray[np.float64], number: int) -> Table:
+    """Join the numbers of a block, shape (columns, rows), and what stands above them.
+
+    Parameters
+    ----------
+    page, block
+        Where they stand.
+    values
+        The numbers.
+    number
+        Line of the first row.
+    """
     columns = [ColumnOfCells(column, None) for column in values]
     numbers = np.arange(number, number + values.shape[1], dtype=np.intp)
     table = with_titles(page, block, columns, numbers)

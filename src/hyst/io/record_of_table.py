@@ -169,7 +169,26 @@ def _samples(
         stamps = table.columns[chosen[2]][rows]
         seconds, told = unit_of_stamps(table, chosen[2], stamps, wanted.time_unit)
         return Samples(table, rows, stamps, seconds, signals, rate_given=False), told
-    told = ()
+    period, told = step_of_rows(table, wanted)
+    return Samples(table, rows, rows.astype(np.float64), period, signals, rate_given=True), told
+
+
+def step_of_rows(table: Table, wanted: Wanted) -> tuple[float, tuple[str, ...]]:
+    """Give the seconds between rows without stamps, and what is to be told about them.
+
+    Parameters
+    ----------
+    table
+        It may state the step.
+    wanted
+        It may have the rate.
+
+    Raises
+    ------
+    InputError
+        If neither does.
+    """
+    told: tuple[str, ...] = ()
     if wanted.rate is not None:
         period = 1.0 / wanted.rate
         if table.step is not None and abs(table.step - period) > 1e-3 * period:
@@ -177,15 +196,13 @@ def _samples(
                 f"the rate given is {wanted.rate:.9g} Hz, the file itself states "
                 f"{1.0 / table.step:.9g} Hz; the one given was used",
             )
-    elif table.step is None:
+        return period, told
+    if table.step is None:
         raise InputError(
             f"neither of rate and time given, and {table.source} states no rate that is "
             "clear; give one, a rate in Hz or a time column"
         )
-    else:
-        period = table.step
-        told = (f"the file states {period:.9g} s between samples, which was used",)
-    return Samples(table, rows, rows.astype(np.float64), period, signals, rate_given=True), told
+    return table.step, (f"the file states {table.step:.9g} s between samples, which was used",)
 
 
 def refuse_unusable(

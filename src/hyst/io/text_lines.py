@@ -66,7 +66,7 @@ def significant_lines(text: str) -> Lines:
     headers: set[str] = set()
     for number, line in _joined(text.split("\n")):
         start = line.lstrip()
-        if start.startswith(COMMENTS) and not start.startswith(_SPREADSHEET_ERRORS):
+        if is_comment(start):
             after_gap.add(len(lines))
             comment = _FIRST_COMMENT_CELL.sub("", start).strip()
             if not lines:
@@ -84,6 +84,12 @@ def significant_lines(text: str) -> Lines:
         else:
             after_gap.add(len(lines))
     return Lines(lines, numbers, tuple(comments), frozenset(after_gap))
+
+
+def is_comment(line: str) -> bool:
+    """Tell whether a line says nothing to a program."""
+    start = line.lstrip()
+    return start.startswith(COMMENTS) and not start.startswith(_SPREADSHEET_ERRORS)
 
 
 def _is_header_again(comment: str, comments: list[str], first: str) -> bool:

@@ -65,9 +65,9 @@ def usable_rows(
     rows = np.flatnonzero(good)
     missing = good.size - rows.size
     if not missing:
-        return _enough(table, rows), ()
+        return require_samples(table, rows), ()
     allowed = missing <= most_left_out(good.size)
-    _refuse_row_of_units(table, chosen)
+    refuse_row_of_units(table, chosen)
     for k, usable in zip(chosen, finite, strict=True):
         flaw = table.flaws[k]
         if not (repair and usable.any() and not (flaw and flaw.why)):
@@ -83,10 +83,10 @@ def usable_rows(
             "give a file that is complete"
         )
     _refuse_long_gap(table, rows, longest_gap)
-    return _enough(table, rows), _told(table, chosen, codes, np.logical_and.reduce(finite))
+    return require_samples(table, rows), _told(table, chosen, codes, np.logical_and.reduce(finite))
 
 
-def _refuse_row_of_units(table: Table, chosen: list[int]) -> None:
+def refuse_row_of_units(table: Table, chosen: list[int]) -> None:
     """Refuse a first row with a unit in it: leaving it out would leave out the unit of the time."""
     for k in chosen:
         flaw = table.flaws[k]
@@ -98,7 +98,8 @@ def _refuse_row_of_units(table: Table, chosen: list[int]) -> None:
             )
 
 
-def _enough(table: Table, rows: NDArray[np.intp]) -> NDArray[np.intp]:
+def require_samples(table: Table, rows: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Give rows of a table that are enough for a record, or refuse them."""
     if rows.size < FEWEST_SAMPLES:
         raise InputError(
             f"{table.source} has {rows.size} usable samples; give a record of at least "

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import csv
+import io
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
+from hyst._engine import has_number_text, rows_as_text
 from hyst._files import replacing
+
+# Rows that are turned into text at a time.
+_ROWS = 1 << 16
 
 
 def write_columns(
@@ -41,11 +47,52 @@ def write_columns(
     >>> path.read_text().split()
     ['u', '[V],y', '0.1,0.3333333333333333', '1.0,2.0']
     """
-    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(headers)
-        # tolist() gives Python floats, whose shortest text names exactly one double.
-        writer.writerows(zip(*(column.tolist() for column in columns), strict=True))
+    with replacing(path) as temporary, temporary.open("wb") as file:
+        head = io.StringIO()
+        csv.writer(head, lineterminator="\n").writerow(headers)
+        file.write(head.getvalue().encode("utf-8"))
+        for rows in rows_of_text(columns):
+            file.write(rows)
+
+
+def rows_of_text(columns: Sequence[NDArray[Any]]) -> Iterator[bytes]:
+    r"""Write numbers with the fewest digits that name each double, as ``repr`` does.
+
+    Parameters
+    ----------
+    columns
+        Vectors of one length, of real or whole numbers.
+
+    Yields
+    ------
+    bytes
+        Some lines each, separated by commas.
+
+    Raises
+    ------
+    ValueError
+        If their lengths differ.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> b"".join(rows_of_text([np.array([0.1, 1e22]), np.array([2, 3])]))
+    b'0.1,2\\n1e+22,3\\n'
+    """
+    sizes = {column.size for column in columns}
+    if len(sizes) > 1:
+        raise ValueError(f"columns have different lengths, {sorted(sizes)}")
+    doubles = all(column.dtype == np.float64 for column in columns) and has_number_text()
+    whole = [np.ascontiguousarray(column) for column in columns]
+    rows = max(sizes, default=0)
+    for start in range(0, rows, _ROWS):
+        stop = min(start + _ROWS, rows)
+        if doubles:
+            yield rows_as_text(whole, start, stop)
+        else:
+            # tolist() gives Python numbers, whose text is the shortest there is.
+            cells = zip(*(column[start:stop].tolist() for column in whole), strict=True)
+            yield "".join(",".join(map(repr, row)) + "\n" for row in cells).encode("ascii")
 
 
 def join_unit(name: str, unit: str) -> str:

@@ -18,8 +18,6 @@ import warnings
 from collections.abc import Callable
 
 import numpy as np
-import scipy.linalg
-import scipy.optimize
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.numbers import as_not_negative
@@ -62,6 +60,8 @@ def held_late(num: ArrayLike, den: ArrayLike, dt: float, delay: float) -> tuple[
     InputError
         As ``companion``, or if the delay is negative or above a million.
     """
+    import scipy.linalg  # slow, and few models need it
+
     late = as_not_negative(delay, "delay", "samples")
     if late > LARGEST_DELAY:
         raise InputError(f"delay is {late:.6g} samples; it may be {LARGEST_DELAY} at most")
@@ -86,6 +86,8 @@ def _continuous(num: ArrayLike, den: ArrayLike, dt: float) -> tuple[Array, Array
 
 def _held(L: Array, b: Array, time: float) -> tuple[Array, Array]:
     """Give ``exp(L t)`` and ``int_0^t exp(L s) ds b``."""
+    import scipy.linalg  # slow, and few models need it
+
     n = b.size
     block = np.zeros((n + 1, n + 1))
     block[:n, :n], block[:n, n] = L * time, b * time
@@ -117,6 +119,8 @@ def released(
     NotInvertibleError
         If a pole lies at 0 or on the negative real axis, or the logarithm of A loses its digits.
     """
+    import scipy.linalg  # slow, and few models need it
+
     _refuse_what_is_never_held(A)
     n = B.size
     if n == 0:
@@ -151,6 +155,8 @@ def _refuse_what_is_never_held(A: Array) -> None:
 
 
 def _logarithm(A: Array) -> Array:
+    import scipy.linalg  # slow, and few models need it
+
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # what it warns of is checked below
         L = scipy.linalg.logm(A)
@@ -196,6 +202,8 @@ def _change_before_sampling(L: Array, b: Array, c: Array, D: float) -> float:
 
 def _between(function: Callable[[float], float], low: float, high: float) -> float:
     """Give the root between two ends; that end which is one, to rounding."""
+    import scipy.optimize  # slow, and few models need it
+
     at_low, at_high = function(low), function(high)
     if at_low * at_high >= 0.0:
         return low if abs(at_low) < abs(at_high) else high

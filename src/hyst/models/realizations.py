@@ -9,7 +9,6 @@ from __future__ import annotations
 import functools
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
 from hyst.checks.arrays import as_constants
@@ -86,6 +85,8 @@ def zero_order_hold(num: ArrayLike, den: ArrayLike, dt: float) -> Matrices:
     InputError
         As ``companion``.
     """
+    import scipy.linalg  # slow, and few models need it
+
     above = np.trim_zeros(as_constants(num, "num"), "f")
     below = np.trim_zeros(as_constants(den, "den"), "f")
     scale = float(as_number(dt, "dt")) ** np.arange(max(above.size, below.size, 1))

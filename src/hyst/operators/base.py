@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hyst import _engine
 from hyst.checks.arrays import as_signal, as_state, refuse_sample
+from hyst.checks.outputs import as_output
 from hyst.errors import InputError
 from hyst.operators.constants import Constants
 from hyst.operators.description import ModelDescription
@@ -20,6 +21,7 @@ from hyst.operators.inverses import Inverses
 from hyst.operators.model_file import MODEL, write_file
 from hyst.operators.portrait import LOOP, Portrait
 from hyst.operators.registry import compose
+from hyst.operators.reverse import Reverse
 from hyst.operators.stage import Stage
 from hyst.operators.stepper import Stepper
 from hyst.operators.traits import Traits
@@ -27,7 +29,7 @@ from hyst.operators.traits import Traits
 Array = NDArray[np.float64]
 
 
-class Operator(Inverses, Constants, ABC):
+class Operator(Inverses, Constants, Reverse, ABC):
     """A causal operator with a finite state; ``y = operator(u)``.
 
     Concrete operators are frozen dataclasses that say what they are (constants, traits, state,
@@ -151,13 +153,15 @@ class Operator(Inverses, Constants, ABC):
         """
 
     @final
-    def __call__(self, u: ArrayLike) -> Array:
+    def __call__(self, u: ArrayLike, *, out: Array | None = None) -> Array:
         """Give the output for a whole record that starts from the initial state.
 
         Parameters
         ----------
         u
             Shape (N,) or (batch, N), finite, N >= 1.
+        out
+            As in ``run``.
 
         Returns
         -------
@@ -167,9 +171,9 @@ class Operator(Inverses, Constants, ABC):
         Raises
         ------
         InputError
-            If ``u`` cannot be used; the first bad index is named.
+            If ``u`` or ``out`` cannot be used; the first bad index is named.
         """
-        return self.run(u)[0]
+        return self.run(u, out=out)[0]
 
     @final
     def run(
@@ -179,6 +183,7 @@ class Operator(Inverses, Constants, ABC):
         *,
         engine: EngineName = "auto",
         threads: int = 1,
+        out: Array | None = None,
     ) -> tuple[Array, Array]:
         """Give the output for a whole record and the state after it.
 
@@ -198,30 +203,46 @@ class Operator(Inverses, Constants, ABC):
             ``hyst.operators.evaluation.explain`` tells what ``"auto"`` takes, and why.
         threads
             How many threads may work on it, at least 1.
+        out
+            Where the output goes: a float64 array in the shape of ``u``, C-contiguous and
+            writeable. A fresh one if left out, which takes longer than the arithmetic of a small
+            model. ``u`` itself is allowed and then overwritten; what only overlaps it is not. The
+            output has the same bits either way. Where a sample is refused, what ``out`` holds
+            means nothing.
 
         Returns
         -------
         y : numpy.ndarray
-            In the shape of ``u``.
+            In the shape of ``u``; ``out`` if given.
         state : numpy.ndarray
             Shape (n,), or (batch, n) for a batch.
 
         Raises
         ------
         InputError
-            If ``u`` or ``state`` cannot be used, a sample overflows on its way through the operator
-            (the first is named), there is no such engine, or ``threads`` is not a positive integer.
+            If ``u``, ``state`` or ``out`` cannot be used, a sample overflows on its way through the
+            operator (the first is named), there is no such engine, or ``threads`` is not a positive
+            integer.
+
+        Examples
+        --------
+        >>> from hyst import Play
+        >>> u, y = np.array([0.0, 1.0, 0.5]), np.empty(3)
+        >>> Play(0.25).run(u, out=y)[0] is y
+        True
         """
         signal = as_signal(u, finite=False)
         batch = None if signal.ndim == 1 else signal.shape[0]
         start = self.initial_state() if state is None else state
         memory = as_state(start, self._chain.state_length, batch)
         rows = signal.reshape(1, -1) if batch is None else signal
-        y = np.empty_like(rows)
-        bad = self._chain.run(memory, rows, y, as_engine(engine), as_threads(threads))
+        y = np.empty_like(signal) if out is None else as_output(out, signal)
+        bad = self._chain.run(
+            memory, rows, y.reshape(rows.shape), as_engine(engine), as_threads(threads)
+        )
         if bad >= 0:
             refuse_sample(signal, bad, "u")
-        return (y, memory) if batch is not None else (y[0], memory[0])
+        return (y, memory) if batch is not None else (y, memory[0])
 
     @final
     def stepper(self, state: ArrayLike | None = None) -> Stepper:

@@ -53,7 +53,9 @@ ESTIMATOR = Format(
     "hyst estimator", "estimator", {2: 1, 3: 2, 4: 3, 5: 4, 6: 5}, ("kind", "settings", "state")
 )
 LEARNING = Format("hyst learning", "learning", {1: 1, 2: 2, 3: 3, 4: 4, 5: 5}, ("learning",))
-_FORMATS = {each.name: each for each in (MODEL, ESTIMATOR, LEARNING)}
+SHARED_SHAPE = Format("hyst shared shape", "shared shape", {3: 3, 4: 4, 5: 5}, ("shared_shape",))
+LOADED = (MODEL, ESTIMATOR, LEARNING)
+"""What ``hyst.load`` reads; a shared shape is read where it is defined."""
 
 
 @final
@@ -109,13 +111,15 @@ def write_file(
         temporary.write_text(_lists_on_one_line(text) + "\n", encoding="utf-8")
 
 
-def read_file(path: str | os.PathLike[str]) -> SavedFile:
+def read_file(path: str | os.PathLike[str], formats: tuple[Format, ...] = LOADED) -> SavedFile:
     """Read a file as plain dictionaries; ``hyst.load`` gives what it holds.
 
     Parameters
     ----------
     path
         The file.
+    formats
+        The kinds of file that are wanted.
 
     Returns
     -------
@@ -128,10 +132,12 @@ def read_file(path: str | os.PathLike[str]) -> SavedFile:
         format or version, or a missing or unknown entry.
     """
     content = _parse(Path(path))
-    form = _FORMATS.get(str(content.get("format"))) if isinstance(content, dict) else None
+    by_name = {each.name: each for each in formats}
+    form = by_name.get(str(content.get("format"))) if isinstance(content, dict) else None
     if form is None:
-        known = " or ".join(repr(name) for name in _FORMATS)
-        raise InputError(f"{path}: not a model file; its entry 'format' must be {known}")
+        known = " or ".join(repr(name) for name in by_name)
+        what = "model" if MODEL in formats else formats[0].holds
+        raise InputError(f"{path}: not a {what} file; its entry 'format' must be {known}")
     version = content.get("version")
     if type(version) is not int or version not in form.versions:
         *others, last = (str(each) for each in form.versions)

@@ -19,6 +19,13 @@ from hyst.report.drive_summary import drive_table as drive_table
 from hyst.report.dynamics_figures import dynamics_sections as dynamics_sections
 from hyst.report.dynamics_figures import dynamics_table as dynamics_table
 from hyst.report.estimation_figure import draw_estimates as draw_estimates
+from hyst.report.fleet.figures import draw_fleet_distributions as draw_fleet_distributions
+from hyst.report.fleet.figures import draw_fleet_loops as draw_fleet_loops
+from hyst.report.fleet.page import broken_limits_table as broken_limits_table
+from hyst.report.fleet.page import failed_devices_table as failed_devices_table
+from hyst.report.fleet.page import fleet_numbers_table as fleet_numbers_table
+from hyst.report.fleet.page import odd_devices_table as odd_devices_table
+from hyst.report.fleet.page import write_fleet_page as write_fleet_page
 from hyst.report.forc_figure import draw_forc_diagram as draw_forc_diagram
 from hyst.report.forecast_summary import forecast_table as forecast_table
 from hyst.report.identification_report import Section as Section

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn, with_unit
+from hyst.report.drawn_samples import drawn_samples
 from hyst.report.fitted_record import FittedRecord
 
 Array = NDArray[np.float64]
@@ -37,8 +38,11 @@ def draw_error(fits: tuple[FittedRecord, ...], heading: str) -> Figure:
     record = fits[0].record
     for number, fit in enumerate(fits):
         colour = (MODELLED, SECOND)[number % 2]
-        over_time.plot(fit.time, fit.error, ".", color=colour, markersize=1.6, alpha=0.6)
-        over_input.plot(fit.model_input, fit.error, ".", color=colour, markersize=1.6, alpha=0.4)
+        u, error = fit.model_input, fit.error
+        shown = drawn_samples(u, error)
+        time = (fit.start + shown) * fit.record.dt
+        over_time.plot(time, error[shown], ".", color=colour, markersize=1.6, alpha=0.6)
+        over_input.plot(u[shown], error[shown], ".", color=colour, markersize=1.6, alpha=0.4)
     error_label = with_unit("error", record.output_unit)
     over_time.set(title="Error over time", xlabel="time [s]", ylabel=error_label)
     over_input.set(

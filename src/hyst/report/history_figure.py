@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hyst.report.canvas import MEASURED, MODELLED, blank, drawn, with_unit
+from hyst.report.drawn_samples import drawn_samples
 from hyst.report.fitted_record import FittedRecord
 from hyst.signals import reversals
 
@@ -50,12 +51,14 @@ def draw_history(fits: tuple[FittedRecord, ...], heading: str) -> Figure:
 
 
 def _draw(axes: Axes, fit: FittedRecord, start: int, stop: int) -> None:
-    t = fit.record.time[start:stop]
+    measured, modelled = fit.record.y[start:stop], fit.y_model[start:stop]
+    shown = drawn_samples(measured, modelled)
+    t = (start + shown) * fit.record.dt
     if fit.band is not None:
-        low, high = (each[start:stop] for each in fit.band)
+        low, high = (each[start:stop][shown] for each in fit.band)
         axes.fill_between(t, low, high, color=MODELLED, alpha=0.18, linewidth=0.0, label="95 %")
-    axes.plot(t, fit.record.y[start:stop], color=MEASURED, linewidth=2.2, alpha=0.6, label="record")
-    axes.plot(t, fit.y_model[start:stop], color=MODELLED, linewidth=1.0, label="model")
+    axes.plot(t, measured[shown], color=MEASURED, linewidth=2.2, alpha=0.6, label="record")
+    axes.plot(t, modelled[shown], color=MODELLED, linewidth=1.0, label="model")
     axes.margins(x=0.01)
 
 

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from hyst.report.canvas import FAINT, MEASURED, MODELLED, blank, drawn, with_unit
+from hyst.report.drawn_samples import drawn_path, drawn_samples
 from hyst.report.fitted_record import FittedRecord
 
 Array = NDArray[np.float64]
@@ -59,8 +60,9 @@ def _straight_line(fits: tuple[FittedRecord, ...]) -> tuple[float, float]:
 
 
 def _pair(axes: Axes, u: Array, measured: Array, modelled: Array, label: bool) -> None:
+    shown = drawn_samples(u, measured)
     axes.plot(
-        u, measured, ".", color=MEASURED, markersize=2.0, alpha=0.5, label="record" * label,
-        rasterized=True,
+        u[shown], measured[shown], ".", color=MEASURED, markersize=2.0, alpha=0.5,
+        label="record" * label, rasterized=True,
     )  # fmt: skip
-    axes.plot(u, modelled, color=MODELLED, linewidth=1.1, label="model" * label)
+    axes.plot(*drawn_path(u, modelled), color=MODELLED, linewidth=1.1, label="model" * label)

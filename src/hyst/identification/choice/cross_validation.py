@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.stats
+import scipy.special
 from numpy.typing import NDArray
 
 from hyst.identification.choice.blocks import Block, blocks_of
@@ -179,7 +179,7 @@ def leaves_white_noise(overview: Overview, fit: Fit) -> bool:
     if power <= 0.0 or errors.size < 4 * WHITE_LAGS:
         return power <= 0.0
     alike = [float(errors[lag:] @ errors[:-lag]) / power for lag in range(1, WHITE_LAGS + 1)]
-    limit = scipy.stats.chi2.isf(WHITE_BY_CHANCE, WHITE_LAGS)
+    limit = scipy.special.chdtri(WHITE_LAGS, WHITE_BY_CHANCE)
     return bool(errors.size * float(np.square(alike).sum()) < limit)
 
 

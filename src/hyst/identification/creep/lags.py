@@ -7,7 +7,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from hyst.identification.families.family import Fit
 from hyst.identification.record_use.used_samples import Data
@@ -97,6 +96,8 @@ def answers(data: Data, signals: Sequence[Array], tau: Array) -> list[Array]:
     tau
         Time constants, s.
     """
+    from scipy.signal import lfilter  # slow, and only dynamics need it
+
     found = []
     for record, signal in zip(data.records, signals, strict=True):
         kept = np.exp(-record.dt / tau)

@@ -6,7 +6,7 @@ import itertools
 import math
 
 import numpy as np
-import scipy.stats
+import scipy.special
 
 from hyst.identification.judgement.drive_cycles import frequency_of
 from hyst.identification.judgement.regression import correlation_time
@@ -42,7 +42,7 @@ def growth_with_rate(remainder: Remainder) -> str:
         return ""
     free = [max(each.size / correlation_time(each), 2.0) for each in (errors[-1], errors[0])]
     ratio = (rms[-1] / rms[0]) ** 2 if rms[0] > 0.0 else math.inf
-    if float(scipy.stats.f.sf(ratio, *free)) > UNLIKELY:
+    if float(scipy.special.fdtrc(*free, ratio)) > UNLIKELY:
         return ""
     return (
         f"The error grows with the rate, from {remainder.plain(rms[0])} rms at {slow:.3g} Hz to "

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.signal
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -19,6 +18,8 @@ def low_passed(u: Array, samples: float) -> Array:
     samples
         Its time constant.
     """
+    import scipy.signal  # slow, and only dynamics need it
+
     keep = float(np.exp(-1.0 / samples))
     passed, _ = scipy.signal.lfilter([1.0 - keep], [1.0, -keep], u, zi=[keep * u[0]])
     return np.asarray(passed)

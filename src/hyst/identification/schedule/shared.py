@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
-import scipy.stats
+import scipy.special
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -104,8 +104,8 @@ def sharing_of(estimates: Sequence[Estimate], held: Mask | None = None) -> Shari
         trials = np.flatnonzero(free & ~shared)
         costs = [_missed(estimates, _with(shared, int(i))) for i in trials]
         best = int(np.argmin(costs))
-        chance[trials] = scipy.stats.chi2.sf(
-            np.maximum(np.array(costs) - missed, 0.0), len(estimates) - 1
+        chance[trials] = scipy.special.chdtrc(
+            len(estimates) - 1, np.maximum(np.array(costs) - missed, 0.0)
         )
         if chance[trials[best]] < limit:
             break

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2, norm
+from scipy.special import chdtrc, ndtr
 
 from hyst.online.joint.bands.intervals import RISE, covariance_of_minimum
 from hyst.online.joint.bands.refit import Minimum, Problem, minimum_from
@@ -208,8 +208,8 @@ def _stretches(problem: Problem, minimum: Minimum, page: FoldedSamples) -> Array
 
 def _chance(square: float, freedom: float, of_noise: float) -> float:
     if of_noise <= 0.0:
-        return float(chi2.sf(square, freedom))
+        return float(chdtrc(freedom, square))
     # The noise is itself known from so many samples only.
     spread = np.sqrt(2.0 * freedom + 2.0 * freedom**2 / of_noise)
-    wide = float(norm.sf((square - freedom) / spread))
-    return max(float(chi2.sf(square, freedom)), wide)
+    wide = float(ndtr((freedom - square) / spread))
+    return max(float(chdtrc(freedom, square)), wide)

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.signal
 from numpy.typing import NDArray
 
 from hyst.errors import InputError
@@ -168,6 +167,8 @@ def best_numerator(
     delays
         Samples, to choose from.
     """
+    import scipy.signal  # slow, and only dynamics need it
+
     a, order = np.atleast_1d(np.poly(base.A).real), base.order
     normal = np.zeros((order + 1, order + 1))
     moments, power = np.zeros((delays.stop, order + 1)), 0.0

@@ -10,7 +10,6 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
-import scipy.signal
 from numpy.typing import NDArray
 
 from hyst.errors import NotIdentifiableError
@@ -181,6 +180,8 @@ def lag_of_peak(pieces: Sequence[Piece]) -> int:
     pieces
         Inputs, the drive first, and output.
     """
+    import scipy.signal  # slow, and only dynamics need it
+
     longest = max(pieces, key=lambda each: each.output.size)
     u, y = longest.inputs[:, 0], longest.output
     products = scipy.signal.correlate(y - y.mean(), u - u.mean(), mode="full", method="fft")

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.signal
 from numpy.typing import NDArray
 
 from hyst.identification.families.hammerstein.start.play_inputs import Piece
@@ -111,6 +110,8 @@ def _sizes(pieces: Sequence[Piece]) -> Array:
 def _filtered_least_squares(
     pieces: Sequence[Piece], a: Array, taps: int, delay: int
 ) -> Array | None:
+    import scipy.signal  # slow, and only dynamics need it
+
     order = a.size - 1
     blocks, targets = [], []
     for each in pieces:
@@ -130,6 +131,8 @@ def _filtered_least_squares(
 
 def _ringing(a: Array, stop: int, first: int) -> Array:
     """Give what an unknown state leaves, one column a pole, and what an offset does."""
+    import scipy.signal  # slow, and only dynamics need it
+
     order = a.size - 1
     impulse = np.zeros(stop)
     impulse[0] = 1.0
@@ -213,6 +216,8 @@ def with_weights(pieces: Sequence[Piece], guess: Guess) -> Guess | None:
     guess
         Its a, b and delay are taken.
     """
+    import scipy.signal  # slow, and only dynamics need it
+
     late = np.append(np.zeros(guess.delay), guess.b)
     answers = [scipy.signal.lfilter(late, guess.a, each.inputs, axis=0) for each in pieces]
     found = weights_behind(pieces, answers, guess.a, guess.delay)
@@ -262,6 +267,8 @@ def free_response(a: Array, count: int) -> Array:
     count
         Of samples.
     """
+    import scipy.signal  # slow, and only dynamics need it
+
     order = a.size - 1
     impulse = np.zeros(count)
     impulse[0] = 1.0

@@ -10,7 +10,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.signal
 from numpy.typing import NDArray
 
 from hyst import _engine
@@ -60,6 +59,8 @@ class Piece:
         factor
             1 gives the piece itself.
         """
+        import scipy.signal  # slow, and only dynamics need it
+
         if factor == 1:
             return self
         lowpass = scipy.signal.firwin(_TAPS * factor + 1, _EDGE / factor)
@@ -163,6 +164,8 @@ def bandwidth(pieces: Sequence[Piece]) -> float:
     float
         Share of half the sample rate.
     """
+    import scipy.signal  # slow, and only dynamics need it
+
     power = np.zeros(513)
     for each in pieces:
         y = each.output[each.first :]

@@ -1,0 +1,1 @@
+"""hyst fleet: many records, one model each, in one table."""

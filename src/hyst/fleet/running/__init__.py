@@ -1,0 +1,1 @@
+"""Where the work of a fleet is done: threads, processes, or a cluster."""

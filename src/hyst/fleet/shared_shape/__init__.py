@@ -1,0 +1,1 @@
+"""What a fleet shares: one shape, and few numbers for each device."""

@@ -1,0 +1,1 @@
+from hyst.jax.primitive import evaluate as evaluate

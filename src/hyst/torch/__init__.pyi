@@ -1,0 +1,1 @@
+from hyst.torch.function import evaluate as evaluate
