@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Literal
 
 from threadpoolctl import threadpool_limits
@@ -26,13 +27,14 @@ from hyst.identification.record_use.used_samples import beside_level, require_sa
 from hyst.identification.result.identified import Identified
 from hyst.identification.result.identified_from_fit import identified_from_fit, traced
 from hyst.identification.search import Found, find
+from hyst.identification.stream.identify_stream import identify_stream
 from hyst.operators import Driver
 from hyst.operators.provenance import options_asked
-from hyst.signals import Record
+from hyst.signals import Record, RecordStream
 
 
 def identify(
-    records: Record | Sequence[Record],
+    records: Record | Sequence[Record] | RecordStream,
     *,
     family: str | Family = "auto",
     delay: float | Literal["auto"] = "auto",
@@ -57,7 +59,9 @@ def identify(
     records
         One or more records of one actuator, each with its own memory and its own sample time; with
         dynamics one that divides them all is taken. What ``hyst.diagnose`` finds in them is acted
-        on: samples that are no measurements do not count.
+        on: samples that are no measurements do not count. A record that stays in its file, as of
+        ``hyst.io.open_record``: the constants are fitted to all of its samples, what else there is
+        to find on half a million of them.
     family
         A name; several with commas between them, which are compared by cross-validation, the
         simplest that it does not show to be worse than the best being taken; ``"auto"``: those that
@@ -127,6 +131,23 @@ def identify(
     >>> bool(np.abs(found.model(u) - true(u))[500:].max() < 1e-6)
     True
     """
+    if isinstance(records, RecordStream):
+        again = partial(
+            identify,
+            family=family,
+            delay=delay,
+            start=start,
+            drift=drift,
+            creep=creep,
+            lag=lag,
+            validation=validation,
+            driver=driver,
+            max_iterations=max_iterations,
+            allow_unconverged=allow_unconverged,
+            progress=progress,
+            **options,
+        )
+        return identify_stream(records, again, allow_unconverged)
     asked = options_asked(identify, locals() | {"driver": None}) | options
     measured = listed(records)
     given = all_in_volts(measured, driver)
