@@ -131,24 +131,13 @@ def identify(
     >>> bool(np.abs(found.model(u) - true(u))[500:].max() < 1e-6)
     True
     """
+    arguments = {
+        name: each for name, each in locals().items() if name not in {"records", "options"}
+    }
     if isinstance(records, RecordStream):
-        again = partial(
-            identify,
-            family=family,
-            delay=delay,
-            start=start,
-            drift=drift,
-            creep=creep,
-            lag=lag,
-            validation=validation,
-            driver=driver,
-            max_iterations=max_iterations,
-            allow_unconverged=allow_unconverged,
-            progress=progress,
-            **options,
-        )
+        again = partial(identify, **arguments, **options)
         return identify_stream(records, again, allow_unconverged)
-    asked = options_asked(identify, locals() | {"driver": None}) | options
+    asked = options_asked(identify, arguments | {"driver": None}) | options
     measured = listed(records)
     given = all_in_volts(measured, driver)
     judged = all_in_volts(listed(validation, "validation record"), driver)
