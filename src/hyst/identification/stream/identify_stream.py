@@ -24,7 +24,7 @@ from hyst.operators.description import errors_of
 from hyst.signals import Record
 from hyst.signals.record_stream import RecordStream
 
-MOST_STEPS = 40
+MOST_STEPS = 200
 
 TOLERANCE = 1e-2
 """Of the residual variance: no constant is then off by more than a tenth of its standard error."""
@@ -35,9 +35,7 @@ WORSE = 1.1
 COVERS = 0.95
 
 
-def identify_stream(
-    stream: RecordStream, identify: Callable[[Record], Identified], unconverged: bool = False
-) -> Identified:
+def identify_stream(stream: RecordStream, identify: Callable[[Record], Identified]) -> Identified:
     """Identify a model from a record in a file.
 
     Parameters
@@ -46,8 +44,6 @@ def identify_stream(
         The record.
     identify
         Identifies from a record in memory.
-    unconverged
-        Whether a fit that did not converge is given.
 
     Raises
     ------
@@ -69,10 +65,10 @@ def identify_stream(
     whole = FitOfAll(stream, found, fit.parametrization, late)
     posed, theta, back = fit.family.in_own_coordinates(whole.problem(), fit.solution.theta)
     solution = minimize(posed, theta, MOST_STEPS, TOLERANCE)
-    if solution.status != CONVERGED and not unconverged:
+    if solution.status != CONVERGED:
         raise SolverError(
-            f"the fit to all {found.samples} samples did not converge in {MOST_STEPS} steps; allow "
-            "an unconverged fit, or identify from a part of the record"
+            f"the fit to all {found.samples} samples did not converge in {MOST_STEPS} steps; load "
+            "a part of the record and identify from that"
         )
     fit = replace(fit, solution=replace(solution, theta=back(solution.theta)))
     return _with_fit(before, fit, whole, found, stream)
