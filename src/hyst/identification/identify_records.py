@@ -175,7 +175,7 @@ def identify(
     return with_driver(traced(told, measured, asked), driver)
 
 
-_KEYWORDS = identify.__kwdefaults__
+_KEYWORDS = frozenset(identify.__kwdefaults__ or ())
 """Arguments of ``identify`` but for the records and the options of families."""
 
 
