@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from hyst.identification.result.covariance import _bartlett_sum, robust_covariance
+from hyst.identification.fit.block import Block, blocks_of
+from hyst.identification.result.covariance import BartlettSum, ScoreSums, robust_covariance
 
 
 def test_white_residuals_give_the_textbook_covariance() -> None:
@@ -26,7 +29,26 @@ def test_window_sums_equal_the_sum_over_lags() -> None:
     for lag in range(1, bandwidth):
         gamma = scores[lag:].T @ scores[:-lag]
         direct += (1.0 - lag / bandwidth) * (gamma + gamma.T)
-    np.testing.assert_allclose(_bartlett_sum(scores, bandwidth), direct, rtol=1e-12)
+    summed = BartlettSum(bandwidth, 2)
+    for first, last in ((0, 20), (20, 23), (23, 50)):  # blocks, one shorter than the window
+        summed.add(0, scores[first:last])
+    np.testing.assert_allclose(summed.total(), direct, rtol=1e-12)
+
+
+def test_blocks_give_the_sums_of_the_whole() -> None:
+    rng = np.random.default_rng(3)
+    jacobian = rng.normal(size=(500, 3)) * [1.0, 1e200, 1e-200]
+    residual = 1e-180 * lfilter([1.0], [1.0, -0.9], rng.normal(size=500))
+    ends = [0, 90, 200, 203, 500]
+    pieces = [
+        Block(int(first >= 200), slice(first, last), jacobian[first:last])
+        for first, last in itertools.pairwise(ends)
+    ]
+    whole = ScoreSums.of(lambda: blocks_of(jacobian, [200, 300]), residual, [200, 300])
+    parts = ScoreSums.of(lambda: pieces, residual, [200, 300])
+    np.testing.assert_allclose(parts.gram, whole.gram, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(parts.middle, whole.middle, rtol=1e-12, atol=1e-12)
+    assert np.isfinite(whole.covariance()).all()
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.8])

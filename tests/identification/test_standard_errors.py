@@ -7,7 +7,9 @@ import pytest
 from simulated_records import drive
 
 import hyst
-from hyst.identification.result.standard_errors import spread_of_estimates
+from hyst.identification.fit.block import blocks_of
+from hyst.identification.result.covariance import ScoreSums
+from hyst.identification.result.standard_errors import Spread, spread_of_estimates
 
 SAMPLES = 4000
 
@@ -17,9 +19,17 @@ def regressors(seed: int) -> tuple[np.ndarray, np.ndarray]:
     return rng.normal(size=(SAMPLES, 2)), 0.1 * rng.normal(size=SAMPLES)
 
 
+def spread_of(
+    jacobian: np.ndarray, residual: np.ndarray, theta: np.ndarray, gauges: np.ndarray | None = None
+) -> Spread:
+    blocks = blocks_of(jacobian, [SAMPLES])
+    sums = ScoreSums.of(lambda: blocks, residual, [SAMPLES])
+    return spread_of_estimates(sums, theta, gauges)
+
+
 def test_columns_that_say_something_have_the_textbook_errors() -> None:
     matrix, noise = regressors(0)
-    spread = spread_of_estimates(matrix * [1.0, 1e6], noise, [SAMPLES], np.array([1.0, 1e-6]))
+    spread = spread_of(matrix * [1.0, 1e6], noise, np.array([1.0, 1e-6]))
     expected = 0.1 * np.sqrt(np.diag(np.linalg.inv(matrix.T @ matrix))) * [1.0, 1e-6]
     # 4000 samples know a standard deviation to about 1 %, the Bartlett window adds a few percent.
     np.testing.assert_allclose(spread.of(np.eye(2)), expected, rtol=0.1)
@@ -30,10 +40,10 @@ def test_two_equal_columns_leave_their_sum_determined() -> None:
     matrix, noise = regressors(1)
     a, b = matrix.T
     jacobian = np.column_stack([a, b, a])
-    spread = spread_of_estimates(jacobian, noise, [SAMPLES], np.ones(3))
+    spread = spread_of(jacobian, noise, np.ones(3))
     errors = spread.of(np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1]], dtype=float))
     assert np.isnan(errors[[0, 2]]).all()
-    reduced = spread_of_estimates(matrix, noise, [SAMPLES], np.ones(2)).of(np.eye(2))
+    reduced = spread_of(matrix, noise, np.ones(2)).of(np.eye(2))
     np.testing.assert_allclose(errors[[3, 1]], reduced, rtol=1e-3)
     np.testing.assert_array_equal(np.flatnonzero(spread.disturbed(np.eye(3))[:, 0]), [0, 2])
 
@@ -43,9 +53,9 @@ def test_a_gauge_determines_what_the_records_do_not() -> None:
     matrix, noise = regressors(1)
     a, b = matrix.T
     jacobian, gauge = np.column_stack([a, b, a]), np.array([[1.0, 0.0, -1.0]])
-    spread = spread_of_estimates(jacobian, noise, [SAMPLES], np.ones(3), gauge)
+    spread = spread_of(jacobian, noise, np.ones(3), gauge)
     assert spread.open_directions.shape == (3, 0)
-    reduced = spread_of_estimates(matrix, noise, [SAMPLES], np.ones(2)).of(np.eye(2))
+    reduced = spread_of(matrix, noise, np.ones(2)).of(np.eye(2))
     expected = [reduced[0] / 2.0, reduced[1], reduced[0] / 2.0]
     # One free parameter less in N - m, and nothing else.
     np.testing.assert_allclose(spread.of(np.eye(3)), expected, rtol=1e-3)
@@ -56,7 +66,7 @@ def test_a_gauge_determines_what_the_records_do_not() -> None:
 def test_a_column_of_zeros_is_named_alone() -> None:
     matrix, noise = regressors(2)
     jacobian = np.column_stack([matrix[:, 0], np.zeros(SAMPLES)])
-    spread = spread_of_estimates(jacobian, noise, [SAMPLES], np.ones(2))
+    spread = spread_of(jacobian, noise, np.ones(2))
     errors = spread.of(np.eye(2))
     assert np.isfinite(errors[0])
     assert np.isnan(errors[1])
@@ -68,7 +78,7 @@ def test_a_direction_less_sure_than_the_model_is_large_is_not_determined() -> No
     matrix, noise = regressors(3)
     a, b = matrix.T
     jacobian = np.column_stack([a, a + 1e-5 * b])
-    spread = spread_of_estimates(jacobian, noise, [SAMPLES], np.ones(2))
+    spread = spread_of(jacobian, noise, np.ones(2))
     errors = spread.of(np.array([[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]))
     assert np.isnan(errors[:2]).all()
     assert errors[2] == pytest.approx(0.1 / np.linalg.norm(a), rel=0.1)
@@ -77,9 +87,9 @@ def test_a_direction_less_sure_than_the_model_is_large_is_not_determined() -> No
 def test_units_change_nothing_but_the_unit() -> None:
     matrix, noise = regressors(4)
     jacobian = np.column_stack([matrix, matrix[:, 0]])
-    plain = spread_of_estimates(jacobian, noise, [SAMPLES], np.ones(3)).of(np.eye(3))
+    plain = spread_of(jacobian, noise, np.ones(3)).of(np.eye(3))
     scales = 2.0 ** np.array([40.0, -30.0, 7.0])
-    scaled = spread_of_estimates(jacobian * scales, noise, [SAMPLES], 1.0 / scales).of(np.eye(3))
+    scaled = spread_of(jacobian * scales, noise, 1.0 / scales).of(np.eye(3))
     np.testing.assert_array_equal(scaled, plain / scales)
 
 

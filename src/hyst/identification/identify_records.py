@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Literal
 
 from threadpoolctl import threadpool_limits
@@ -26,13 +27,14 @@ from hyst.identification.record_use.used_samples import beside_level, require_sa
 from hyst.identification.result.identified import Identified
 from hyst.identification.result.identified_from_fit import identified_from_fit, traced
 from hyst.identification.search import Found, find
+from hyst.identification.stream.identify_stream import identify_stream
 from hyst.operators import Driver
 from hyst.operators.provenance import options_asked
-from hyst.signals import Record
+from hyst.signals import Record, RecordStream
 
 
 def identify(
-    records: Record | Sequence[Record],
+    records: Record | Sequence[Record] | RecordStream,
     *,
     family: str | Family = "auto",
     delay: float | Literal["auto"] = "auto",
@@ -57,7 +59,9 @@ def identify(
     records
         One or more records of one actuator, each with its own memory and its own sample time; with
         dynamics one that divides them all is taken. What ``hyst.diagnose`` finds in them is acted
-        on: samples that are no measurements do not count.
+        on: samples that are no measurements do not count. A record that stays in its file, as of
+        ``hyst.io.open_record``: the constants are fitted to all of its samples, what else there is
+        to find on half a million of them.
     family
         A name; several with commas between them, which are compared by cross-validation, the
         simplest that it does not show to be worse than the best being taken; ``"auto"``: those that
@@ -127,7 +131,10 @@ def identify(
     >>> bool(np.abs(found.model(u) - true(u))[500:].max() < 1e-6)
     True
     """
-    asked = options_asked(identify, locals() | {"driver": None}) | options
+    arguments = {name: each for name, each in locals().items() if name in _KEYWORDS}
+    if isinstance(records, RecordStream):
+        return identify_stream(records, partial(identify, **arguments, **options))
+    asked = options_asked(identify, arguments | {"driver": None}) | options
     measured = listed(records)
     given = all_in_volts(measured, driver)
     judged = all_in_volts(listed(validation, "validation record"), driver)
@@ -166,6 +173,10 @@ def identify(
         identified = creeping.told(identified)
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
     return with_driver(traced(told, measured, asked), driver)
+
+
+_KEYWORDS = frozenset(identify.__kwdefaults__ or ())
+"""Arguments of ``identify`` but for the records and the options of families."""
 
 
 @dataclass(frozen=True, eq=False)

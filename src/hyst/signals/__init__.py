@@ -19,6 +19,7 @@ from hyst.signals.multisines import multisine
 from hyst.signals.noise import estimate_noise, suggest_dead_band
 from hyst.signals.noise_drive import lowpassed_noise
 from hyst.signals.record import Record
+from hyst.signals.record_stream import RecordStream
 from hyst.signals.rest import from_rest
 from hyst.signals.sequences import decaying_triangle, forc, prbs, staircase, triangle
 from hyst.signals.swept_sines import swept_sine
@@ -33,6 +34,7 @@ __all__ = [
     "Metrics",
     "Persistence",
     "Record",
+    "RecordStream",
     "ReversalCurve",
     "decaying_triangle",
     "design",

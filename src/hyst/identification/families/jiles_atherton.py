@@ -207,6 +207,9 @@ def _over_coupling(problem: Problem) -> Problem:
         plain = _uncoupled(theta)
         return problem.normal_equations(plain).over(_by_coupled(plain))
 
+    def squares(theta: Array) -> float:
+        return problem.cost(_uncoupled(theta))
+
     lower, upper = problem.lower.copy(), problem.upper.copy()
     lower[4], upper[4] = 0.0, MOST_COUPLING
     return replace(
@@ -216,6 +219,8 @@ def _over_coupling(problem: Problem) -> Problem:
         lower=lower,
         upper=upper,
         summed=summed,
+        squares=squares,
+        blocks=None,
     )
 
 

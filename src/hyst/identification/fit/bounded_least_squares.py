@@ -14,6 +14,7 @@ import numpy as np
 import scipy.linalg.lapack
 from numpy.typing import NDArray
 
+from hyst.identification.fit.block import Blocks, blocks_of
 from hyst.identification.fit.bounded_quadratic import least_within
 from hyst.identification.fit.normal_equations import NormalEquations
 
@@ -81,6 +82,9 @@ class Problem:
     squares
         Gives the sum of squared residuals without a residual in memory; it is made of ``residual``
         if left out.
+    blocks
+        Gives what gives the derivative of the residual block by block, without a Jacobian in memory
+        where the records are long; it is made of ``linearize`` if left out.
     """
 
     linearize: Linearize
@@ -92,12 +96,20 @@ class Problem:
     is_linear: bool = False
     summed: Callable[[Array], NormalEquations] | None = None
     squares: Callable[[Array], float] | None = None
+    blocks: Callable[[Array], Blocks] | None = None
 
     def normal_equations(self, theta: Array) -> NormalEquations:
         """Give the normal equations at canonical theta."""
         if self.summed is not None:
             return self.summed(theta)
         return NormalEquations.of(*self.linearize(theta))
+
+    def blocks_at(self, theta: Array) -> Blocks:
+        """Give what gives the derivative at canonical theta block by block."""
+        if self.blocks is not None:
+            return self.blocks(theta)
+        jacobian = self.linearize(theta)[1]
+        return lambda: blocks_of(jacobian, [len(jacobian)])
 
     def cost(self, theta: Array) -> float:
         """Give the sum of squared residuals at canonical theta."""

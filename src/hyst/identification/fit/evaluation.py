@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst import _engine
+from hyst.identification.fit.block import Block
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.record_use.used_samples import Data
 from hyst.operators import Operator
@@ -41,25 +42,6 @@ class _Pass:
     u: Array
     window: slice
     counts: NDArray[np.bool_] | None
-
-
-@dataclass(frozen=True, eq=False)
-class Block:
-    """Some of the samples used, one after the other, of one record.
-
-    Parameters
-    ----------
-    record
-        Number of the record, counted from 0.
-    rows
-        Which of the samples used they are.
-    jacobian
-        Shape (n, m): derivative of the output by theta.
-    """
-
-    record: int
-    rows: slice
-    jacobian: Array
 
 
 class Evaluation:
@@ -179,7 +161,15 @@ class Evaluation:
         return [_pieces_of(each, part) for each, part in zip(self._passes, parts, strict=True)]
 
     def jacobian_at(self, theta: Array, rows: NDArray[np.intp]) -> Array:
-        """Give the derivative at some of the samples used, ascending, shape (rows, m)."""
+        """Give the derivative at some of the samples used, shape (rows, m).
+
+        Parameters
+        ----------
+        theta
+            Canonical.
+        rows
+            Which of them, ascending.
+        """
         if rows.size == sum(self._lengths):
             return self.jacobian(theta)
         result = np.empty((rows.size, theta.size))

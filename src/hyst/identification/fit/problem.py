@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.identification.fit.block import BESIDE, Block, Blocks, blocks_of, lengths_of
 from hyst.identification.fit.bounded_least_squares import Problem
 from hyst.identification.fit.evaluation import Evaluation
 from hyst.identification.fit.normal_equations import NormalEquations
@@ -105,61 +107,92 @@ def problem_of(
     Columns beside the model are projected out of residual and Jacobian: L. Kaufman, A variable
     projection method for solving separable nonlinear least squares problems, BIT 15 (1975), 49-57.
     """
-    y = data.measured()
-    rows: NDArray[np.bool_] | slice = slice(None) if chosen is None else chosen
-    root = None if root_weights is None else root_weights[rows]
-    target = y[rows]
-    evaluation = Evaluation(data, parametrization)
-    spread = float(np.linalg.norm(y - y.mean()))
-    is_allowed = parametrization.is_allowed
-    beside = beside_the_records(parametrization, spread)
-    nuisances = parametrization.nuisances
-    columns = None if nuisances is None else Beside(data, nuisances, chosen, root_weights)
-
-    def errors_of(theta: Array) -> Array:
-        errors = evaluation.output(theta)[rows] - target
-        return errors if root is None else root * errors
-
-    def residual(theta: Array) -> Array:
-        more = [values for values, _ in beside(theta)]
-        if is_allowed is not None and not is_allowed(theta):
-            return np.full(target.size + sum(each.size for each in more), NO_STEP_TO * spread)
-        errors = errors_of(theta)
-        errors = errors if columns is None else columns.at(theta).out_of(errors)
-        return np.concatenate([errors, *more]) if more else errors
-
-    def linearize(theta: Array) -> tuple[Array, Array]:
-        jacobian = evaluation.jacobian(theta)[rows]
-        jacobian = jacobian if root is None else root[:, None] * jacobian
-        if columns is not None:
-            jacobian = projected(columns, theta, errors_of(theta), jacobian)
-        more = [by_theta for _, by_theta in beside(theta)]
-        return residual(theta), np.concatenate([jacobian, *more]) if more else jacobian
-
-    is_long = target.size * parametrization.transform.shape[0] > LARGEST_JACOBIAN
-    streamed = Streamed(evaluation, rows, root, columns)
-
-    def summed(theta: Array) -> NormalEquations:
-        errors = residual(theta)
-        own, more = errors[: target.size], [by_theta for _, by_theta in beside(theta)]
-        if is_long:
-            normal = streamed.normal(theta, errors_of, own)
-        else:
-            normal = NormalEquations(
-                *evaluation.products(theta, own, chosen, root), float(own @ own), own.size
-            )
-        return normal.plus(errors[own.size :], np.concatenate(more)) if more else normal
-
+    own = _Residual(data, parametrization, chosen, root_weights)
+    is_summed = own.is_long or own.columns is None
     return Problem(
-        linearize,
-        residual,
+        own.linearize,
+        own.residual,
         parametrization.lower,
         parametrization.upper,
         parametrization.canonical,
-        negligible=float(target.size * (ROUNDING * np.ptp(y)) ** 2),
+        negligible=own.negligible,
         is_linear=parametrization.is_linear,
-        summed=summed if is_long or columns is None else None,
+        summed=own.summed if is_summed else None,
+        blocks=own.blocks,
     )
+
+
+class _Residual:
+    """What a parametrization leaves of records, and what no sample makes after it."""
+
+    def __init__(
+        self,
+        data: Data,
+        parametrization: Parametrization,
+        chosen: NDArray[np.bool_] | None,
+        root_weights: Array | None,
+    ) -> None:
+        y = data.measured()
+        self._chosen = chosen
+        self._rows: NDArray[np.bool_] | slice = slice(None) if chosen is None else chosen
+        self._root = None if root_weights is None else root_weights[self._rows]
+        self._target = y[self._rows]
+        self._lengths = lengths_of(data.lengths(), chosen)
+        self._evaluation = Evaluation(data, parametrization)
+        self._spread = float(np.linalg.norm(y - y.mean()))
+        self._is_allowed = parametrization.is_allowed
+        self._beside = beside_the_records(parametrization, self._spread)
+        nuisances = parametrization.nuisances
+        self.columns = None if nuisances is None else Beside(data, nuisances, chosen, root_weights)
+        entries = self._target.size * parametrization.transform.shape[0]
+        self.is_long = entries > LARGEST_JACOBIAN
+        self.negligible = float(self._target.size * (ROUNDING * np.ptp(y)) ** 2)
+        self._streamed = Streamed(self._evaluation, self._rows, self._root, self.columns)
+
+    def _errors(self, theta: Array) -> Array:
+        """Give the residual beside no columns."""
+        errors = self._evaluation.output(theta)[self._rows] - self._target
+        return errors if self._root is None else self._root * errors
+
+    def residual(self, theta: Array) -> Array:
+        """Give all residuals."""
+        more = [values for values, _ in self._beside(theta)]
+        if self._is_allowed is not None and not self._is_allowed(theta):
+            size = self._target.size + sum(each.size for each in more)
+            return np.full(size, NO_STEP_TO * self._spread)
+        errors = self._errors(theta)
+        errors = errors if self.columns is None else self.columns.at(theta).out_of(errors)
+        return np.concatenate([errors, *more]) if more else errors
+
+    def linearize(self, theta: Array) -> tuple[Array, Array]:
+        """Give all residuals and their derivative."""
+        jacobian = self._evaluation.jacobian(theta)[self._rows]
+        jacobian = jacobian if self._root is None else self._root[:, None] * jacobian
+        if self.columns is not None:
+            jacobian = projected(self.columns, theta, self._errors(theta), jacobian)
+        more = [by_theta for _, by_theta in self._beside(theta)]
+        return self.residual(theta), np.concatenate([jacobian, *more]) if more else jacobian
+
+    def summed(self, theta: Array) -> NormalEquations:
+        """Give the normal equations without a Jacobian of all records."""
+        errors, samples = self.residual(theta), self._target.size
+        own, more = errors[:samples], [by_theta for _, by_theta in self._beside(theta)]
+        if self.is_long:
+            normal = self._streamed.normal(theta, self._errors, own)
+        else:
+            sums = self._evaluation.products(theta, own, self._chosen, self._root)
+            normal = NormalEquations(*sums, float(own @ own), samples)
+        return normal.plus(errors[samples:], np.concatenate(more)) if more else normal
+
+    def blocks(self, theta: Array) -> Blocks:
+        """Give what gives the derivative block by block, that of gauges and prior last."""
+        samples, more = self._target.size, [by_theta for _, by_theta in self._beside(theta)]
+        held = np.concatenate([np.empty((0, theta.size)), *more])
+        last = Block(BESIDE, slice(samples, samples + len(held)), held)
+        if self.is_long:
+            return lambda: itertools.chain(self._streamed.projected(theta, self._errors), [last])
+        own = blocks_of(self.linearize(theta)[1][:samples], self._lengths)
+        return lambda: [*own, last]
 
 
 def projected(columns: Beside, theta: Array, errors: Array, jacobian: Array) -> Array:
@@ -187,9 +220,9 @@ def beside_the_records(
     Parameters
     ----------
     parametrization
-        Free parameters of a family.
+        With its gauges and its prior.
     spread
-        Norm of the centred output, in which they are weighted.
+        Norm of the centred output.
     """
     gauges = parametrization.gauges
     prior = None if parametrization.prior is None else spread * parametrization.prior

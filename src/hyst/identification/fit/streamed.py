@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.fit.evaluation import Block, Evaluation
+from hyst.identification.fit.block import Block
+from hyst.identification.fit.evaluation import Evaluation
 from hyst.identification.fit.normal_equations import LongSum, NormalEquations
 from hyst.identification.fit.nuisance import Beside
 
@@ -62,8 +64,31 @@ class Streamed:
         total = matrix.total - along.squares()
         return NormalEquations(total, gradient.total, float(residual @ residual), residual.size)
 
+    def projected(self, theta: Array, errors_of: Callable[[Array], Array]) -> Iterator[Block]:
+        """Give the derivative of the residual of samples that count, the columns taken out.
+
+        Parameters
+        ----------
+        theta, errors_of
+            As of ``normal``.
+        """
+        if self._columns is None:
+            yield from self.blocks(theta, errors_of)
+            return
+        along = _Along(self._columns, theta)
+        for block in self.blocks(theta, errors_of):
+            along.add(block)
+        for block in self.blocks(theta, errors_of):
+            yield replace(block, jacobian=along.out_of(block))
+
     def blocks(self, theta: Array, errors_of: Callable[[Array], Array]) -> Iterator[Block]:
-        """Give the derivative of the residual of samples that count; columns are still in it."""
+        """Give the derivative of the residual of samples that count; columns are still in it.
+
+        Parameters
+        ----------
+        theta, errors_of
+            As of ``normal``.
+        """
         coefficients = None
         if self._columns is not None:
             coefficients = self._columns.at(theta).coefficients(errors_of(theta))
@@ -96,13 +121,21 @@ class _Along:
 
     def add(self, block: Block) -> None:
         """Count one block."""
-        if not self._bases:
-            return
+        if self._bases:
+            rows = self._rows(block)
+            self._sums[block.record].add(rows.T @ block.jacobian[: len(rows)])
+
+    def out_of(self, block: Block) -> Array:
+        """Give what is left of a block once all were counted."""
+        rows, left = self._rows(block), block.jacobian.copy()
+        left[: len(rows)] -= rows @ self._sums[block.record].total
+        return left
+
+    def _rows(self, block: Block) -> Array:
+        """Give the orthonormal columns over a block; beyond their end they are 0."""
         first = int(self._firsts[block.record])
-        rows = self._bases[block.record].orthonormal[
-            block.rows.start - first : block.rows.stop - first
-        ]
-        self._sums[block.record].add(rows.T @ block.jacobian[: len(rows)])
+        own = slice(block.rows.start - first, block.rows.stop - first)
+        return self._bases[block.record].orthonormal[own]
 
     def squares(self) -> Array | float:
         """Give the sum of the products of what was counted."""

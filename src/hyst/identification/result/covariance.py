@@ -1,13 +1,113 @@
-"""Standard errors that take the autocorrelation of the residual into account."""
+"""Standard errors that take the autocorrelation of the residual into account.
+
+All that is summed over the samples is in ``ScoreSums``, block by block, so that a long record needs
+no Jacobian of all of its samples.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.identification.fit.block import Blocks, blocks_of
+from hyst.identification.fit.normal_equations import LongSum
+
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class ScoreSums:
+    """Sums over the samples of a residual e and its Jacobian J, both brought to a size near 1.
+
+    Parameters
+    ----------
+    unit
+        Shape (m,), powers of two by which the columns of J were divided.
+    noise
+        Power of two by which e was divided.
+    gram
+        ``J'J``, shape (m, m).
+    middle
+        Shape (m, m), Bartlett-weighted sum of the autocovariances of the scores ``J_k e_k``.
+    power
+        ``e'e``.
+    samples
+        How many there are.
+    """
+
+    unit: Array
+    noise: float
+    gram: Array
+    middle: Array
+    power: float
+    samples: int
+
+    @classmethod
+    def of(cls, blocks: Blocks, residual: Array, lengths: Sequence[int]) -> Self:
+        """Sum them.
+
+        Parameters
+        ----------
+        blocks
+            Derivative of the residual.
+        residual
+            Shape (N,), of the records.
+        lengths
+            Samples of each record, in order; correlation does not reach across records.
+        """
+        largest = np.max([np.abs(each.jacobian).max(axis=0) for each in blocks()], axis=0)
+        unit = np.where(largest > 0.0, np.ldexp(1.0, np.frexp(largest)[1]), 1.0)
+        noise = float(np.ldexp(1.0, np.frexp(np.abs(residual).max(initial=0.0))[1]))
+        errors = residual / noise
+        gram = LongSum((unit.size, unit.size))
+        scores = BartlettSum(_bandwidth(errors, lengths), unit.size)
+        for each in blocks():
+            scaled = each.jacobian / unit
+            gram.add(scaled.T @ scaled)
+            scores.add(each.record, scaled * errors[each.rows, None])
+        power = float(errors @ errors)
+        return cls(unit, noise, gram.total, scores.total(), power, residual.size)
+
+    def along(self, basis: Array) -> ScoreSums:
+        """Give the sums over other columns.
+
+        Parameters
+        ----------
+        basis
+            Shape (m, k): the columns are the scaled ones of J times this.
+        """
+        gram, middle = (basis.T @ each @ basis for each in (self.gram, self.middle))
+        one = np.ones(basis.shape[1])
+        return ScoreSums(one, self.noise, gram, middle, self.power, self.samples)
+
+    def covariance(self, prior: Array | None = None, taken_out: int = 0) -> Array:
+        """Give the covariance of what the scaled columns are multiplied by, over the noise squared.
+
+        Parameters
+        ----------
+        prior
+            Shape (q, m), in scaled columns.
+        taken_out
+            Directions that were projected out of both.
+        """
+        square = np.diag(self.gram)
+        square = square if prior is None else square + np.einsum("ij,ij->j", prior, prior)
+        scale = np.sqrt(square)
+        outer = np.outer(scale, scale)
+        gram, middle, count = self.gram / outer, self.middle / outer, float(scale.size)
+        if prior is None:
+            inverse = np.linalg.inv(gram)
+        else:
+            held = (prior / scale).T @ (prior / scale)
+            inverse = np.linalg.inv(gram + held)
+            count = float(np.sum(inverse * gram))
+            middle = middle + self.power / self.samples * held
+        correction = self.samples / max(self.samples - count - taken_out, 1.0)
+        return np.asarray(inverse @ middle @ inverse * correction / outer)
 
 
 def robust_covariance(
@@ -48,48 +148,82 @@ def robust_covariance(
     the residual, Andrews, Econometrica 59 (1991), 817-858, eq. 6.2. The prior's part: Wahba, J. R.
     Stat. Soc. B 45 (1983), 133-150; such errors hold bias as well as scatter, on average.
     """
-    every = jacobian if prior is None else np.concatenate([jacobian, prior])
-    scale = np.linalg.norm(every, axis=0)
-    scaled = jacobian / scale
-    bandwidth = _bandwidth(residual, lengths)
-    middle = np.zeros((scale.size, scale.size))
-    start = 0
-    for length in lengths:
-        rows = slice(start, start + length)
-        middle += _bartlett_sum(scaled[rows] * residual[rows, None], bandwidth)
-        start += length
-    gram = scaled.T @ scaled
-    if prior is None:
-        inverse, count = np.linalg.inv(gram), float(scale.size)
-    else:
-        held = (prior / scale).T @ (prior / scale)
-        inverse = np.linalg.inv(gram + held)
-        count = float(np.sum(inverse * gram))
-        middle += float(residual @ residual) / residual.size * held
-    correction = residual.size / max(residual.size - count - taken_out, 1.0)
-    covariance = inverse @ middle @ inverse * correction
-    return np.asarray(covariance / np.outer(scale, scale))
+    sums = ScoreSums.of(lambda: blocks_of(jacobian, lengths), residual, lengths)
+    held = None if prior is None else prior / sums.unit
+    scaled = sums.covariance(held, taken_out)
+    return np.asarray(scaled * sums.noise**2 / np.outer(sums.unit, sums.unit))
 
 
 def _bandwidth(residual: Array, lengths: Sequence[int]) -> int:
-    """Choose the number of lags, at most a quarter of the shortest record."""
     before = np.ones(residual.size, dtype=bool)
     before[np.cumsum(lengths) - 1] = False
     now, after = residual[:-1][before[:-1]], residual[1:][before[:-1]]
-    power = float(residual @ residual)
-    rho = float(np.clip(now @ after / power, -0.99, 0.99)) if power > 0.0 else 0.0
+    return bandwidth_of(float(residual @ residual), float(now @ after), residual.size, min(lengths))
+
+
+def bandwidth_of(power: float, product: float, samples: int, shortest: int) -> int:
+    """Choose the number of lags, at most a quarter of the shortest record.
+
+    Parameters
+    ----------
+    power, product
+        Of the residual: sum of squares, and of products of neighbours.
+    samples, shortest
+        Of all records, and of the shortest.
+    """
+    rho = float(np.clip(product / power, -0.99, 0.99)) if power > 0.0 else 0.0
     alpha = 4.0 * rho**2 / ((1.0 - rho) ** 2 * (1.0 + rho) ** 2)
-    lags = 1.1447 * (alpha * residual.size) ** (1.0 / 3.0)
-    return int(np.clip(np.ceil(lags), 1, max(min(lengths) // 4, 1)))
+    lags = 1.1447 * (alpha * samples) ** (1.0 / 3.0)
+    return int(np.clip(np.ceil(lags), 1, max(shortest // 4, 1)))
 
 
-def _bartlett_sum(scores: Array, bandwidth: int) -> Array:
-    """Sum the autocovariances with weights 1 - |lag| / bandwidth.
+class BartlettSum:
+    """Sum of the autocovariances of scores with weights 1 - |lag| / bandwidth.
 
     The sum over all windows of ``bandwidth`` samples of (window sum)(window sum)' is exactly that,
     times the bandwidth, and needs one matrix product instead of one for each lag.
+
+    Parameters
+    ----------
+    bandwidth
+        Samples.
+    columns
+        Of the scores, m.
     """
-    padding = np.zeros((bandwidth, scores.shape[1]))
-    total = np.cumsum(np.concatenate([padding, scores, padding]), axis=0)
-    windows = total[bandwidth:] - total[:-bandwidth]
-    return np.asarray(windows.T @ windows / bandwidth)
+
+    def __init__(self, bandwidth: int, columns: int) -> None:
+        self._bandwidth = bandwidth
+        self._total = LongSum((columns, columns))
+        self._record = 0
+        self._past = np.zeros((bandwidth, columns))
+
+    def add(self, record: int, scores: Array) -> None:
+        """Go on with the scores of some samples.
+
+        Parameters
+        ----------
+        record
+            Which one they are of.
+        scores
+            Shape (n, m).
+        """
+        if record != self._record:
+            self._end()
+            self._record = record
+        self._windows(scores)
+
+    def total(self) -> Array:
+        """Give the sum once all scores were added."""
+        self._end()
+        return self._total.total / self._bandwidth
+
+    def _end(self) -> None:
+        """Let the windows run out of a record."""
+        self._windows(np.zeros_like(self._past))
+
+    def _windows(self, scores: Array) -> None:
+        both = np.concatenate([self._past, scores])
+        self._past = both[-self._bandwidth :].copy()
+        sums = np.cumsum(both, axis=0)
+        windows = sums[self._bandwidth :] - sums[: -self._bandwidth]
+        self._total.add(windows.T @ windows)

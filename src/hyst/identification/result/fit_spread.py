@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.identification.families.family import Estimates, Fit
-from hyst.identification.fit.evaluation import Evaluation
+from hyst.identification.fit.block import of_records
 from hyst.identification.fit.nuisance import Beside
-from hyst.identification.fit.problem import projected
+from hyst.identification.fit.problem import problem_of
 from hyst.identification.record_use.used_samples import Data
+from hyst.identification.result.covariance import ScoreSums
 from hyst.identification.result.lateness import moves_of
 from hyst.identification.result.standard_errors import (
     Spread,
@@ -149,31 +150,46 @@ def spread_of_fit(data: Data, fit: Fit, delay: DelayEvidence | None = None) -> F
     """
     data = fit.family.fitted(data)
     theta, parametrization = fit.solution.theta, fit.parametrization
-    evaluation = Evaluation(data, parametrization)
     inside = parametrization.inside(theta)
-    jacobian = evaluation.jacobian(theta)
-    residual = evaluation.output(theta) - data.measured()
     root = fit.family.root_weights(data)
-    if root is not None:
-        jacobian, residual = root[:, None] * jacobian, root * residual
+    problem = problem_of(data, parametrization, None, root)
+    residual = problem.residual(theta)[: sum(data.lengths())]
     taken_out = 0
     if parametrization.nuisances is not None:
-        beside = Beside(data, parametrization.nuisances, None, root)
-        jacobian = projected(beside, theta, residual, jacobian)
-        residual, taken_out = beside.at(theta).out_of(residual), beside.at(theta).directions
-    jacobian = jacobian[:, inside]
+        taken_out = Beside(data, parametrization.nuisances, None, root).at(theta).directions
+    blocks = problem.blocks_at(theta)
+    sums = ScoreSums.of(lambda: of_records(blocks, inside), residual, data.lengths())
+    y = data.measured()
+    found = spread_from_sums(sums, fit, float(np.linalg.norm(y - y.mean())), taken_out)
+    return found if found.bounds_hold else replace(found, moves=moves_of(data, fit, delay))
+
+
+def spread_from_sums(
+    sums: ScoreSums, fit: Fit, output_spread: float, taken_out: int = 0
+) -> FitSpread:
+    """Find how sure the free parameters of a fit are from sums over the samples.
+
+    Parameters
+    ----------
+    sums
+        Of the residual and its derivative by the parameters inside their bounds.
+    fit
+        The fit.
+    output_spread
+        Norm of the centred output.
+    taken_out
+        Directions that were projected out of both.
+    """
+    theta, parametrization = fit.solution.theta, fit.parametrization
+    inside = parametrization.inside(theta)
+    left = np.sqrt(sums.power) * sums.noise
     if parametrization.prior is not None:
-        y = data.measured()
-        held_by = float(np.linalg.norm(y - y.mean())) * parametrization.prior[:, inside]
-        under = spread_under_prior(jacobian, residual, data.lengths(), held_by, taken_out)
-        freedom = max(residual.size - parametrization.free_count - taken_out, 1)
-        rms = float(np.linalg.norm(residual) / np.sqrt(freedom))
-        return FitSpread(under, inside, rms, bounds_hold=True)
+        held_by = output_spread * parametrization.prior[:, inside]
+        under = spread_under_prior(sums, held_by, taken_out)
+        freedom = max(sums.samples - parametrization.free_count - taken_out, 1)
+        return FitSpread(under, inside, float(left / np.sqrt(freedom)), bounds_hold=True)
     gauges = parametrization.gauges
     held = np.empty((0, theta.size)) if gauges is None else gauges(theta)[1]
-    spread = spread_of_estimates(
-        jacobian, residual, data.lengths(), theta[inside], held[:, inside], taken_out
-    )
-    freedom = max(residual.size - int(inside.sum()) + len(held) - taken_out, 1)
-    rms = float(np.linalg.norm(residual) / np.sqrt(freedom))
-    return FitSpread(spread, inside, rms, moves=moves_of(data, fit, delay))
+    spread = spread_of_estimates(sums, theta[inside], held[:, inside], taken_out)
+    freedom = max(sums.samples - int(inside.sum()) + len(held) - taken_out, 1)
+    return FitSpread(spread, inside, float(left / np.sqrt(freedom)))

@@ -15,9 +15,11 @@ from numpy.typing import NDArray
 
 from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.identification.families.family import Family, Fit
+from hyst.identification.fit.block import lengths_of
 from hyst.identification.fit.nuisance import Beside
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.fit.problem import model_output, problem_of
+from hyst.identification.fit.tangent import Tangent
 from hyst.identification.record_use.part_of_a_sample import later
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.covariance import robust_covariance
@@ -32,9 +34,6 @@ STEPS_BETWEEN, MOST_STEPS = 16, 2**21
 """Between two samples, and of all records together: with more samples fewer, or none."""
 
 FEWEST_STEPS = 4
-
-SMALLEST_DIRECTION = 1e-9
-"""Of columns of one size."""
 
 FAR, ITERATIONS = 2.0, 20
 """Standard errors beyond which the way of the constants is no line any more, and what a fit there
@@ -145,8 +144,8 @@ def lateness_of(
     """
     theta, parametrization = fit.solution.theta, fit.parametrization
     root = fit.family.root_weights(data)
-    residual, jacobian = problem_of(data, parametrization, chosen, root).linearize(theta)
-    jacobian = jacobian[:, parametrization.inside(theta)]
+    problem = problem_of(data, parametrization, chosen, root)
+    residual = problem.residual(theta)
     columns = np.zeros((residual.size, 2))
     if delay_is_free:
         later_by, earlier_by = (
@@ -157,19 +156,20 @@ def lateness_of(
     if fit.family.rate_between_samples:
         own = _between_samples(data, parametrization, theta, chosen, root)
         columns[: own.size, 1] = own
-    return _joint(jacobian, columns, residual, _lengths(data, chosen))
+    tangent = Tangent.of(problem.blocks_at(theta), parametrization.inside(theta))
+    return _joint(tangent, columns, residual, lengths_of(data.lengths(), chosen))
 
 
-def _joint(jacobian: Array, columns: Array, residual: Array, lengths: list[int]) -> Lateness:
+def _joint(tangent: Tangent, columns: Array, residual: Array, lengths: list[int]) -> Lateness:
     """Solve for the columns beside the constants."""
-    by_columns = _least_squares(jacobian, columns)
-    beyond = columns - jacobian @ by_columns
+    by_columns = tangent.least_squares(columns)
+    beyond = tangent.beyond(columns, by_columns)
     size = np.linalg.norm(columns, axis=0)
     own = np.linalg.norm(beyond, axis=0) > OWN_PART * size
     best, errors = np.zeros(2), np.array([np.inf, 0.0])
     if own.any():
         beyond = beyond[:, own]
-        best[own] = -_least_squares(beyond, residual)
+        best[own] = -Tangent.of_matrix(beyond).least_squares(residual)
         rows = slice(0, sum(lengths))
         left = (residual + beyond @ best[own])[rows]
         unit = float(np.ldexp(1.0, np.frexp(np.abs(left).max(initial=0.0))[1]))
@@ -177,21 +177,6 @@ def _joint(jacobian: Array, columns: Array, residual: Array, lengths: list[int])
         errors[own] = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     between = -by_columns[:, 1] * float(np.hypot(best[1], errors[1]))
     return Lateness(float(best[0]), float(errors[0]), -by_columns[:, 0], between)
-
-
-def _least_squares(matrix: Array, values: Array) -> Array:
-    """Solve by the normal equations of columns of one size; what is not determined stays 0."""
-    size = np.linalg.norm(matrix, axis=0)
-    size = np.where(size > 0.0, size, 1.0)
-    scaled = matrix / size
-    gram = scaled.T @ scaled
-    eigenvalues, vectors = np.linalg.eigh(gram)
-    kept = eigenvalues > SMALLEST_DIRECTION * max(float(eigenvalues[-1]), 1e-300)
-    inverse = vectors[:, kept] / eigenvalues[kept] @ vectors[:, kept].T
-    found = inverse @ (scaled.T @ values)
-    # Once more for the digits that the normal matrix lost.
-    found = found + inverse @ (scaled.T @ (values - scaled @ found))
-    return np.asarray(found / (size[:, None] if values.ndim == 2 else size))
 
 
 def _between_samples(
@@ -229,10 +214,3 @@ def _in_steps(u: Array, steps: int, operator: Operator) -> Array:
     # Part i of the way from the sample before to this one, then this one itself.
     fine = np.column_stack([*parts, u]).ravel()[steps - 1 :]
     return np.asarray(operator(fine)[::steps])
-
-
-def _lengths(data: Data, chosen: NDArray[np.bool_] | None) -> list[int]:
-    lengths = data.lengths()
-    if chosen is None:
-        return lengths
-    return [int(each.sum()) for each in np.split(chosen, np.cumsum(lengths)[:-1])]

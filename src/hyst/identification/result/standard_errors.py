@@ -7,14 +7,13 @@ could move by more than its own standard error has none.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from hyst.identification.result.covariance import robust_covariance
+from hyst.identification.result.covariance import ScoreSums
 
 Array = NDArray[np.float64]
 
@@ -103,23 +102,15 @@ class Spread:
 
 
 def spread_of_estimates(
-    jacobian: Array,
-    residual: Array,
-    lengths: Sequence[int],
-    theta: Array,
-    gauges: Array | None = None,
-    taken_out: int = 0,
+    sums: ScoreSums, theta: Array, gauges: Array | None = None, taken_out: int = 0
 ) -> Spread:
     """Estimate how sure least squares estimates are.
 
     Parameters
     ----------
-    jacobian
-        Shape (N, m): derivative of the residual by the parameters that are free to move.
-    residual
-        Shape (N,).
-    lengths
-        Samples of each record, in order; noise does not correlate across records.
+    sums
+        Over the samples, of the residual and its derivative by the m parameters that are free to
+        move.
     theta
         Shape (m,), the estimates: a direction whose standard error is as large as all of them is
         not determined.
@@ -133,41 +124,35 @@ def spread_of_estimates(
     -------
     Spread
     """
-    count = theta.size
-    scale = np.linalg.norm(jacobian, axis=0)
-    shown = scale > 0.0
-    unit = np.where(shown, scale, 1.0)
-    scaled = jacobian / unit
-    noise = float(np.ldexp(1.0, np.frexp(np.abs(residual).max(initial=0.0))[1]))
-    errors = residual / noise
+    norms = np.sqrt(np.diag(sums.gram))
+    norms = np.where(norms > 0.0, norms, 1.0)
+    scaled, unit = sums.along(np.diag(1.0 / norms)), norms * sums.unit
     within = _within(gauges, unit)
-    reduced = scaled if gauges is None else scaled @ within
-    eigenvalues, vectors = np.linalg.eigh(reduced.T @ reduced)
+    eigenvalues, vectors = np.linalg.eigh(within.T @ scaled.gram @ within)
     vectors = within @ vectors
-    size = float(np.abs(theta * scale).max(initial=0.0)) or 1.0
+    shown = np.diag(sums.gram) > 0.0
+    size = float(np.abs(theta * np.where(shown, unit, 0.0)).max(initial=0.0)) or 1.0
     known = eigenvalues >= SMALLEST_EIGENVALUE
-    inner = np.zeros((count, count))
+    inner = np.zeros((theta.size, theta.size))
     while known.any():
         basis = vectors[:, known]
-        inner = robust_covariance(scaled @ basis, errors, lengths, taken_out=taken_out)
-        lost = np.sqrt(np.diag(inner)) * noise > size
+        inner = scaled.along(basis).covariance(taken_out=taken_out)
+        lost = np.sqrt(np.diag(inner)) * sums.noise > size
         if not lost.any():
             inner = basis @ inner @ basis.T
             break
         known[np.flatnonzero(known)[lost]] = False
-        inner = np.zeros((count, count))
+        inner = np.zeros((theta.size, theta.size))
     open_ones = vectors[:, ~known]
-    return Spread(unit, noise, inner, open_ones * (size / unit)[:, None])
+    return Spread(unit, sums.noise, inner, open_ones * (size / unit)[:, None])
 
 
-def spread_under_prior(
-    jacobian: Array, residual: Array, lengths: Sequence[int], prior: Array, taken_out: int = 0
-) -> Spread:
+def spread_under_prior(sums: ScoreSums, prior: Array, taken_out: int = 0) -> Spread:
     """Estimate how sure estimates are that a prior holds where the records do not.
 
     Parameters
     ----------
-    jacobian, residual, lengths
+    sums
         As of ``spread_of_estimates``.
     prior
         Shape (q, m): rows whose square was added to the cost.
@@ -179,13 +164,11 @@ def spread_under_prior(
     Spread
         With no open direction.
     """
-    size = np.linalg.norm(np.concatenate([jacobian, prior]), axis=0)
-    unit = np.where(size > 0.0, size, 1.0)
-    noise = float(np.ldexp(1.0, np.frexp(np.abs(residual).max(initial=0.0))[1]))
-    covariance = robust_covariance(
-        jacobian / unit, residual / noise, lengths, prior / unit, taken_out
-    )
-    return Spread(unit, noise, covariance, np.empty((unit.size, 0)))
+    scaled = prior / sums.unit
+    size = np.sqrt(np.diag(sums.gram) + np.einsum("ij,ij->j", scaled, scaled))
+    size = np.where(size > 0.0, size, 1.0)
+    covariance = sums.along(np.diag(1.0 / size)).covariance(scaled / size, taken_out)
+    return Spread(size * sums.unit, sums.noise, covariance, np.empty((size.size, 0)))
 
 
 def _within(gauges: Array | None, unit: Array) -> Array:

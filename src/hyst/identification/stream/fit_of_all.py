@@ -1,0 +1,212 @@
+"""A fit to every sample of a record in a file: the record goes by, and only sums stay."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hyst import _engine
+from hyst.errors import SolverError
+from hyst.identification.fit.block import Block
+from hyst.identification.fit.bounded_least_squares import Problem
+from hyst.identification.fit.normal_equations import LongSum, NormalEquations
+from hyst.identification.fit.parametrization import Parametrization
+from hyst.identification.fit.problem import NO_STEP_TO, beside_the_records
+from hyst.identification.result.covariance import BartlettSum, ScoreSums, bandwidth_of
+from hyst.identification.stream.aligned import aligned
+from hyst.identification.stream.survey import Survey
+from hyst.signals import Metrics
+from hyst.signals.record_stream import RecordStream
+
+Array = NDArray[np.float64]
+
+
+class FitOfAll:
+    """The least squares problem of a parametrization over a record in a file.
+
+    Parameters
+    ----------
+    stream
+        The record.
+    found
+        What the first way through it found.
+    parametrization
+        Free parameters, without columns beside the model.
+    late
+        Whole samples by which the output lags.
+    """
+
+    def __init__(
+        self, stream: RecordStream, found: Survey, parametrization: Parametrization, late: int
+    ) -> None:
+        self._stream, self._found, self._late = stream, found, late
+        self._parametrization = parametrization
+        template = parametrization.template
+        self._memory = template.initial_state()
+        self._chain = _engine.Chain(template.at_sample_time(stream.dt).stages())
+        self._beside = beside_the_records(parametrization, found.y_spread)
+        self._start = max(found.start, -late)
+        self.samples = found.samples - max(late, 0) - self._start
+
+    def problem(self) -> Problem:
+        """Pose it; only sums can be asked for."""
+        own = self._parametrization
+        return Problem(
+            self._refused,
+            self._refused,
+            own.lower,
+            own.upper,
+            own.canonical,
+            is_linear=own.is_linear,
+            summed=self._normal,
+            squares=self._squares,
+        )
+
+    def _refused(self, theta: Array):  # type: ignore[no-untyped-def]
+        raise SolverError("this family is fitted from residuals of all samples, not from sums")
+
+    def errors(self, theta: Array) -> Iterator[Array]:
+        """Give what the model leaves of the samples used, block by block.
+
+        Parameters
+        ----------
+        theta
+            Canonical.
+        """
+        self._chain.set_parameters(self._parametrization.constants(theta))
+        state, place = self._memory[None, :].copy(), 0
+        for u, y in aligned(self._stream, self._late):
+            modelled = np.empty((1, u.size))
+            self._chain.run(state, np.ascontiguousarray(u)[None, :], modelled)
+            used = max(self._start - place, 0)
+            place += u.size
+            if used < u.size:
+                yield modelled[0, used:] - y[used:]
+
+    def blocks(self, theta: Array) -> Iterator[tuple[Block, Array]]:
+        """Give the derivative of what the model leaves, and that itself, block by block.
+
+        Parameters
+        ----------
+        theta
+            Canonical.
+        """
+        self._chain.set_parameters(self._parametrization.constants(theta))
+        columns = self._chain.parameter_count
+        state, memory = self._memory.copy(), np.zeros((self._memory.size, columns))
+        transform, place = self._parametrization.transform, 0
+        for u, y in aligned(self._stream, self._late):
+            signal, rows = u.copy(), np.empty((u.size, columns))
+            self._chain.carry_jacobian(state, memory, signal, rows)
+            used = max(self._start - place, 0)
+            first = max(place - self._start, 0)
+            place += u.size
+            if used < u.size:
+                own = slice(first, first + u.size - used)
+                yield Block(0, own, rows[used:] @ transform), signal[used:] - y[used:]
+
+    def _normal(self, theta: Array) -> NormalEquations:
+        matrix, gradient = LongSum((theta.size, theta.size)), LongSum((theta.size,))
+        cost = LongSum(())
+        for block, errors in self.blocks(theta):
+            matrix.add(block.jacobian.T @ block.jacobian)
+            gradient.add(block.jacobian.T @ errors)
+            cost.add(errors @ errors)
+        own = NormalEquations(matrix.total, gradient.total, float(cost.total), self.samples)
+        for values, by_theta in self._beside(theta):
+            own = own.plus(values, by_theta)
+        return own
+
+    def _squares(self, theta: Array) -> float:
+        is_allowed = self._parametrization.is_allowed
+        if is_allowed is not None and not is_allowed(theta):
+            return self.samples * (NO_STEP_TO * self._found.y_spread) ** 2
+        cost = LongSum(())
+        for errors in self.errors(theta):
+            cost.add(errors @ errors)
+        return float(cost.total) + sum(float(v @ v) for v, _ in self._beside(theta))
+
+    def sums(self, theta: Array, columns: NDArray[np.bool_], left: ErrorsOfAll) -> ScoreSums:
+        """Sum what standard errors are made of.
+
+        Parameters
+        ----------
+        theta
+            Canonical.
+        columns
+            Shape (m,), which parameters are meant.
+        left
+            What the model leaves.
+        """
+        size = np.sqrt(np.diag(self._normal(theta).matrix)[columns] / self.samples)
+        unit = np.where(size > 0.0, np.ldexp(1.0, np.frexp(size)[1]), 1.0)
+        noise = math.ldexp(1.0, math.frexp(left.largest)[1])
+        gram = LongSum((unit.size, unit.size))
+        lags = bandwidth_of(left.power, left.product, self.samples, self.samples)
+        scores = BartlettSum(lags, unit.size)
+        for block, errors in self.blocks(theta):
+            scaled = block.jacobian[:, columns] / unit
+            gram.add(scaled.T @ scaled)
+            scores.add(0, scaled * (errors / noise)[:, None])
+        power = left.power / noise**2
+        return ScoreSums(unit, noise, gram.total, scores.total(), power, self.samples)
+
+
+class ErrorsOfAll:
+    """What a model leaves of all samples, summed.
+
+    Parameters
+    ----------
+    errors
+        Model minus measurement, block by block.
+    """
+
+    def __init__(self, errors: Iterator[Array]) -> None:
+        power, product, total = LongSum(()), LongSum(()), LongSum(())
+        low, high, last, self.samples = math.inf, -math.inf, 0.0, 0
+        for each in errors:
+            power.add(each @ each)
+            product.add(each[1:] @ each[:-1] + last * each[0])
+            total.add(each.sum())
+            low, high, last = min(low, float(each.min())), max(high, float(each.max())), each[-1]
+            self.samples += each.size
+        self.power, self.product = float(power.total), float(product.total)
+        self.bias = float(total.total) / self.samples
+        self.low, self.high = low, high
+
+    @property
+    def largest(self) -> float:
+        """Largest size of any."""
+        return max(-self.low, self.high)
+
+    def metrics(self, y_spread: float, y_range: float, samples: int, free: bool) -> Metrics:
+        """Give them as metrics.
+
+        Parameters
+        ----------
+        y_spread
+            Norm of the centred output over all samples.
+        y_range
+            What percentages refer to.
+        samples
+            Of the whole record.
+        free
+            Whether the mean error is taken out.
+        """
+        offset = self.bias if free else 0.0
+        rms = math.sqrt(max(self.power / self.samples - (self.bias**2 if free else 0.0), 0.0))
+        largest = max(self.high - offset, offset - self.low)
+        spread = y_spread / math.sqrt(samples)
+        return Metrics(
+            rms,
+            largest,
+            100.0 * rms / y_range,
+            100.0 * largest / y_range,
+            100.0 * (1.0 - rms / spread),
+            self.bias,
+            self.samples,
+            y_range,
+        )

@@ -1,0 +1,184 @@
+"""Identification from a record that stays in its file.
+
+Everything but the constants is found on the part of it that shows most of the input's range, in
+memory; then the constants are fitted to every sample. What was judged on which samples is said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from hyst.errors import NotIdentifiableError, SolverError
+from hyst.identification.families.family import Fit
+from hyst.identification.fit.bounded_least_squares import CONVERGED, minimize
+from hyst.identification.record_use.used_samples import UsedSamples
+from hyst.identification.result.fit_spread import spread_from_sums
+from hyst.identification.result.identified import Identified
+from hyst.identification.stream.fit_of_all import ErrorsOfAll, FitOfAll
+from hyst.identification.stream.survey import Survey, data_hash, part_of, survey
+from hyst.operators import Verdict
+from hyst.operators.description import errors_of
+from hyst.signals import Record
+from hyst.signals.record_stream import RecordStream
+
+MOST_STEPS = 200
+
+TOLERANCE = 1e-2
+"""Of the residual variance: no constant is then off by more than a tenth of its standard error."""
+
+WORSE = 1.1
+"""Times the rms over the part: more over all samples is said, and makes the model fair at best."""
+
+COVERS = 0.95
+
+
+def identify_stream(stream: RecordStream, identify: Callable[[Record], Identified]) -> Identified:
+    """Identify a model from a record in a file.
+
+    Parameters
+    ----------
+    stream
+        The record.
+    identify
+        Identifies from a record in memory.
+
+    Raises
+    ------
+    InputError
+        If a sample is not finite; its index is named.
+    NotIdentifiableError
+        If the record is constant, or holds what cannot be fitted sample by sample from a file, as
+        drift or a delay by parts of a sample.
+    SolverError
+        If the fit to all samples did not converge.
+    """
+    found = survey(stream)
+    before = identify(part_of(stream, found.part))
+    if found.part.stop - found.part.start == found.samples:
+        return before
+    fit = before.bands.fit
+    _require_servable(before, fit)
+    late = round(before.delay)
+    whole = FitOfAll(stream, found, fit.parametrization, late)
+    posed, theta, back = fit.family.in_own_coordinates(whole.problem(), fit.solution.theta)
+    solution = minimize(posed, theta, MOST_STEPS, TOLERANCE)
+    if solution.status != CONVERGED:
+        raise SolverError(
+            f"the fit to all {found.samples} samples did not converge in {MOST_STEPS} steps; load "
+            "a part of the record and identify from that"
+        )
+    fit = replace(fit, solution=replace(solution, theta=back(solution.theta)))
+    return _with_fit(before, fit, whole, found, stream)
+
+
+def _require_servable(before: Identified, fit: Fit) -> None:
+    if fit.family.depends_on_rate:
+        raise NotIdentifiableError(
+            f"{before.family!r} depends on the rate and is not fitted over a file; load a part of "
+            "the record and identify from that"
+        )
+    if fit.parametrization.nuisances is not None:
+        raise NotIdentifiableError(
+            "the record holds drift or what settles beside the model, which is not fitted over a "
+            "file; load a part of it and identify from that, or give creep=None and drift=False"
+        )
+    if any(each.left_out for each in before.used):
+        raise NotIdentifiableError(
+            "the record holds samples that are no measurements, which a fit over a file would "
+            "count; leave them out of the file, or load a part of it and identify from that"
+        )
+    if "training, disturbances left in" in before.metrics:
+        raise NotIdentifiableError(
+            "the record holds drift or sines that are none of its drive, which are not taken out "
+            "over a file; give drift=False, or load a part of it and identify from that"
+        )
+    if before.delay != round(before.delay):
+        raise NotIdentifiableError(
+            f"the output lags by {before.delay:.3g} samples, and a record in a file is fitted with "
+            "whole samples only; give delay"
+        )
+
+
+def _with_fit(
+    before: Identified, fit: Fit, whole: FitOfAll, found: Survey, stream: RecordStream
+) -> Identified:
+    """Put the fit to all samples in the place of that to a part."""
+    theta, estimates = fit.solution.theta, fit.family.estimates(fit)
+    left = ErrorsOfAll(whole.errors(theta))
+    sums = whole.sums(theta, fit.parametrization.inside(theta), left)
+    spread = spread_from_sums(sums, fit, found.y_spread)
+    errors, apart = np.full(len(estimates.names), np.nan), tuple[str, ...]()
+    if fit.family.estimates_noise:
+        errors, apart = spread.of(estimates.by_theta), spread.not_told_apart(estimates)
+    span = found.y_high - found.y_low
+    metrics = dict(before.metrics) | {
+        "training": left.metrics(found.y_spread, span, found.samples, free=False),
+        "training, free offset": left.metrics(found.y_spread, span, found.samples, free=True),
+    }
+    late = round(before.delay)
+    stop = found.samples + min(late, 0)
+    used = UsedSamples(stop - whole.samples, stop, found.samples)
+    notes = tuple(dict.fromkeys((*_about(found), *before.undetermined, *apart)))
+    verdict = _verdict(before, metrics["training"].rms, found)
+    about = replace(
+        before.description,
+        input_low=found.u_low,
+        input_high=found.u_high,
+        output_low=found.y_low,
+        output_high=found.y_high,
+        verdict=verdict,
+        errors=errors_of(metrics),
+    )
+    if about.provenance is not None:
+        about = replace(about, provenance=replace(about.provenance, data_sha256=data_hash(stream)))
+    return replace(
+        before,
+        model=fit.operator.with_description(about),
+        parameter_names=estimates.names,
+        parameter_values=estimates.values,
+        standard_errors=errors,
+        undetermined=notes,
+        metrics=metrics,
+        status=fit.solution.status,
+        iterations=fit.solution.iterations,
+        used=(used,),
+        description=about,
+        verdict=verdict,
+        bands=replace(before.bands, fit=fit, spread=spread),
+        per_record=(
+            replace(before.per_record[0], samples=whole.samples, metrics=metrics["training"]),
+        ),
+    )
+
+
+def _about(found: Survey) -> tuple[str, ...]:
+    part = found.part
+    return (
+        f"family, size, delay and what else is told were found on samples {part.start} to "
+        f"{part.stop - 1}, which cover {100.0 * found.part_covers:.0f} % of the input's range; the "
+        f"constants, their standard errors and the training errors are of all {found.samples}",
+    )
+
+
+def _verdict(before: Identified, rms: float, found: Survey) -> Verdict:
+    """Lower the verdict where the whole record is described worse than the part."""
+    part = before.metrics["training"].rms
+    level, sentences = before.verdict.level, before.verdict.sentences
+    judged = (
+        f"Judged on {found.part.stop - found.part.start} of {found.samples} samples, fitted to all."
+    )
+    if rms > WORSE * part or found.part_covers < COVERS:
+        level = "unfit" if level == "unfit" else "fair"
+        return Verdict(
+            level,
+            (
+                f"Over all samples the model leaves {rms:.3g} rms, over those it was judged on "
+                f"{part:.3g}, which cover {100.0 * found.part_covers:.0f} % of the input's range.",
+                *sentences,
+                judged,
+            ),
+        )
+    return Verdict(level, (*sentences, judged))
