@@ -69,6 +69,7 @@ def test_a_table_names_devices_columns_and_limits(run: Run, folder: Path, record
     ("arguments", "said"),
     [
         (["nothing/*.csv", *HOW], "meets no file"),
+        (["records", *HOW], "'records' is a folder; give the files in it, as 'records/*.csv'"),
         ([*HOW], "give the records of the fleet"),
         (["records/D00.csv", "--rate", "1000"], "no input column is named"),
         (["records/*.csv", *HOW, "--limit", "strength<1"], "'strength', which is no quantity"),

@@ -38,6 +38,15 @@ def test_odd_devices_and_failures_are_named_and_stop_nothing() -> None:
     assert "failed: torn: the file is torn" in told
 
 
+def test_a_sensor_at_its_end_is_odd_though_its_model_is_good() -> None:
+    records = lot(10)
+    y = records["D04"].y
+    records["D04"] = hyst.Record(DRIVE, np.minimum(y, 0.6 * y.max()), 1e-3)
+    (odd,) = found(records).outliers
+    assert odd.identifier == "D04"
+    assert "the sensor is at its upper end; hardly any other" in odd.reasons[0]
+
+
 def test_numbers_of_a_device_are_those_of_its_loop() -> None:
     record = device(1)
     row = found({"A": record}).table.row("A")

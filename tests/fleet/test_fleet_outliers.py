@@ -61,6 +61,7 @@ def test_what_lies_between_kinds_is_odd() -> None:
     fleet[100] = changed(fleet[100], gain=1.45 * fleet[100].numbers["gain"])
     judged = judge_fleet(fleet)
     assert [each.identifier for each in judged.outliers] == ["100"]
+    assert judged.outliers[0].reasons[0].startswith("gain: ")
     assert "most like it" in judged.outliers[0].reasons[0]
 
 

@@ -33,6 +33,8 @@ class Device:
         Quantities by name.
     parameters
         Value and standard error by name; NaN where there is none.
+    left_out
+        Why many of its samples are no measurements of it, a sentence by finding of the diagnosis.
     rising, falling
         Modelled loop on an even grid of the drive, both axes from 0 to 1.
     model
@@ -48,6 +50,7 @@ class Device:
     sentence: str = ""
     numbers: Mapping[str, float] = field(default_factory=dict)
     parameters: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    left_out: Mapping[str, str] = field(default_factory=dict)
     rising: tuple[float, ...] = ()
     falling: tuple[float, ...] = ()
     model: Operator | None = None
@@ -61,6 +64,7 @@ class Device:
         """Give everything but the model as values of JSON."""
         told = asdict(replace(self, model=None))
         told.pop("model")
+        told["left_out"] = dict(self.left_out)
         told["numbers"] = {name: _plain(each) for name, each in self.numbers.items()}
         told["parameters"] = {
             name: [_plain(each) for each in pair] for name, pair in self.parameters.items()

@@ -23,6 +23,10 @@ _TO_DEVIATION = 1.4826
 """Standard deviation of normal numbers over the median of their sizes."""
 
 
+_MANY = 0.02
+"""Share of the samples of a record that are worth a word if they are left out."""
+
+
 @dataclass(frozen=True, eq=False)
 class Settled:
     """What every device of a fleet is fitted with.
@@ -144,10 +148,21 @@ def device_of(measurement: Measurement, record: Record, found: Identified) -> De
         sentence=" ".join(found.verdict.sentences),
         numbers=_numbers(record, found, loop),
         parameters={name: (float(value), float(error)) for name, value, error in named},
+        left_out=_left_out(record, found),
         rising=rising,
         falling=falling,
         model=found.model,
     )
+
+
+def _left_out(record: Record, found: Identified) -> dict[str, str]:
+    """Say what was found in many samples that are therefore no part of the fit."""
+    diagnosis = getattr(found, "diagnosis", None)  # a shape that is shared looks for none
+    return {
+        each.name: each.sentence
+        for each in (() if diagnosis is None else diagnosis.findings)
+        if each.severity == "left out" and each.samples.size > _MANY * len(record)
+    }
 
 
 def _numbers(record: Record, found: Identified, loop: ModelLoop) -> dict[str, float]:

@@ -5,10 +5,14 @@ three quarters of the drive, and the error, by two rules:
 
 - against the whole fleet: |x - median| / (1.4826 MAD) of each quantity, the limit such that normal
   scatter exceeds it 0.05 times in a fleet;
-- against the devices most like it, for what lies between several kinds: three times as far from its
-  nearest as they are from theirs (the k-th nearest, in units of the scatter between nearest), and 8
-  robust deviations away from them in one quantity. Simulated fleets of one to twelve kinds have at
-  most 0.05 such devices.
+- against the devices most like it, for what lies between several kinds: twice as far from its
+  nearest as they are from theirs (the k-th nearest, in units of the scatter between nearest), 4.5
+  deviations away from them in one quantity, and 4 away in one from the devices that are most like
+  it in the others; or three times as far, and 8 away from the nearest. In simulated fleets of one
+  to twelve kinds, 30 to 1000 devices, 0 to 0.5 ordinary ones are.
+
+A device whose output falls where others rise, or whose record has samples that are no measurements
+(a sensor at its end) where others have none, is odd whatever its numbers are.
 
 What more than a few devices have in common is a kind of its own and no outlier.
 """
@@ -16,6 +20,7 @@ What more than a few devices have in common is a kind of its own and no outlier.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -28,10 +33,20 @@ from hyst.fleet.loop_of_model import POINTS
 Array = NDArray[np.float64]
 
 FALSE_ALARMS = 0.05
-"""Devices named in a whole fleet of such that scatter normally, to be expected of each rule."""
+"""Devices that the first rule names by mistake in a whole fleet that scatters normally."""
 
-APART, FAR = 3.15, 8.0
-"""Of the second rule: times as far as others are from theirs, and robust deviations."""
+FALSE_ALARMS_NEAR = 0.5
+"""The same of the second rule, at most."""
+
+APART, NEAR, UNLIKE = 2.2, 4.5, 4.0
+"""Of the second rule: times as far as others are from theirs, robust deviations from them, and from
+the devices that are alike in all but one of gain, opening and bend."""
+
+FAR_APART, FAR = 3.15, 8.0
+"""Times as far, and deviations, that are odd by themselves."""
+
+LIKE = 30
+"""Devices that are compared with as alike in all else, at most; an eighth of a small fleet."""
 
 FEWEST, FEWEST_NEAR = 8, 30
 """Devices below which nothing can be judged, and below which none is compared with its like."""
@@ -130,11 +145,11 @@ def judge_fleet(devices: Sequence[Device]) -> Judged:
     x = np.array([_features(each) for each in compared])
     odd, reasons = _against_all(x)
     near, near_reasons = _against_like(x)
-    turned = _against_sign(compared)
+    turned, found = _against_sign(compared), _against_findings(compared)
     outliers, distances = [], dict(nothing)
     for k, each in enumerate(compared):
         distances[each.identifier] = float(max(odd[k], near[k]))
-        told = (*turned[k], *_oddest((*reasons[k], *near_reasons[k])))
+        told = (*turned[k], *found[k], *_oddest((*reasons[k], *near_reasons[k])))
         if told:
             outliers.append(Outlier(each.identifier, distances[each.identifier], told))
     outliers.sort(key=lambda each: -each.distance)
@@ -142,10 +157,11 @@ def judge_fleet(devices: Sequence[Device]) -> Judged:
 
 
 def _sentence(count: int, odd: int) -> str:
+    false = FALSE_ALARMS + FALSE_ALARMS_NEAR * (count >= FEWEST_NEAR)
     what = "No device is" if not odd else f"{odd} device{'s are' if odd > 1 else ' is'}"
     return (
         f"{what} odd among the {count} with a model; of devices that only scatter normally "
-        f"about {2 * FALSE_ALARMS:g} in a whole fleet would be named by mistake."
+        f"at most about {false:.1g} in a whole fleet would be named by mistake."
     )
 
 
@@ -180,10 +196,7 @@ def _against_all(x: Array) -> tuple[Array, list[tuple[_Reason, ...]]]:
     center = np.median(x, axis=0)
     off = x - center
     scale = np.maximum(_TO_DEVIATION * np.median(np.abs(off), axis=0), floors)
-    deviations = off / scale
-    size = np.abs(deviations)
-    upper = [each.upper_only for each in _COMPARED]
-    size[:, upper] = np.maximum(deviations[:, upper], 0.0)
+    size = _sized(off / scale)
     limit = _limit(count)
     odd = size > limit
     reasons: list[tuple[_Reason, ...]] = []
@@ -216,12 +229,58 @@ def _against_like(x: Array) -> tuple[Array, list[tuple[_Reason, ...]]]:
     distances, nearest = cKDTree(x / scale).query(x / scale, k=2 * alike)
     far = np.log(np.maximum(distances[:, alike - 1], 1e-12))
     apart = far - np.median(far[nearest[:, 1:alike]], axis=1)
-    size, reasons = np.zeros(count), []
+    unlike, usual = _unlike(x, scale)
+    size, reasons = np.zeros(count), list[tuple[_Reason, ...]]()
     for k in range(count):
-        found = _like_reasons(x[k], x[nearest[k, 1:]], scale)
-        size[k] = found[0][1]
-        reasons.append(found if apart[k] > math.log(APART) and size[k] > FAR else ())
+        near, center = _from_nearest(x[k], x[nearest[k, 1:]], scale)
+        size[k] = max(near.max(), unlike[k].max())
+        reasons.append(
+            _told(x[k], unlike[k], usual[k], UNLIKE, "of the devices like it in all else")
+            if math.exp(apart[k]) > APART and near.max() > NEAR
+            else ()
+        )
+        if not reasons[-1] and math.exp(apart[k]) > FAR_APART and near.max() > FAR:
+            reasons[-1] = _told(x[k], near, center, FAR, "of the devices most like it")
     return size, reasons
+
+
+def _told(own: Array, size: Array, center: Array, least: float, whose: str) -> tuple[_Reason, ...]:
+    """Give the two oddest quantities beyond a limit, in words."""
+    odd = [q for q in np.argsort(-size)[:2] if size[q] > least]
+    return tuple(_reason(q, own[q], center[q], size[q], whose) for q in odd)
+
+
+_ALIKE_IN = ((0,), (1, 2, 3), (4, 5, 6), (7,))
+"""Gain, opening, bend and error: what is left out of the likeness when one is compared."""
+
+
+def _unlike(x: Array, scale: Array) -> tuple[Array, Array]:
+    """Give how far each quantity is from those of the devices alike in the others, and theirs."""
+    from scipy.spatial import cKDTree  # as above
+
+    floors = np.array([each.floor for each in _COMPARED])
+    most = max(10, min(LIKE, len(x) // 8))
+    usual, spread = np.empty_like(x), np.empty_like(x)
+    for own in _ALIKE_IN:
+        # An error says of which kind a device is only where it is a bad one.
+        others = [q for q in range(x.shape[1] - 1) if q not in own]
+        z = x[:, others] / scale[others]
+        nearest = cKDTree(z).query(z, k=most + 1)[1][:, 1:]
+        for q in own:
+            usual[:, q] = np.median(x[nearest, q], axis=1)
+            off = np.abs(x[nearest, q] - usual[:, q, None])
+            spread[:, q] = _TO_DEVIATION * np.median(off, axis=1)
+    off = x - usual
+    whole = np.maximum(_TO_DEVIATION * np.median(np.abs(off), axis=0), floors)
+    return _sized(off / np.maximum(spread, whole)), usual
+
+
+def _sized(deviations: Array) -> Array:
+    """Give sizes of deviations; of an error only what is above counts."""
+    size = np.abs(deviations)
+    upper = [each.upper_only for each in _COMPARED]
+    size[..., upper] = np.maximum(deviations[..., upper], 0.0)
+    return np.asarray(size)
 
 
 def _scatter_between_nearest(x: Array) -> Array:
@@ -237,21 +296,11 @@ def _scatter_between_nearest(x: Array) -> Array:
     return np.asarray(scale)
 
 
-def _like_reasons(own: Array, others: Array, scale: Array) -> tuple[_Reason, ...]:
-    """Say in what a device is furthest from those most like it."""
+def _from_nearest(own: Array, others: Array, scale: Array) -> tuple[Array, Array]:
+    """Give how far a device is from those most like it, in each quantity, and their median."""
     center = np.median(others, axis=0)
     scatter = np.maximum(_TO_DEVIATION * np.median(np.abs(others - center), axis=0), scale)
-    off = (own - center) / scatter
-    size = np.array(
-        [
-            max(each, 0.0) if q.upper_only else abs(each)
-            for each, q in zip(off, _COMPARED, strict=True)
-        ]
-    )
-    return tuple(
-        _reason(q, own[q], center[q], size[q], "of the devices most like it")
-        for q in np.argsort(-size)[:2]
-    )
+    return _sized((own - center) / scatter), center
 
 
 def _reason(q: int, value: float, center: float, size: float, whose: str) -> _Reason:
@@ -271,6 +320,19 @@ def _against_sign(devices: Sequence[Device]) -> list[tuple[str, ...]]:
         return [()] * len(devices)
     what = "falls where that of the others rises" if falls.mean() < 0.5 else "rises, others fall"
     return [(f"its output {what}",) if each else () for each in fewer]
+
+
+def _against_findings(devices: Sequence[Device]) -> list[tuple[str, ...]]:
+    """Name the devices whose record has samples left out for what hardly any other record has."""
+    often = Counter(name for each in devices for name in each.left_out)
+    return [
+        tuple(
+            f"{sentence.rstrip('.')}; hardly any other record has that"
+            for name, sentence in each.left_out.items()
+            if often[name] <= _most_alike(len(devices))
+        )
+        for each in devices
+    ]
 
 
 def _limit(count: int) -> float:

@@ -117,13 +117,31 @@ def find_writing(lines: Sequence[str]) -> Writing:
         if writing.separator is None
         or 2 * sum(writing.separator in line for line in sample) > len(sample)
     ]
+    best = fitting[0] if _is_best(fitting, sample) else _best_of(fitting, sample)
+    if best == Writing(",", ".") and _is_one_column(lines, sample):
+        return Writing(None, ",")
+    return best
+
+
+def _is_best(fitting: Sequence[Writing], sample: Sequence[str]) -> bool:
+    """Tell whether the first is the best, by the lines that are not all numbers under it.
+
+    On the others no writing has a larger share, so that most files are cut in one way only.
+    """
+    first, *others = fitting
+    left = [line for line in sample if _share_of_values(first, [line]) < 1.0]
+    own = _share_of_values(first, left)
+    return first.separator is not None and all(
+        _share_of_values(each, left) <= own for each in others
+    )
+
+
+def _best_of(fitting: Sequence[Writing], sample: Sequence[str]) -> Writing:
     shares = {writing: _share_of_values(writing, sample) for writing in fitting}
     best = max(fitting, key=lambda writing: shares[writing])
     if best.separator is None:
         # Of a header in words, blanks may cut out a number; that is no evidence.
         best = next(w for w in fitting if shares[w] >= shares[best] - _OF_A_HEADER)
-    if best == Writing(",", ".") and _is_one_column(lines, sample):
-        return Writing(None, ",")
     return best
 
 
@@ -134,8 +152,13 @@ def _is_one_column(lines: Sequence[str], sample: list[str]) -> bool:
     exponent.
     """
     writing = Writing(None, ",")
-    numbers = [line.strip() for line in sample if writing.kind(line) != "text"]
-    if not numbers or not all(map(writing.is_number, numbers)):
+    numbers = []
+    for line in map(str.strip, sample):
+        if writing.is_number(line):
+            numbers.append(line)
+        elif writing.kind(line) != "text":
+            return False
+    if not numbers:
         return False
     texts = list(itertools.takewhile(lambda line: writing.kind(line) == "text", lines[:SAMPLED]))
     if texts and "," not in texts[-1] and len(writing.titles(texts[-1])) == 1:
@@ -143,7 +166,7 @@ def _is_one_column(lines: Sequence[str], sample: list[str]) -> bool:
     return any(_FRACTION.search(number) for number in numbers)
 
 
-def _share_of_values(writing: Writing, sample: list[str]) -> float:
+def _share_of_values(writing: Writing, sample: Sequence[str]) -> float:
     """Average over the lines, so that a header counts alike however many cells it is cut into."""
     share = 0.0
     for line in sample:

@@ -55,6 +55,10 @@ def _met(pattern: str) -> list[Path]:
     found = sorted(Path(each) for each in glob.glob(pattern, recursive=True))
     files = [each for each in found if each.is_file()]
     if not files:
+        if found:
+            raise hyst.InputError(
+                f"{pattern!r} is a folder; give the files in it, as '{pattern}/*.csv'"
+            )
         raise hyst.InputError(
             f"{pattern!r} meets no file; give files, or a pattern as 'RECORDS/*.csv'"
         )
