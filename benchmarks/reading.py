@@ -1,22 +1,28 @@
-"""Reading text against NumPy and, where it is installed, pandas: a million rows of three columns.
+"""Text in and out against NumPy and, where it is installed, pandas: a million rows of 3 columns.
 
 Each way of writing is read by `read_table`, by `read_record`, by `numpy.loadtxt` and by
 `pandas.read_csv`, in turn; printed is the time of each and the ratio to the fastest peer there is.
 hyst also finds out how the file is written and checks every line, and a record's time and signals
-are checked too.
+are checked too. Then a record is read in chunks, the table is written with all its digits, and
+`hyst simulate` reads an input and writes time, input and output, against `read_csv` and `to_csv` of
+the same table.
 """
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
+import io
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks.timing import interleaved, report_times
-from hyst.io import read_record, read_table
+import hyst
+import hyst.cli
+from benchmarks.timing import interleaved, ratio, report_times
+from hyst.io import open_record, read_record, read_table, write_columns
 
 ROWS = 1_000_000
 FORMS = {
@@ -46,6 +52,39 @@ def main() -> None:
                 told = f"{each} over {peer}, written with {name}"
                 row.append(f"{report_times(told, times, each, peer, better='smaller'):13.2f}")
             print(f"  {name:26s}{''.join(row)}")
+        if peer == "pandas":
+            print_writing(Path(folder))
+
+
+def print_writing(folder: Path) -> None:
+    """Compare chunks, writing and simulation with pandas."""
+    import pandas
+
+    source, target, model = (folder / each for each in ("loop.csv", "out.csv", "model.json"))
+    hyst.PrandtlIshlinskii([0.5, 0.4], [1.0, 5.0], 1.0).save(model, hyst.ModelDescription())
+    table = pandas.read_csv(source)
+    columns = [table[name].to_numpy() for name in "tuy"]
+    typed = ["simulate", str(model), str(source), "--input", "u", "--rate", "10000"]
+    works: dict[str, Callable[[], object]] = {
+        "open_record and chunks": lambda: [*open_record(source, "u", "y", time="t").chunks(65_536)],
+        "write_columns": lambda: write_columns(target, list("tuy"), columns),
+        "hyst simulate": lambda: simulated([*typed, "-o", str(target)]),
+        "read_csv": lambda: pandas.read_csv(source),
+        "to_csv": lambda: table.to_csv(target, index=False),
+        "read_csv and to_csv": lambda: pandas.read_csv(source).to_csv(target, index=False),
+    }
+    times = interleaved(works, seconds=30.0, rounds=5)
+    pairs = zip(list(works)[:3], list(works)[3:], strict=True)
+    for work, other in pairs:
+        spent = f"{np.median(times[work]):.3f} s, {ratio(times, work, other):.2f} of {other}"
+        print(f"  {work:26s}{spent}")
+
+
+def simulated(typed: list[str]) -> None:
+    """Run the program without what it prints."""
+    with contextlib.redirect_stdout(io.StringIO()):
+        status = hyst.cli.main(typed)
+    assert status == 0, "the program failed"
 
 
 def works(path: Path, separator: str) -> dict[str, Callable[[], object]]:

@@ -1,8 +1,11 @@
 #include "jacobian.hpp"
 
+#include <vector>
+
 #include "said.hpp"
 
 namespace hyst {
+
 void jacobian(const Chain &chain, double *state, const double *u, std::size_t samples,
               Derivative derivative, double *jacobian) {
     std::vector<double> signal(u, u + samples);

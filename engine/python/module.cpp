@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "batch_binding.hpp"
 #include "chain_binding.hpp"
 #include "closed_loop_binding.hpp"
 #include "../records/evaluation.hpp"
@@ -21,7 +22,6 @@
 #include "moving_binding.hpp"
 #include "number_text_binding.hpp"
 #include "online_binding.hpp"
-#include "../parallel.hpp"
 #include "../reverse.hpp"
 #include "rate_dependent_binding.hpp"
 #include "repetitive_binding.hpp"
@@ -107,25 +107,6 @@ double loss_gradient(const hyst::Chain &chain, Vector state, Signal u, Signal ta
     const nb::gil_scoped_release released;
     return hyst::loss_gradient(chain, state.data(), u.data(), target.data(), u.shape(0), options,
                                gradient.data());
-}
-
-// The first set whose output overflows, or -1.
-std::ptrdiff_t run_parameter_sets(Signal p0, Batch p, Batch r, Signal u, Matrix y,
-                                  std::size_t threads) {
-    const std::size_t sets = p0.shape(0), plays = p.shape(1), samples = u.shape(0);
-    require(p.shape(0) == sets && r.shape(0) == sets && r.shape(1) == plays,
-            "p0, p and r do not fit each other");
-    require(y.shape(0) == sets && y.shape(1) == samples, "y has the wrong shape");
-    const nb::gil_scoped_release released;
-    std::vector<char> finite(sets);
-    hyst::parallel(sets, threads, [&](std::size_t set) {
-        const hyst_pi bank{plays, p0(set), p.data() + set * plays, r.data() + set * plays};
-        std::vector<double> z(plays, 0.0);
-        finite[set] = hyst::evaluate_stage(hyst::stage_of(bank), z.data(), u.data(), y.data() + set * samples,
-                                           samples, {});
-    });
-    const auto bad = std::find(finite.begin(), finite.end(), 0);
-    return bad == finite.end() ? -1 : bad - finite.begin();
 }
 
 std::ptrdiff_t first_non_finite(Signal values) {
@@ -270,14 +251,12 @@ NB_MODULE(_engine, module) {
     module.def("run_with_thresholds", &run_with_thresholds, nb::arg("p0"), nb::arg("p"),
                nb::arg("r").noconvert(), nb::arg("z").noconvert(), nb::arg("u").noconvert(),
                nb::arg("y").noconvert());
-    module.def("run_parameter_sets", &run_parameter_sets, nb::arg("p0").noconvert(),
-               nb::arg("p").noconvert(), nb::arg("r").noconvert(), nb::arg("u").noconvert(),
-               nb::arg("y").noconvert(), nb::arg("threads") = 1);
     module.def("first_non_finite", &first_non_finite, nb::arg("values").noconvert());
     module.def("instruction_sets", &instruction_sets);
     module.def("instruction_set", [] { return hyst::kernels().name; });
     module.def("use_instruction_set", &use_instruction_set, nb::arg("name"));
     module.def("stepper", &stepper, nb::arg("chain"), nb::arg("state"), nb::arg("y_safe"));
+    hyst::bind_batches(module);
     hyst::bind_closed_loop(module);
     hyst::bind_repetitive(module);
     hyst::bind_limited_drive(module);

@@ -48,6 +48,8 @@ from hyst.operators import ModelDescription as ModelDescription
 from hyst.operators import Operator as Operator
 from hyst.operators import Play as Play
 from hyst.operators import Stop as Stop
+from hyst.operators.batches import batch_loss_gradient as batch_loss_gradient
+from hyst.operators.batches import evaluate_batch as evaluate_batch
 from hyst.signals import Record as Record
 
 __version__: str

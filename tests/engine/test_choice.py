@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import hyst
-from hyst.operators.evaluation import explain, run_parameter_sets
+from hyst.operators.batches import evaluate_batch
+from hyst.operators.evaluation import explain
 
 
 def bank(n: int) -> hyst.PrandtlIshlinskii:
@@ -78,6 +79,7 @@ def test_parameter_sets_are_their_models(threads: int) -> None:
     rng = np.random.default_rng(5)
     p0, p, r = rng.normal(size=11), rng.normal(size=(11, 4)), np.sort(rng.random((11, 4)), axis=1)
     u = rng.normal(size=3000)
-    y = run_parameter_sets(p0, p, r, u, threads=threads)
+    model = hyst.PrandtlIshlinskii(p[0], r[0])
+    y = evaluate_batch(model, u, np.column_stack([p0, p, r]), threads=threads)
     for s in range(11):
         np.testing.assert_array_equal(y[s], hyst.PrandtlIshlinskii(p[s], r[s], p0[s])(u))

@@ -11,8 +11,9 @@ import hyst
 from hyst import InputError, LinearDynamics, Operator, PrandtlIshlinskii
 from hyst.models import MemoryElement, MemoryFunction
 from hyst.operators import Affine, DeadZone, Play, Stop
+from hyst.operators.batches import batch_loss_gradient, evaluate_batch
 from hyst.operators.engine_name import EngineName
-from hyst.operators.evaluation import explain, run_parameter_sets
+from hyst.operators.evaluation import explain
 
 ENGINES: list[EngineName] = ["auto", "loop", "lanes", "memory-curve"]
 
@@ -126,8 +127,8 @@ def test_an_overflow_on_the_way_to_a_sum_that_fits_is_refused_by_every_engine(
             model.run(u, engine=engine)
         with pytest.raises(InputError, match=r"u\[3\] = 6\.2e\+307 the operator overflows"):
             model.loss_gradient(u, 0.0 * u, engine=engine)
-        with pytest.raises(InputError, match="parameter set 0 overflows"):
-            run_parameter_sets([model.p0], [model.p], [model.r], np.tile(u, 100))
+        with pytest.raises(InputError, match=r"model 1 of the batch: at u\[3\] = 6\.2e\+307"):
+            evaluate_batch(model, np.tile(u, 100), [np.zeros(5), model.parameters().values])
 
 
 def near_the_largest(rng: np.random.Generator) -> tuple[PrandtlIshlinskii, np.ndarray]:
@@ -187,5 +188,6 @@ def test_what_is_built_on_evaluation_refuses_too() -> None:
         explain(operator, [0.0, 1e305])
     with pytest.raises(InputError, match=r"u\[1\] = 1e\+305 the operator overflows"):
         hyst.Affine(1e10).loss_gradient([0.0, 1e305], [0.0, 0.0])
-    with pytest.raises(InputError, match="parameter set 1 overflows"):
-        run_parameter_sets([1.0, 1e10], [[1.0], [1.0]], [[0.1], [0.1]], [0.0, 1e305])
+    for call in (evaluate_batch, lambda *of: batch_loss_gradient(*of[:2], [0.0, 0.0], of[2])):
+        with pytest.raises(InputError, match=r"model 1 of the batch: at u\[1\] = 1e\+305"):
+            call(hyst.Affine(1.0), [0.0, 1e305], [[1.0, 0.0], [1e10, 0.0]])

@@ -8,7 +8,6 @@ import pytest
 import hyst
 from hyst import _engine
 from hyst.errors import InputError
-from hyst.operators.evaluation import run_parameter_sets
 from hyst.operators.stage import Stage
 
 
@@ -112,13 +111,3 @@ def test_engines_have_names() -> None:
         bank().run(z.copy(), u, y, "fast")
     with pytest.raises(ValueError, match="not available"):
         _engine.use_instruction_set("mmx")
-
-
-def test_parameter_sets_are_checked() -> None:
-    sets = np.ones(2), np.ones((2, 3)), np.cumsum(np.ones((2, 3)), axis=1)
-    with pytest.raises(InputError, match=r"r\[0\]\[1\]"):
-        run_parameter_sets(*sets[:2], sets[2][:, ::-1], [1.0])
-    with pytest.raises(InputError, match="shape"):
-        run_parameter_sets(np.ones(3), *sets[1:], [1.0])
-    with pytest.raises(InputError, match="one record"):
-        run_parameter_sets(*sets, np.ones((2, 2)))

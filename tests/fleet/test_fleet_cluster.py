@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import socket
-import time
 from pathlib import Path
 from typing import Any
 
@@ -20,13 +19,13 @@ pytestmark = pytest.mark.filterwarnings("default")
 def test_workers_that_are_killed_cost_only_the_device_that_kills_them(tmp_path: Path) -> None:
     import dask
 
-    records: dict[str, Any] = lot(6)
+    records: dict[str, Any] = lot(2)
     records["once"] = Kills("once", device(50), str(tmp_path / "killed"))
     records["always"] = Kills("always")
-    patient = {"distributed.scheduler.allowed-failures": 1}
+    impatient = {"distributed.scheduler.allowed-failures": 0}
     quiet = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
     with (
-        dask.config.set(patient),
+        dask.config.set(impatient),
         distributed.LocalCluster(**quiet, silence_logs=50) as cluster,
         distributed.Client(cluster, set_as_default=False) as client,
     ):
@@ -35,7 +34,7 @@ def test_workers_that_are_killed_cost_only_the_device_that_kills_them(tmp_path: 
     assert (tmp_path / "killed").exists()
     assert list(fleet.failures) == ["always"]
     assert "died" in fleet.failures["always"]
-    assert set(fleet.models) == set(lot(6)) | {"once"}
+    assert set(fleet.models) == set(lot(2)) | {"once"}
 
 
 def test_a_scheduler_that_does_not_answer_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -43,7 +42,5 @@ def test_a_scheduler_that_does_not_answer_is_told(monkeypatch: pytest.MonkeyPatc
     with socket.socket() as silent:
         silent.bind(("127.0.0.1", 0))
         port = silent.getsockname()[1]
-        begun = time.monotonic()
         with pytest.raises(OSError, match="does not answer within 1 s"):
             hyst.fleet.identify(lot(2), **CHEAP, scheduler=f"tcp://127.0.0.1:{port}")
-    assert time.monotonic() - begun < 60

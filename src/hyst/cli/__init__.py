@@ -1,7 +1,7 @@
 """The command line: one file a verb.
 
-The verbs reach everything through the names of ``hyst`` itself, which are loaded when first used;
-so ``hyst --help`` loads no numerics, and no verb imports anything inside a function.
+A verb is imported when it is typed, and reaches everything through the names of ``hyst`` itself,
+which are loaded when first used; so ``hyst --help`` loads no numerics.
 """
 
 from __future__ import annotations

@@ -133,7 +133,15 @@ class ResultFolder:
         return found
 
     def is_done(self, entry: Entry | None, measurement: Measurement) -> bool:
-        """Tell whether a device need not be done again."""
+        """Tell whether a device need not be done again.
+
+        Parameters
+        ----------
+        entry
+            Its line in the journal, if there is one.
+        measurement
+            Its data now.
+        """
         if entry is None or not entry.fingerprint or not entry.device.is_final:
             return False
         if entry.fingerprint != measurement.fingerprint():
@@ -142,6 +150,13 @@ class ResultFolder:
 
     def keep(self, device: Device, fingerprint: str) -> None:
         """Write a device: first its model, then its line in the journal.
+
+        Parameters
+        ----------
+        device
+            With its model, if it has one.
+        fingerprint
+            Of its data.
 
         Raises
         ------

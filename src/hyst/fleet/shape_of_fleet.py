@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,14 @@ from hyst.signals import Record
 
 SHARED = "shared"
 SHAPE_FILE = "shape.json"
+
+PLAYS = 12
+"""Of the device where the estimate starts, unless told: what one short record cannot tell apart the
+fleet can, and plays too many do no harm where plays too few do."""
+
+SHARED_TOLD = (
+    "That is of single devices; here all share one shape, estimated from the fleet (shape.json)."
+)
 
 MOST_RECORDS, MOST_TYPICAL = 200, 15
 """Records a shape is estimated from, and devices the typical one is chosen among."""
@@ -78,6 +87,21 @@ def estimated_shape(
     if file is not None:
         shape.save(file)
     return shape
+
+
+def to_start_from(settled: Settled, asked: Mapping[str, Any]) -> Settled:
+    """Give with what the device is identified that the estimate of a shape starts from.
+
+    Parameters
+    ----------
+    settled
+        With what single devices are.
+    asked
+        What the user gave.
+    """
+    if "plays" in asked or "plays" not in settled.options:
+        return settled
+    return replace(settled, options={**settled.options, "plays": PLAYS})
 
 
 def shape_of_folder(folder: Path) -> SharedShape:

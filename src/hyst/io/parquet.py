@@ -104,7 +104,15 @@ def _entries(
 
 
 def is_clock(kind: Any, types: Any) -> bool:
-    """Tell whether a type is that of dates or durations."""
+    """Tell whether a type is that of dates or durations.
+
+    Parameters
+    ----------
+    kind
+        The type.
+    types
+        The module of arrow with tests of types.
+    """
     return bool(types.is_timestamp(kind) or types.is_duration(kind))
 
 

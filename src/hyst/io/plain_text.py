@@ -80,7 +80,15 @@ def read_plain(
 
 
 def head_of(data: bytes, source: str) -> tuple[Page, Block] | None:
-    """Find out how the file is written; None unless all lines after the head are plain rows."""
+    """Find out how the file is written; None unless all lines after the head are plain rows.
+
+    Parameters
+    ----------
+    data
+        Its beginning, whole lines.
+    source
+        Its name.
+    """
     try:
         text = decode(data, source)
         lines = significant_lines(text)
@@ -103,7 +111,17 @@ def head_of(data: bytes, source: str) -> tuple[Page, Block] | None:
 
 
 def plain_body(data: bytes, start: int, writing: Writing) -> Body | None:
-    """Give rows with a decimal point and plain line ends; None if there is more than numbers."""
+    """Give rows with a decimal point and plain line ends; None if there is more than numbers.
+
+    Parameters
+    ----------
+    data
+        Bytes with the rows in them.
+    start
+        Where they begin.
+    writing
+        How they are written.
+    """
     decimal, separator = writing.decimal.encode(), (writing.separator or "\t").encode()
     if decimal == separator:
         return None
@@ -123,7 +141,15 @@ def plain_body(data: bytes, start: int, writing: Writing) -> Body | None:
 
 
 def start_of_line(data: bytes, number: int) -> int:
-    """Give the byte at which a line begins, counted from 1."""
+    """Give the byte at which a line begins.
+
+    Parameters
+    ----------
+    data
+        Content of the file.
+    number
+        The line, from 1.
+    """
     start = 0
     for _ in range(number - 1):
         start = data.index(b"\n", start) + 1

@@ -87,7 +87,18 @@ def usable_rows(
 
 
 def refuse_row_of_units(table: Table, chosen: list[int]) -> None:
-    """Refuse a first row with a unit in it: leaving it out would leave out the unit of the time."""
+    """Refuse a first row with a unit in it: leaving it out would leave out the unit of the time.
+
+    Parameters
+    ----------
+    table, chosen
+        As of ``usable_rows``.
+
+    Raises
+    ------
+    InputError
+        If so.
+    """
     for k in chosen:
         flaw = table.flaws[k]
         if flaw and flaw.row == 0 and is_unit(flaw.text) and not is_missing(flaw.text):
@@ -99,7 +110,20 @@ def refuse_row_of_units(table: Table, chosen: list[int]) -> None:
 
 
 def require_samples(table: Table, rows: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Give rows of a table that are enough for a record, or refuse them."""
+    """Give rows of a table that are enough for a record, or refuse them.
+
+    Parameters
+    ----------
+    table
+        Where they are.
+    rows
+        Their indices.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than 3.
+    """
     if rows.size < FEWEST_SAMPLES:
         raise InputError(
             f"{table.source} has {rows.size} usable samples; give a record of at least "

@@ -76,8 +76,8 @@ def rows_of_text(columns: Sequence[NDArray[Any]]) -> Iterator[bytes]:
     Examples
     --------
     >>> import numpy as np
-    >>> b"".join(rows_of_text([np.array([0.1, 1e22]), np.array([2, 3])]))
-    b'0.1,2\\n1e+22,3\\n'
+    >>> b"".join(rows_of_text([np.array([0.1, 1e22]), np.array([2, 3])])).decode().splitlines()
+    ['0.1,2', '1e+22,3']
     """
     sizes = {column.size for column in columns}
     if len(sizes) > 1:

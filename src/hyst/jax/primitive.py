@@ -56,14 +56,14 @@ def evaluate(
     --------
     >>> import hyst, numpy as np
     >>> import jax
-    >>> u = np.array([0.0, 1.0, 0.2, 0.9], dtype=np.float32)
+    >>> u = np.array([0.0, 1.0, 0.25, 1.0], dtype=np.float32)
     >>> play = hyst.Play(0.25)
     >>> y = evaluate(play)(u)
     >>> print(y)
-    [0.   0.75 0.45 0.65]
+    [0.   0.75 0.5  0.75]
     >>> loss = lambda theta: (evaluate(play, theta)(u) ** 2).sum()
     >>> print(jax.grad(loss)(np.array([0.25], dtype=np.float32)))
-    [-1.9000001]
+    [-2.]
     """
     given = None if state is None else tuple(np.asarray(state, dtype=np.float64).tolist())
     function = _function(model, given) if isinstance(model, Operator) else Differentiable(model)

@@ -82,7 +82,7 @@ def drawn(draw: Callable[Parameters, Figure]) -> Callable[Parameters, bytes]:
 def _png_of(figure: Figure) -> bytes:
     """Lay a figure out and give its pixels."""
     content = io.BytesIO()
-    canvas = FigureCanvasAgg(figure)
+    canvas: Any = FigureCanvasAgg(figure)
     layout = figure.get_layout_engine()
     if layout is not None:
         layout.execute(figure)

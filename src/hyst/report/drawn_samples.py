@@ -92,4 +92,4 @@ def drawn_path(x: Array, y: Array) -> tuple[Array, Array]:
 def _cells(signal: Array) -> NDArray[np.intp]:
     """Give the places of samples within their range, in whole steps."""
     low, span = signal.min(), np.ptp(signal)
-    return ((signal - low) * (_CELLS / span if span > 0.0 else 0.0)).astype(np.intp)
+    return np.asarray((signal - low) * (_CELLS / span if span > 0.0 else 0.0), dtype=np.intp)

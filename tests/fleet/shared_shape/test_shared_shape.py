@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -96,6 +97,28 @@ def test_plain_model_gives_scales_and_offset_without_a_fleet() -> None:
     found = SharedShape.of_model(TYPICAL).identify(record)
     assert np.abs(found.predict(u) - record.y).max() < 1e-8
     assert np.isnan(found.distance)
+
+
+def test_noisier_sensor_is_told_and_no_other_kind(shape: SharedShape) -> None:
+    u = drive(200)
+    noise = 0.1 * np.random.default_rng(5).standard_normal(200)
+    found = shape.identify(hyst.Record(u, TYPICAL(u) + noise, dt=1e-3))
+    assert found.verdict.level == "fair"
+    assert any("times as noisy" in each for each in found.verdict.sentences)
+
+
+def test_shape_that_lacks_something_says_so() -> None:
+    poor = SharedShape.estimate(hyst.PrandtlIshlinskii([0.8], [0.25], p0=1.2), fleet())
+    found = poor.identify(measured(of_gain(1.0), 200, 8))
+    assert found.verdict.level == "fair"
+    assert any("The shape lacks" in each for each in found.verdict.sentences)
+
+
+def test_result_goes_to_another_process(shape: SharedShape) -> None:
+    record = measured(of_gain(1.02), 200, 9)
+    found = shape.identify(record)
+    there = pickle.loads(pickle.dumps(shape)).identify(record)
+    assert pickle.loads(pickle.dumps(there)).to_dict() == found.to_dict()
 
 
 def test_what_cannot_be_used_is_refused(shape: SharedShape) -> None:

@@ -16,10 +16,10 @@ from hyst.fleet.shared_shape.signals_used import Used
 
 Array = NDArray[np.float64]
 
-MOST_STEPS = 8
-AT_REST = 0.1
+MOST_STEPS = 15
+AT_REST = 0.05
 """Of twice the logarithm of the likelihood: what a further step may still gain; it moves the device
-by less than a third of a standard error."""
+by less than a quarter of a standard error."""
 
 PATIENCE = 3
 """Steps in a row that gain no more, where kinks keep a step from what it promises."""

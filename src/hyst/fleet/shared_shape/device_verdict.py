@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hyst.identification.judgement.regression import is_white
 from hyst.identification.judgement.taken_apart import SMALLEST_PART
-from hyst.identification.judgement.unfit import FAR_OFF, LIKE_A_LINE, OPEN_LOOP
+from hyst.identification.judgement.unfit import FAR_OFF, LIKE_A_LINE, OPEN_LOOP, WORSE
 from hyst.operators import Verdict
 from hyst.operators.verdict import Level
 
@@ -141,6 +141,8 @@ def _unfit(seen: Seen, outside: tuple[str, ...], white: bool) -> str:
         return f"It does not describe the record: {leaves}."
     if seen.line > OPEN_LOOP * seen.y_range and beside > LIKE_A_LINE * seen.line:
         return f"It is hardly better than a straight line: {leaves}."
+    if beside > max(WORSE * seen.line, OPEN_LOOP * seen.y_range):
+        return f"A straight line describes the record better: {leaves}."
     if seen.predicted > FAR_OFF * seen.y_range:
         return (
             f"The record says too little of the device: an error of {seen.said(seen.predicted)} "
@@ -187,9 +189,10 @@ def _left(seen: Seen, white: bool) -> tuple[str, ...]:
 
 
 def _unsure(seen: Seen) -> tuple[str, ...]:
-    if seen.predicted <= UNSURE * seen.y_range:
+    unsure = math.sqrt(max(seen.predicted**2 - seen.lacking**2, 0.0))
+    if unsure <= UNSURE * seen.y_range:
         return ()
     return (
-        f"An error of {seen.said(seen.predicted)} rms is to be expected: the record is short for "
-        "what it must tell.",
+        f"Of its constants alone an error of {seen.said(unsure)} rms is to be expected: the record "
+        "is short for what it must tell.",
     )

@@ -107,8 +107,9 @@ def simplest(equations: Equations, middle: Middle, starts: Sequence[Array]) -> M
     starts
         Variances to start from, beside those of the middle.
     """
-    few, weights = _some(equations.of(middle.belongs))
-    noise = middle.population.noise
+    of_them = equations.of(middle.belongs)
+    few, weights = _some(of_them)
+    noise = noise_of(of_them)
     found = []
     for start in (middle.scatter.variances, *starts):
         scatter = replace(middle.scatter, variances=start)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.special
 from numpy.typing import NDArray
 
 from hyst.identification.choice.blocks import Block, blocks_of
 from hyst.identification.families.family import Fit
 from hyst.identification.fit.bounded_least_squares import minimize
 from hyst.identification.fit.evaluation import Evaluation
+from hyst.identification.fit.whiteness import is_white
 from hyst.identification.record_use.outlying import winsorised
 from hyst.identification.record_use.overview import Overview
 
@@ -21,9 +21,6 @@ REFIT_ITERATIONS = 6
 
 TO_EARN = 4.0
 """Squared error, in residual variances, that a number must save in the samples it is fitted to."""
-
-WHITE_LAGS, WHITE_BY_CHANCE = 20, 1e-3
-"""Of the test of Box and Pierce (1970)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,14 +170,7 @@ def leaves_white_noise(overview: Overview, fit: Fit) -> bool:
     fit
         The family fitted to all samples.
     """
-    errors = residual_of(overview, fit)
-    errors = errors - errors.mean()
-    power = float(errors @ errors)
-    if power <= 0.0 or errors.size < 4 * WHITE_LAGS:
-        return power <= 0.0
-    alike = [float(errors[lag:] @ errors[:-lag]) / power for lag in range(1, WHITE_LAGS + 1)]
-    limit = scipy.special.chdtri(WHITE_LAGS, WHITE_BY_CHANCE)
-    return bool(errors.size * float(np.square(alike).sum()) < limit)
+    return is_white(residual_of(overview, fit))
 
 
 def _mean_square(residual: Array, block: Block) -> float:

@@ -168,8 +168,14 @@ class PlayBank(Family):
         records = overview.data.records
         kinks = np.unique(np.concatenate([half_swings(fit.operator, each.u) for each in records]))
         problem = fit.problem(overview.data, overview.kept)
-        plays = layout_of(fit).plays
-        found = search_radii(problem, fit.solution, plays, kinks, max_iterations)
+        found = search_radii(
+            problem,
+            fit.solution,
+            layout_of(fit).basis,
+            kinks,
+            max_iterations,
+            one_amplitude=not overview.shows_minor_loops,
+        )
         return replace(fit, solution=found)
 
     @final

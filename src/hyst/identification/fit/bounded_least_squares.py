@@ -157,8 +157,11 @@ def minimize(
         if abs(promise) * (1.0 + damping) <= noticed or normal.cost <= problem.negligible:
             return Solution(theta, normal.cost, iteration, CONVERGED)
         trial = problem.canonical(np.clip(theta + step, problem.lower, problem.upper))
-        gain = (normal.cost - problem.cost(trial)) / promise
+        cost = problem.cost(trial)
+        gain = (normal.cost - cost) / promise
         if promise > 0.0 and gain > 1e-4:
+            if iteration == max_iterations:  # the normal equations there serve no further step
+                return Solution(trial, cost, iteration, ITERATION_LIMIT)
             theta, normal = trial, problem.normal_equations(trial)
             damping *= max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3)
             damping = max(damping, LEAST_DAMPING)

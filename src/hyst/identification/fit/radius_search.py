@@ -4,16 +4,24 @@ The output bends where a radius passes half a swing of the input, so the cost ha
 half swing, some of them local minima that a derivative cannot leave. Each radius in turn is moved
 across the next kinks, and some way towards its neighbours, and that of the play with least weight
 between any others if it has next to none, and a short fit is tried from there.
+
+While what the fit leaves is not white, a better minimum may lie where no linear step tells of it,
+so every move is tried. As soon as it is white, only those are that promise to lower the cost by
+more than a residual variance: a forecast sees what one part in a hundred of the variance hides from
+the test of whiteness. Where nothing is gained the search ends.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.fit.bounded_least_squares import Problem, Solution, minimize
+from hyst.identification.fit.moved_plays import MovedPlays
+from hyst.identification.fit.whiteness import is_white
 
 Array = NDArray[np.float64]
 
@@ -33,26 +41,40 @@ REVIVED = 5e-2
 """Share of all weights it gets there: with next to none it would not know where to move."""
 
 TRIAL_ITERATIONS = 2
+MOST_PROMISING, MOST_OF_A_PLAY = 12, 2
+"""Moves of a round that are tried where only promising ones are, and of one play of them."""
+
 MOST_ROUNDS = 5
+Move = tuple[int, Array]
+"""Which play moves, counted from 0, and theta after it."""
 
 
 def search_radii(
-    problem: Problem, solution: Solution, plays: int, kinks: Array, max_iterations: int
+    problem: Problem,
+    solution: Solution,
+    basis: Array,
+    kinks: Array,
+    max_iterations: int,
+    *,
+    one_amplitude: bool = False,
 ) -> Solution:
     """Improve a fit by moving its radii across kinks, until no move helps.
 
     Parameters
     ----------
     problem
-        The least squares problem; theta starts with p0, p_1 .. p_n, r_1 .. r_n.
+        The least squares problem; theta starts with a_0 .. a_n, r_1 .. r_n.
     solution
         A converged fit.
-    plays
-        Number of plays n.
+    basis
+        Shape (n + 1, n + 1), of ``(p0, p) = basis @ a``.
     kinks
         Half swings of the input of the plays, ascending, in its units.
     max_iterations
         Of the fit after a move that helped.
+    one_amplitude
+        Whether all strokes are equally long: they repeat what a fit misses of them, and a few
+        errors at the same places are soon taken for white ones. Then all moves are always tried.
 
     Returns
     -------
@@ -60,15 +82,16 @@ def search_radii(
         At least as good as ``solution``.
     """
     for _ in range(MOST_ROUNDS):
-        trials = [
-            minimize(problem, theta, TRIAL_ITERATIONS)
-            for theta in _moves(problem, solution.theta, plays, kinks)
-        ]
-        if not trials:
-            return solution
-        best = min(trials, key=lambda trial: trial.cost)
+        residual = problem.residual(solution.theta)
         # A lower cost by one residual variance is worth it; less is within the noise.
-        noise = solution.cost / problem.residual(solution.theta).size
+        noise = solution.cost / residual.size
+        if solution.cost <= problem.negligible:
+            return solution
+        moves = list(_moves(problem, solution.theta, len(basis) - 1, kinks))
+        if not one_amplitude and is_white(residual):
+            moves = _promising(problem, solution, basis, moves)
+        trials = [minimize(problem, theta, TRIAL_ITERATIONS) for _, theta in moves]
+        best = min(trials, key=lambda trial: trial.cost, default=solution)
         if best.cost > solution.cost - noise:
             return solution
         improved = minimize(problem, best.theta, max_iterations)
@@ -76,7 +99,23 @@ def search_radii(
     return solution
 
 
-def _moves(problem: Problem, theta: Array, plays: int, kinks: Array) -> Iterator[Array]:
+def _promising(
+    problem: Problem, solution: Solution, basis: Array, moves: Sequence[Move]
+) -> list[Move]:
+    """Give those moves that promise more than the noise, the best of all and of every play."""
+    noise = solution.cost / problem.residual(solution.theta).size
+    moved = MovedPlays(problem, solution.theta, basis)
+    costs = np.array([moved.cost(i, float(theta[len(basis) + i])) for i, theta in moves])
+    promising, of_play = list[Move](), Counter[int]()
+    for k in np.argsort(costs, kind="stable"):
+        i = moves[k][0]
+        of_play[i] += 1
+        if costs[k] < solution.cost - noise and of_play[i] <= MOST_OF_A_PLAY:
+            promising.append(moves[k])
+    return promising[:MOST_PROMISING]
+
+
+def _moves(problem: Problem, theta: Array, plays: int, kinks: Array) -> Iterator[Move]:
     at = slice(plays + 1, 2 * plays + 1)
     r, lower, upper = theta[at], problem.lower[at], problem.upper[at]
     for i in np.flatnonzero(lower < upper):
@@ -84,14 +123,15 @@ def _moves(problem: Problem, theta: Array, plays: int, kinks: Array) -> Iterator
         above = r[i + 1] if i + 1 < plays else upper[i]
         shares = np.array(SHARES)
         places = r[i] + shares * np.where(shares > 0.0, above - r[i], r[i] - below)
-        for place in np.concatenate([places, _next_intervals(float(r[i]), kinks)]):
+        places = np.concatenate([places, _next_intervals(float(r[i]), kinks)])
+        for place in np.unique(np.clip(places, lower[i], upper[i])):
             moved = theta.copy()
             moved[plays + 1 + i] = place
-            yield moved
+            yield int(i), moved
     yield from _revivals(theta, plays, lower, upper)
 
 
-def _revivals(theta: Array, plays: int, lower: Array, upper: Array) -> Iterator[Array]:
+def _revivals(theta: Array, plays: int, lower: Array, upper: Array) -> Iterator[Move]:
     """Put the play with least weight, if it has next to none, into every gap between the others."""
     weights, r = theta[1 : plays + 1], theta[plays + 1 : 2 * plays + 1]
     movable = np.flatnonzero(lower < upper)
@@ -102,7 +142,7 @@ def _revivals(theta: Array, plays: int, lower: Array, upper: Array) -> Iterator[
     for place in _gaps(np.delete(r, i), float(lower[i]), float(upper[i])):
         moved = theta.copy()
         moved[plays + 1 + i], moved[1 + i] = place, REVIVED * total
-        yield moved
+        yield i, moved
 
 
 def _gaps(others: Array, lower: float, upper: float) -> Array:

@@ -39,6 +39,11 @@ class Hdf5Columns:
     def open(cls, path: Path, separator: str) -> Hdf5Columns:
         """Find the columns of a file.
 
+        Parameters
+        ----------
+        path, separator
+            As of ``read_hdf5``.
+
         Raises
         ------
         InputError, MissingExtraError
@@ -49,7 +54,13 @@ class Hdf5Columns:
             return cls(path, separator, table, tuple(entry.size for entry in entries))
 
     def pieces(self, columns: Sequence[int]) -> Iterator[Piece]:
-        """Read some columns from the first row to the last."""
+        """Read some columns from the first row to the last.
+
+        Raises
+        ------
+        InputError
+            If their lengths differ, or the file is damaged.
+        """
         sizes = [self.sizes[k] for k in columns]
         if len(set(sizes)) > 1:
             names = [self.table.names[k] for k in columns]

@@ -48,7 +48,15 @@ class Piece:
         return np.arange(self.size) + (self.start if self.lines is None else 0)
 
     def placed(self, table: Table, columns: Sequence[int]) -> Table:
-        """Give a table that says where rows of this piece are, and what is wrong in them."""
+        """Give a table that says where rows of this piece are, and what is wrong in them.
+
+        Parameters
+        ----------
+        table
+            Of the file.
+        columns
+            Which columns the values are.
+        """
         flaws = list(table.flaws)
         for column, flaw in zip(columns, self.flaws, strict=True):
             shift = self.start if self.lines is None else 0

@@ -94,7 +94,18 @@ def survey(columns: Columns, wanted: Wanted) -> Survey:
 
 
 def checked(table: Table, piece: Piece, chosen: list[int]) -> Table:
-    """Give a table that says where rows of a piece are; refuse what is no finite number in it."""
+    """Give a table that says where rows of a piece are; refuse what is no finite number in it.
+
+    Parameters
+    ----------
+    table, piece, chosen
+        Of the file, some of its rows, and which columns they are.
+
+    Raises
+    ------
+    InputError
+        If there is such a thing.
+    """
     here = piece.placed(table, chosen)
     if any(flaw is not None for flaw in piece.flaws):
         refuse_row_of_units(here, chosen)
