@@ -17,6 +17,7 @@ from hyst.identification.fit.bounded_least_squares import CONVERGED, minimize
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.fit_spread import spread_from_sums
 from hyst.identification.result.identified import Identified
+from hyst.identification.result.part_of_file import PartOfFile
 from hyst.identification.stream.fit_of_all import ErrorsOfAll, FitOfAll
 from hyst.identification.stream.survey import Survey, data_hash, part_of, survey
 from hyst.operators import Verdict
@@ -145,6 +146,7 @@ def _with_fit(
         status=fit.solution.status,
         iterations=fit.solution.iterations,
         used=(used,),
+        part=PartOfFile(found.part.start, found.part.stop, before.used[0]),
         description=about,
         verdict=verdict,
         bands=replace(before.bands, fit=fit, spread=spread),
@@ -159,7 +161,8 @@ def _about(found: Survey) -> tuple[str, ...]:
     return (
         f"family, size, delay and what else is told were found on samples {part.start} to "
         f"{part.stop - 1}, which cover {100.0 * found.part_covers:.0f} % of the input's range; the "
-        f"constants, their standard errors and the training errors are of all {found.samples}",
+        f"constants, their standard errors and the training errors are of all {found.samples}; "
+        "errors over other records are those of the fit to that part",
     )
 
 
