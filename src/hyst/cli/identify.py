@@ -33,6 +33,7 @@ from hyst.cli.fitted import (
     tell_fitted,
     write_fitted,
 )
+from hyst.cli.in_file import FileToKeep, InFile, shown
 from hyst.cli.reading_options import reads_records
 from hyst.cli.scheduled import (
     About,
@@ -98,6 +99,7 @@ def identify(
     schedule_name: ScheduleName = None,
     schedule_unit: ScheduleUnit = None,
     validate_schedule: ValidateSchedule = None,
+    in_file: InFile = None,
 ) -> int:
     """Identify a model from measured records, and write model, numbers, figures and a report."""
     require_folder(folder)
@@ -118,17 +120,20 @@ def identify(
         **options,
     }
     about = About(schedule, schedule_name, schedule_unit, validate_schedule)
-    if about.is_given(
-        {"--lag": time_constant is not None, "--creep": creep not in ("auto", "none")}
-    ):
+    alone = {"--lag": time_constant is not None, "--creep": creep not in ("auto", "none")}
+    if about.is_given(alone | {"--in-file": in_file is True}):
         return identify_over(data, validate, folder, files, about, asked)
     asked |= {"creep": lags, "lag": time_constant}
+    labelled = {"--input-label": input_label, "--output-label": output_label}
     with at_work("identifying") as say:
         say("reading")
-        measured = files.records(data)
+        kept = FileToKeep(data, how, {"--driver": driver, **labelled}).opened(in_file)
+        measured = files.records(data) if kept is None else []
+        files.sources.extend([] if kept is None else [str(data[0])])
         validation = files.validation(validate)
-        found = hyst.identify(measured, validation=validation, progress=say, **asked)
+        found = hyst.identify(kept or measured, validation=validation, progress=say, **asked)
         say("report")
+        measured = shown(found, measured, kept)
         found = hyst.identification.with_driver(named_by_files(found, files.sources), files.driver)
         records = _records_used(found, chosen, measured, first)
         told = hyst.report.distortion_sections(measured, options.get("period"))

@@ -30,6 +30,7 @@ from hyst.identification.reversal_curve_fit import (
     identify_from_reversal_curves,
 )
 from hyst.identification.slopes import Slopes, identify_weights_from_slopes
+from hyst.identification.stream.survey import part_of
 
 __all__ = [
     "Candidate",
@@ -54,6 +55,7 @@ __all__ = [
     "late_output",
     "later",
     "names_of",
+    "part_of",
     "require_taken",
     "sketched_plays",
     "sketched_stage",

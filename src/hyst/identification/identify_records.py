@@ -131,24 +131,10 @@ def identify(
     >>> bool(np.abs(found.model(u) - true(u))[500:].max() < 1e-6)
     True
     """
+    arguments = {name: each for name, each in locals().items() if name in _KEYWORDS}
     if isinstance(records, RecordStream):
-        again = partial(
-            identify,
-            family=family,
-            delay=delay,
-            start=start,
-            drift=drift,
-            creep=creep,
-            lag=lag,
-            validation=validation,
-            driver=driver,
-            max_iterations=max_iterations,
-            allow_unconverged=allow_unconverged,
-            progress=progress,
-            **options,
-        )
-        return identify_stream(records, again, allow_unconverged)
-    asked = options_asked(identify, locals() | {"driver": None}) | options
+        return identify_stream(records, partial(identify, **arguments, **options))
+    asked = options_asked(identify, arguments | {"driver": None}) | options
     measured = listed(records)
     given = all_in_volts(measured, driver)
     judged = all_in_volts(listed(validation, "validation record"), driver)
@@ -187,6 +173,10 @@ def identify(
         identified = creeping.told(identified)
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
     return with_driver(traced(told, measured, asked), driver)
+
+
+_KEYWORDS = frozenset(identify.__kwdefaults__ or ())
+"""Arguments of ``identify`` but for the records and the options of families."""
 
 
 @dataclass(frozen=True, eq=False)

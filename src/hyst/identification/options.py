@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -13,6 +13,7 @@ from hyst.errors import InputError, SolverError
 from hyst.identification.families.family import Fit
 from hyst.identification.families.option import AUTO
 from hyst.identification.fit.bounded_least_squares import CONVERGED
+from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data
 from hyst.signals import Record
 
@@ -29,6 +30,8 @@ class Options:
         Told what is being done.
     delay, start, max_iterations, allow_unconverged
         As of ``identify``; delay and start are checked with the records.
+    known
+        What one search of records found out about them, for the next one of the same records.
     """
 
     validation: tuple[Record, ...]
@@ -37,6 +40,7 @@ class Options:
     start: int | Literal["auto"] = "auto"
     max_iterations: int = 200
     allow_unconverged: bool = False
+    known: dict[Hashable, Overview] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         whole_number(self.max_iterations, "max_iterations", 0)

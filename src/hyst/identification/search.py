@@ -17,6 +17,7 @@ from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.cross_validation import fewest_left
 from hyst.identification.choice.delay import OWN, find_delay, told_by_family, usable_delay
 from hyst.identification.choice.joint_delay import with_joint_delay
+from hyst.identification.choice.overviews import with_overviews
 from hyst.identification.choice.rivals import other_signs, rivals_of
 from hyst.identification.choice.selection import (
     Contender,
@@ -43,6 +44,7 @@ from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.scales import scales_of
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.identified import Candidate
+from hyst.operators.verdict import Level
 
 MOST_STARTS = 3
 """Of the final fit."""
@@ -240,15 +242,15 @@ class _Choice:
 
 def _search(tasks: Sequence[Task], options: Options, reserve: Sequence[Task]) -> _Choice:
     """Choose signs, family and size and fit it; the next best if that does not converge."""
-    with_overviews = _with_overviews([*tasks, *reserve], options)
-    ruling = ruled(with_overviews[: len(tasks)])
+    prepared = with_overviews([*tasks, *reserve], options.delay, options.known)
+    ruling = ruled(prepared[: len(tasks)])
     if len(tasks) == 1 and len(tasks[0].family.sizes()) == 1:
         return _only(tasks[0], ruling, options)
     contenders, refusals = compare(ruling.families, options.say)
     chosen, fit = _best(contenders, options)
-    level = level_of(chosen.overview.data, fit) if reserve else "good"
+    level = _level(chosen.overview, fit) if reserve else "good"
     if level != "good":
-        more = in_reserve(with_overviews[len(tasks) :], chosen, options.say)
+        more = in_reserve(prepared[len(tasks) :], chosen, options.say)
         may_win = _may_win(more, chosen, describes=level == "fair")
         chosen, fit = _best(_preferred((*contenders, *may_win)), options, (chosen, fit))
         contenders += more
@@ -300,7 +302,11 @@ def _preferred(contenders: Sequence[Contender]) -> Sequence[Contender]:
 
 
 def _leaves_noise(contender: Contender) -> bool:
-    return level_of(contender.overview.data, contender.fit) == "good"
+    return _level(contender.overview, contender.fit) == "good"
+
+
+def _level(overview: Overview, fit: Fit) -> Level:
+    return overview.once(("level", fit), lambda: level_of(overview.data, fit))
 
 
 def _best(
@@ -345,22 +351,6 @@ def _outlying(task: Task, options: Options) -> tuple[str, ...]:
     )
 
 
-def _with_overviews(tasks: Sequence[Task], options: Options) -> list[tuple[Family, Overview]]:
-    """Give every family its records; those that use the same share what is found out."""
-    shared: dict[tuple[bool, tuple[int, ...], int, int], Overview] = {}
-    result = []
-    for task in tasks:
-        # A family may take the noise out of its drives.
-        drives = hash(tuple(each.u.tobytes() for each in task.data.records))
-        key = (task.family.depends_on_rate, task.data.starts, task.data.delay, drives)
-        if key not in shared:
-            shared[key] = Overview(
-                task.searched(), options.delay, rates_matter=task.family.depends_on_rate
-            )
-        result.append((task.family, shared[key]))
-    return result
-
-
 def _told(contender: Contender, chosen: Contender, tied: bool, scale: float) -> Candidate:
     """Give a candidate in the user's units, and say whether it was chosen."""
     candidate = contender.candidate
@@ -374,12 +364,16 @@ def _told(contender: Contender, chosen: Contender, tied: bool, scale: float) -> 
 
 
 def _final_fit(family: Family, overview: Overview, size: int, options: Options) -> Fit:
-    """Fit from all starts, improve it as the family knows, and without idle parts."""
+    """Fit from all starts, improve it as the family knows, and without idle parts, but once."""
     options.say(f"final fit: {family.named_size(size)}")
     most = options.max_iterations
-    fit = best_of_starts(family, overview, size, MOST_STARTS, most)
-    fit = family.finish(fit, overview, most)
-    return settled(family.simplified(fit, overview, most), overview, most)
+
+    def found() -> Fit:
+        fit = best_of_starts(family, overview, size, MOST_STARTS, most)
+        fit = family.finish(fit, overview, most)
+        return settled(family.simplified(fit, overview, most), overview, most)
+
+    return overview.once(("final fit", family, size, most), found)
 
 
 def _polished(fit: Fit, task: Task, options: Options) -> Fit:

@@ -30,7 +30,7 @@ def draw_over_bound(
     bytes
         PNG.
     """
-    figure, axes = blank(len(ratios), 1, 2.2 + 3.8 * len(ratios), 3.6)
+    figure, axes = blank(len(ratios), 1, 0.6 + 3.8 * len(ratios), 4.2)
     for panel, (name, lines) in zip(axes, ratios.items(), strict=True):
         kinds = list(dict.fromkeys(label.partition(",")[0] for label in lines))
         seen: dict[str, int] = {}
@@ -54,6 +54,7 @@ def draw_over_bound(
     for panel in axes:
         panel.set_ylim(0.7 * min(every), 1.4 * max(every))
     handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside right upper")
+    columns = min(len(labels), 1 + len(ratios))
+    figure.legend(handles, labels, loc="outside lower center", ncols=columns)
     axes[0].set_ylabel("rms error of the radii / bound")
     return figure

@@ -96,7 +96,9 @@ def fit_records(
     return (
         tuple(
             _fit(identified, record, used, _label("training", number, len(training)))
-            for number, (record, used) in enumerate(zip(training, identified.used, strict=True), 1)
+            for number, (record, used) in enumerate(
+                zip(training, identified.used_of_shown, strict=True), 1
+            )
         ),
         tuple(
             _fit(

@@ -18,6 +18,7 @@ from hyst.signals import ForcDensity
 Array = NDArray[np.float64]
 
 COLOURS = "RdBu_r"
+_SCALE = (1.03, 0.075, 0.05, 0.85)  # left, bottom, width and height, shares of the panel
 
 
 @drawn
@@ -98,7 +99,7 @@ def draw_density(
     axes.set_title("Density of the relays")
     axes.set_xlabel(with_unit("coercive field (\u03b1 - \u03b2)/2", input_unit))
     axes.set_ylabel(with_unit("bias (\u03b1 + \u03b2)/2", input_unit))
-    bar = axes.figure.colorbar(drawn_map, ax=axes, shrink=0.85)
+    bar = axes.figure.colorbar(drawn_map, cax=axes.inset_axes(_SCALE))
     # Negative densities are the noise of a measurement: no model has them.
     bar.ax.set_ylim(min(0.0, float(np.nanmin(density, initial=0.0))) if known.size else 0.0, end)
 

@@ -282,7 +282,7 @@ def _the_data(page: Page, findings: _Findings) -> None:
                 if used.start > max(identified.delay, 0.0)
                 else "."
             )
-            for fit, used in zip(findings.training, identified.used, strict=True)
+            for fit, used in zip(findings.training, identified.used_of_shown, strict=True)
         ]
         + [f"{fit.label}: {note}" for fit in fits for note in fit.record.notes]
     )

@@ -130,7 +130,7 @@ def in_short(identified: Identified, records: tuple[Record, ...]) -> tuple[str, 
     unit = identified.description.output_unit
     training = identified.metrics.get("training")
     if training is not None:
-        line = straight_line_rms(records[0], identified.used[0].start)
+        line = straight_line_rms(records[0], identified.used_of_shown[0].start)
         line_percent = 100.0 * line / training.output_range
         instant = " without the delay" if identified.delay else ""
         sentences.append(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,8 @@ from hyst.identification.choice.blocks import Block, blocks_of
 from hyst.identification.families.family import Fit
 from hyst.identification.fit.bounded_least_squares import minimize
 from hyst.identification.fit.evaluation import Evaluation
+from hyst.identification.fit.left_out import normal_equations_without, refitted
+from hyst.identification.fit.normal_equations import NormalEquations
 from hyst.identification.fit.whiteness import is_white
 from hyst.identification.record_use.outlying import winsorised
 from hyst.identification.record_use.overview import Overview
@@ -115,14 +118,34 @@ def cross_validate(overview: Overview, fit: Fit) -> Score:
     blocks = overview.once("blocks", lambda: blocks_of(overview))
     evaluation = Evaluation(data, fit.parametrization)
     errors = np.empty(len(blocks))
-    for number, block in enumerate(blocks):
-        fitted = ~block.rows if kept is None else kept & ~block.rows
-        problem = fit.problem(data, fitted)
-        theta = minimize(problem, fit.solution.theta, REFIT_ITERATIONS).theta
+    for number, (block, theta) in enumerate(
+        zip(blocks, _refits(overview, fit, blocks), strict=True)
+    ):
         residual = (evaluation.output(theta) - y)[block.rows]
         judged = np.ones(residual.size, dtype=bool) if kept is None else kept[block.rows]
         errors[number] = _mean_square(residual[judged], Block(block.rows, block.stretch[judged]))
     return Score(errors)
+
+
+def _refits(overview: Overview, fit: Fit, blocks: list[Block]) -> Iterator[Array]:
+    """Give theta of the fit without each of the blocks."""
+    data, kept, theta = overview.data, overview.kept, fit.solution.theta
+    shared: list[NormalEquations] = []
+    if fit.parametrization.nuisances is None:  # columns beside the model differ in every block
+        shared = normal_equations_without(
+            data,
+            fit.parametrization,
+            theta,
+            [each.rows for each in blocks],
+            kept,
+            fit.family.root_weights(data),
+        )
+    for number, block in enumerate(blocks):
+        problem = fit.problem(data, ~block.rows if kept is None else kept & ~block.rows)
+        if shared:
+            yield refitted(problem, theta, shared[number], REFIT_ITERATIONS)
+        else:
+            yield minimize(problem, theta, REFIT_ITERATIONS).theta
 
 
 def score_in_sample(overview: Overview, fit: Fit) -> Score:

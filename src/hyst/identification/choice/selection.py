@@ -15,6 +15,7 @@ from hyst.identification.choice.cross_validation import (
     leaves_white_noise,
     score_in_sample,
 )
+from hyst.identification.choice.fewer_samples import for_a_look
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.fit.bounded_least_squares import CONVERGED, Solution
 from hyst.identification.record_use.overview import Overview
@@ -36,6 +37,9 @@ ROUNDING = 1e-6
 
 NEAR = 1.2
 """Times the rms of the best so far: what leaves more from its best guess is not scored."""
+
+CLEARLY = 1.2
+"""Times that, from which on few samples tell that it is not near."""
 
 SAME_COST = 0.01
 """Costs that differ by this share of the residual variance are equal."""
@@ -105,13 +109,23 @@ def best_of_starts(
     -------
     Fit
     """
-    fits = []
+    fits: list[Fit] = []
+    known = overview.found(("first fit", family, size)) if most > 1 else None
     for parametrization, theta in family.starts(overview, size, most):
+        if not fits and isinstance(known, Fit) and _serves(known, max_iterations):
+            fits.append(known)
+            continue
         unsolved = Fit(family, size, parametrization, Solution(theta, np.inf, 0, ""))
         problem = unsolved.problem(overview.data, overview.kept)
         solution = family.solve(problem, theta, max_iterations)
         fits.append(replace(unsolved, solution=solution))
     return min(fits, key=lambda each: each.solution.cost)
+
+
+def _serves(known: Fit, max_iterations: int) -> bool:
+    """Tell whether a fit is what one with other steps at most would come to."""
+    ended = known.solution
+    return ended.status == CONVERGED and ended.iterations <= max_iterations
 
 
 def first_fit(family: Family, overview: Overview, size: int) -> Fit:
@@ -229,12 +243,34 @@ def in_reserve(
         largest = family.sizes()[-1]
         progress(family.named_size(largest))
         try:
-            near = first_fit(family, overview, largest).solution.cost
-            if near <= NEAR**2 * chosen.fit.solution.cost:
+            if _comes_near(family, overview, largest, chosen):
                 contenders += _grow(family, overview, progress)
         except (NotIdentifiableError, SolverError):
             continue
     return tuple(contenders)
+
+
+def _comes_near(family: Family, overview: Overview, size: int, chosen: Contender) -> bool:
+    """Tell whether a family leaves hardly more than what was chosen."""
+    most = NEAR**2 * _left(chosen.fit, chosen.overview)
+    fewer = for_a_look(overview)
+    if family.is_linear or fewer is overview:
+        return _left(first_fit(family, overview, size), overview) <= most
+    look = first_fit(family, fewer, size)
+    near = _left(look, fewer)
+    if size or near > CLEARLY**2 * most:
+        return near <= most
+
+    def to_all() -> Fit:
+        problem = look.problem(overview.data, overview.kept)
+        return replace(look, solution=family.solve(problem, look.solution.theta, 100))
+
+    return _left(overview.once(("first fit", family, size), to_all), overview) <= most
+
+
+def _left(fit: Fit, overview: Overview) -> float:
+    kept = overview.kept
+    return fit.solution.cost / (overview.input.size if kept is None else int(kept.sum()))
 
 
 def not_compared(refusals: Mapping[str, NotIdentifiableError]) -> tuple[str, ...]:

@@ -67,6 +67,8 @@ class Family(ABC):
     """Advice where its error depends on the rate, if another than a family that does."""
     rate_between_samples: ClassVar[bool] = False
     """Whether it takes a rate from one sample to the next, of which a plant has one in between."""
+    is_linear: ClassVar[bool] = False
+    """Whether its output is linear in its constants, so that the first guess is the fit."""
     explains: ClassVar[tuple[str, ...]] = ()
     """Findings that make no record doubtful of which it leaves nothing but noise."""
     describes: ClassVar[tuple[str, ...]] = ()

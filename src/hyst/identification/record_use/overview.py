@@ -79,3 +79,7 @@ class Overview:
         if key not in self._found:
             self._found[key] = find()
         return self._found[key]  # type: ignore[return-value]
+
+    def found(self, key: Hashable) -> object | None:
+        """Give what was found for a key; None if nobody has asked yet."""
+        return self._found.get(key)

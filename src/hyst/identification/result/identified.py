@@ -21,6 +21,7 @@ from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.bands import NEW, Bands, as_level
 from hyst.identification.result.late_output import late_output
 from hyst.identification.result.motion import OutputPart, motion_lines
+from hyst.identification.result.part_of_file import PartOfFile
 from hyst.identification.result.record_errors import RecordErrors, run_at_several_rates
 from hyst.models import Delay, Lag
 from hyst.operators import ModelDescription, Operator, Verdict
@@ -112,6 +113,9 @@ class Identified:
     motion
         What moves the output, part by part: hysteresis, creep, drift and what is left; empty where
         neither creep nor drift came up.
+    part
+        Of a record that stays in its file: the samples from which all but the constants was found;
+        None where all samples were in memory.
     """
 
     model: Operator
@@ -133,6 +137,12 @@ class Identified:
     bands: Bands = field(repr=False)
     per_record: tuple[RecordErrors, ...]
     motion: tuple[OutputPart, ...]
+    part: PartOfFile | None = field(default=None, kw_only=True)
+
+    @property
+    def used_of_shown(self) -> tuple[UsedSamples, ...]:
+        """Which samples took part, of the records or the part of one that figures can show."""
+        return self.used if self.part is None else (self.part.used,)
 
     def delay_in_words(self) -> str:
         """Give the delay beside the model, with its interval."""
@@ -329,6 +339,7 @@ class Identified:
             "undetermined": list(self.undetermined),
             "candidates": [vars(each) for each in self.candidates],
             "used_samples": [vars(each) for each in self.used],
+            **({} if self.part is None else {"part": [self.part.start, self.part.stop]}),
             **self.diagnosis.to_dict(),
         }
 

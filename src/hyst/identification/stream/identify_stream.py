@@ -17,6 +17,7 @@ from hyst.identification.fit.bounded_least_squares import CONVERGED, minimize
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.fit_spread import spread_from_sums
 from hyst.identification.result.identified import Identified
+from hyst.identification.result.part_of_file import PartOfFile
 from hyst.identification.stream.fit_of_all import ErrorsOfAll, FitOfAll
 from hyst.identification.stream.survey import Survey, data_hash, part_of, survey
 from hyst.operators import Verdict
@@ -24,7 +25,7 @@ from hyst.operators.description import errors_of
 from hyst.signals import Record
 from hyst.signals.record_stream import RecordStream
 
-MOST_STEPS = 40
+MOST_STEPS = 200
 
 TOLERANCE = 1e-2
 """Of the residual variance: no constant is then off by more than a tenth of its standard error."""
@@ -35,9 +36,7 @@ WORSE = 1.1
 COVERS = 0.95
 
 
-def identify_stream(
-    stream: RecordStream, identify: Callable[[Record], Identified], unconverged: bool = False
-) -> Identified:
+def identify_stream(stream: RecordStream, identify: Callable[[Record], Identified]) -> Identified:
     """Identify a model from a record in a file.
 
     Parameters
@@ -46,8 +45,6 @@ def identify_stream(
         The record.
     identify
         Identifies from a record in memory.
-    unconverged
-        Whether a fit that did not converge is given.
 
     Raises
     ------
@@ -69,10 +66,10 @@ def identify_stream(
     whole = FitOfAll(stream, found, fit.parametrization, late)
     posed, theta, back = fit.family.in_own_coordinates(whole.problem(), fit.solution.theta)
     solution = minimize(posed, theta, MOST_STEPS, TOLERANCE)
-    if solution.status != CONVERGED and not unconverged:
+    if solution.status != CONVERGED:
         raise SolverError(
-            f"the fit to all {found.samples} samples did not converge in {MOST_STEPS} steps; allow "
-            "an unconverged fit, or identify from a part of the record"
+            f"the fit to all {found.samples} samples did not converge in {MOST_STEPS} steps; load "
+            "a part of the record and identify from that"
         )
     fit = replace(fit, solution=replace(solution, theta=back(solution.theta)))
     return _with_fit(before, fit, whole, found, stream)
@@ -149,6 +146,7 @@ def _with_fit(
         status=fit.solution.status,
         iterations=fit.solution.iterations,
         used=(used,),
+        part=PartOfFile(found.part.start, found.part.stop, before.used[0]),
         description=about,
         verdict=verdict,
         bands=replace(before.bands, fit=fit, spread=spread),
@@ -163,7 +161,8 @@ def _about(found: Survey) -> tuple[str, ...]:
     return (
         f"family, size, delay and what else is told were found on samples {part.start} to "
         f"{part.stop - 1}, which cover {100.0 * found.part_covers:.0f} % of the input's range; the "
-        f"constants, their standard errors and the training errors are of all {found.samples}",
+        f"constants, their standard errors and the training errors are of all {found.samples}; "
+        "errors over other records are those of the fit to that part",
     )
 
 

@@ -109,7 +109,7 @@ def survey(stream: RecordStream) -> Survey:
 
 
 def part_of(stream: RecordStream, part: slice) -> Record:
-    """Load some of the samples.
+    """Load some of the samples of a record in a file.
 
     Parameters
     ----------
@@ -117,6 +117,10 @@ def part_of(stream: RecordStream, part: slice) -> Record:
         The record.
     part
         Which.
+
+    Returns
+    -------
+    Record
     """
     us, ys, place = list[Array](), list[Array](), 0
     for u, y in stream.chunks(CHUNK):

@@ -92,6 +92,31 @@ def open_record(
         return RecordFile(file, columns, survey(columns, wanted), how)
 
 
+def reads_in_chunks(path: str | os.PathLike[str], format: str | None = None) -> bool:
+    """Tell whether the format of a file is one that ``open_record`` reads.
+
+    Parameters
+    ----------
+    path
+        The file.
+    format
+        As of ``open_record``.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    InputError
+        If there is no such file.
+    """
+    with regular_file(path, format) as file:
+        found, packed = format_of(file, format)
+        in_hdf5 = found == "mat" and not packed and is_hdf5(file)
+        return not packed and (found in ("parquet", "hdf5", "text") or in_hdf5)
+
+
 def _columns(file: Path, format: str | None) -> Columns:
     """Find the columns of a file of any format that can be read in chunks."""
     found, packed = format_of(file, format)

@@ -134,6 +134,8 @@ class Relays(Family):
         not predict them worse.
     """
 
+    is_linear = True
+
     levels: Any = option(AUTO, LEVELS_OPTION)
     smoothness: Any = option(AUTO, SMOOTHNESS_OPTION)
 
