@@ -14,15 +14,9 @@ import tempfile
 import time
 from pathlib import Path
 
-import numba
-import numpy as np
-from numpy.typing import NDArray
-from scipy.optimize import least_squares
-
 import hyst
 import hyst.demo
-
-Array = NDArray[np.float64]
+from benchmarks.fit_speed import DRIVES, SAMPLES, TEN, measured, peer
 
 
 class _File:
@@ -66,42 +60,15 @@ def _processor_seconds() -> float:
 
 
 def unit_seconds() -> float:
-    """Time one fit of ten plays and radii to 10^4 samples, compiled before."""
-    t = np.linspace(0.0, 1.0, 10_000)
-    u = (1.0 - 0.6 * np.sin(np.pi * t)) * np.sin(2.0 * np.pi * 50.0 * t)
-    r = np.linspace(0.05, 0.8, 10)
-    truth = _plays(u, r)[0] @ np.linspace(0.5, 0.1, 10) + u
-    y = truth + 0.01 * np.random.default_rng(1).standard_normal(u.size)
-    start = np.concatenate((np.full(10, 0.2), np.linspace(0.04, 0.9, 10), [1.0]))
-
-    def error(theta: Array) -> Array:
-        return np.asarray(_plays(u, theta[10:20])[0] @ theta[:10] + theta[20] * u - y)
-
-    def jacobian(theta: Array) -> Array:
-        z, slopes = _plays(u, theta[10:20])
-        return np.column_stack((z, slopes * theta[:10], u))
-
+    """Time the peer's fit of ten plays and radii of ``fit_speed``, compiled before."""
+    record = measured(TEN, list(DRIVES.values())[-1](SAMPLES))
+    peer(record, 10)
     times = []
     for _ in range(3):
         begun = time.perf_counter()
-        least_squares(error, start, jacobian, x_scale="jac")
+        peer(record, 10)
         times.append(time.perf_counter() - begun)
     return min(times)
-
-
-@numba.njit(cache=False)
-def _plays(u: Array, r: Array) -> tuple[Array, Array]:
-    """Give the plays of a drive, and how each moves with its radius."""
-    z, slopes = np.empty((u.size, r.size)), np.empty((u.size, r.size))
-    for i in range(r.size):
-        at, slope = 0.0, 0.0
-        for k in range(u.size):
-            if u[k] - r[i] > at:
-                at, slope = u[k] - r[i], -1.0
-            elif u[k] + r[i] < at:
-                at, slope = u[k] + r[i], 1.0
-            z[k, i], slopes[k, i] = at, slope
-    return z, slopes
 
 
 if __name__ == "__main__":

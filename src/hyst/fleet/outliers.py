@@ -36,7 +36,7 @@ FALSE_ALARMS = 0.05
 """Devices that the first rule names by mistake in a whole fleet that scatters normally."""
 
 FALSE_ALARMS_NEAR = 0.5
-"""The same of the second rule, at most."""
+"""The same of the second rule, at most, among up to a thousand devices."""
 
 APART, NEAR, UNLIKE = 2.2, 4.5, 4.0
 """Of the second rule: times as far as others are from theirs, robust deviations from them, and from
@@ -157,7 +157,8 @@ def judge_fleet(devices: Sequence[Device]) -> Judged:
 
 
 def _sentence(count: int, odd: int) -> str:
-    false = FALSE_ALARMS + FALSE_ALARMS_NEAR * (count >= FEWEST_NEAR)
+    near = FALSE_ALARMS_NEAR * max(1.0, count / 1000) if count >= FEWEST_NEAR else 0.0
+    false = FALSE_ALARMS + near
     what = "No device is" if not odd else f"{odd} device{'s are' if odd > 1 else ' is'}"
     return (
         f"{what} odd among the {count} with a model; of devices that only scatter normally "
