@@ -40,8 +40,8 @@ def evaluate(
     -------
     callable
         Of ``u``, shape (N,) or (batch, N), N >= 1, finite; gives y in the shape of ``u``. It can be
-        pickled where ``theta`` can. The engine computes in double; y has the type of ``u``, which is
-        single precision unless ``jax_enable_x64`` is set, and gradients are rounded to it too.
+        pickled where ``theta`` can. The engine computes in double; y has the type of ``u``, which
+        is single precision unless ``jax_enable_x64`` is set, and gradients are rounded to it too.
 
     Raises
     ------
