@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import sys
 from collections.abc import Iterator
 from typing import Any
@@ -189,3 +190,21 @@ def test_without_jax_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setitem(sys.modules, "jax", None)
     with pytest.raises(hyst.MissingExtraError, match=r"pip install 'hyst\[jax\]'"):
         evaluate(BANK)
+
+
+def test_what_evaluate_gives_can_be_pickled() -> None:
+    started = np.array([0.1, 0.0, -0.1, 0.0])
+    given = pickle.loads(pickle.dumps(evaluate(BANK, THETA, state=started)))
+    np.testing.assert_array_equal(given(walk()), BANK.run(walk(), started)[0])
+
+
+@pytest.mark.parametrize("shape", [(0,), (3, 0)])
+def test_no_samples_are_refused_before_they_reach_the_engine(shape: tuple[int, ...]) -> None:
+    with pytest.raises(hyst.InputError, match="u is empty"):
+        evaluate(BANK)(jnp.zeros(shape))
+
+
+@pytest.mark.parametrize("state", [np.zeros((2, 4)), "abcd", [0.0], [np.nan] * 4])
+def test_a_state_that_does_not_fit_is_refused_at_once(state: Any) -> None:
+    with pytest.raises(hyst.InputError, match="state"):
+        evaluate(BANK, state=state)

@@ -39,9 +39,9 @@ def evaluate(
     Returns
     -------
     callable
-        Of ``u``, shape (N,) or (batch, N), finite; gives y in the shape of ``u``. The engine
-        computes in double; y has the type of ``u``, which is single precision unless
-        ``jax_enable_x64`` is set, and gradients are rounded to it too.
+        Of ``u``, shape (N,) or (batch, N), N >= 1, finite; gives y in the shape of ``u``. It can be
+        pickled where ``theta`` can. The engine computes in double; y has the type of ``u``, which
+        is single precision unless ``jax_enable_x64`` is set, and gradients are rounded to it too.
 
     Raises
     ------
@@ -65,9 +65,10 @@ def evaluate(
     >>> print(jax.grad(loss)(np.array([0.25], dtype=np.float32)))
     [-2.]
     """
+    Differentiable(model, state)  # refuses what cannot be used
     given = None if state is None else tuple(np.asarray(state, dtype=np.float64).tolist())
-    function = _function(model, given) if isinstance(model, Operator) else Differentiable(model)
-    return functools.partial(_called, _door(), function, theta)
+    _door()
+    return functools.partial(_called, model, given, theta)
 
 
 def _door() -> Any:
@@ -80,11 +81,15 @@ def _door() -> Any:
         ) from missing
 
 
-def _called(jax: Any, function: Any, theta: Any, u: Any) -> Any:
+# Found anew at each call rather than kept, so that what ``evaluate`` gives can be pickled.
+def _called(model: Operator, state: tuple[float, ...] | None, theta: Any, u: Any) -> Any:
+    jax, function = _door(), _function(model, state)
     jnp = jax.numpy
     signal = _floating(jnp, u, "u")
     if signal.ndim not in (1, 2):
         raise InputError(f"u has shape {signal.shape}; give one record (N,) or a batch (batch, N)")
+    if signal.shape[-1] == 0:
+        raise InputError("u is empty; give at least one sample")
     parameters = None if theta is None else _floating(jnp, theta, "theta")
     if parameters is not None and parameters.ndim != 1:
         raise InputError(

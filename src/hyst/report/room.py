@@ -26,7 +26,13 @@ _POINTS = 72.0
 
 @dataclass
 class Around:
-    """What stands out of a panel on its four sides, inches."""
+    """What stands out of a panel on its four sides.
+
+    Parameters
+    ----------
+    left, below, right, above
+        Inches.
+    """
 
     left: float = 0.0
     below: float = 0.0
@@ -34,7 +40,15 @@ class Around:
     above: float = 0.0
 
     def hold(self, box: Bbox, panel: Bbox, dpi: float) -> None:
-        """Grow so that a box fits in."""
+        """Grow so that ``box`` fits in.
+
+        Parameters
+        ----------
+        box, panel
+            Pixels.
+        dpi
+            Pixels an inch.
+        """
         self.left = max(self.left, (panel.x0 - box.x0) / dpi)
         self.below = max(self.below, (panel.y0 - box.y0) / dpi)
         self.right = max(self.right, (box.x1 - panel.x1) / dpi)
@@ -42,7 +56,15 @@ class Around:
 
 
 def give_room(figure: Figure, renderer: RendererAgg) -> None:
-    """Set the places of all panels of a grid, of their labels and of their titles."""
+    """Set the places of all panels of a grid, of their labels and of their titles.
+
+    Parameters
+    ----------
+    figure
+        With axes in a grid, as ``blank`` makes it.
+    renderer
+        That of the canvas.
+    """
     figure.subplots_adjust(left=0.08, right=0.98, bottom=0.12, top=0.88, wspace=0.18, hspace=0.3)
     spans = [(each, each.get_subplotspec()) for each in figure.axes if each.get_visible()]
     cells = [(each, at.colspan.start, at.rowspan.start) for each, at in spans if at is not None]

@@ -1,6 +1,7 @@
 """Records read in chunks against the same records read as a whole."""
 
 import functools
+import os
 import pickle
 from pathlib import Path
 
@@ -156,15 +157,35 @@ def test_formats_without_chunks_are_refused(tmp_path: Path) -> None:
         open_record(path, "u", "y", rate=1e4)
 
 
-def test_a_file_that_changes_meanwhile_is_refused(tmp_path: Path) -> None:
-    path = write_parquet(tmp_path / "a.parquet")
+@pytest.mark.parametrize("name", WRITERS)
+def test_a_file_that_changes_meanwhile_is_refused(name: str, tmp_path: Path) -> None:
+    path = WRITERS[name](tmp_path / name)
     record = open_record(path, "u", "y", time="t")
-    half = {name: signal[::2] for name, signal in zip(("t", "u", "y"), signals(), strict=True)}
-    arrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
-    parquet.write_table(
-        arrow.table({"t [s]": half["t"], "u [V]": half["u"], "y [um]": half["y"]}), path
-    )
-    with pytest.raises(InputError, match="no longer holds the 150000 samples"):
-        list(record.chunks(1000))
+    chunks = record.chunks(1000)
+    # As many samples, all finite: only the file itself says that they are others.
+    content = path.read_bytes()
+    path.write_bytes(content[:-9] + content[-9:].replace(b"1", b"2") + b" ")
+    with pytest.raises(InputError, match="has changed since its "):
+        next(chunks)
+    path.unlink()
+    with pytest.raises(InputError, match="does not exist; check the path"):
+        next(record.chunks(1000))
     with pytest.raises(InputError, match="samples is 0"):
         record.chunks(0)
+
+
+def test_columns_that_changed_places_are_not_taken_for_each_other(tmp_path: Path) -> None:
+    path = write_text(tmp_path / "a.csv")
+    record = open_record(path, "u", "y", time="t")
+    path.write_text(path.read_text().replace("u [V],y [um]", "y [um],u [V]"))
+    os.utime(path, ns=(0, 0))
+    with pytest.raises(InputError, match="has changed"):
+        next(record.chunks(1000))
+    assert open_record(path, "u", "y", time="t").input_name == "u"
+
+
+def test_text_of_two_bytes_a_character_is_named(tmp_path: Path) -> None:
+    path = write_text(tmp_path / "a.csv")
+    path.write_text(path.read_text(), encoding="utf-16")
+    with pytest.raises(InputError, match="is written in UTF-16, which cannot be read in chunks"):
+        open_record(path, "u", "y", time="t")

@@ -10,7 +10,7 @@ from hyst.errors import InputError
 from hyst.io.chunked.hdf5_columns import Hdf5Columns
 from hyst.io.chunked.parquet_columns import ParquetColumns
 from hyst.io.chunked.pieces import Columns
-from hyst.io.chunked.record_file import RecordFile
+from hyst.io.chunked.record_file import RecordFile, version_of
 from hyst.io.chunked.survey import survey
 from hyst.io.chunked.text_columns import TextColumns
 from hyst.io.chunked.whole_columns import WholeColumns
@@ -88,8 +88,9 @@ def open_record(
         "one_way": one_way,
     }
     with regular_file(path, format) as file:
+        version = version_of(file)
         columns = _columns(file, format)
-        return RecordFile(file, columns, survey(columns, wanted), how)
+        return RecordFile(file, columns, survey(columns, wanted), how, version)
 
 
 def reads_in_chunks(path: str | os.PathLike[str], format: str | None = None) -> bool:

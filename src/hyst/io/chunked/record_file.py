@@ -37,17 +37,20 @@ class RecordFile:
         What the first way through it found.
     how
         The options of ``read_record`` that read the same.
+    version
+        Size and time of the last change of the file when it was checked, ``version_of``.
 
     Raises
     ------
     InputError
-        While it is read, if the file has changed and no longer holds what it held.
+        While it is read, if the file has changed since it was checked.
     """
 
     path: Path
     columns: Columns
     found: Survey
     how: Mapping[str, Any]
+    version: tuple[int, int]
 
     def __len__(self) -> int:
         """Give the number of samples N."""
@@ -99,13 +102,14 @@ class RecordFile:
         Raises
         ------
         InputError
-            If ``samples`` is no whole number >= 1, or the file has changed since it was opened.
+            If ``samples`` is no whole number >= 1, or the file has changed since it was opened:
+            its size, or the time of its last change.
         """
         length = whole_number(samples, "samples", 1, _MOST)
         return self._chunks(length)
 
     def load(self) -> Record:
-        """Read the whole record at once, as ``read_record`` does.
+        """Read the whole record at once, as ``read_record`` does, and as the file is now.
 
         Raises
         ------
@@ -115,6 +119,8 @@ class RecordFile:
         return read_record(self.path, **self.how, max_samples=_MOST)
 
     def _chunks(self, samples: int) -> Iterator[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+        # Before anything is read: columns may have changed places, and nobody would see it.
+        self._require_unchanged()
         given = 0
         for u, y in regroup(self._pieces(), samples, len(self)):
             given += u.size
@@ -125,14 +131,33 @@ class RecordFile:
     def _pieces(self) -> Iterator[tuple[NDArray[np.float64], ...]]:
         chosen, read = list(self.found.columns), 0
         for piece in self.columns.pieces(chosen):
+            self._require_unchanged()
             checked(self.columns.table, piece, chosen)
             read += piece.size
             if read > len(self):
                 raise self._changed()
             yield piece.values
 
+    def _require_unchanged(self) -> None:
+        if version_of(self.path) != self.version:
+            raise self._changed()
+
     def _changed(self) -> InputError:
         return InputError(
-            f"{self.path} no longer holds the {len(self)} samples it held when it was opened; "
-            "open it again"
+            f"{self.path} has changed since its {len(self)} samples were checked; open it again"
         )
+
+
+def version_of(path: Path) -> tuple[int, int]:
+    """Give size and time of the last change of a file, bytes and ns.
+
+    Raises
+    ------
+    InputError
+        If there is no such file.
+    """
+    try:
+        now = path.stat()
+    except FileNotFoundError:
+        raise InputError(f"{path} does not exist; check the path") from None
+    return now.st_size, now.st_mtime_ns

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -58,6 +59,11 @@ class TextColumns:
         """
         with path.open("rb") as file:
             data = file.read(_HEAD)
+        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+            raise InputError(
+                f"{path} is written in UTF-16, which cannot be read in chunks; save it as UTF-8, "
+                f"or {_WHOLE}"
+            )
         data = data[: data.rfind(b"\n") + 1]
         found = head_of(data, str(path))
         if found is None:
