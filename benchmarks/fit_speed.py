@@ -18,7 +18,7 @@ import scipy.optimize
 from numpy.typing import NDArray
 
 import hyst
-from benchmarks.timing import interleaved, ratio
+from benchmarks.timing import interleaved, ratio, report, report_times
 
 Array = NDArray[np.float64]
 
@@ -53,6 +53,8 @@ def print_fits() -> float:
                     "peer": lambda r=record, n=plays: peer(r, n),
                 }
                 times = interleaved(works, seconds=4.0, rounds=7)
+                told_as = f"hyst over peer, {plays} plays, {name}, delay {told}"
+                report_times(told_as, times, "hyst", "peer", better="smaller")
                 left = {each: work() for each, work in works.items()}
                 least = {each: float(np.median(times[each])) for each in times}
                 print(
@@ -72,6 +74,7 @@ def print_choices(unit: float) -> None:
             before = time.process_time()
             found = hyst.identify(record)
             spent = time.process_time() - before
+            report(f"units of a choice, {name}, {driven}", spent / unit, better="smaller")
             print(
                 f"  {name:10s} {driven:16s} {spent:6.2f} s  {spent / unit:6.1f} units  "
                 f"{found.family}, {found.parameter_values.size} numbers"

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -24,6 +26,27 @@ FILES = {
     "error.png",
     "model.png",
 }
+
+
+def test_without_figures_the_rest_is_the_same_and_matplotlib_stays_out(
+    run: Run, record_file: Path, folder: Path
+) -> None:
+    for told, out in (((), "with"), (("--no-figures",), "without")):
+        ended = run("identify", record_file, *COLUMNS, "--time", "t", *QUICK, *told, "-o", out)
+        assert ended.code == 0, ended.err
+    assert {path.name for path in (folder / "without").iterdir()} == {
+        "model.json",
+        "metrics.json",
+        "report.html",
+    }
+    numbers = [(folder / out / "metrics.json").read_text() for out in ("with", "without")]
+    assert numbers[0] == numbers[1]
+    pages = [(folder / out / "report.html").read_text() for out in ("with", "without")]
+    assert [page.count("<img") for page in pages] == [4, 0]
+    assert pages[1].count("<table") == pages[0].count("<table") > 0
+    ask = "import hyst.cli, sys; hyst.report.write_report; print('matplotlib' in sys.modules)"
+    said = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=True)
+    assert said.stdout == "False\n"
 
 
 def test_writes_the_model_the_numbers_the_figures_and_the_report(

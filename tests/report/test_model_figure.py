@@ -31,13 +31,13 @@ U = 5.0 * np.sin(np.linspace(0.0, 10.0, 300))
 
 def labels_of(model: Operator, monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, str]]:
     seen: list[tuple[str, str]] = []
-    save = matplotlib.figure.Figure.savefig
+    save = matplotlib.figure.Figure.draw
 
     def watched(figure: matplotlib.figure.Figure, *args: Any, **kwargs: Any) -> None:
         seen.extend((axes.get_xlabel(), axes.get_ylabel()) for axes in figure.axes)
         save(figure, *args, **kwargs)
 
-    monkeypatch.setattr(matplotlib.figure.Figure, "savefig", watched)
+    monkeypatch.setattr(matplotlib.figure.Figure, "draw", watched)
     draw_model(model, U, Labels("drive", "V", "position", "um"), {}, "")
     return seen
 
@@ -79,14 +79,14 @@ def test_plays_whose_radii_grow_are_drawn_at_rest(monkeypatch: pytest.MonkeyPatc
 
 def test_a_power_law_is_drawn_as_its_loading_curve(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[tuple[str, float]] = []
-    save = matplotlib.figure.Figure.savefig
+    save = matplotlib.figure.Figure.draw
 
     def watched(figure: matplotlib.figure.Figure, *args: Any, **kwargs: Any) -> None:
         axes = figure.axes[0]
         drawn.append((axes.get_title(loc="left"), float(axes.lines[0].get_ydata()[-1])))
         save(figure, *args, **kwargs)
 
-    monkeypatch.setattr(matplotlib.figure.Figure, "savefig", watched)
+    monkeypatch.setattr(matplotlib.figure.Figure, "draw", watched)
     u = np.array([-2.0, 2.0])
     draw_model(RambergOsgood(1.0, 3.0, 1.0), u, Labels("u", "", "y", ""), {}, "")
     # From rest to 2 the curve is c1 p + 2 c2 p^2 / 2 = 2 + 12, as the coefficient is 2^c3 c2.

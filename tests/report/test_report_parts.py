@@ -11,7 +11,7 @@ import pytest
 from hyst.models import ModifiedPrandtlIshlinskii, PrandtlIshlinskii
 from hyst.operators import Affine, DeadZone
 from hyst.report.canvas import blank, drawn
-from hyst.report.error_figure import autocorrelation
+from hyst.report.error_memory import autocorrelation
 from hyst.report.model_figure import stages_with_signals
 from hyst.report.tables import traits_table
 from hyst.report.tracking_figure import draw_tracking

@@ -46,6 +46,13 @@ OutputLabel = Annotated[
 AllowUnconverged = Annotated[
     bool, typer.Option("--allow-unconverged", help="Accept a fit that did not converge.")
 ]
+NoFigures = Annotated[
+    bool,
+    typer.Option(
+        "--no-figures",
+        help="Write a page without figures, and without the sections that explain further ones.",
+    ),
+]
 
 
 @dataclass(frozen=True)
@@ -166,16 +173,18 @@ def write_fitted(
     validation: Sequence[hyst.Record],
     folder: Path,
     sources: list[str],
-    told: tuple[hyst.report.Section, ...] = (),
+    told: tuple[hyst.report.Section, ...] | None = (),
 ) -> tuple[Path, ...]:
-    """Write model file, numbers, figures and report."""
+    """Write model file, numbers, report and figures; these not where nothing is told of any."""
+    sections = [] if told is None else [*hyst.report.dynamics_sections(found), *told]
     return hyst.report.write_report(
         found,
         records,
         validation,
         folder,
         sources=sources,
-        sections=[*hyst.report.dynamics_sections(found), *told],
+        sections=sections,
+        figures=told is not None,
     )
 
 

@@ -23,6 +23,7 @@ from hyst.cli.fitted import (
     Folder,
     HowToRead,
     InputLabel,
+    NoFigures,
     OutputLabel,
     Validate,
     ValidateInput,
@@ -100,14 +101,15 @@ def identify(
     schedule_unit: ScheduleUnit = None,
     validate_schedule: ValidateSchedule = None,
     in_file: InFile = None,
+    no_figures: NoFigures = False,
 ) -> int:
     """Identify a model from measured records, and write model, numbers, figures and a report."""
     require_folder(folder)
     options = options_given(context, family)
-    chosen = hyst.identification.chosen_families(family, options)
-    chosen += hyst.identification.families_in_reserve(family, options)
-    lags = whole_auto_or_none(creep, "creep")
-    late, first = number_or_auto(delay, "delay"), whole_or_auto(start, "start")
+    named = hyst.identification.chosen_families(family, options)
+    chosen = named + hyst.identification.families_in_reserve(family, options)
+    lags, first = whole_auto_or_none(creep, "creep"), whole_or_auto(start, "start")
+    late = number_or_auto(delay, "delay")
     time_constant = None if lag == "none" else number_or_auto(lag, "lag", " or none")
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(how, others, (input_label, output_label), driver_of(driver))
@@ -121,7 +123,8 @@ def identify(
     }
     about = About(schedule, schedule_name, schedule_unit, validate_schedule)
     alone = {"--lag": time_constant is not None, "--creep": creep not in ("auto", "none")}
-    if about.is_given(alone | {"--in-file": in_file is True}):
+    alone |= {"--in-file": in_file is True, "--no-figures": no_figures}
+    if about.is_given(alone):
         return identify_over(data, validate, folder, files, about, asked)
     asked |= {"creep": lags, "lag": time_constant}
     labelled = {"--input-label": input_label, "--output-label": output_label}
@@ -136,11 +139,15 @@ def identify(
         measured = shown(found, measured, kept)
         found = hyst.identification.with_driver(named_by_files(found, files.sources), files.driver)
         records = _records_used(found, chosen, measured, first)
-        told = hyst.report.distortion_sections(measured, options.get("period"))
+        told = None if no_figures else _told(measured, options.get("period"))
         written = write_fitted(found, records, validation, folder, files.sources, told)
     tell_fitted(found, records)
     show_files(written)
     return ended(found)
+
+
+def _told(measured: Sequence[hyst.Record], period: int | None) -> tuple[hyst.report.Section, ...]:
+    return () if period is None else hyst.report.distortion_sections(measured, period)
 
 
 def _records_used(

@@ -17,7 +17,6 @@ from hyst.report.distortion_section import distortion_sections as distortion_sec
 from hyst.report.drive_figure import draw_drive as draw_drive
 from hyst.report.drive_summary import drive_table as drive_table
 from hyst.report.dynamics_figures import dynamics_sections as dynamics_sections
-from hyst.report.dynamics_figures import dynamics_table as dynamics_table
 from hyst.report.estimation_figure import draw_estimates as draw_estimates
 from hyst.report.fleet.figures import draw_fleet_distributions as draw_fleet_distributions
 from hyst.report.fleet.figures import draw_fleet_loops as draw_fleet_loops
@@ -49,6 +48,7 @@ from hyst.report.table import number as number
 from hyst.report.tables import candidates_table as candidates_table
 from hyst.report.tables import compensation_table as compensation_table
 from hyst.report.tables import constants_table as constants_table
+from hyst.report.tables import dynamics_table as dynamics_table
 from hyst.report.tables import metrics_table as metrics_table
 from hyst.report.tables import parameters_table as parameters_table
 from hyst.report.tables import per_record_table as per_record_table

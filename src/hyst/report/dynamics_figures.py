@@ -9,11 +9,9 @@ from numpy.typing import NDArray
 from hyst.identification import Identified
 from hyst.identification.families.hammerstein.impulse_response.markov import MarkovParameters
 from hyst.identification.families.hammerstein.told.dynamics_words import (
-    HEADER,
     bands_told,
     continuous_of,
     polynomials_told,
-    root_rows,
 )
 from hyst.identification.families.hammerstein.told.identified_hammerstein import (
     IdentifiedHammerstein,
@@ -22,6 +20,7 @@ from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn, 
 from hyst.report.frequency_response_figure import draw_dynamics
 from hyst.report.identification_report import Section
 from hyst.report.table import Table, number
+from hyst.report.tables import dynamics_table
 
 Array = NDArray[np.float64]
 
@@ -106,22 +105,6 @@ def _dynamics(found: IdentifiedHammerstein) -> Section:
         + ("." if found.first_dynamics is None else ", and that of the impulse response."),
         files={RESPONSE: found.frequency_response().to_csv().encode()},
     )
-
-
-def dynamics_table(found: Identified) -> Table:
-    """Give poles and zeros of the dynamics with standard errors; no rows where there are none.
-
-    Parameters
-    ----------
-    found
-        Any result.
-
-    Returns
-    -------
-    Table
-    """
-    rows = root_rows(found.known) if isinstance(found, IdentifiedHammerstein) else ()
-    return Table("Poles and zeros of G, with standard errors", HEADER, rows)
 
 
 def _how_known(found: IdentifiedHammerstein) -> tuple[str, ...]:

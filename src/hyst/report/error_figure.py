@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn, with_unit
 from hyst.report.drawn_samples import drawn_samples
+from hyst.report.error_memory import autocorrelation
 from hyst.report.fitted_record import FittedRecord
 
 Array = NDArray[np.float64]
@@ -61,34 +62,6 @@ def draw_error(fits: tuple[FittedRecord, ...], heading: str) -> Figure:
     if heading:
         figure.suptitle(heading)
     return figure
-
-
-def autocorrelation(error: Array, lags: int) -> Array:
-    """Correlation of a signal with itself, for lags 0 to ``lags``.
-
-    Parameters
-    ----------
-    error
-        Shape (N,).
-    lags
-        Below N.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (lags + 1,), 1 at lag 0; zeros if the signal does not move.
-
-    Examples
-    --------
-    >>> autocorrelation(np.array([1.0, -1.0, 1.0, -1.0]), 2)
-    array([ 1.  , -0.75,  0.5 ])
-    """
-    centred = error - error.mean()
-    length = 1 << (error.size + lags).bit_length()
-    power = np.abs(np.fft.rfft(centred, length)) ** 2
-    correlation: Array = np.fft.irfft(power, length)[: lags + 1]
-    energy = float(np.dot(centred, centred))
-    return correlation / energy if energy > 0.0 else np.zeros(lags + 1)
 
 
 def _draw_distribution(axes: Axes, error: Array) -> None:

@@ -14,11 +14,8 @@ import numpy as np
 from hyst._files import replacing_files
 from hyst.identification import Identified
 from hyst.operators.verdict import UNFIT
-from hyst.report.error_figure import autocorrelation, draw_error
+from hyst.report.error_memory import autocorrelation
 from hyst.report.fitted_record import FittedRecord, fit_records
-from hyst.report.history_figure import draw_history
-from hyst.report.loop_figure import draw_loop
-from hyst.report.model_figure import Labels, draw_model
 from hyst.report.page import Page
 from hyst.report.table import Table, number, with_unit
 from hyst.report.tables import (
@@ -92,6 +89,7 @@ def write_report(
     sources: Sequence[str] = (),
     banner: str = "",
     sections: Sequence[Section] = (),
+    figures: bool = True,
 ) -> tuple[Path, ...]:
     """Write model.json, metrics.json, the figures and report.html; all of them or none.
 
@@ -111,6 +109,8 @@ def write_report(
         A line to put above everything, for instance that the data are simulated.
     sections
         Further sections of the page; their pictures and files are written too.
+    figures
+        Whether the figures of the result are drawn; without them matplotlib is not loaded.
 
     Returns
     -------
@@ -133,18 +133,19 @@ def write_report(
     findings = _Findings(
         identified, training, kept, tuple(sources), Path(folder), banner, tuple(sections)
     )
-    figures = _figures(findings)
+    pictures = _figures(findings) if figures else {}
     with replacing_files(folder) as temporary:
         identified.model.save(temporary / MODEL, identified.description)
         numbers = json.dumps(identified.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
         (temporary / METRICS).write_text(numbers + "\n", encoding="utf-8")
-        for name, content in figures.items():
+        for name, content in pictures.items():
             (temporary / name).write_bytes(content)
         for section in sections:
             for name, content in _files_of(section).items():
                 (temporary / name).write_bytes(content)
-        (temporary / PAGE).write_text(_page(findings, figures), encoding="utf-8")
-    names = (*FILES, *(name for section in sections for name in _files_of(section)))
+        (temporary / PAGE).write_text(_page(findings, pictures), encoding="utf-8")
+    written = (each for each in FILES if each in pictures or not each.endswith(".png"))
+    names = (*written, *(name for section in sections for name in _files_of(section)))
     return tuple(Path(folder) / name for name in names)
 
 
@@ -157,34 +158,32 @@ def _several(records: Record | Sequence[Record]) -> tuple[Record, ...]:
 
 
 def _figures(findings: _Findings) -> dict[str, bytes]:
-    identified, training = findings.identified, findings.training
-    about = identified.description
-    labels = Labels(about.input_name, about.input_unit, about.output_name, about.output_unit)
-    errors = dict(zip(identified.parameter_names, identified.standard_errors.tolist(), strict=True))
-    u = np.concatenate([record.u for record in findings.records])
-    heading = findings.banner
-    return {
-        LOOP: draw_loop(training, heading),
-        HISTORY: draw_history((*training[:1], *findings.validation[:1]), heading),
-        ERROR: draw_error(training, heading),
-        PARTS: draw_model(identified.model, u, labels, errors, heading),
-    }
+    # Here, for matplotlib takes as long to import as all else, and pages without figures need none.
+    from hyst.report.identification_figures import draw_identification
+
+    training, about = findings.training, findings.identified.description
+    named = (about.input_name, about.input_unit, about.output_name, about.output_unit)
+    shown = (*training[:1], *findings.validation[:1])
+    drawn = draw_identification(findings.identified, training, shown, named, findings.banner)
+    return dict(zip((LOOP, HISTORY, ERROR, PARTS), drawn, strict=True))
 
 
-def _page(findings: _Findings, figures: dict[str, bytes]) -> str:
+def _page(findings: _Findings, pictures: dict[str, bytes]) -> str:
     about = findings.identified.description
     page = Page(f"Hysteresis of {about.output_name} over {about.input_name}")
     if findings.banner:
         page.banner(findings.banner)
     page.verdict(findings.identified.verdict)
     page.items(in_short(findings.identified, findings.records))
-    page.picture(
-        figures[LOOP],
+    _show(
+        page,
+        pictures,
+        LOOP,
         "Recorded and modelled loop. On the right the straight line that fits best is taken away, "
         "so that the hysteresis fills the picture.",
     )
-    _how_good(page, findings, figures)
-    _the_model(page, findings, figures)
+    _how_good(page, findings, pictures)
+    _the_model(page, findings, pictures)
     _what_was_compared(page, findings)
     _the_data(page, findings)
     for section in findings.sections:
@@ -193,7 +192,12 @@ def _page(findings: _Findings, figures: dict[str, bytes]) -> str:
     return page.to_html()
 
 
-def _how_good(page: Page, findings: _Findings, figures: dict[str, bytes]) -> None:
+def _show(page: Page, pictures: dict[str, bytes], name: str, caption: str) -> None:
+    if name in pictures:
+        page.picture(pictures[name], caption)
+
+
+def _how_good(page: Page, findings: _Findings, pictures: dict[str, bytes]) -> None:
     page.heading("How good it is")
     page.table(metrics_table(findings.identified))
     if findings.identified.motion:
@@ -206,18 +210,20 @@ def _how_good(page: Page, findings: _Findings, figures: dict[str, bytes]) -> Non
         "offset the mean of the error is taken out first: sensors drift, and a constant between "
         "model and sensor often means nothing."
     )
-    page.picture(
-        figures[HISTORY],
+    _show(
+        page,
+        pictures,
+        HISTORY,
         "Output over time, in the band that is to hold 95 % of the samples. A shaded beginning was "
         "not used.",
     )
-    page.picture(figures[ERROR], "What the model leaves unexplained on the training record.")
+    _show(page, pictures, ERROR, "What the model leaves unexplained on the training record.")
     error = findings.training[0].error
     lag_one = float(autocorrelation(error, 1)[1]) if error.size > 1 else 0.0
     page.text(error_sentence(lag_one, error.size))
 
 
-def _the_model(page: Page, findings: _Findings, figures: dict[str, bytes]) -> None:
+def _the_model(page: Page, findings: _Findings, pictures: dict[str, bytes]) -> None:
     identified = findings.identified
     words = words_of(identified)
     page.heading(f"The model: {words.full_name}")
@@ -225,7 +231,7 @@ def _the_model(page: Page, findings: _Findings, figures: dict[str, bytes]) -> No
         page.equation(each)
     for each in words.explanations:
         page.text(each)
-    page.picture(figures[PARTS], "What the model is made of.")
+    _show(page, pictures, PARTS, "What the model is made of.")
     page.table(parameters_table(identified))
     page.faint(
         "Standard errors say how far a value may be off because of noise; they allow for errors "

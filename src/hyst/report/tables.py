@@ -6,6 +6,10 @@ import math
 
 from hyst.compensation import Compensation, error_parts
 from hyst.identification import Identified, RecordErrors
+from hyst.identification.families.hammerstein.told.dynamics_words import HEADER, root_rows
+from hyst.identification.families.hammerstein.told.identified_hammerstein import (
+    IdentifiedHammerstein,
+)
 from hyst.identification.families.registry import families
 from hyst.identification.result.record_errors import run_at_several_rates
 from hyst.operators import Operator
@@ -324,3 +328,19 @@ def compensation_table(done: Compensation, unit: str) -> Table:
         ("", with_unit("error", unit and f"[{unit}]"), "% of the reference's range"),
         (*predicted, *expected),
     )
+
+
+def dynamics_table(found: Identified) -> Table:
+    """Give poles and zeros of the dynamics with standard errors; no rows where there are none.
+
+    Parameters
+    ----------
+    found
+        Any result.
+
+    Returns
+    -------
+    Table
+    """
+    rows = root_rows(found.known) if isinstance(found, IdentifiedHammerstein) else ()
+    return Table("Poles and zeros of G, with standard errors", HEADER, rows)
