@@ -99,7 +99,7 @@ def identify(
     schedule_name: ScheduleName = None,
     schedule_unit: ScheduleUnit = None,
     validate_schedule: ValidateSchedule = None,
-    in_file: InFile = None,
+    in_file: InFile = "auto",
 ) -> int:
     """Identify a model from measured records, and write model, numbers, figures and a report."""
     require_folder(folder)
@@ -111,17 +111,12 @@ def identify(
     time_constant = None if lag == "none" else number_or_auto(lag, "lag", " or none")
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(how, others, (input_label, output_label), driver_of(driver))
-    asked = {
-        "family": family,
-        "delay": late,
-        "start": first,
-        "drift": False if leave_disturbances else "auto",
-        "allow_unconverged": allow_unconverged,
-        **options,
-    }
+    drift = False if leave_disturbances else "auto"
+    asked = {"family": family, "delay": late, "start": first, "drift": drift, **options}
+    asked["allow_unconverged"] = allow_unconverged
     about = About(schedule, schedule_name, schedule_unit, validate_schedule)
     alone = {"--lag": time_constant is not None, "--creep": creep not in ("auto", "none")}
-    if about.is_given(alone | {"--in-file": in_file is True}):
+    if about.is_given(alone | {"--in-file": in_file == "yes"}):
         return identify_over(data, validate, folder, files, about, asked)
     asked |= {"creep": lags, "lag": time_constant}
     labelled = {"--input-label": input_label, "--output-label": output_label}
