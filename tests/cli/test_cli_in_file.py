@@ -57,13 +57,13 @@ def test_the_option_decides_against_the_size(
 ) -> None:
     how = dict.fromkeys(("time", "time_unit", "dead_band", "format", *in_file._NOT_SERVED))
     kept = in_file.FileToKeep([long_file], how | {"input": "u", "output": "y", "rate": 1000.0}, {})
-    assert kept.opened(False) is None
-    opened = kept.opened(None)
+    assert kept.opened("no") is None
+    opened = kept.opened("auto")
     assert opened is not None
     assert len(opened) == 12_000
     monkeypatch.setattr(in_file, "LARGE", 10**9)
-    assert kept.opened(None) is None
-    assert kept.opened(True) is not None
+    assert kept.opened("auto") is None
+    assert kept.opened("yes") is not None
 
 
 @pytest.mark.parametrize(
@@ -77,7 +77,9 @@ def test_the_option_decides_against_the_size(
 def test_what_it_cannot_serve_is_refused(
     more: tuple[str, ...], said: str, refused: Callable[..., str], long_file: Path
 ) -> None:
-    message = refused("identify", long_file, *ASKED, *QUICK[:2], "-o", "out", "--in-file", *more)
+    message = refused(
+        "identify", long_file, *ASKED, *QUICK[:2], "-o", "out", "--in-file", "yes", *more
+    )
     assert said in " ".join(message.split())
 
 

@@ -100,7 +100,7 @@ def identify(
     schedule_name: ScheduleName = None,
     schedule_unit: ScheduleUnit = None,
     validate_schedule: ValidateSchedule = None,
-    in_file: InFile = None,
+    in_file: InFile = "auto",
     no_figures: NoFigures = False,
 ) -> int:
     """Identify a model from measured records, and write model, numbers, figures and a report."""
@@ -113,17 +113,12 @@ def identify(
     time_constant = None if lag == "none" else number_or_auto(lag, "lag", " or none")
     others = {"input": validate_input, "output": validate_output, "time": validate_time}
     files = HowToRead(how, others, (input_label, output_label), driver_of(driver))
-    asked = {
-        "family": family,
-        "delay": late,
-        "start": first,
-        "drift": False if leave_disturbances else "auto",
-        "allow_unconverged": allow_unconverged,
-        **options,
-    }
+    drift = False if leave_disturbances else "auto"
+    asked = {"family": family, "delay": late, "start": first, "drift": drift, **options}
+    asked["allow_unconverged"] = allow_unconverged
     about = About(schedule, schedule_name, schedule_unit, validate_schedule)
     alone = {"--lag": time_constant is not None, "--creep": creep not in ("auto", "none")}
-    alone |= {"--in-file": in_file is True, "--no-figures": no_figures}
+    alone |= {"--in-file": in_file == "yes", "--no-figures": no_figures}
     if about.is_given(alone):
         return identify_over(data, validate, folder, files, about, asked)
     asked |= {"creep": lags, "lag": time_constant}

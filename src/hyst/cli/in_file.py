@@ -17,12 +17,11 @@ LARGE = 256 * 2**20
 """Bytes of a file from which on its record stays in it: 16 million samples of two doubles."""
 
 InFile = Annotated[
-    bool | None,
+    str,
     typer.Option(
-        "--in-file/--in-memory",
-        show_default=False,
+        metavar="yes|no|auto",
         help="Leave the record in its file: the constants are fitted to all of it, and what else "
-        "there is to find on half a million samples. By default where the file is larger than "
+        "there is to find on half a million samples; auto: where the file is larger than "
         f"{LARGE // 2**20} MB.",
     ),
 ]
@@ -57,30 +56,33 @@ class FileToKeep:
     how: Mapping[str, Any]
     others: Mapping[str, object]
 
-    def opened(self, asked: bool | None) -> hyst.io.RecordFile | None:
+    def opened(self, asked: str) -> hyst.io.RecordFile | None:
         """Open it, or give None where records are to be read into memory.
 
         Parameters
         ----------
         asked
-            Whether it is to stay there; None to decide by its size.
+            ``yes``, ``no``, or ``auto`` to decide by its size.
 
         Raises
         ------
         InputError
-            If it is to stay there, and there are several or an option that cannot be served.
+            If it is to stay there, and there are several or an option that cannot be served; or it
+            is asked for in another word.
         """
-        if asked is False or (asked is None and not self._is_large()):
+        if asked not in ("yes", "no", "auto"):
+            raise hyst.InputError(f"--in-file is {asked!r}; give yes, no or auto")
+        if asked == "no" or (asked == "auto" and not self._is_large()):
             return None
         if len(self.paths) > 1:
             raise hyst.InputError(
                 f"{len(self.paths)} records are given, and only one can stay in its file; give "
-                "one, or --in-memory"
+                "one, or --in-file no"
             )
         for option, typed in self._not_served().items():
             if typed:
                 raise hyst.InputError(
-                    f"{option} is not for a record that stays in its file; give --in-memory, or "
+                    f"{option} is not for a record that stays in its file; give --in-file no, or "
                     "leave it out"
                 )
         record = hyst.open_record(self.paths[0], **{each: self.how[each] for each in _TO_OPEN})

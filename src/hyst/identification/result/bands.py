@@ -64,6 +64,9 @@ FINEST = 10
 
 FEWEST_FOR_QUANTILES = 400
 
+BLOCK = 2**16
+"""Samples whose memory is held at a time."""
+
 
 @dataclass(frozen=True, eq=False)
 class Bands:
@@ -253,25 +256,43 @@ def _met(data: Data, centre: float) -> Array:
     passes = zip(data.records, data.windows(), data.counted(), strict=True)
     for record, window, counts in passes:
         u = record.u[: window.stop]
-        at = np.arange(fine * (u.size - 1) + 1) / fine
-        states = _states(np.interp(at, np.arange(u.size), u), centre, data.half_range)
+        at = np.arange(fine * (u.size - 1) + 1) / fine if fine > 1 else np.arange(u.size)
         used = at >= window.start
         if counts is not None:
             nearest = np.clip(np.round(at).astype(np.intp) - window.start, 0, counts.size - 1)
             used &= counts[nearest]
-        parts.append(states[used])
-    states = np.concatenate(parts)
-    return states[:: 1 + states.shape[0] // MOST_STATES]
+        fine_u = np.interp(at, np.arange(u.size), u) if fine > 1 else u
+        parts.append((fine_u, np.flatnonzero(used)))
+    every = 1 + sum(places.size for _, places in parts) // MOST_STATES
+    states, passed = list[Array](), 0
+    for u, places in parts:
+        chosen = places[-passed % every :: every]
+        states.append(_states(u, centre, data.half_range, chosen))
+        passed += places.size
+    return np.concatenate(states)
 
 
-def _states(u: Array, centre: float, half_range: float) -> Array:
-    """Give input and memory, relative to the records' range, shape (N, 1 + RADII)."""
+def _states(
+    u: Array, centre: float, half_range: float, places: NDArray[np.intp] | None = None
+) -> Array:
+    """Give input and memory, relative to the records' range, at all samples or at some.
+
+    Their shape is (n, 1 + RADII); a long record goes by in blocks, and only those asked for stay.
+    """
     signal = np.ascontiguousarray((finite_vector(u, "u") - centre) / half_range)
     radii = (np.arange(RADII) + 1.0) / (RADII + 1.0)
-    z = np.empty((signal.size, RADII))
-    start = np.full(RADII, np.clip(-centre / half_range, -1.0, 1.0))
-    _engine.play_outputs(radii.tolist(), start, signal, z)
-    return np.column_stack([signal, z])
+    memory = np.full(RADII, np.clip(-centre / half_range, -1.0, 1.0))
+    parts = [np.empty((0, 1 + RADII))]
+    for first in range(0, signal.size, BLOCK):
+        block = signal[first : first + BLOCK]
+        z = np.empty((block.size, RADII))
+        _engine.play_outputs(radii.tolist(), memory, block, z)
+        rows = np.column_stack([block, z])
+        if places is not None:
+            low, high = np.searchsorted(places, [first, first + block.size])
+            rows = rows[places[low:high] - first]
+        parts.append(rows)
+    return np.concatenate(parts)
 
 
 def _spacing(states: Array) -> float:
