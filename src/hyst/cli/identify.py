@@ -118,8 +118,7 @@ def identify(
     asked["allow_unconverged"] = allow_unconverged
     about = About(schedule, schedule_name, schedule_unit, validate_schedule)
     alone = {"--lag": time_constant is not None, "--creep": creep not in ("auto", "none")}
-    alone |= {"--in-file": in_file == "yes", "--no-figures": no_figures}
-    if about.is_given(alone):
+    if about.is_given(alone | {"--in-file": in_file == "yes", "--no-figures": no_figures}):
         return identify_over(data, validate, folder, files, about, asked)
     asked |= {"creep": lags, "lag": time_constant}
     labelled = {"--input-label": input_label, "--output-label": output_label}
