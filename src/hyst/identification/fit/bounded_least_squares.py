@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from hyst.identification.fit.block import Blocks, blocks_of
 from hyst.identification.fit.bounded_quadratic import least_within
+from hyst.identification.fit.curvature import Curvature
 from hyst.identification.fit.normal_equations import NormalEquations
 
 Array = NDArray[np.float64]
@@ -120,7 +121,12 @@ class Problem:
 
 
 def minimize(
-    problem: Problem, theta: Array, max_iterations: int = 100, tolerance: float = 1e-3
+    problem: Problem,
+    theta: Array,
+    max_iterations: int = 100,
+    tolerance: float = 1e-3,
+    *,
+    curvature: Curvature | None = None,
 ) -> Solution:
     """Minimise the sum of squared residuals within bounds.
 
@@ -137,6 +143,9 @@ def minimize(
         residual variance, which moves no parameter by more than the root of this share of its
         standard error. Or, where kinks keep a step from what it promises, when the cost has fallen
         by less than that in the last ``PATIENCE`` steps.
+    curvature
+        Learns from the steps what the normal matrix leaves out, where steps are dear and what the
+        model leaves is more than noise; None for the normal matrix alone.
 
     Returns
     -------
@@ -155,7 +164,8 @@ def minimize(
     damping, growth = 1e-4, 2.0
     costs = [normal.cost]
     for iteration in range(1, max_iterations + 1):
-        step, promise = projected_step(problem, theta, normal, damping)
+        curved = normal if curvature is None else curvature.added_to(normal)
+        step, promise = projected_step(problem, theta, curved, damping)
         # A damped step promises little because it is short, not because there is nothing to gain.
         noticed = tolerance * normal.cost / normal.count
         if abs(promise) * (1.0 + damping) <= noticed or normal.cost <= problem.negligible:
@@ -166,7 +176,10 @@ def minimize(
         if promise > 0.0 and gain > 1e-4:
             if iteration == max_iterations:  # the normal equations there serve no further step
                 return Solution(trial, cost, iteration, ITERATION_LIMIT)
-            theta, normal = trial, problem.normal_equations(trial)
+            there = problem.normal_equations(trial)
+            if curvature is not None:
+                curvature.learn(trial - theta, normal, there)
+            theta, normal = trial, there
             damping *= max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0) ** 3)
             damping = max(damping, LEAST_DAMPING)
             growth = 2.0

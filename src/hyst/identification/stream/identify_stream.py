@@ -14,6 +14,7 @@ import numpy as np
 from hyst.errors import NotIdentifiableError, SolverError
 from hyst.identification.families.family import Fit
 from hyst.identification.fit.bounded_least_squares import CONVERGED, minimize
+from hyst.identification.fit.curvature import Curvature
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.fit_spread import spread_from_sums
 from hyst.identification.result.identified import Identified
@@ -65,7 +66,7 @@ def identify_stream(stream: RecordStream, identify: Callable[[Record], Identifie
     late = round(before.delay)
     whole = FitOfAll(stream, found, fit.parametrization, late)
     posed, theta, back = fit.family.in_own_coordinates(whole.problem(), fit.solution.theta)
-    solution = minimize(posed, theta, MOST_STEPS, TOLERANCE)
+    solution = minimize(posed, theta, MOST_STEPS, TOLERANCE, curvature=Curvature())
     if solution.status != CONVERGED:
         raise SolverError(
             f"the fit to all {found.samples} samples did not converge in {MOST_STEPS} steps; load "
