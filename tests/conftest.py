@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
+import importlib.util
 from pathlib import Path
 
 import pytest
@@ -15,6 +18,19 @@ settings.register_profile("search", **_QUICK, max_examples=2000)
 settings.load_profile("repeatable")
 
 REPOSITORY = Path(__file__).resolve().parent.parent
+
+
+def _load_libraries_of_opensees() -> None:
+    """Load what the wheel of OpenSees brings for itself but finds only where a system has it too."""
+    found = importlib.util.find_spec("openseespylinux")
+    if found is None or found.origin is None:
+        return
+    for name in ("libquadmath.so.0", "libgfortran.so.4", "libblas.so.3"):
+        with contextlib.suppress(OSError):
+            ctypes.CDLL(str(Path(found.origin).parent / "lib" / name), mode=ctypes.RTLD_GLOBAL)
+
+
+_load_libraries_of_opensees()
 
 
 @pytest.fixture(scope="session")
