@@ -21,7 +21,7 @@ REPOSITORY = Path(__file__).resolve().parent.parent
 
 
 def _load_libraries_of_opensees() -> None:
-    """Load what the wheel of OpenSees brings for itself but finds only where a system has it too."""
+    """Load what the wheel of OpenSees brings but finds only where a system has it too."""
     found = importlib.util.find_spec("openseespylinux")
     if found is None or found.origin is None:
         return
