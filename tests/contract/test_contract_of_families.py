@@ -208,8 +208,7 @@ def test_the_result_does_not_depend_on_units(name: str) -> None:
             at = expected.names.index(each)
             if alike[at]:
                 errors = scaled.standard_errors[i], plain.standard_errors[i] * factors[at]
-                # The rounding of such a power, times the squared condition of the constants.
-                np.testing.assert_allclose(*errors, rtol=1e-8)
+                np.testing.assert_allclose(*errors, rtol=1e-9)
         assert scaled.delay == plain.delay
         percent = scaled.metrics["training"].rms_percent
         assert percent == pytest.approx(plain.metrics["training"].rms_percent, rel=1e-9)

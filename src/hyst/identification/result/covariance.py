@@ -6,7 +6,7 @@ no Jacobian of all of its samples.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Self
 
@@ -23,10 +23,12 @@ Array = NDArray[np.float64]
 class ScoreSums:
     """Sums over the samples of a residual e and its Jacobian J, both brought to a size near 1.
 
+    Columns are divided before they are summed, as rounding of the sums is not to depend on units.
+
     Parameters
     ----------
     unit
-        Shape (m,), powers of two by which the columns of J were divided.
+        Shape (m,), norms of the columns of J, by which they were divided; 1 for columns of zeros.
     noise
         Power of two by which e was divided.
     gram
@@ -59,8 +61,8 @@ class ScoreSums:
         lengths
             Samples of each record, in order; correlation does not reach across records.
         """
-        largest = np.max([np.abs(each.jacobian).max(axis=0) for each in blocks()], axis=0)
-        unit = np.where(largest > 0.0, np.ldexp(1.0, np.frexp(largest)[1]), 1.0)
+        unit = norms_of(each.jacobian for each in blocks())
+        unit = np.where(unit > 0.0, unit, 1.0)
         noise = float(np.ldexp(1.0, np.frexp(np.abs(residual).max(initial=0.0))[1]))
         errors = residual / noise
         gram = LongSum((unit.size, unit.size))
@@ -108,6 +110,24 @@ class ScoreSums:
             middle = middle + self.power / self.samples * held
         correction = self.samples / max(self.samples - count - taken_out, 1.0)
         return np.asarray(inverse @ middle @ inverse * correction / outer)
+
+
+def norms_of(blocks: Iterable[Array]) -> Array:
+    """Give the norms of the columns of a matrix that comes block by block, at any size.
+
+    Parameters
+    ----------
+    blocks
+        Shape (n, m) each, at least one.
+    """
+    sizes, squares = list[Array](), list[Array]()
+    for each in blocks:
+        largest = np.abs(each).max(axis=0, initial=0.0)
+        sizes.append(np.where(largest > 0.0, np.ldexp(1.0, np.frexp(largest)[1]), 0.0))
+        squares.append(np.square(each / np.where(largest > 0.0, sizes[-1], 1.0)).sum(axis=0))
+    size = np.max(sizes, axis=0)
+    shares = np.array(sizes) / np.where(size > 0.0, size, 1.0)
+    return np.asarray(size * np.sqrt((np.array(squares) * shares**2).sum(axis=0)))
 
 
 def robust_covariance(

@@ -124,11 +124,8 @@ def spread_of_estimates(
     -------
     Spread
     """
-    norms = np.sqrt(np.diag(sums.gram))
-    norms = np.where(norms > 0.0, norms, 1.0)
-    scaled, unit = sums.along(np.diag(1.0 / norms)), norms * sums.unit
-    within = _within(gauges, unit)
-    eigenvalues, vectors = np.linalg.eigh(within.T @ scaled.gram @ within)
+    unit, within = sums.unit, _within(gauges, sums.unit)
+    eigenvalues, vectors = np.linalg.eigh(within.T @ sums.gram @ within)
     vectors = within @ vectors
     shown = np.diag(sums.gram) > 0.0
     size = float(np.abs(theta * np.where(shown, unit, 0.0)).max(initial=0.0)) or 1.0
@@ -136,7 +133,7 @@ def spread_of_estimates(
     inner = np.zeros((theta.size, theta.size))
     while known.any():
         basis = vectors[:, known]
-        inner = scaled.along(basis).covariance(taken_out=taken_out)
+        inner = sums.along(basis).covariance(taken_out=taken_out)
         lost = np.sqrt(np.diag(inner)) * sums.noise > size
         if not lost.any():
             inner = basis @ inner @ basis.T

@@ -15,7 +15,12 @@ from hyst.identification.fit.bounded_least_squares import Problem
 from hyst.identification.fit.normal_equations import LongSum, NormalEquations
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.fit.problem import NO_STEP_TO, beside_the_records
-from hyst.identification.result.covariance import BartlettSum, ScoreSums, bandwidth_of
+from hyst.identification.result.covariance import (
+    BartlettSum,
+    ScoreSums,
+    bandwidth_of,
+    norms_of,
+)
 from hyst.identification.stream.aligned import aligned
 from hyst.identification.stream.survey import Survey
 from hyst.signals import Metrics
@@ -141,8 +146,8 @@ class FitOfAll:
         left
             What the model leaves.
         """
-        size = np.sqrt(np.diag(self._normal(theta).matrix)[columns] / self.samples)
-        unit = np.where(size > 0.0, np.ldexp(1.0, np.frexp(size)[1]), 1.0)
+        unit = norms_of(block.jacobian[:, columns] for block, _ in self.blocks(theta))
+        unit = np.where(unit > 0.0, unit, 1.0)
         noise = math.ldexp(1.0, math.frexp(left.largest)[1])
         gram = LongSum((unit.size, unit.size))
         lags = bandwidth_of(left.power, left.product, self.samples, self.samples)
