@@ -58,6 +58,11 @@ class Moments:
 class Nuisance(ABC):
     """Columns that every record has beside the model, each record with its own coefficients."""
 
+    @property
+    def has_columns(self) -> bool:
+        """Whether there is any column to be projected out."""
+        return True
+
     @abstractmethod
     def columns(self, moments: Moments, theta: Array) -> Array:
         """Give the columns over some samples of a record, shape (n, q).
@@ -112,6 +117,11 @@ class Drift(Nuisance):
     """
 
     degree: int = 1
+
+    @property
+    def has_columns(self) -> bool:
+        """Whether it is more than the constant."""
+        return self.degree > 0
 
     def columns(self, moments: Moments, theta: Array) -> Array:
         """Give Legendre polynomials over the record."""
@@ -181,6 +191,11 @@ class Nuisances:
     """
 
     parts: tuple[Nuisance, ...]
+
+    @property
+    def has_columns(self) -> bool:
+        """Whether any part has a column to be projected out."""
+        return any(each.has_columns for each in self.parts)
 
     def columns(self, moments: Moments, theta: Array) -> Array:
         """Give the columns of all parts, shape (n, q).

@@ -143,7 +143,9 @@ class _Residual:
         self._is_allowed = parametrization.is_allowed
         self._beside = beside_the_records(parametrization, self._spread)
         nuisances = parametrization.nuisances
-        self.columns = None if nuisances is None else Beside(data, nuisances, chosen, root_weights)
+        self.columns: Beside | None = None
+        if nuisances is not None and nuisances.has_columns:
+            self.columns = Beside(data, nuisances, chosen, root_weights)
         entries = self._target.size * parametrization.transform.shape[0]
         self.is_long = entries > LARGEST_JACOBIAN
         self.negligible = float(self._target.size * (ROUNDING * np.ptp(y)) ** 2)
