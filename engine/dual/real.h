@@ -49,9 +49,6 @@ struct alignas(HYST_TANGENTS >= 8 ? 64 : 32) hyst_real {
     }
 };
 
-HYST_INLINE hyst_real operator-(hyst_real a) { return {-a.v, -a.d}; }
-HYST_INLINE hyst_real operator+(hyst_real a, hyst_real b) { return {a.v + b.v, a.d + b.d}; }
-HYST_INLINE hyst_real operator-(hyst_real a, hyst_real b) { return {a.v - b.v, a.d - b.d}; }
 HYST_INLINE hyst_real operator*(hyst_real a, hyst_real b)
 {
     return {a.v * b.v, a.v * b.d + b.v * a.d};
@@ -61,20 +58,7 @@ HYST_INLINE hyst_real operator/(hyst_real a, hyst_real b)
     const double quotient = a.v / b.v;
     return {quotient, (a.d - quotient * b.d) / b.v};
 }
-/* What has no derivative makes no product with one: 0 times an infinity would be a NaN. */
-HYST_INLINE hyst_real operator*(double a, hyst_real b) { return {a * b.v, a * b.d}; }
-HYST_INLINE hyst_real operator*(hyst_real a, double b) { return b * a; }
-HYST_INLINE hyst_real operator/(hyst_real a, double b) { return {a.v / b, a.d / b}; }
-HYST_INLINE hyst_real &operator+=(hyst_real &a, hyst_real b) { return a = a + b; }
-HYST_INLINE hyst_real &operator-=(hyst_real &a, hyst_real b) { return a = a - b; }
-HYST_INLINE hyst_real &operator*=(hyst_real &a, hyst_real b) { return a = a * b; }
-HYST_INLINE hyst_real &operator/=(hyst_real &a, hyst_real b) { return a = a / b; }
-HYST_INLINE bool operator<(const hyst_real &a, const hyst_real &b) { return a.v < b.v; }
-HYST_INLINE bool operator>(const hyst_real &a, const hyst_real &b) { return a.v > b.v; }
-HYST_INLINE bool operator<=(const hyst_real &a, const hyst_real &b) { return a.v <= b.v; }
-HYST_INLINE bool operator>=(const hyst_real &a, const hyst_real &b) { return a.v >= b.v; }
-HYST_INLINE bool operator==(const hyst_real &a, const hyst_real &b) { return a.v == b.v; }
-HYST_INLINE bool operator!=(const hyst_real &a, const hyst_real &b) { return a.v != b.v; }
+#include "arithmetic.h"
 
 /* Part for part too: a choice between two structures goes by way of memory, ten times slower. */
 HYST_INLINE hyst_real hyst_select(bool condition, hyst_real a, hyst_real b)

@@ -65,9 +65,6 @@ struct hyst_real {
     explicit operator size_t() const { return static_cast<size_t>(v); }
 };
 
-HYST_INLINE hyst_real operator-(hyst_real a) { return {-a.v, -a.d}; }
-HYST_INLINE hyst_real operator+(hyst_real a, hyst_real b) { return {a.v + b.v, a.d + b.d}; }
-HYST_INLINE hyst_real operator-(hyst_real a, hyst_real b) { return {a.v - b.v, a.d - b.d}; }
 HYST_INLINE hyst_real operator*(hyst_real a, hyst_real b)
 {
     return {a.v * b.v, sum_of(b.v, a.d, a.v, b.d)};
@@ -77,19 +74,7 @@ HYST_INLINE hyst_real operator/(hyst_real a, hyst_real b)
     const double quotient = a.v / b.v;
     return {quotient, sum_of(1.0 / b.v, a.d, -quotient / b.v, b.d)};
 }
-HYST_INLINE hyst_real operator*(double a, hyst_real b) { return {a * b.v, a * b.d}; }
-HYST_INLINE hyst_real operator*(hyst_real a, double b) { return b * a; }
-HYST_INLINE hyst_real operator/(hyst_real a, double b) { return {a.v / b, a.d / b}; }
-HYST_INLINE hyst_real &operator+=(hyst_real &a, hyst_real b) { return a = a + b; }
-HYST_INLINE hyst_real &operator-=(hyst_real &a, hyst_real b) { return a = a - b; }
-HYST_INLINE hyst_real &operator*=(hyst_real &a, hyst_real b) { return a = a * b; }
-HYST_INLINE hyst_real &operator/=(hyst_real &a, hyst_real b) { return a = a / b; }
-HYST_INLINE bool operator<(const hyst_real &a, const hyst_real &b) { return a.v < b.v; }
-HYST_INLINE bool operator>(const hyst_real &a, const hyst_real &b) { return a.v > b.v; }
-HYST_INLINE bool operator<=(const hyst_real &a, const hyst_real &b) { return a.v <= b.v; }
-HYST_INLINE bool operator>=(const hyst_real &a, const hyst_real &b) { return a.v >= b.v; }
-HYST_INLINE bool operator==(const hyst_real &a, const hyst_real &b) { return a.v == b.v; }
-HYST_INLINE bool operator!=(const hyst_real &a, const hyst_real &b) { return a.v != b.v; }
+#include "arithmetic.h"
 
 HYST_INLINE hyst_real hyst_select(bool condition, hyst_real a, hyst_real b)
 {
