@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
     from hyst.report.table import Table
 
+WIDEST_NUMBER = 40
+"""Characters: columns with longer cells hold sentences, which start at the left."""
+
 
 def show_table(table: Table) -> None:
     """Print a table: ruled on a terminal, aligned plain text elsewhere."""
@@ -79,7 +82,9 @@ def _ruled(table: Table) -> RichTable:
     # Text instead of markup: names from the user's file may hold brackets.
     ruled = RichTable(title=Text(table.title), title_justify="left", title_style="bold")
     for index, heading in enumerate(table.header):
-        ruled.add_column(Text(heading), justify="left" if index == 0 else "right")
+        width = max(len(row[index]) for row in (table.header, *table.rows))
+        is_text = index == 0 or width > WIDEST_NUMBER
+        ruled.add_column(Text(heading), justify="left" if is_text else "right")
     for index, row in enumerate(table.rows):
         style = "bold" if index == table.marked else None
         ruled.add_row(*(Text(cell) for cell in row), style=style)
@@ -90,6 +95,8 @@ def _aligned(table: Table) -> Iterator[str]:
     rows = [table.header, *table.rows]
     widths = [max(len(row[column]) for row in rows) for column in range(len(table.header))]
     for row in rows:
-        cells = [row[0].ljust(widths[0])]
-        cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
+        cells = [
+            cell.ljust(width) if column == 0 or width > WIDEST_NUMBER else cell.rjust(width)
+            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ]
         yield "  " + "  ".join(cells).rstrip()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -30,11 +30,14 @@ SHOWN = {
 
 COLOURS = (MODELLED, SECOND, "#047857", "#7c3aed", "#be185d", "#0891b2")
 MOST_NAMED = len(COLOURS)
+MOST_BEYOND = 6
+"""Values beyond an end of an axis that are written there; all are in the table."""
 
 _MOST_LINES = 600
 _CENTRAL = 0.995
 _FAR = 1.0
-"""Widths of the range of the others beyond which odd devices are drawn at the edge."""
+"""Widths of the range of the others by which odd devices may widen an axis: one far out would
+squeeze the others into a bar."""
 
 
 @drawn
@@ -55,8 +58,11 @@ def draw_fleet_distributions(fleet: Fleet) -> Figure:
     odd = {each.identifier for each in fleet.outliers}
     is_odd = np.array([each in odd for each in fleet.table["identifier"]])
     for at, (name, words) in zip(axes, SHOWN.items(), strict=True):
-        _histogram(at, fleet.table[name], is_odd)
+        values = fleet.table[name]
+        known = ~np.isnan(values)
+        widest = _histogram(at, values[known & ~is_odd])
         _limits(at, fleet, name)
+        _odd_ones(at, values[known & is_odd], widest)
         at.set_title(words)
         at.set_xlabel(with_unit("", fleet.table.units[name]).strip())
     for at in axes[::3]:
@@ -69,31 +75,48 @@ def draw_fleet_distributions(fleet: Fleet) -> Figure:
     return figure
 
 
-def _histogram(axes: Axes, values: Array, is_odd: NDArray[np.bool_]) -> None:
-    known = ~np.isnan(values)
-    usual, odd = values[known & ~is_odd], values[known & is_odd]
-    if usual.size:
-        low, high = np.quantile(usual, [1.0 - _CENTRAL, _CENTRAL])
-        room = 0.35 * (high - low) or 0.05 * abs(high) or 1.0
-        low, high = max(low - room, usual.min()), min(high + room, usual.max())
-        if high <= low:
-            low, high = low - 0.5 * room, high + 0.5 * room
-        bins = np.linspace(low, high, int(np.clip(np.sqrt(usual.size), 8, 40)) + 1)
-        # What is beyond counts in the outermost bars: none is left out.
-        axes.hist(np.clip(usual, low, high), bins=bins.tolist(), color=MEASURED, label="devices")
-    if odd.size:
-        if usual.size:
-            # One far out would squeeze the others into a bar; the table has its value.
-            odd = np.clip(odd, low - _FAR * (high - low), high + _FAR * (high - low))
-        axes.plot(
-            odd,
-            np.full(odd.size, 0.03),
-            "v",
-            color=MODELLED,
-            transform=axes.get_xaxis_transform(),
-            label="odd devices",
-            zorder=4,
-        )
+def _histogram(axes: Axes, usual: Array) -> tuple[float, float]:
+    """Draw the devices that are not odd, and give how wide the axis may become for odd ones."""
+    if not usual.size:
+        return -np.inf, np.inf
+    low, high = np.quantile(usual, [1.0 - _CENTRAL, _CENTRAL])
+    room = 0.35 * (high - low) or 0.05 * abs(high) or 1.0
+    low, high = max(low - room, usual.min()), min(high + room, usual.max())
+    if high <= low:
+        low, high = low - 0.5 * room, high + 0.5 * room
+    bins = np.linspace(low, high, int(np.clip(np.sqrt(usual.size), 8, 40)) + 1)
+    # What is beyond counts in the outermost bars: none is left out.
+    axes.hist(np.clip(usual, low, high), bins=bins.tolist(), color=MEASURED, label="devices")
+    return float(low - _FAR * (high - low)), float(high + _FAR * (high - low))
+
+
+def _odd_ones(axes: Axes, odd: Array, widest: tuple[float, float]) -> None:
+    """Mark odd devices where they are; those beyond the axis at its end, with their value."""
+    if not odd.size:
+        return
+    near = odd[(odd >= widest[0]) & (odd <= widest[1])]
+    low, high = axes.get_xlim() if np.isfinite(widest[0]) else (odd.min(), odd.max())
+    room = 0.05 * (high - low)
+    low, high = min(low, *(near - room)), max(high, *(near + room))
+    axes.set_xlim(low, high)
+    inside = odd[(odd >= low) & (odd <= high)]
+    looks: dict[str, Any] = {"color": MODELLED, "linestyle": "none", "zorder": 4}
+    at: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "label": "odd devices"}
+    axes.plot(inside, np.full(inside.size, 0.03), marker="v", **looks, **at)
+    for place, mark, beyond in ((0.02, "<", odd[odd < low]), (0.98, ">", odd[odd > high])):
+        for height, value in enumerate(np.sort(beyond)[:MOST_BEYOND]):
+            y = 0.9 - 0.09 * height
+            axes.plot(place, y, marker=mark, transform=axes.transAxes, **looks)
+            axes.annotate(
+                f"{value:.3g}",
+                (place, y),
+                xycoords="axes fraction",
+                xytext=(8 if mark == "<" else -8, 0),
+                textcoords="offset points",
+                ha="left" if mark == "<" else "right",
+                va="center",
+                fontsize=9,
+            )
 
 
 def _limits(axes: Axes, fleet: Fleet, name: str) -> None:

@@ -146,7 +146,7 @@ def _pictures(fleet: Fleet) -> dict[str, tuple[bytes, str]]:
         DISTRIBUTIONS: (
             draw_fleet_distributions(fleet),
             "How many devices have which value; marks at the bottom are odd devices, broken lines "
-            "limits. What lies far out is drawn at the edge.",
+            "limits. An odd device beyond the axis is a mark at its end, with its value.",
         ),
         LOOPS: (
             draw_fleet_loops(fleet),
