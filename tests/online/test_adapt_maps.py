@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib.figure
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import hyst
 from hyst.cli import main
@@ -20,13 +20,13 @@ def test_maps_that_are_held_are_named_so_and_not_drawn(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     titles: list[str] = []
-    save = matplotlib.figure.Figure.savefig
+    draw = FigureCanvasAgg.draw
 
-    def watched(self, *args, **kwargs):  # type: ignore[no-untyped-def]
-        titles.extend(axes.get_title(loc="left") for axes in self.axes)
-        return save(self, *args, **kwargs)
+    def watched(self: FigureCanvasAgg) -> None:
+        titles.extend(axes.get_title(loc="left") for axes in self.figure.axes)
+        draw(self)
 
-    monkeypatch.setattr(matplotlib.figure.Figure, "savefig", watched)
+    monkeypatch.setattr(FigureCanvasAgg, "draw", watched)
     stage = hyst.ModifiedPrandtlIshlinskii(
         hyst.PrandtlIshlinskii([0.3, 0.2], [1.0, 3.0], 0.5), hyst.DeadZone([1.0, -0.2], [0.0, 4.0])
     )
@@ -41,4 +41,5 @@ def test_maps_that_are_held_are_named_so_and_not_drawn(
     row = next(line for line in shown.splitlines() if line.split()[:1] == ["back[2]"])
     assert (row.split()[-1] == "held") is not estimate_maps
     assert "maps before and after the plays" in shown
+    assert "weights" in titles
     assert ("weights of maps" in titles) is estimate_maps

@@ -29,10 +29,20 @@ def test_a_device_beyond_the_axis_stands_at_its_end_with_its_value(sign: float) 
     assert [line.get_marker() for line in ends] == [">" if sign > 0.0 else "<"]
 
 
-def test_odd_devices_alone_are_all_marked() -> None:
+def test_where_all_odd_devices_are_far_out_the_axis_keeps_its_width() -> None:
+    axes = Figure().subplots()
+    widest = _histogram(axes, np.linspace(0.27, 0.33, 57))
+    before = axes.get_xlim()
+    _odd_ones(axes, np.array([3.433]), widest)
+    assert axes.get_xlim() == before
+    assert [text.get_text() for text in axes.texts] == ["3.43"]
+
+
+@pytest.mark.parametrize("odd", [[1.0, 5.0], [3.0], [0.0]])
+def test_odd_devices_alone_are_all_marked(odd: list[float]) -> None:
     axes = Figure().subplots()
     widest = _histogram(axes, np.array([]))
-    _odd_ones(axes, np.array([1.0, 5.0]), widest)
+    _odd_ones(axes, np.array(odd), widest)
     low, high = axes.get_xlim()
-    assert low < 1.0 < 5.0 < high
+    assert low < min(odd) <= max(odd) < high
     assert not axes.texts

@@ -96,8 +96,9 @@ def _odd_ones(axes: Axes, odd: Array, widest: tuple[float, float]) -> None:
         return
     near = odd[(odd >= widest[0]) & (odd <= widest[1])]
     low, high = axes.get_xlim() if np.isfinite(widest[0]) else (odd.min(), odd.max())
-    room = 0.05 * (high - low)
-    low, high = min(low, *(near - room)), max(high, *(near + room))
+    room = 0.05 * (high - low) or 0.05 * abs(high) or 1.0
+    if near.size:
+        low, high = min(low, near.min() - room), max(high, near.max() + room)
     axes.set_xlim(low, high)
     inside = odd[(odd >= low) & (odd <= high)]
     looks: dict[str, Any] = {"color": MODELLED, "linestyle": "none", "zorder": 4}
