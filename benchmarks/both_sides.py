@@ -16,6 +16,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 import hyst
+from benchmarks.timing import report
 from hyst import Operator
 from hyst.models import low_pass, resonance
 
@@ -50,10 +51,11 @@ def main() -> None:
     )
     for name, (true, start) in CASES.items():
         for kind, u in (("multisine", multisine()), ("sweep", sweep())):
-            print(f"{name:37s} {kind:10s} {measured(true, start, u)}", flush=True)
+            row = measured(true, start, u, f"{name}, {kind}")
+            print(f"{name:37s} {kind:10s} {row}", flush=True)
 
 
-def measured(true: Operator, start: Operator, u: np.ndarray) -> str:
+def measured(true: Operator, start: Operator, u: np.ndarray, name: str) -> str:
     """Give a row: errors over runs with other noise."""
     y = true(u)
     deviation = float(np.std(y))
@@ -73,6 +75,8 @@ def measured(true: Operator, start: Operator, u: np.ndarray) -> str:
     ratio = np.std(values, axis=0, ddof=1) / np.sqrt(np.mean(np.square(stated), axis=0))
     peer, peer_seconds = by_scipy(start, noisy(u, y, 0))
     peer_error = 100.0 * float(np.std(peer(u) - y)) / deviation
+    report(f"SciPy's time over ours, {name}", peer_seconds / float(np.median(seconds)))
+    report(f"error over noise, {name}", float(np.median(errors)), better="smaller")
     return (
         f"{np.median(errors):8.3f} {max(errors):7.3f} {off:8.4f} "
         f"{ratio.min():7.2f} to {ratio.max():4.2f} {np.median(seconds):6.2f} "

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 import hyst
+from benchmarks.timing import interleaved, report, report_times
 from hyst.identification.fit.play_bank import bank_matrix
 from hyst.identification.fit.weights import fit_weights
 from hyst.identification.record_use.used_samples import prepare
@@ -39,12 +40,18 @@ def print_times() -> None:
     record = simulated_record(np.random.default_rng(1), samples=8000)
     data = prepare(record, "auto", 0)
     r = data.half_range * np.arange(1, 11) / 11
-    ours = median_time(lambda: fit_weights(data, r), 30)
     y = data.measured()
-    peer = median_time(lambda: nnls(with_offset(bank_matrix(data, r)), y), 30)
+    works = {
+        "streamed Gram and NNLS": lambda: fit_weights(data, r),
+        "matrix and scipy nnls": lambda: nnls(with_offset(bank_matrix(data, r)), y),
+    }
+    times = interleaved(works, rounds=30)
     print("weights of a 10-play model, radii given, 8000 samples")
-    print(f"  streamed Gram and NNLS  {1e3 * ours:8.2f} ms")
-    print(f"  matrix and scipy nnls   {1e3 * peer:8.2f} ms   ratio {peer / ours:.1f}")
+    for name, each in times.items():
+        print(f"  {name:23s} {1e3 * statistics.median(each):8.2f} ms")
+    ours, peer = works
+    over = report_times("scipy nnls over ours, weights of 10 plays", times, peer, ours)
+    print(f"  ratio {over:.1f}")
     whole = median_time(lambda: hyst.identify(record), 1)
     print(f"identify, all families and sizes, 8000 samples: {whole:.2f} s")
 
@@ -70,6 +77,7 @@ def print_errors() -> None:
         claimed = np.median([result.standard_errors for result in found], axis=0)
         rms = np.sqrt(np.mean((values - truth) ** 2, axis=0))
         ratio = rms / cramer_rao_bound(simulated_record(rng, drive))
+        report(f"largest rms error over the bound, {name}", ratio[:9].max(), better="smaller")
         print(f"  {name}")
         print(f"    weights {np.round(ratio[:5], 2)}  radii {np.round(ratio[5:9], 2)}")
         print(f"    claimed standard error over rms error {np.round(claimed / rms, 2)}")

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import hyst
+from benchmarks.timing import report
 from hyst.errors import HystError
 from hyst.fleet import SharedShape
 
@@ -132,9 +133,13 @@ def row(kind: Kind, seed: int) -> str:
             many.append(alone(measured(device, MANY, rng), kind.family, device))
     cells = [rms(shared), rms(expected), rms(few), rms(many)]
     scatter = "each" if kind.each else "gain"
+    over = report(
+        f"200 shared over 5,000 alone, {kind.name}, scatter {scatter}, by {kind.family}",
+        cells[0] / cells[3],
+        better="smaller",
+    )
     told = " | ".join(f"{100.0 * each:.3f}" for each in cells)
-    ratio = f"{cells[0] / cells[3]:.2f}"
-    return f"| {kind.name} | {scatter} | {kind.family} | {told} | {ratio} |"
+    return f"| {kind.name} | {scatter} | {kind.family} | {told} | {over:.2f} |"
 
 
 def main() -> None:
