@@ -200,8 +200,8 @@ def test_scaling_input_and_output_scales_the_model() -> None:
 def test_progress_tells_each_step() -> None:
     steps: list[str] = []
     hyst.identify(record(TRUE_PI), family="pi", progress=steps.append)
-    assert steps[0] == "delay"
-    assert steps[-1].startswith("final fit")
+    assert steps[0] == "diagnosis"
+    assert steps[-1] == "verdict"
 
 
 def test_summary_and_dictionary_hold_the_numbers() -> None:

@@ -24,7 +24,8 @@ from hyst.identification.fit.chain_parametrization import (
     links_of,
 )
 from hyst.identification.fit.scales_between import Link
-from hyst.identification.options import Options, as_delay, listed, silent
+from hyst.identification.options import Options, as_delay, listed
+from hyst.identification.progress import Progress, Step, silent
 from hyst.identification.record_use.cleaned import as_drift, cleaned
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data, prepare, require_same_units
@@ -97,7 +98,7 @@ def fit(
     validation: Record | Sequence[Record] = (),
     max_iterations: int = 200,
     allow_unconverged: bool = False,
-    progress: Callable[[str], None] | None = None,
+    progress: Callable[[Step], object] | None = None,
 ) -> Identified:
     """Fit the constants of any operator, from its own values, by the error of its output.
 
@@ -165,7 +166,9 @@ def fit(
     given, judged = listed(records), listed(validation, "validation record")
     require_same_units((*given, *judged))
     parametrization, theta = parametrize_own(model, free, bounds or {})
-    options = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
+    say = Progress(progress or silent)
+    options = Options(judged, say, delay, start, max_iterations, allow_unconverged)
+    say("diagnosis")
     diagnosis = diagnose_all_but_delay(given)
     clean = cleaned(given, diagnosis, as_drift(drift))
     data = clean.marked(prepare(clean.records, start, fewest_turns=0))
@@ -174,6 +177,7 @@ def fit(
         model.require_sample_time(record.dt)
     with threadpool_limits(1, user_api="blas"):
         found = _fitted(OwnModel(parametrization, theta), data, options)
+        say("verdict")
         told = identified_from_fit(data, found, (), judged, (), diagnosis)
     # With other constants it is of the family it was of.
     family = model.description.family
@@ -226,7 +230,7 @@ def _fitted(family: OwnModel, data: Data, options: Options) -> Fit:
             f"{samples} samples can be used but {count} constants are free; give a longer record "
             "or let fewer move"
         )
-    options.say("fit")
+    options.say("fit", 0.1)
     unsolved = Fit(family, 0, family.parametrization, Solution(family.theta, np.inf, 0, ""))
     most = options.max_iterations
     if family.parametrization.dynamics:

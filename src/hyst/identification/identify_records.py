@@ -19,7 +19,8 @@ from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families, families_in_reserve
 from hyst.identification.lag.found_lag import Wanted as Lagging
 from hyst.identification.lag.found_lag import as_lag, found_with_lag, search_beside_lag
-from hyst.identification.options import Options, listed, silent
+from hyst.identification.options import Options, listed
+from hyst.identification.progress import Progress, Step, silent
 from hyst.identification.record_use.cleaned import Cleaned, as_drift, cleaned
 from hyst.identification.record_use.coded_input import all_in_volts, with_driver
 from hyst.identification.record_use.overview import Overview
@@ -27,7 +28,7 @@ from hyst.identification.record_use.used_samples import beside_level, require_sa
 from hyst.identification.result.identified import Identified
 from hyst.identification.result.identified_from_fit import identified_from_fit, traced
 from hyst.identification.search import Found, find
-from hyst.identification.stream.identify_stream import identify_stream
+from hyst.identification.stream.identify_stream import UNTIL_FIT_OF_ALL, identify_stream
 from hyst.operators import Driver
 from hyst.operators.provenance import options_asked
 from hyst.signals import Record, RecordStream
@@ -46,7 +47,7 @@ def identify(
     driver: Driver | None = None,
     max_iterations: int = 200,
     allow_unconverged: bool = False,
-    progress: Callable[[str], None] | None = None,
+    progress: Callable[[Step], object] | None = None,
     **options: Any,
 ) -> Identified:
     """Identify a model of a family, or choose among families, from records.
@@ -102,7 +103,12 @@ def identify(
     allow_unconverged
         Give the result with its status instead of raising if the fit did not converge.
     progress
-        Called with a line of text before each step.
+        Called before each step with words for it, as ``"delay"`` or ``"final fit: pi with 4
+        plays"``: a string whose ``share``, 0 to 1, says how much of the way is behind. The steps
+        are diagnosis, delay, each size of each family, the final fit, lag and creep where they are
+        looked for, and the verdict. What it raises ends the search and reaches the caller, with
+        nothing left behind; it is called between fits, not inside one. The result does not depend
+        on it.
     **options
         Options of the families that are named, as ``plays=4`` or ``memory="last-reversal"``; each
         goes to those that have it. ``help(hyst.families.RambergOsgood)`` explains them.
@@ -132,19 +138,21 @@ def identify(
     True
     """
     arguments = {name: each for name, each in locals().items() if name in _KEYWORDS}
+    say = Progress(progress or silent)
     if isinstance(records, RecordStream):
-        return identify_stream(records, partial(identify, **arguments, **options))
+        arguments["progress"] = say.part(0.0, UNTIL_FIT_OF_ALL)
+        return identify_stream(records, partial(identify, **arguments, **options), say)
     asked = options_asked(identify, arguments | {"driver": None}) | options
     measured = listed(records)
     given = all_in_volts(measured, driver)
     judged = all_in_volts(listed(validation, "validation record"), driver)
     require_same_units((*given, *judged))
-    wanted = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
+    wanted = Options(judged, say, delay, start, max_iterations, allow_unconverged)
     families, about_drift = chosen_families(family, options), as_drift(drift)
-    lags = as_creep(creep)
-    families, lags = creeping_inside(families, lags)
+    families, lags = creeping_inside(families, as_creep(creep))
     require_place(families, lags)
     reserve = families_in_reserve(family, options)
+    say("diagnosis")
     with threadpool_limits(1, user_api="blas"):
         diagnosis = diagnose_all_but_delay(given)
         # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
@@ -158,8 +166,8 @@ def identify(
         for number, record in enumerate(judged, 1):
             found.fit.operator.require_possible_time(record.dt, f"validation record {number}")
         if found.delay is not None:
-            # In units of powers of two, in which its times and samples are the same.
-            diagnosis = diagnosis.with_delay(found.delay, given[0].dt)
+            diagnosis = diagnosis.with_delay(found.delay, given[0].dt)  # the same in any unit
+        say("verdict")
         identified = identified_from_fit(
             found.data,
             found.fit,

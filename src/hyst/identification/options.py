@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -13,6 +13,7 @@ from hyst.errors import InputError, SolverError
 from hyst.identification.families.family import Fit
 from hyst.identification.families.option import AUTO
 from hyst.identification.fit.bounded_least_squares import CONVERGED
+from hyst.identification.progress import Progress
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data
 from hyst.signals import Record
@@ -27,7 +28,7 @@ class Options:
     validation
         Records that take no part.
     say
-        Told what is being done.
+        Told each step before it is made.
     delay, start, max_iterations, allow_unconverged
         As of ``identify``; delay and start are checked with the records.
     known
@@ -35,7 +36,7 @@ class Options:
     """
 
     validation: tuple[Record, ...]
-    say: Callable[[str], None]
+    say: Progress
     delay: float | str = AUTO
     start: int | Literal["auto"] = "auto"
     max_iterations: int = 200
@@ -91,10 +92,6 @@ def listed(records: Record | Sequence[Record], name: str = "record") -> tuple[Re
         if not isinstance(record, Record):
             raise InputError(f"{name} {number} is {type(record).__name__}; give a hyst.Record")
     return given
-
-
-def silent(_: str) -> None:
-    """Report progress to nobody."""
 
 
 def as_delay(delay: float | str, data: Data, more: str = ", or 'auto'") -> float:

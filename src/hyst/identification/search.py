@@ -39,6 +39,7 @@ from hyst.identification.fit.bounded_least_squares import CONVERGED
 from hyst.identification.fit.parametrization import Parametrization
 from hyst.identification.judgement.judge import level_of
 from hyst.identification.options import Options, as_delay
+from hyst.identification.progress import FAMILIES, RESERVE
 from hyst.identification.record_use.cleaned import Cleaned
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.scales import scales_of
@@ -246,11 +247,11 @@ def _search(tasks: Sequence[Task], options: Options, reserve: Sequence[Task]) ->
     ruling = ruled(prepared[: len(tasks)])
     if len(tasks) == 1 and len(tasks[0].family.sizes()) == 1:
         return _only(tasks[0], ruling, options)
-    contenders, refusals = compare(ruling.families, options.say)
+    contenders, refusals = compare(ruling.families, options.say.part(*FAMILIES))
     chosen, fit = _best(contenders, options)
     level = _level(chosen.overview, fit) if reserve else "good"
     if level != "good":
-        more = in_reserve(prepared[len(tasks) :], chosen, options.say)
+        more = in_reserve(prepared[len(tasks) :], chosen, options.say.part(*RESERVE))
         may_win = _may_win(more, chosen, describes=level == "fair")
         chosen, fit = _best(_preferred((*contenders, *may_win)), options, (chosen, fit))
         contenders += more

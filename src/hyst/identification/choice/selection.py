@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +18,7 @@ from hyst.identification.choice.cross_validation import (
 from hyst.identification.choice.fewer_samples import for_a_look
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.fit.bounded_least_squares import CONVERGED, Solution
+from hyst.identification.progress import Progress
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.result.identified import Candidate
 
@@ -174,7 +175,7 @@ def settled(fit: Fit, overview: Overview, max_iterations: int) -> Fit:
 
 
 def compare(
-    families: Sequence[tuple[Family, Overview]], progress: Callable[[str], None]
+    families: Sequence[tuple[Family, Overview]], progress: Progress
 ) -> tuple[tuple[Contender, ...], tuple[str, ...]]:
     """Score families and sizes by cross-validation.
 
@@ -202,9 +203,9 @@ def compare(
     """
     contenders: list[Contender] = []
     refusals: dict[str, NotIdentifiableError] = {}
-    for family, overview in families:
+    for k, (family, overview) in enumerate(families):
         try:
-            contenders += _grow(family, overview, progress)
+            contenders += _grow(family, overview, _share(progress, k, len(families)))
         except NotIdentifiableError as refusal:  # one family less to compare
             refusals[family.name] = refusal
     if not contenders and refusals:
@@ -219,7 +220,7 @@ def compare(
 
 
 def in_reserve(
-    families: Sequence[tuple[Family, Overview]], chosen: Contender, progress: Callable[[str], None]
+    families: Sequence[tuple[Family, Overview]], chosen: Contender, progress: Progress
 ) -> tuple[Contender, ...]:
     """Score families that come near to what was chosen so far.
 
@@ -239,12 +240,13 @@ def in_reserve(
         From the simplest family to the richest; those that cannot be fitted are left out.
     """
     contenders: list[Contender] = []
-    for family, overview in families:
+    for k, (family, overview) in enumerate(families):
         largest = family.sizes()[-1]
-        progress(family.named_size(largest))
+        own = _share(progress, k, len(families))
+        own(family.named_size(largest), 0.0)
         try:
             if _comes_near(family, overview, largest, chosen):
-                contenders += _grow(family, overview, progress)
+                contenders += _grow(family, overview, own)
         except (NotIdentifiableError, SolverError):
             continue
     return tuple(contenders)
@@ -361,11 +363,12 @@ def contender_of(family: Family, overview: Overview, fit: Fit) -> Contender:
     return Contender(family, overview, candidate, fit, score)
 
 
-def _grow(family: Family, overview: Overview, progress: Callable[[str], None]) -> list[Contender]:
+def _grow(family: Family, overview: Overview, progress: Progress) -> list[Contender]:
     found: list[Contender] = []
     best, idle = float("inf"), 0
-    for size in family.sizes():
-        progress(family.named_size(size))
+    sizes = family.sizes()
+    for k, size in enumerate(sizes):
+        progress(family.named_size(size), k / len(sizes))
         fit = first_fit(family, overview, size)
         if fit.parametrization.free_count >= fewest_left(overview):
             break
@@ -378,6 +381,10 @@ def _grow(family: Family, overview: Overview, progress: Callable[[str], None]) -
         if idle == 2 or (idle == 1 and _nothing_is_left(family, overview, fit)):
             break
     return found
+
+
+def _share(progress: Progress, k: int, count: int) -> Progress:
+    return progress.part(k / count, (k + 1) / count)
 
 
 def _nothing_is_left(family: Family, overview: Overview, fit: Fit) -> bool:

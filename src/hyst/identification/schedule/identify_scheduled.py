@@ -19,7 +19,8 @@ from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.registry import chosen_families
 from hyst.identification.fit.bounded_least_squares import Problem
 from hyst.identification.fit.parametrization import Parametrization
-from hyst.identification.options import Options, silent
+from hyst.identification.options import Options
+from hyst.identification.progress import Progress, Step, silent
 from hyst.identification.record_use.cleaned import Cleaned, as_drift, cleaned
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.part_of_a_sample import lag_in_samples
@@ -51,6 +52,9 @@ ROUNDING = 1e-12
 """Of the output's range: an error of that size is none."""
 
 MOST_ORDERS = 3
+
+AT_VALUES = 0.7
+"""Share of the way that the search at each value by itself is said to be."""
 """How often neighbours that would pass each other are shared, before nothing is."""
 
 
@@ -93,7 +97,7 @@ def identify_scheduled(
     validation_at: ArrayLike = (),
     max_iterations: int = 200,
     allow_unconverged: bool = False,
-    progress: Callable[[str], None] | None = None,
+    progress: Callable[[Step], object] | None = None,
     **options: Any,
 ) -> IdentifiedSchedule:
     """Identify one model at several values of a second signal, and join them by straight lines.
@@ -147,11 +151,15 @@ def identify_scheduled(
     judged = by_value(validation, validation_at, "validation record")
     all_groups = (*groups, *judged)
     require_same_units([record for each in all_groups for record in each.records])
-    wanted = Options((), progress or silent, delay, start, max_iterations, allow_unconverged)
+    say = Progress(progress or silent)
+    wanted = Options((), say, delay, start, max_iterations, allow_unconverged)
     families, about_drift = chosen_families(family, options), as_drift(drift)
     with threadpool_limits(1, user_api="blas"):
         values = [_value(each, name, about_drift) for each in groups]
-        found = [_found(each, families, wanted, name) for each in values]
+        found = [
+            _found(each, families, replace(wanted, say=_part(say, each, k, values, name)), name)
+            for k, each in enumerate(values)
+        ]
         layout, free = _layout(found, values, wanted)
         fitted, sharing = _together(free, wanted)
         results = tuple(
@@ -185,11 +193,13 @@ def _value(group: AtValue, name: str, drift: Literal["auto", False]) -> _Value:
 
 
 def _found(value: _Value, families: Sequence[Family], options: Options, name: str) -> Found:
-    def say(text: str) -> None:
-        options.say(f"{name} {value.group.value:.6g}: {text}")
-
     with _named(name, value.group.value):
-        return find(value.clean, families, replace(options, say=say))
+        return find(value.clean, families, options)
+
+
+def _part(say: Progress, value: _Value, k: int, values: Sequence[_Value], name: str) -> Progress:
+    begin, end = (AT_VALUES * each / len(values) for each in (k, k + 1))
+    return say.part(begin, end, f"{name} {value.group.value:.6g}: ")
 
 
 def _layout(
@@ -233,7 +243,7 @@ def _refitted(value: _Value, layout: Found, options: Options) -> _Fitted:
     data = value.clean.marked(family.records_to_use(value.clean.records, options.start)[0])
     data = replace(data, keeps_corners=layout.data.keeps_corners)
     data = data.delayed(lag_in_samples(layout.data.lag, first, data.records[0].dt))
-    options.say(f"fit at {value.group.value:.6g}")
+    options.say(f"fit at {value.group.value:.6g}", AT_VALUES)
     overview = Overview(
         data.in_units(*to_own), layout.data.lag, rates_matter=family.depends_on_rate
     )
@@ -259,7 +269,7 @@ def _estimate(fitted: _Fitted) -> Estimate:
 
 def _together(free: Sequence[_Fitted], options: Options) -> tuple[list[_Fitted], Sharing]:
     """Fit all values once more, with what they share."""
-    options.say("fit at all values")
+    options.say("fit at all values", 0.85)
     estimates = [_estimate(each) for each in free]
     problems = [each.fit.problem(each.data) for each in free]
     noises = [_noise(each) for each in free]

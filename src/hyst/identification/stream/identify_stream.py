@@ -15,6 +15,7 @@ from hyst.errors import NotIdentifiableError, SolverError
 from hyst.identification.families.family import Fit
 from hyst.identification.fit.bounded_least_squares import CONVERGED, minimize
 from hyst.identification.fit.curvature import Curvature
+from hyst.identification.progress import Progress
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.identification.result.fit_spread import spread_from_sums
 from hyst.identification.result.identified import Identified
@@ -36,8 +37,13 @@ WORSE = 1.1
 
 COVERS = 0.95
 
+UNTIL_FIT_OF_ALL = 0.5
+"""Share of the way that identification from the part in memory is said to be."""
 
-def identify_stream(stream: RecordStream, identify: Callable[[Record], Identified]) -> Identified:
+
+def identify_stream(
+    stream: RecordStream, identify: Callable[[Record], Identified], say: Progress
+) -> Identified:
     """Identify a model from a record in a file.
 
     Parameters
@@ -46,6 +52,8 @@ def identify_stream(stream: RecordStream, identify: Callable[[Record], Identifie
         The record.
     identify
         Identifies from a record in memory.
+    say
+        Told when the fit to all samples begins.
 
     Raises
     ------
@@ -63,6 +71,7 @@ def identify_stream(stream: RecordStream, identify: Callable[[Record], Identifie
         return before
     fit = before.bands.fit
     _require_servable(before, fit)
+    say(f"fit to all {found.samples} samples", UNTIL_FIT_OF_ALL)
     late = round(before.delay)
     whole = FitOfAll(stream, found, fit.parametrization, late)
     posed, theta, back = fit.family.in_own_coordinates(whole.problem(), fit.solution.theta)
