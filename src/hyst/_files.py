@@ -5,10 +5,39 @@ from __future__ import annotations
 import contextlib
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from contextvars import ContextVar
 from pathlib import Path
 
 from hyst.errors import InputError
+
+_KEPT: ContextVar[tuple[Path, ...]] = ContextVar("files that are read", default=())
+
+
+@contextlib.contextmanager
+def keeping(files: Sequence[Path]) -> Iterator[None]:
+    """Let none of some files be replaced meanwhile.
+
+    Parameters
+    ----------
+    files
+        That exist.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "record.csv"
+    >>> _ = path.write_text("1")
+    >>> with keeping([path]), replacing(path) as temporary:
+    ...     _ = temporary.write_text("2")
+    Traceback (most recent call last):
+    hyst.errors.InputError: ... is one of the files to read; write elsewhere
+    """
+    token = _KEPT.set((*_KEPT.get(), *files))
+    try:
+        yield
+    finally:
+        _KEPT.reset(token)
 
 
 @contextlib.contextmanager
@@ -44,6 +73,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     if target.is_dir():
         raise InputError(f"{target} is a folder; name a file")
     _refuse_special(target)
+    _refuse_kept(target)
     _make_folder(target.parent)
     with tempfile.TemporaryDirectory(prefix=".hyst-", dir=target.parent) as folder:
         temporary = Path(folder) / target.name
@@ -91,6 +121,7 @@ def replacing_files(folder: str | os.PathLike[str]) -> Iterator[Path]:
             if (target / file.name).is_dir():
                 raise InputError(f"{target / file.name} is a folder; move it or write elsewhere")
             _refuse_special(target / file.name)
+            _refuse_kept(target / file.name)
         target.mkdir(exist_ok=True)
         for file in files:
             file.replace(target / file.name)
@@ -174,3 +205,9 @@ def _refuse_special(target: Path) -> None:
     """Refuse a device or a pipe: renaming onto it would remove it from the system."""
     if target.exists() and not target.is_file():
         raise InputError(f"{target} is a device or a pipe, not a regular file; name a file")
+
+
+def _refuse_kept(target: Path) -> None:
+    """Refuse a file that is being read, by whatever name."""
+    if target.exists() and any(each.exists() and each.samefile(target) for each in _KEPT.get()):
+        raise InputError(f"{target} is one of the files to read; write elsewhere")

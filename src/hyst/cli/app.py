@@ -16,7 +16,6 @@ from hyst.cli.verbs import VERBS, Verbs, is_carried_out
 
 app = typer.Typer(
     cls=Verbs,
-    add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     help="From a measured hysteresis loop to a model, its exact inverse and a command.",

@@ -11,16 +11,16 @@ import inspect
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperCommand
 
 import hyst
 from hyst.cli.option_files import FILE, opened
+from hyst.cli.verb import Verb
 
 _PANEL = "Options of the families"
 _TYPED = "hyst.cli.family_options"
 
 
-class FamilyCommand(TyperCommand):
+class FamilyCommand(Verb):
     """A verb with the options of all families beside its own; its ``--family`` lists them."""
 
     def get_params(self, ctx: Any) -> list[Any]:

@@ -25,7 +25,7 @@ def info(model_file: ModelFile) -> None:
         return
     operator = _operator(found)
     if operator is not None:
-        show_table(hyst.report.constants_table(operator))
+        show_table(hyst.report.constants_table(operator, about.input_unit, about.output_unit))
         show_table(hyst.report.traits_table(operator))
         print(f"\n{hyst.report.invertible_sentence(operator)}")
 

@@ -115,10 +115,8 @@ def command_of(verb: str) -> Any:
         Its name.
     """
     module = importlib.import_module(VERBS[verb][0])
-    kind = None
-    if verb in _KINDS:
-        home, name = _KINDS[verb]
-        kind = getattr(importlib.import_module(home), name)
+    home, name = _KINDS.get(verb, ("hyst.cli.verb", "Verb"))
+    kind = getattr(importlib.import_module(home), name)
     app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
     app.command(verb, cls=kind)(getattr(module, verb))
     return typer.main.get_command(app)

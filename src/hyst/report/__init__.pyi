@@ -43,14 +43,15 @@ from hyst.report.observer.feedback_tables import parts_table as parts_table
 from hyst.report.observer.figures import draw_observer_bode as draw_observer_bode
 from hyst.report.observer.page import observer_page as observer_page
 from hyst.report.observer.tables import answer_tables as answer_tables
+from hyst.report.parameter_tables import constants_table as constants_table
+from hyst.report.parameter_tables import parameters_table as parameters_table
+from hyst.report.parameter_units import parameter_units as parameter_units
 from hyst.report.table import Table as Table
 from hyst.report.table import number as number
 from hyst.report.tables import candidates_table as candidates_table
 from hyst.report.tables import compensation_table as compensation_table
-from hyst.report.tables import constants_table as constants_table
 from hyst.report.tables import dynamics_table as dynamics_table
 from hyst.report.tables import metrics_table as metrics_table
-from hyst.report.tables import parameters_table as parameters_table
 from hyst.report.tables import per_record_table as per_record_table
 from hyst.report.tables import traits_table as traits_table
 from hyst.report.tracking_figure import draw_tracking as draw_tracking

@@ -17,12 +17,12 @@ from hyst.operators.verdict import UNFIT
 from hyst.report.error_memory import autocorrelation
 from hyst.report.fitted_record import FittedRecord, fit_records
 from hyst.report.page import Page
+from hyst.report.parameter_tables import parameters_table
 from hyst.report.table import Table, number, with_unit
 from hyst.report.tables import (
     candidates_table,
     metrics_table,
     motion_table,
-    parameters_table,
     per_record_table,
 )
 from hyst.report.words import (

@@ -200,69 +200,6 @@ def _compared_by(identified: Identified) -> tuple[str, str]:
     )
 
 
-def parameters_table(identified: Identified) -> Table:
-    """Free parameters with their standard errors, and a gain that turns the output round.
-
-    Parameters
-    ----------
-    identified
-        The result.
-
-    Returns
-    -------
-    Table
-    """
-    return Table(
-        "Parameters",
-        ("parameter", "value", "standard error"),
-        tuple(
-            (name, number(value, 6), "-" if math.isnan(error) else number(error, 2))
-            for name, value, error in zip(
-                identified.parameter_names,
-                identified.parameter_values.tolist(),
-                identified.standard_errors.tolist(),
-                strict=True,
-            )
-        )
-        + _fixed_gains(identified),
-    )
-
-
-def _fixed_gains(identified: Identified) -> tuple[tuple[str, str, str], ...]:
-    """List gains that were not free and are not 1: without them the others read wrong."""
-    constants = identified.model.parameters()
-    return tuple(
-        (name, number(value, 6), "fixed")
-        for name, value in zip(constants.names, constants.values.tolist(), strict=True)
-        if name.rpartition(".")[2] == "gain"
-        and value != 1.0
-        and name not in identified.parameter_names
-    )
-
-
-def constants_table(model: Operator) -> Table:
-    """All constants of an operator.
-
-    Parameters
-    ----------
-    model
-        Any operator.
-
-    Returns
-    -------
-    Table
-    """
-    parameters = model.parameters()
-    return Table(
-        "Constants",
-        ("name", "value"),
-        tuple(
-            (name, number(value, 10))
-            for name, value in zip(parameters.names, parameters.values.tolist(), strict=True)
-        ),
-    )
-
-
 def traits_table(model: Operator) -> Table:
     """List what may be relied on of an operator.
 
