@@ -52,7 +52,6 @@ def draw() -> None:
         axes.set(xlabel="wanted position [um]", aspect="equal", box_aspect=1)
         axes.set_title(f"command of the {name}:\n{rms:.2g} um rms", fontsize="medium")
         error.plot(t, y - y_ref, color=colour, linewidth=1.2, label=name)
-        print(f"{name}: rms {rms:.4f} um, largest {np.abs(y - y_ref).max():.4f} um")
     before.set_ylabel("position [um]")
     error.set(xlabel="time [s]", ylabel="position minus wanted [um]")
     error.set_title("tracking error of the simulated stage", fontsize="medium")

@@ -24,12 +24,17 @@ LINK = re.compile(r"(\]\()([^)#\s:]+)(?=[)#\s])")
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the pages; those of docs/ are there already."""
     for source, page in BESIDE.items():
-        text = (ROOT / source).read_text(encoding="utf-8")
-        if page.endswith(".md"):
-            text = LINK.sub(lambda found: found[1] + _on_site(found[2], ROOT / source), text)
-        files.append(File.generated(config, page, content=text))
+        files.append(File.generated(config, page, content=_text(ROOT / source)))
     files.append(File.generated(config, DECISIONS, content=list_of_decisions()))
     return files
+
+
+def _text(source: Path) -> str:
+    """Read a file, with its links as they are on the site."""
+    text = source.read_text(encoding="utf-8")
+    if source.suffix != ".md":
+        return text
+    return LINK.sub(lambda found: found[1] + _on_site(found[2], source), text)
 
 
 def _on_site(target: str, source: Path) -> str:

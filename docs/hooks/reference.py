@@ -1,7 +1,7 @@
 """Pages of the reference: every public name, from its docstring.
 
-What is public is what a package offers as ``__all__``; that of ``hyst`` is made from its stub. A name
-is described on the page of the package that offers it, and those of ``hyst`` itself on the first.
+What is public is what a package offers as ``__all__``; that of ``hyst`` is made from its stub. A
+name is described on the page of the package that offers it, those of ``hyst`` itself on the first.
 """
 
 from __future__ import annotations
@@ -87,8 +87,8 @@ def first_page(packages: list[ModuleType]) -> str:
         [
             "# Reference",
             "",
-            "Every public name, from its docstring. The letters are those of [symbols](../symbols.md);",
-            "what the command line offers, `hyst --help` and `hyst VERB --help` say.",
+            "Every public name, from its docstring. The letters are those of",
+            "[symbols](../symbols.md). What the command line has, `hyst --help` says.",
             "",
             "| package | what it has | of that, offered as `hyst.NAME` too |",
             "|---|---|---|",

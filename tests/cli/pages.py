@@ -15,10 +15,15 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 FENCE = re.compile(r"^```(\w+)(?: title=\"([^\"]+)\")?\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 
-def blocks(page: str, kind: str) -> list[str]:
-    """Give the fenced blocks of a page in one language, in order."""
+def named_blocks(page: str) -> list[tuple[str, str]]:
+    """Give the fenced blocks of a page, each with its language, in order."""
     found = FENCE.findall((DOCS / page).read_text(encoding="utf-8"))
-    return [text for language, _, text in found if language == kind]
+    return [(language, text) for language, _, text in found]
+
+
+def blocks(page: str, kind: str) -> list[str]:
+    """Give those in one language."""
+    return [text for language, text in named_blocks(page) if language == kind]
 
 
 def write_files(page: str) -> None:

@@ -1,4 +1,4 @@
-"""docs/tutorials/hammerstein_and_observer.md, run as it stands: what it says is of the files that it makes."""
+"""The tutorial of a resonant stage, run as it stands: what it says is of the files it makes."""
 
 from __future__ import annotations
 
