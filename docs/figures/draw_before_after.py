@@ -9,6 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -40,26 +41,25 @@ def follow() -> tuple[Array, dict[str, Array]]:
 
 
 def draw() -> None:
-    """Draw position over reference, before and after, and both errors over time."""
+    """Draw position over wanted position, before and after, and both errors over time."""
     y_ref, went = follow()
     t = SimulatedStage().dt * np.arange(y_ref.size)
-    figure = Figure((10.0, 3.9), layout="constrained")
-    before, after, error = figure.subplots(1, 3, width_ratios=[1.0, 1.0, 1.5])
-    for axes, (name, y), colour in zip((before, after), went.items(), (BEFORE, AFTER), strict=True):
+    figure = Figure((7.2, 3.9), layout="constrained")
+    loop, error = figure.subplots(1, 2, width_ratios=[1.0, 1.0])
+    for (name, y), colour, width in zip(went.items(), (BEFORE, AFTER), (1.2, 2.0), strict=True):
         rms = np.sqrt(np.mean((y - y_ref) ** 2))
-        axes.plot([8, 48], [8, 48], color="0.75", linewidth=4.0, zorder=0)
-        axes.plot(y_ref, y, color=colour, linewidth=1.2)
-        axes.set(xlabel="wanted position [um]", aspect="equal", box_aspect=1)
-        axes.set_title(f"command of the {name}:\n{rms:.2g} um rms", fontsize="medium")
-        error.plot(t, y - y_ref, color=colour, linewidth=1.2, label=name)
-    before.set_ylabel("position [um]")
-    error.set(xlabel="time [s]", ylabel="position minus wanted [um]")
-    error.set_title("tracking error of the simulated stage", fontsize="medium")
-    error.legend(frameon=False, loc="lower right")
-    for axes in (before, after, error):
+        loop.plot(y_ref, y, color=colour, linewidth=width, label=name)
+        error.plot(t, y - y_ref, color=colour, linewidth=width, label=f"{rms:.2g} um rms")
+    loop.set(xlabel="wanted position [um]", ylabel="position [um]", box_aspect=1)
+    loop.legend(frameon=False, title="command of")
+    error.set(xlabel="time [s]", ylabel="position minus wanted [um]", box_aspect=1)
+    error.legend(frameon=False, loc="upper right", bbox_to_anchor=(1.0, 1.0))
+    error.set_ylim(-4.2, 3.2)
+    for axes in (loop, error):
         axes.grid(alpha=0.3)
     figure.savefig(HERE / "before-after.png", dpi=100)
 
 
 if __name__ == "__main__":
-    draw()
+    with rc_context({"font.size": 12.0}):
+        draw()

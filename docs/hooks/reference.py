@@ -15,6 +15,7 @@ from mkdocs.structure.files import File, Files
 
 import hyst
 
+# The order of the navigation; a package that is not named here fails the check of the site.
 PACKAGES = (
     "models",
     "operators",
@@ -78,11 +79,7 @@ def first_page(packages: list[ModuleType]) -> str:
     borrowed = {each.__name__: [] for each in packages}
     for name in in_order(name for name in shown if name in homes):
         borrowed[homes[name].__name__].append(f"[`{name}`][{homes[name].__name__}.{name}]")
-    rows = [
-        f"| [{each.__name__}]({address(each).removeprefix('reference/')}) | {_sentence(each)} "
-        f"| {', '.join(borrowed[each.__name__])} |"
-        for each in packages
-    ]
+    lists = [_package_list(each, borrowed[each.__name__]) for each in packages]
     return "\n".join(
         [
             "# Reference",
@@ -90,12 +87,16 @@ def first_page(packages: list[ModuleType]) -> str:
             "Every public name, from its docstring. The letters are those of",
             "[symbols](../symbols.md). What the command line has, `hyst --help` says.",
             "",
-            "| package | what it has | of that, offered as `hyst.NAME` too |",
-            "|---|---|---|",
-            *rows,
-            "",
+            *lists,
             f"`hyst` itself has {', '.join(f'[`{name}`][hyst.{name}]' for name in own)}.",
             "",
             *(f"::: hyst.{name}\n" for name in own),
         ]
     )
+
+
+def _package_list(package: ModuleType, links: list[str]) -> str:
+    """Give a paragraph on a package: what it is, and what of it ``hyst`` offers itself."""
+    path = package.__name__
+    said = f"**[{path}]({address(package).removeprefix('reference/')})** {_sentence(package)}"
+    return f"{said} As `hyst.NAME` too: {', '.join(links)}.\n" if links else f"{said}\n"
