@@ -62,7 +62,7 @@ def _code(language: str, name: str, body: str) -> dict[str, Any]:
     if name:
         source = f"%%writefile {name}\n{body}"
     elif language == "bash":
-        source = "\n".join(f"!{line}" for line in body.splitlines())
+        source = "\n".join(f"!{line}" for line in body.replace("\\\n", " ").splitlines())
     else:
         source = body
     outside = {"execution_count": None, "outputs": []}

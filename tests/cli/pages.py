@@ -26,6 +26,11 @@ def blocks(page: str, kind: str) -> list[str]:
     return [text for language, text in named_blocks(page) if language == kind]
 
 
+def commands(page: str) -> list[str]:
+    """Give the lines of its blocks of bash; a backslash at the end goes on."""
+    return "".join(blocks(page, "bash")).replace("\\\n", " ").splitlines()
+
+
 def write_files(page: str) -> None:
     """Write the blocks that have the name of a file as their title."""
     for _, name, text in FENCE.findall((DOCS / page).read_text(encoding="utf-8")):
@@ -36,7 +41,7 @@ def write_files(page: str) -> None:
 def follow(page: str, run: Run) -> str:
     """Run every command of a page, each of which must end with 0; give what they said."""
     told = ""
-    for line in "".join(blocks(page, "bash")).splitlines():
+    for line in commands(page):
         program, *words = shlex.split(line)
         if program == "hyst":
             ended = run(*words)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from command_runs import Run, snapshot, write_csv
-from pages import blocks, untold
+from pages import blocks, commands, untold
 
 import hyst
 from fleet.lots import lot
@@ -105,9 +105,7 @@ def test_a_scheduler_that_does_not_answer_is_one_sentence(
 
 
 def test_the_tutorial_runs(run: Run, folder: Path) -> None:
-    make, first, info = (
-        shlex.split(line) for line in "".join(blocks(TUTORIAL, "bash")).splitlines()
-    )
+    make, first, info = (shlex.split(line) for line in commands(TUTORIAL))
     made = run(*make[1:])
     assert made.code == 0, made.err
     ended = run(*first[1:], "--scheduler", "threads")
@@ -118,11 +116,7 @@ def test_the_tutorial_runs(run: Run, folder: Path) -> None:
 
 
 def test_the_page_has_the_same_on_a_cluster_as_one_option_more() -> None:
-    fleets = [
-        shlex.split(line)
-        for line in "".join(blocks("fleet.md", "bash")).splitlines()
-        if line.startswith("hyst fleet ")
-    ]
+    fleets = [shlex.split(line) for line in commands("fleet.md") if line.startswith("hyst fleet ")]
     first, on_cluster = fleets[:2]
     assert on_cluster[: len(first)] == first
     assert on_cluster[len(first) :] == ["--scheduler", "dask"]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from command_runs import Run
-from pages import DOCS, blocks, follow, untold, write_files
+from pages import DOCS, commands, follow, untold, write_files
 
 from hyst.demo import SimulatedStage
 from hyst.io import read_column
@@ -37,13 +37,10 @@ def test_a_record_of_the_clone_becomes_a_command_and_firmware(
 
 def test_the_commands_of_the_readme_are_those_of_the_tutorial() -> None:
     """They are run above; the README is no page of its own to go stale."""
-    readme = (DOCS.parent / "README.md").read_text(encoding="utf-8")
-    shown = [
-        line for line in readme.splitlines() if "examples/" in line and line.startswith("hyst ")
-    ]
-    assert shown
-    tutorial = [*blocks(FIRST, "bash"), *blocks(ON_TARGET, "bash")]
-    assert set(shown) <= set("".join(tutorial).splitlines())
+    shown = [line.split() for line in commands("../README.md") if line.startswith("hyst ")]
+    assert len(shown) == 3
+    run_above = [line.split() for page in (FIRST, ON_TARGET) for line in commands(page)]
+    assert [each for each in shown if each not in run_above] == []
 
 
 def test_the_files_of_the_examples_are_made_by_their_script(tmp_path: Path) -> None:
