@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from hyst.errors import HystError
@@ -26,11 +25,16 @@ PARTS = ("file", "columns", "record", "identify", "models", "reference", "save")
 
 @dataclass
 class Progress:
-    """How far an identification is."""
+    """How far an identification is.
+
+    Parameters
+    ----------
+    step, share
+        As of ``hyst.identification.progress.Step``.
+    """
 
     step: str
     share: float
-    began: float = field(default_factory=time.monotonic)
 
 
 class StudioSession:
@@ -69,7 +73,13 @@ class StudioSession:
         self.saved_in = ""
 
     def changed(self, *parts: str) -> None:
-        """Tell every page what to draw again."""
+        """Tell every page what to draw again.
+
+        Parameters
+        ----------
+        parts
+            Of the page.
+        """
         for each in tuple(self.listeners):
             for part in parts:
                 each(part)
@@ -80,7 +90,15 @@ class StudioSession:
         self.long.stop()
 
     async def choose_file(self, name: str, table: int | None = None) -> None:
-        """Look at a file of the folder."""
+        """Look at a file of the folder.
+
+        Parameters
+        ----------
+        name
+            Of the file, from the folder.
+        table
+            Which of its tables, from 1.
+        """
         if self.progress is not None:
             self.cancel()
         self._forget_file()
@@ -93,11 +111,23 @@ class StudioSession:
             await self.read()
 
     async def choose_role(self, column: int, role: str) -> None:
-        """Give a column a role, and read the record if nothing is missing."""
+        """Give a column a role, and read the record if nothing is missing.
+
+        Parameters
+        ----------
+        column, role
+            As of ``Choice.with_role``.
+        """
         await self.read_as(self.choice.with_role(column, role))
 
     async def read_as(self, choice: Choice) -> None:
-        """Read the record in another way."""
+        """Read the record in another way.
+
+        Parameters
+        ----------
+        choice
+            How.
+        """
         if choice == self.choice:
             return
         self.choice = choice
@@ -120,7 +150,18 @@ class StudioSession:
                 self.measured = measured
 
     async def identify(self, family: str = AUTO) -> None:
-        """Identify a model, with progress; the page goes on meanwhile."""
+        """Identify a model, with progress; the page goes on meanwhile.
+
+        Parameters
+        ----------
+        family
+            As of ``hyst.identify``.
+
+        Raises
+        ------
+        CancelledError
+            Not to the caller: another record was chosen meanwhile, and the page says so.
+        """
         if self.progress is not None or self.measured is None:
             return
         self.progress = Progress("starting", 0.0)
@@ -155,7 +196,13 @@ class StudioSession:
             self.long.cancel()
 
     async def remove(self, name: str) -> None:
-        """Take a model off the list."""
+        """Take a model off the list.
+
+        Parameters
+        ----------
+        name
+            Of the model.
+        """
         self.models = [each for each in self.models if each.name != name]
         if self.chosen == name:
             self.chosen, self.followed = "", None
@@ -173,7 +220,13 @@ class StudioSession:
             self.changed("models")
 
     async def choose_model(self, name: str) -> None:
-        """Make commands with this model from now on."""
+        """Make commands with this model from now on.
+
+        Parameters
+        ----------
+        name
+            Of the model.
+        """
         model = next(each for each in self.models if each.name == name)
         if model.level == "unfit":
             self.said["reference"] = _no_command(model)
@@ -189,7 +242,13 @@ class StudioSession:
         await self.follow()
 
     async def follow(self, reference: Reference | None = None) -> None:
-        """Make the command for a reference; of many asked for at a time only the last one."""
+        """Make the command for a reference; of many asked for at a time only the last one.
+
+        Parameters
+        ----------
+        reference
+            Another one; None for that there is.
+        """
         if reference is not None:
             self.reference = reference
         self._wanted.set()
@@ -209,14 +268,28 @@ class StudioSession:
                 self.changed("save")
 
     def session(self, exports: tuple[str, ...] = ()) -> Session:
-        """Give what the session came to."""
+        """Give what the session came to.
+
+        Parameters
+        ----------
+        exports
+            Targets.
+        """
         method = _method(self.followed) if self.chosen else ""
         record = self.file.rpartition("/")[2]
         models = tuple(self.models)
         return Session(record, self.choice, models, self.chosen, method, exports)
 
     async def save(self, name: str, exports: tuple[str, ...]) -> None:
-        """Write the session into a folder."""
+        """Write the session into a folder.
+
+        Parameters
+        ----------
+        name
+            Of the folder.
+        exports
+            Targets.
+        """
         self.saved, self.saved_in = (), ""
         async with _Doing(self, "save", "save"):
             place = Place(self.folder.readable(self.file), self.folder.inside(plain_name(name)))

@@ -36,7 +36,15 @@ class Axis:
     def over(
         values: NDArray[np.float64], begin: float, end: float, logarithmic: bool = False
     ) -> Axis:
-        """Give an axis that holds all finite values, with a little room."""
+        """Give an axis that holds all finite values, with a little room.
+
+        Parameters
+        ----------
+        values
+            To hold.
+        begin, end, logarithmic
+            As of the axis.
+        """
         finite = values[np.isfinite(values)]
         if logarithmic:
             finite = np.log10(finite[finite > 0.0])
@@ -45,14 +53,26 @@ class Axis:
         return Axis(low - room, high + room, begin, end, logarithmic)
 
     def pixels(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Give the pixels of values, those beyond an end at most a width beyond it."""
+        """Give the pixels of values, those beyond an end at most a width beyond it.
+
+        Parameters
+        ----------
+        values
+            Anywhere.
+        """
         if self.logarithmic:
             values = np.log10(np.maximum(values, 10.0**self.low))
         share = np.clip((values - self.low) / (self.high - self.low), -1.0, 2.0)
         return self.begin + (self.end - self.begin) * share
 
     def ticks(self, about: int = 5) -> list[tuple[float, str]]:
-        """Give pixels and labels of round numbers."""
+        """Give pixels and labels of round numbers.
+
+        Parameters
+        ----------
+        about
+            How many.
+        """
         if self.logarithmic:
             return self._decades(about)
         step = (self.high - self.low) / about

@@ -155,6 +155,11 @@ def _is_open(here: str, folder: str) -> bool:
 def plain_name(name: str) -> str:
     """Give a name without folders.
 
+    Parameters
+    ----------
+    name
+        As the browser says.
+
     Raises
     ------
     InputError
@@ -168,6 +173,11 @@ def plain_name(name: str) -> str:
 
 def require_size(size: int, name: str) -> None:
     """Refuse a file that is too large, before it is read.
+
+    Parameters
+    ----------
+    size, name
+        Bytes, and the file's name.
 
     Raises
     ------

@@ -54,7 +54,13 @@ class Reference:
         return replace(self, shape=shape, points=SHAPES[shape])
 
     def with_number(self, name: str, value: float) -> Reference:
-        """Give it another middle, amplitude or frequency."""
+        """Give it another middle, amplitude or frequency.
+
+        Parameters
+        ----------
+        name, value
+            Of the number.
+        """
         numbers = {"middle": self.middle, "amplitude": self.amplitude, "frequency": self.frequency}
         return replace(self, **(numbers | {name: value}))  # type: ignore[arg-type]
 
