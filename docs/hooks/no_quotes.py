@@ -1,4 +1,4 @@
-"""A line that begins with ``>`` is a comparison here and no quotation: docstrings say ``>= 0, V``."""
+"""A line that begins with ``>`` is a comparison, no quotation: docstrings say ``>= 0, V``."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from mkdocs.config.defaults import MkDocsConfig
 class NoQuotes(Extension):
     """Leave quotations out of Markdown."""
 
-    def extendMarkdown(self, md: Markdown) -> None:  # noqa: N802, the name is Markdown's
+    def extendMarkdown(self, md: Markdown) -> None:
         """Take the rule out."""
         md.parser.blockprocessors.deregister("quote")
 
