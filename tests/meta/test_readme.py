@@ -87,9 +87,11 @@ def unknown_options(words: list[str], said: str) -> list[str]:
     return [option for option in options if option not in known]
 
 
-def test_commands_use_verbs_and_options_there_are(readme: str) -> None:
-    uses = [words for words in commands(readme) if words[0] == "hyst"]
-    assert uses, "the README shows no hyst command"
+@pytest.mark.parametrize("page", ["README.md", "docs/commands.md"])
+def test_commands_use_verbs_and_options_there_are(page: str, repository: Path) -> None:
+    text = (repository / page).read_text(encoding="utf-8")
+    uses = [words for words in commands(text) if words[0] == "hyst"]
+    assert uses, "the page shows no hyst command"
     said = help_of(*dict.fromkeys(map(verb_of, uses)))
     wrong = {
         " ".join(words): bad

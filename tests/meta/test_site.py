@@ -32,6 +32,13 @@ def test_every_page_is_in_the_navigation(repository: Path) -> None:
     assert unlisted == set()
 
 
+def test_every_page_is_in_the_list_for_who_reads_without_the_site(repository: Path) -> None:
+    docs = repository / "docs"
+    linked = set(re.findall(r"\]\(([\w/]+\.md)\)", (docs / "pages.md").read_text(encoding="utf-8")))
+    written = {file.relative_to(docs).as_posix() for file in docs.rglob("*.md")} - {"pages.md"}
+    assert {page for page in written if "decisions/" not in page} == linked
+
+
 def test_notebooks_are_what_pages_say(repository: Path) -> None:
     """After a change of a page: python docs/make_notebooks.py."""
     maker = module_of(repository / "docs" / "make_notebooks.py")

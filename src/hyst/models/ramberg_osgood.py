@@ -150,7 +150,7 @@ class RambergOsgood(Operator):
 
         Notes
         -----
-        S3 eq. 2 and theorem 4 (theorem 10 drops the factor y*/u* of c2).
+        S3 eq. 2 and theorem 4 (theorem 10 drops the factor ``y*/u*`` of c2).
 
         Examples
         --------
