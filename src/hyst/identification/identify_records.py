@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Literal
 
+from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 
 from hyst.diagnosis import Diagnosis
@@ -19,7 +20,7 @@ from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families, families_in_reserve
 from hyst.identification.lag.found_lag import Wanted as Lagging
 from hyst.identification.lag.found_lag import as_lag, found_with_lag, search_beside_lag
-from hyst.identification.options import Options, listed, silent
+from hyst.identification.options import Options, listed, records_of, silent
 from hyst.identification.record_use.cleaned import Cleaned, as_drift, cleaned
 from hyst.identification.record_use.coded_input import all_in_volts, with_driver
 from hyst.identification.record_use.overview import Overview
@@ -34,8 +35,10 @@ from hyst.signals import Record, RecordStream
 
 
 def identify(
-    records: Record | Sequence[Record] | RecordStream,
+    records: Record | Sequence[Record] | RecordStream | ArrayLike,
+    y: ArrayLike | None = None,
     *,
+    dt: float | None = None,
     family: str | Family = "auto",
     delay: float | Literal["auto"] = "auto",
     start: int | Literal["auto"] = "auto",
@@ -61,7 +64,12 @@ def identify(
         dynamics one that divides them all is taken. What ``hyst.diagnose`` finds in them is acted
         on: samples that are no measurements do not count. A record that stays in its file, as of
         ``hyst.io.open_record``: the constants are fitted to all of its samples, what else there is
-        to find on half a million of them.
+        to find on half a million of them. Or the input u of one record, shape (N,), with ``y`` and
+        ``dt``.
+    y
+        Output, shape (N,), finite, where ``records`` is an input.
+    dt
+        Time between these samples, s, > 0. Names and units have records only.
     family
         A name; several with commas between them, which are compared by cross-validation, the
         simplest that it does not show to be worse than the best being taken; ``"auto"``: those that
@@ -114,8 +122,8 @@ def identify(
     Raises
     ------
     InputError
-        If an argument or a record cannot be used, a family is not known, or an option is of none of
-        the families that are named.
+        If an argument or a record cannot be used, ``y`` comes without ``dt`` or either with a
+        record, a family is not known, or an option is of none of the families that are named.
     NotIdentifiableError
         If input or output is constant, the input does not turn or the output is noise, or there are
         fewer samples than parameters.
@@ -130,12 +138,15 @@ def identify(
     >>> found = hyst.identify(hyst.Record(u, true(u), dt=1e-3), family="pi", plays=2)
     >>> bool(np.abs(found.model(u) - true(u))[500:].max() < 1e-6)
     True
+    >>> hyst.identify(u, true(u), dt=1e-3, family="pi", plays=2).model == found.model
+    True
     """
     arguments = {name: each for name, each in locals().items() if name in _KEYWORDS}
-    if isinstance(records, RecordStream):
-        return identify_stream(records, partial(identify, **arguments, **options))
+    source = records_of(records, y, dt)
+    if isinstance(source, RecordStream):
+        return identify_stream(source, partial(identify, **arguments, **options))
     asked = options_asked(identify, arguments | {"driver": None}) | options
-    measured = listed(records)
+    measured = listed(source)
     given = all_in_volts(measured, driver)
     judged = all_in_volts(listed(validation, "validation record"), driver)
     require_same_units((*given, *judged))
@@ -172,11 +183,12 @@ def identify(
         )
         identified = creeping.told(identified)
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
+        told = replace(told, records=found.fit.family.records_to_use(given, start)[0].records)
     return with_driver(traced(told, measured, asked), driver)
 
 
-_KEYWORDS = frozenset(identify.__kwdefaults__ or ())
-"""Arguments of ``identify`` but for the records and the options of families."""
+_KEYWORDS = frozenset(identify.__kwdefaults__ or ()) - {"dt"}
+"""Arguments of ``identify`` but for what makes the records, and the options of families."""
 
 
 @dataclass(frozen=True, eq=False)
