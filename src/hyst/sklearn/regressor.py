@@ -100,14 +100,9 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
             As ``hyst.identify``.
         """
         X, y = validate_data(self, X, y, dtype=np.float64, y_numeric=True, ensure_min_samples=2)
-        if X.shape[1] != 1:
-            raise InputError(
-                f"X has {X.shape[1]} columns; give one, the input in the order of time, shape "
-                "(N, 1)"
-            )
         more = {} if self.plays is None else {"plays": self.plays}
         self.identified_: Identified = identify(
-            Record(X[:, 0], np.asarray(y, dtype=np.float64), self.dt),
+            Record(self._input(X), np.asarray(y, dtype=np.float64), self.dt),
             family=self.family,
             **{"delay": self.delay, **more, **(self.options or {})},
         )
@@ -134,11 +129,19 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         """
         check_is_fitted(self)
         X = validate_data(self, X, dtype=np.float64, reset=False)
-        return self.identified_.predict(X[:, 0])
+        return self.identified_.predict(self._input(X))
 
     def __sklearn_tags__(self) -> Any:
         tags = super().__sklearn_tags__()
-        tags.non_deterministic = False
-        tags.regressor_tags.poor_score = True  # on rows without an order there is no memory to find
-        tags.target_tags.single_output = True
+        tags.regressor_tags.poor_score = True  # where rows have no order there is no memory to find
         return tags
+
+    def _input(self, X: Any) -> Array:
+        """Give the one column of X."""
+        if X.shape[1] != 1:
+            raise InputError(
+                f"X has {X.shape[1]} columns; give one, the input in the order of time, shape "
+                "(N, 1)"
+            )
+        column: Array = X[:, 0]
+        return column
