@@ -1,4 +1,4 @@
-"""``identify(u, y, dt=)`` is ``identify`` of the record that they make, and results keep records."""
+"""``identify(u, y, dt=)`` is ``identify`` of the record they make, and results keep records."""
 
 from __future__ import annotations
 
