@@ -152,8 +152,7 @@ def identify(
     require_same_units((*given, *judged))
     wanted = Options(judged, progress or silent, delay, start, max_iterations, allow_unconverged)
     families, about_drift = chosen_families(family, options), as_drift(drift)
-    lags = as_creep(creep)
-    families, lags = creeping_inside(families, lags)
+    families, lags = creeping_inside(families, as_creep(creep))
     require_place(families, lags)
     reserve = families_in_reserve(family, options)
     with threadpool_limits(1, user_api="blas"):
@@ -161,7 +160,6 @@ def identify(
         # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
         reserve = tuple(each for each in reserve if _is_called_for(each, diagnosis))
         clean = cleaned(given, diagnosis, about_drift)
-
         search = _Search(clean, families, as_lag(lag), lags, about_drift == "auto", wanted)
         creeping = search.best(reserve)
         found = creeping.found
@@ -181,9 +179,9 @@ def identify(
             [each.operator for each in found.rivals],
             found.delay,
         )
-        identified = creeping.told(identified)
+        used = found.fit.family.records_to_use(given, start)[0]
+        identified = replace(creeping.told(identified), records=used.records)
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
-        told = replace(told, records=found.fit.family.records_to_use(given, start)[0].records)
     return with_driver(traced(told, measured, asked), driver)
 
 

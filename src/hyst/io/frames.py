@@ -34,7 +34,12 @@ def record_of_frame(
     rate: float | None,
     how: Mapping[str, Any],
 ) -> Record:
-    """Take a record from columns of a data frame; arguments as of ``Record.from_dataframe``.
+    """Take a record from columns of a data frame.
+
+    Parameters
+    ----------
+    frame, input, output, time, rate, how
+        As of ``Record.from_dataframe``.
 
     Raises
     ------
@@ -69,7 +74,12 @@ def record_of_frame(
 def record_of_arrays(
     data: Any, input: str, output: str, time: str, rate: float | None, how: Mapping[str, Any]
 ) -> Record:
-    """Take a record from variables with coordinates; arguments as of ``Record.from_xarray``.
+    """Take a record from variables with coordinates.
+
+    Parameters
+    ----------
+    data, input, output, time, rate, how
+        As of ``Record.from_xarray``.
 
     Raises
     ------

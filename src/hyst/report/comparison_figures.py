@@ -60,7 +60,7 @@ def draw_hystereses(axes: Axes, found: Comparison) -> None:
     """Draw the loops of ``found`` without the straight line of the record on ``axes``."""
     _draw_loops(axes, found, *_straight_line(found, _windows(found)))
     axes.axhline(0.0, color=FAINT, linewidth=1.0, zorder=0)
-    axes.set_title("The same without the straight line of the record")
+    axes.set_title("Without the straight line of the record")
 
 
 def _draw_loops(axes: Axes, found: Comparison, slope: float, offset: float) -> None:

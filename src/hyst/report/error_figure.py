@@ -77,7 +77,7 @@ def draw_error_distribution(axes: Axes, fits: tuple[FittedRecord, ...]) -> None:
 
 
 def draw_error_autocorrelation(axes: Axes, fits: tuple[FittedRecord, ...]) -> None:
-    """Draw how long the error of the longest record remembers itself, on ``axes``."""
+    """Draw how long the error of the longest of ``fits`` remembers itself, on ``axes``."""
     _draw_autocorrelation(axes, max(fits, key=lambda fit: fit.error.size))
     axes.set(title="Autocorrelation of the error", xlabel="lag [s]", ylabel="correlation")
 

@@ -45,7 +45,7 @@ def draw_history(fits: tuple[FittedRecord, ...], heading: str) -> Figure:
 
 
 def draw_output(axes: Axes, fit: FittedRecord) -> None:
-    """Draw the output of a whole record and of the model over time, on ``axes``."""
+    """Draw the output of a whole record, ``fit``, and of the model over time, on ``axes``."""
     _draw(axes, fit, 0, len(fit.record))
     axes.set_title(f"Output, {fit.label} record")
     axes.set_ylabel(with_unit(fit.record.output_name, fit.record.output_unit))
@@ -54,7 +54,7 @@ def draw_output(axes: Axes, fit: FittedRecord) -> None:
 
 
 def draw_strokes(axes: Axes, fit: FittedRecord) -> None:
-    """Draw a few strokes of a record and of the model over time, on ``axes`` with their labels."""
+    """Draw a few strokes of a record, ``fit``, and of the model over time, on ``axes``."""
     _draw(axes, fit, *_a_few_strokes(fit))
     axes.set_title("A few strokes")
     axes.set_xlabel("time [s]")
@@ -63,7 +63,7 @@ def draw_strokes(axes: Axes, fit: FittedRecord) -> None:
 
 
 def draw_band(axes: Axes, fit: FittedRecord) -> None:
-    """Draw the error over a few strokes in the band that is to hold it, on ``axes``.
+    """Draw the error of ``fit`` over a few strokes in the band that is to hold it, on ``axes``.
 
     Beside an output of its full range neither could be seen.
     """

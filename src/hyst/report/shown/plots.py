@@ -43,7 +43,13 @@ _STROKES, _SAMPLES = 8, 4000
 def plot_record(
     record: Record, axes: Any, what: str | Sequence[str], interactive: bool
 ) -> Axes | Panels | Any:
-    """Draw panels of a record: arguments as of ``Record.plot``."""
+    """Draw panels of a record.
+
+    Parameters
+    ----------
+    record, axes, what, interactive
+        As of ``Record.plot``, and what it is a method of.
+    """
     u, y = record.u, record.y
     known: dict[str, Draw] = {
         "loop": partial(_draw_loop, record=record),
@@ -60,7 +66,13 @@ def plot_identified(
     records: Record | Sequence[Record] | None,
     interactive: bool,
 ) -> Axes | Panels | Any:
-    """Draw panels of a result: arguments as of ``Identified.plot``."""
+    """Draw panels of a result.
+
+    Parameters
+    ----------
+    found, axes, what, records, interactive
+        As of ``Identified.plot``, and what it is a method of.
+    """
     fits = _fitted(found, records)
     known: dict[str, Draw] = {
         "loop": partial(draw_fitted_loop, fits=fits),
@@ -80,7 +92,13 @@ def plot_identified(
 def plot_comparison(
     found: Comparison, axes: Any, what: str | Sequence[str], interactive: bool
 ) -> Axes | Panels | Any:
-    """Draw panels of a comparison: arguments as of ``Comparison.plot``."""
+    """Draw panels of a comparison.
+
+    Parameters
+    ----------
+    found, axes, what, interactive
+        As of ``Comparison.plot``, and what it is a method of.
+    """
     known: dict[str, Draw] = {
         "loops": partial(_with_legend, draw=draw_loops_over_input, found=found),
         "hysteresis": partial(_with_legend, draw=draw_hystereses, found=found),
@@ -96,7 +114,13 @@ def plot_operator(
     u: ArrayLike | None,
     interactive: bool,
 ) -> Axes | Panels | Any:
-    """Draw panels of a model: arguments as of ``Operator.plot``."""
+    """Draw panels of a model.
+
+    Parameters
+    ----------
+    model, axes, what, u, interactive
+        As of ``Operator.plot``, and what it is a method of.
+    """
     drive = _drive_over_range(model) if u is None else finite_vector(u, "u")
     about = model.description
     labels = Labels(about.input_name, about.input_unit, about.output_name, about.output_unit)
@@ -188,7 +212,10 @@ def _draw_memory(axes: Axes, found: Identified, fits: tuple[FittedRecord, ...]) 
 
 def _with_legend(axes: Axes, draw: Callable[[Axes, Comparison], None], found: Comparison) -> None:
     draw(axes, found)
-    # On a ground of its own, for the errors go everywhere.
+    low, high = axes.get_ylim()
+    entries = len(axes.get_legend_handles_labels()[1])
+    axes.set_ylim(low, high + (0.03 + 0.075 * entries) * (high - low))
+    # On a ground of its own, for errors that are cut off go through it.
     axes.legend(loc="upper left", frameon=True, framealpha=0.85, edgecolor="none")
 
 
