@@ -48,7 +48,7 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
 
     Figures are made as ever, only not laid out and turned into pixels.
     """
-    monkeypatch.setattr("hyst.report.canvas._png_of", lambda figure: b"\x89PNG\r\n\x1a\n")
+    monkeypatch.setattr("hyst.report.canvas.png_of", lambda figure: b"\x89PNG\r\n\x1a\n")
 
 
 @pytest.fixture(scope="session")

@@ -14,6 +14,7 @@ from hyst import online as online
 from hyst import operators as operators
 from hyst import report as report
 from hyst import signals as signals
+from hyst import sklearn as sklearn
 from hyst import torch as torch
 from hyst._loading import load as load
 from hyst.diagnosis import Diagnosis as Diagnosis

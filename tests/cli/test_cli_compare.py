@@ -47,7 +47,11 @@ def test_tables_and_files(run: Run, models: tuple[Path, Path], fresh: Path, fold
     assert rows["plays"][1:4] == ["pi", "7", "2"]
     assert rows["line"][1:4] == ["linear", "2", "2"]
     names = {path.name for path in (folder / "out").iterdir()}
-    assert names == {"comparison.json", "comparison.html", "loops.png", "errors.png"}
+    pictures = {"loops.png", "errors.png"}
+    assert names == {"comparison.json", "comparison.html", "model.json"} | pictures
+    taken = hyst.load(folder / "out" / "model.json")
+    assert taken == STAGE
+    assert taken.description == hyst.load(models[0]).description
     assert (folder / "best.json").read_bytes() == models[0].read_bytes()
     numbers = json.loads((folder / "out" / "comparison.json").read_text())
     record = hyst.read_record(fresh, input="u", output="y", time="t")
@@ -128,7 +132,9 @@ def test_what_cannot_be_compared_is_refused(
     assert "record 1, for lag, has dt = 0.01 s, the model 0.002 s" in told
     told = refused("compare", *models, fresh, *COLUMNS, "--output-label", "force [N]")
     assert "is in 'N' but that of plays in 'um'" in told
-    assert "Missing argument" in refused("compare", fresh, *COLUMNS)
+    told = refused("compare", fresh, *COLUMNS)
+    assert "Missing argument 'MODEL': give model files, or --family with --training" in told
+    assert "Missing argument" in refused("compare")
 
 
 def test_an_output_that_is_an_input_is_refused(
@@ -153,3 +159,62 @@ def test_a_controller_is_no_model(run: Run, folder: Path, fresh: Path) -> None:
     assert ended.code == 2
     assert "other.json holds a TrackingController" in ended.err
     assert snapshot(folder) == before
+
+
+def test_families_are_identified_and_compared_with_files(
+    run: Run, models: tuple[Path, Path], record_file: Path, fresh: Path, folder: Path
+) -> None:
+    ended = run(
+        "compare", models[1], fresh, *COLUMNS, "--family", "pi,linear", "--training", record_file,
+        "-o", "out", "--copy-best", "best.json",
+    )  # fmt: skip
+    assert ended.code == 0, ended
+    numbers = json.loads((folder / "out" / "comparison.json").read_text())
+    assert [each["name"] for each in numbers["models"]] == ["model", "linear", "pi"]
+    # The stage is of plays, so a line misses it by more than its noise of 0.001.
+    assert numbers["chosen"] == "pi"
+    by_hand = hyst.identify(hyst.read_record(record_file, "u", "y", time="t"), family="pi")
+    for name in ("out/pi.json", "out/model.json", "best.json"):
+        assert hyst.load(folder / name) == by_hand.model
+    assert hyst.load(folder / "out" / "linear.json").description.family == "linear"
+
+
+def test_families_alone_need_no_file_and_one_that_fails_is_told(
+    run: Run, record_file: Path, fresh: Path
+) -> None:
+    ended = run(
+        "compare", fresh, *COLUMNS, "--family", "linear,butterfly,pi", "--training", record_file,
+        "--json",
+    )  # fmt: skip
+    assert ended.code == 0, ended
+    names = [each["name"] for each in json.loads(ended.out)["models"]]
+    assert names[0] == "linear"
+    assert names[-1] == "pi"
+    assert ("butterfly" in names) != ("no model of the family butterfly: " in ended.err)
+
+
+def test_families_without_records_of_their_own_are_refused(
+    refused: Callable[..., str], models: tuple[Path, Path], fresh: Path, record_file: Path
+) -> None:
+    told = refused("compare", models[0], fresh, *COLUMNS, "--family", "pi")
+    assert "--family needs --training, a record to identify from" in told
+    told = refused("compare", models[0], fresh, *COLUMNS, "--training", record_file)
+    assert "--training is to identify from; give --family too" in told
+    told = refused("compare", fresh, *COLUMNS, "--family", "pie", "--training", record_file)
+    assert "unknown family 'pie'" in told
+    told = refused(
+        "compare", fresh, *COLUMNS, "--family", "pi", "--training", "out/pi.json", "-o", "out"
+    )
+    assert "is one of the files to read" in told
+
+
+def test_a_model_of_before_is_told_of_where_none_is_taken(
+    run: Run, folder: Path, fresh: Path
+) -> None:
+    STAGE.save("bad.json", describe(STAGE, verdict=Verdict("unfit", ("It describes nothing.",))))
+    (folder / "out").mkdir()
+    LINE.save(folder / "out" / "model.json")
+    ended = run("compare", "bad.json", fresh, *COLUMNS, "-o", "out")
+    assert ended.code == 3
+    assert "model.json was there before: every model is unfit" in ended.err
+    assert hyst.load(folder / "out" / "model.json") == LINE

@@ -21,11 +21,17 @@ from hyst.cli.driver_option import (
 )
 from hyst.cli.exit_codes import DONE, UNFIT
 from hyst.cli.fitted import HowToRead, InputLabel, OutputLabel
+from hyst.cli.identified_families import identified_families
 from hyst.cli.reading_options import reads_records
 
 Models = Annotated[
     list[Path],
-    typer.Argument(metavar="MODEL", show_default=False, help="Model files of one actuator."),
+    typer.Argument(
+        metavar="[MODEL]...",
+        default_factory=list,
+        show_default=False,
+        help="Model files of one actuator.",
+    ),
 ]
 Data = Annotated[
     Path,
@@ -40,7 +46,7 @@ Folder = Annotated[
         "--out",
         metavar="DIR",
         show_default=False,
-        help="Write a page, figures and numbers there, too.",
+        help="Write a page, figures, numbers, and the model to take as model.json there.",
     ),
 ]
 AsJson = Annotated[
@@ -55,12 +61,32 @@ CopyBest = Annotated[
     ),
 ]
 
+FamiliesToo = Annotated[
+    str | None,
+    typer.Option(
+        "--family",
+        metavar="NAMES",
+        show_default=False,
+        help="Families to identify from --training and to compare too, with commas between them.",
+    ),
+]
+Training = Annotated[
+    list[Path] | None,
+    typer.Option(
+        metavar="DATA",
+        show_default=False,
+        help="A record to identify these families from, read as DATA; repeatable.",
+    ),
+]
+
 
 @reads_records
 def compare(
     models: Models,
     data: Data,
     how: dict[str, Any],
+    family: FamiliesToo = None,
+    training: Training = None,
     folder: Folder = None,
     as_json: AsJson = False,
     copy_best: CopyBest = None,
@@ -69,24 +95,31 @@ def compare(
     driver: DriverOfInput = None,
 ) -> int:
     """Set models of one actuator side by side on a record that none of them has seen."""
-    _refuse_outputs(folder, copy_best, [*models, data, *_output_file(how)])
+    training = training or []
+    families = _families(family, training, models)
+    inputs = [*models, data, *training, *_output_file(how)]
+    _refuse_outputs(folder, copy_best, families, inputs)
     named = _named(models)
     typed = driver_of(driver)
     with at_work("comparing") as say:
         say("reading")
-        loaded = {name: load_operator(path) for name, path in named.items()}
+        loaded: dict[str, Any] = {name: load_operator(path) for name, path in named.items()}
         known = common_driver(loaded.values())
         files = HowToRead(how, {}, (input_label, output_label), typed, known)
         records = files.records([data])
         if typed is None:
             refuse_several_drivers(loaded.values(), records)
+        fitted = identified_families(files.records(training), families, set(loaded), say)
         say("running")
-        found = hyst.compare(loaded, records)
+        found = hyst.compare(loaded | fitted, records)
         written: list[Path] = []
         if folder is not None:
             say("figures")
             sources = {name: str(path) for name, path in named.items()}
-            written += hyst.report.write_comparison(found, folder, sources=sources, data=str(data))
+            written += hyst.report.write_comparison(
+                found, folder, sources=sources, data=str(data), save=list(fitted)
+            )
+            _tell_of_another(folder / "model.json", written)
     if as_json:
         print(json.dumps(found.to_dict(), indent=2, allow_nan=False, ensure_ascii=False))
     else:
@@ -102,11 +135,33 @@ def _output_file(how: dict[str, Any]) -> list[Path]:
     return [] if how["output_file"] is None else [how["output_file"]]
 
 
-def _refuse_outputs(folder: Path | None, copy: Path | None, inputs: Sequence[Path]) -> None:
+def _families(
+    family: str | None, training: Sequence[Path], models: Sequence[Path]
+) -> tuple[str, ...]:
+    """Give the families to identify, which need records of their own."""
+    if family is None and not models:
+        raise hyst.InputError(
+            "Missing argument 'MODEL': give model files, or --family with --training, before DATA"
+        )
+    if family is not None and not training:
+        raise hyst.InputError(
+            "--family needs --training, a record to identify from: on the record that a model was "
+            "identified from nothing is tested (hyst identify --family compares families on one "
+            "record, by leaving out parts of it)"
+        )
+    if family is None and training:
+        raise hyst.InputError("--training is to identify from; give --family too, or leave it out")
+    return () if family is None else tuple(hyst.identification.names_of(family))
+
+
+def _refuse_outputs(
+    folder: Path | None, copy: Path | None, families: Sequence[str], inputs: Sequence[Path]
+) -> None:
     outputs = [] if copy is None else [copy]
     if folder is not None:
         require_folder(folder)
-        outputs += [folder / name for name in hyst.report.COMPARISON_FILES]
+        names = (*hyst.report.COMPARISON_FILES, *(f"{each}.json" for each in families))
+        outputs += [folder / name for name in names]
         if copy is not None and copy.absolute() in [each.absolute() for each in outputs[1:]]:
             raise hyst.InputError(
                 f"--copy-best {copy} is a file of the report in {folder}; name another"
@@ -143,13 +198,23 @@ def _tell(found: hyst.Comparison) -> None:
         note(sentence)
 
 
+def _tell_of_another(model: Path, written: Sequence[Path]) -> None:
+    if model not in written and model.exists():
+        note(f"{model} was there before: every model is unfit, so this comparison took none")
+
+
 def _copied(found: hyst.Comparison, named: dict[str, Path], to: Path | None) -> list[Path]:
+    if found.chosen is None:
+        if to is not None:
+            note("no model was copied, for every one is unfit")
+        return []
     if to is None:
         return []
-    if found.chosen is None:
-        note("no model was copied, for every one is unfit")
-        return []
-    content = read_small(named[found.chosen.name])
+    path = named.get(found.chosen.name)
+    if path is None:
+        found.chosen.model.save(to)
+        return [to]
+    content = read_small(path)
     with replacing(to) as temporary:
         temporary.write_bytes(content)
     return [to]

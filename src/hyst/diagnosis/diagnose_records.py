@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst._above import PAGES, above
 from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.diagnosis.evidence import Evidence
 from hyst.diagnosis.finding import NO_SAMPLES, SEVERITIES, Finding, Severity
@@ -102,6 +103,9 @@ class Diagnosis:
             "findings": [each.to_dict() for each in self.findings],
             "next_drive": None if self.next_drive is None else self.next_drive.command,
         }
+
+    def _repr_html_(self) -> str:
+        return str(above(PAGES, "page_of_diagnosis")(self))
 
 
 def diagnose(records: Record | Sequence[Record]) -> Diagnosis:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Literal
 
+from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 
 from hyst.diagnosis import Diagnosis
@@ -19,7 +20,7 @@ from hyst.identification.families.family import Family
 from hyst.identification.families.registry import chosen_families, families_in_reserve
 from hyst.identification.lag.found_lag import Wanted as Lagging
 from hyst.identification.lag.found_lag import as_lag, found_with_lag, search_beside_lag
-from hyst.identification.options import Options, listed
+from hyst.identification.options import Options, listed, records_of
 from hyst.identification.progress import Progress, Step, silent
 from hyst.identification.record_use.cleaned import Cleaned, as_drift, cleaned
 from hyst.identification.record_use.coded_input import all_in_volts, with_driver
@@ -35,8 +36,10 @@ from hyst.signals import Record, RecordStream
 
 
 def identify(
-    records: Record | Sequence[Record] | RecordStream,
+    records: Record | Sequence[Record] | RecordStream | ArrayLike,
+    y: ArrayLike | None = None,
     *,
+    dt: float | None = None,
     family: str | Family = "auto",
     delay: float | Literal["auto"] = "auto",
     start: int | Literal["auto"] = "auto",
@@ -62,7 +65,12 @@ def identify(
         dynamics one that divides them all is taken. What ``hyst.diagnose`` finds in them is acted
         on: samples that are no measurements do not count. A record that stays in its file, as of
         ``hyst.io.open_record``: the constants are fitted to all of its samples, what else there is
-        to find on half a million of them.
+        to find on half a million of them. Or the input u of one record, shape (N,), with ``y`` and
+        ``dt``.
+    y
+        Output, shape (N,), finite, where ``records`` is an input.
+    dt
+        Time between these samples, s, > 0. Names and units have records only.
     family
         A name; several with commas between them, which are compared by cross-validation, the
         simplest that it does not show to be worse than the best being taken; ``"auto"``: those that
@@ -120,8 +128,8 @@ def identify(
     Raises
     ------
     InputError
-        If an argument or a record cannot be used, a family is not known, or an option is of none of
-        the families that are named.
+        If an argument or a record cannot be used, ``y`` comes without ``dt`` or either with a
+        record, a family is not known, or an option is of none of the families that are named.
     NotIdentifiableError
         If input or output is constant, the input does not turn or the output is noise, or there are
         fewer samples than parameters.
@@ -136,14 +144,16 @@ def identify(
     >>> found = hyst.identify(hyst.Record(u, true(u), dt=1e-3), family="pi", plays=2)
     >>> bool(np.abs(found.model(u) - true(u))[500:].max() < 1e-6)
     True
+    >>> hyst.identify(u, true(u), dt=1e-3, family="pi", plays=2).model == found.model
+    True
     """
     arguments = {name: each for name, each in locals().items() if name in _KEYWORDS}
-    say = Progress(progress or silent)
-    if isinstance(records, RecordStream):
+    say, source = Progress(progress or silent), records_of(records, y, dt)
+    if isinstance(source, RecordStream):
         arguments["progress"] = say.part(0.0, UNTIL_FIT_OF_ALL)
-        return identify_stream(records, partial(identify, **arguments, **options), say)
+        return identify_stream(source, partial(identify, **arguments, **options), say)
     asked = options_asked(identify, arguments | {"driver": None}) | options
-    measured = listed(records)
+    measured = listed(source)
     given = all_in_volts(measured, driver)
     judged = all_in_volts(listed(validation, "validation record"), driver)
     require_same_units((*given, *judged))
@@ -158,7 +168,6 @@ def identify(
         # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
         reserve = tuple(each for each in reserve if _is_called_for(each, diagnosis))
         clean = cleaned(given, diagnosis, about_drift)
-
         search = _Search(clean, families, as_lag(lag), lags, about_drift == "auto", wanted)
         creeping = search.best(reserve)
         found = creeping.found
@@ -178,13 +187,14 @@ def identify(
             [each.operator for each in found.rivals],
             found.delay,
         )
-        identified = creeping.told(identified)
+        used = found.fit.family.records_to_use(given, start)[0]
+        identified = replace(creeping.told(identified), records=used.records)
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
     return with_driver(traced(told, measured, asked), driver)
 
 
-_KEYWORDS = frozenset(identify.__kwdefaults__ or ())
-"""Arguments of ``identify`` but for the records and the options of families."""
+_KEYWORDS = frozenset(identify.__kwdefaults__ or ()) - {"dt"}
+"""Arguments of ``identify`` but for what makes the records, and the options of families."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from hyst.identification.fit.bounded_least_squares import CONVERGED
 from hyst.identification.progress import Progress
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.record_use.used_samples import Data
-from hyst.signals import Record
+from hyst.signals import Record, RecordStream
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,8 +90,40 @@ def listed(records: Record | Sequence[Record], name: str = "record") -> tuple[Re
     given = tuple(records)
     for number, record in enumerate(given, 1):
         if not isinstance(record, Record):
-            raise InputError(f"{name} {number} is {type(record).__name__}; give a hyst.Record")
+            raise InputError(
+                f"{name} {number} is {type(record).__name__}; give a hyst.Record"
+                + (", or u, y and dt" if name == "record" else "")
+            )
     return given
+
+
+def records_of(records: Any, y: Any, dt: float | None) -> Any:
+    """Give records as they are, or the one that an input, an output and a time make.
+
+    Parameters
+    ----------
+    records, y, dt
+        As of ``identify``.
+
+    Raises
+    ------
+    InputError
+        If an input comes without output or time, or a record with either.
+    """
+    several = isinstance(records, Sequence) and any(isinstance(each, Record) for each in records)
+    if isinstance(records, Record | RecordStream) or several:
+        if y is not None or dt is not None:
+            raise InputError(
+                f"{'y' if y is not None else 'dt'} is given beside records, which have their own; "
+                "leave it out"
+            )
+        return records
+    if y is None and dt is None:
+        return records
+    if y is None or dt is None:
+        missing = "y, the output" if y is None else "dt, the time between samples in s"
+        raise InputError(f"u comes without {missing}; give u, y and dt, or a hyst.Record")
+    return Record(records, y, dt)
 
 
 def as_delay(delay: float | str, data: Data, more: str = ", or 'auto'") -> float:

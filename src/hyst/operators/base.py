@@ -22,6 +22,7 @@ from hyst.operators.model_file import MODEL, write_file
 from hyst.operators.portrait import LOOP, Portrait
 from hyst.operators.registry import compose
 from hyst.operators.reverse import Reverse
+from hyst.operators.shown import Shown
 from hyst.operators.stage import Stage
 from hyst.operators.stepper import Stepper
 from hyst.operators.traits import Traits
@@ -29,7 +30,7 @@ from hyst.operators.traits import Traits
 Array = NDArray[np.float64]
 
 
-class Operator(Inverses, Constants, Reverse, ABC):
+class Operator(Inverses, Constants, Reverse, Shown, ABC):
     """A causal operator with a finite state; ``y = operator(u)``.
 
     Concrete operators are frozen dataclasses that say what they are (constants, traits, state,
@@ -187,9 +188,8 @@ class Operator(Inverses, Constants, Reverse, ABC):
     ) -> tuple[Array, Array]:
         """Give the output for a whole record and the state after it.
 
-        Running two halves one after the other gives the same bits as running the whole; where the
-        memory curve is used, of a long and smooth record through many plays, the same bits of the
-        state, and the same output to rounding.
+        Running two halves one after the other gives the bits of running the whole; where the memory
+        curve is used, of a long record through many plays, those of the state, and y to rounding.
 
         Parameters
         ----------

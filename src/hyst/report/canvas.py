@@ -6,10 +6,11 @@ alive or depends on a display.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import io
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, ParamSpec
 
 import matplotlib as mpl
@@ -73,21 +74,29 @@ def drawn(draw: Callable[Parameters, Figure]) -> Callable[Parameters, bytes]:
 
     @functools.wraps(draw)
     def draw_png(*args: Parameters.args, **kwargs: Parameters.kwargs) -> bytes:
-        with mpl.rc_context(_LOOK), warnings.catch_warnings():
-            # A sign the font does not have, in a name from the user's file, is drawn as a box.
-            warnings.filterwarnings("ignore", message="Glyph .* missing")
+        with shared_look():
             figure = draw(*args, **kwargs)
-            _number_logarithmic_axes(figure)
-            return _png_of(figure)
+            number_logarithmic_axes(figure)
+            return png_of(figure)
 
     return draw_png
 
 
-def _png_of(figure: Figure) -> bytes:
+@contextlib.contextmanager
+def shared_look() -> Iterator[None]:
+    """Let what is made here have the look all figures share; outside nothing changes."""
+    with mpl.rc_context(_LOOK), warnings.catch_warnings():
+        # A sign the font does not have, in a name from the user's file, is drawn as a box.
+        warnings.filterwarnings("ignore", message="Glyph .* missing")
+        yield
+
+
+def png_of(figure: Figure) -> bytes:
     """Lay a figure out and give its pixels."""
     content = io.BytesIO()
     canvas: Any = FigureCanvasAgg(figure)
-    give_room(figure, canvas.get_renderer())
+    if figure.get_layout_engine() is None:
+        give_room(figure, canvas.get_renderer())
     # Not by savefig, which draws everything a second time in case it had to be laid out, and writes
     # opacity that is 1 everywhere: without it the file is smaller and a third quicker to write.
     canvas.draw()
@@ -103,7 +112,7 @@ class _PlainNumbers(LogFormatter):
         return f"{x:g}" if super().__call__(x, pos) else ""
 
 
-def _number_logarithmic_axes(figure: Figure) -> None:
+def number_logarithmic_axes(figure: Figure) -> None:
     """Write numbers at logarithmic axes: matplotlib's powers of ten are formulas, not parsed."""
     for axes in figure.axes:
         for axis in (axes.xaxis, axes.yaxis):
@@ -113,7 +122,9 @@ def _number_logarithmic_axes(figure: Figure) -> None:
                 axis.set_minor_formatter(_PlainNumbers())
 
 
-def blank(columns: int, rows: int, width: float, height: float) -> tuple[Figure, list[Axes]]:
+def blank(
+    columns: int, rows: int, width: float, height: float, kind: type[Axes] = Axes
+) -> tuple[Figure, list[Axes]]:
     """Make a figure with axes in a grid.
 
     Parameters
@@ -122,6 +133,8 @@ def blank(columns: int, rows: int, width: float, height: float) -> tuple[Figure,
         Of the grid.
     width, height
         Of the figure, inches.
+    kind
+        Class of the axes.
 
     Returns
     -------
@@ -130,7 +143,7 @@ def blank(columns: int, rows: int, width: float, height: float) -> tuple[Figure,
         Row by row.
     """
     figure = Figure(figsize=(width, height), dpi=_DOTS_PER_INCH)
-    axes = figure.subplots(rows, columns, squeeze=False)
+    axes = figure.subplots(rows, columns, squeeze=False, subplot_kw={"axes_class": kind})
     return figure, [each for row in axes for each in row]
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hyst.identification import ComparedModel, Comparison
 from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn, with_unit
+from hyst.report.drawn_samples import drawn_path, drawn_samples
 
 Array = NDArray[np.float64]
 
@@ -42,35 +43,45 @@ def draw_compared_loops(found: Comparison) -> Figure:
         PNG.
     """
     figure, (left, right) = blank(2, 1, 11.0, 4.9)
-    models, windows = drawn_models(found), _windows(found)
-    slope, offset = _straight_line(found, windows)
-    ranked = list(zip(COLOURS, models, strict=False))
-    for axes, taken in ((left, (0.0, 0.0)), (right, (slope, offset))):
-        for number, (record, window) in enumerate(zip(found.records, windows, strict=True)):
-            u = record.u[window]
-            line = taken[0] * u + taken[1]
-            _dots(axes, u, record.y[window] - line, "record" * (number == 0))
-        low, high = axes.get_ylim()
-        for place, (colour, each) in enumerate(ranked):
-            for number, (record, window) in enumerate(zip(found.records, windows, strict=True)):
-                u = record.u[window]
-                y = each.outputs[number][window] - (taken[0] * u + taken[1])
-                name, above = _told(each) * (number == 0), 3.0 - place / MOST_DRAWN
-                axes.plot(u, y, color=colour, linewidth=0.9, label=name, zorder=above)
-        # A model that is far off must not make the loop small.
-        room = 0.15 * (high - low)
-        axes.set_ylim(low - room, high + room)
-    first = found.records[0]
-    right.axhline(0.0, color=FAINT, linewidth=1.0, zorder=0)
-    left.set_title("Loops, recorded and of the models")
-    right.set_title("The same without the straight line of the record")
-    for axes in (left, right):
-        axes.set_xlabel(with_unit(first.input_name, first.input_unit))
-    left.set_ylabel(with_unit(first.output_name, first.output_unit))
-    right.set_ylabel(with_unit(f"{first.output_name} - line", first.output_unit))
+    draw_loops_over_input(left, found)
+    draw_hystereses(right, found)
     handles, labels = left.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), 4))
     return figure
+
+
+def draw_loops_over_input(axes: Axes, found: Comparison) -> None:
+    """Draw the recorded loop and those of the models of ``found`` on ``axes``."""
+    _draw_loops(axes, found, 0.0, 0.0)
+    axes.set_title("Loops, recorded and of the models")
+
+
+def draw_hystereses(axes: Axes, found: Comparison) -> None:
+    """Draw the loops of ``found`` without the straight line of the record on ``axes``."""
+    _draw_loops(axes, found, *_straight_line(found, _windows(found)))
+    axes.axhline(0.0, color=FAINT, linewidth=1.0, zorder=0)
+    axes.set_title("Without the straight line of the record")
+
+
+def _draw_loops(axes: Axes, found: Comparison, slope: float, offset: float) -> None:
+    windows = _windows(found)
+    for number, (record, window) in enumerate(zip(found.records, windows, strict=True)):
+        u = record.u[window]
+        _dots(axes, u, record.y[window] - (slope * u + offset), "record" * (number == 0))
+    low, high = axes.get_ylim()
+    for place, (colour, each) in enumerate(zip(COLOURS, drawn_models(found), strict=False)):
+        for number, (record, window) in enumerate(zip(found.records, windows, strict=True)):
+            u = record.u[window]
+            y = each.outputs[number][window] - (slope * u + offset)
+            name, above = _told(each) * (number == 0), 3.0 - place / MOST_DRAWN
+            axes.plot(*drawn_path(u, y), color=colour, linewidth=0.9, label=name, zorder=above)
+    # A model that is far off must not make the loop small.
+    room = 0.15 * (high - low)
+    axes.set_ylim(low - room, high + room)
+    first = found.records[0]
+    what = f"{first.output_name} - line" if slope or offset else first.output_name
+    axes.set_xlabel(with_unit(first.input_name, first.input_unit))
+    axes.set_ylabel(with_unit(what, first.output_unit))
 
 
 @drawn
@@ -89,26 +100,56 @@ def draw_compared_errors(found: Comparison) -> Figure:
     bytes
         PNG.
     """
-    models, windows = drawn_models(found), _windows(found)
+    models = drawn_models(found)
     figure, axes = blank(1, len(models), 10.0, 0.7 + 1.75 * len(models))
-    unit = found.records[0].output_unit
-    reach = [_largest_error(each, found, windows) for each in models]
-    shown = 1.08 * min(max(reach), _CUT * reach[0]) or 1.0
-    for at, colour, each, most in zip(axes, COLOURS, models, reach, strict=False):
-        begin = 0.0
-        for number, (record, window) in enumerate(zip(found.records, windows, strict=True)):
-            error = (each.outputs[number] - record.y)[window]
-            at.plot(begin + record.time[window], error, color=colour, linewidth=0.7)
-            begin += record.duration + record.dt
-            if number + 1 < len(found.records):
-                at.axvline(begin, color=FAINT)
-        at.axhline(0.0, color="#4b5563", linewidth=0.7)
+    shown = _shown_error(found)
+    for at, colour, each in zip(axes, COLOURS, models, strict=False):
+        most = _largest_error(each, found, _windows(found))
+        _draw_error(at, found, each, colour)
         at.set_title(_told(each) + (f", cut off: up to {most:.3g}" if most > shown else ""))
-        at.set_ylabel(with_unit("error", unit))
-        at.margins(x=0.01)
-        at.set_ylim(-shown, shown)
+        _finish_errors(at, found)
     axes[-1].set_xlabel("time [s]")
     return figure
+
+
+def draw_errors_over_time(axes: Axes, found: Comparison) -> None:
+    """Draw the errors of all models of ``found`` over time on one ``axes``, the best on top."""
+    models = list(zip(COLOURS, drawn_models(found), strict=False))
+    for place, (colour, each) in enumerate(models):
+        _draw_error(axes, found, each, colour, 3.0 - place / MOST_DRAWN)
+    most = max(_largest_error(each, found, _windows(found)) for _, each in models)
+    cut = f", cut off: up to {most:.3g}" if most > _shown_error(found) else ""
+    axes.set_title(f"Errors over time{cut}")
+    axes.set_xlabel("time [s]")
+    _finish_errors(axes, found)
+
+
+def _draw_error(
+    axes: Axes, found: Comparison, each: ComparedModel, colour: str, above: float = 2.0
+) -> None:
+    begin = 0.0
+    for number, (record, window) in enumerate(zip(found.records, _windows(found), strict=True)):
+        error, name = (each.outputs[number] - record.y)[window], _told(each) * (number == 0)
+        shown = drawn_samples(error)
+        time = begin + record.time[window][shown]
+        axes.plot(time, error[shown], color=colour, linewidth=0.7, label=name, zorder=above)
+        begin += record.duration + record.dt
+        if number + 1 < len(found.records):
+            axes.axvline(begin, color=FAINT)
+
+
+def _finish_errors(axes: Axes, found: Comparison) -> None:
+    axes.axhline(0.0, color="#4b5563", linewidth=0.7)
+    axes.set_ylabel(with_unit("error", found.records[0].output_unit))
+    axes.margins(x=0.01)
+    shown = _shown_error(found)
+    axes.set_ylim(-shown, shown)
+
+
+def _shown_error(found: Comparison) -> float:
+    """Give the end of the scale of errors, where a bad model would make the best one's small."""
+    reach = [_largest_error(each, found, _windows(found)) for each in drawn_models(found)]
+    return 1.08 * min(max(reach), _CUT * reach[0]) or 1.0
 
 
 def _told(each: ComparedModel) -> str:
@@ -138,4 +179,8 @@ def _straight_line(found: Comparison, windows: Sequence[slice]) -> tuple[float, 
 
 
 def _dots(axes: Axes, u: Array, y: Array, label: str) -> None:
-    axes.plot(u, y, ".", color=MEASURED, markersize=3.0, alpha=0.5, label=label, rasterized=True)
+    shown = drawn_samples(u, y)
+    axes.plot(
+        u[shown], y[shown], ".", color=MEASURED, markersize=3.0, alpha=0.5, label=label,
+        rasterized=True,
+    )  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from hyst._files import replacing_files
@@ -20,8 +20,9 @@ from hyst.report.table import Table, number, with_unit
 
 NUMBERS, PAGE = "comparison.json", "comparison.html"
 LOOPS, ERRORS = "loops.png", "errors.png"
-COMPARISON_FILES = (NUMBERS, LOOPS, ERRORS, PAGE)
-"""Everything the report of a comparison consists of."""
+TAKEN = "model.json"
+COMPARISON_FILES = (NUMBERS, LOOPS, ERRORS, PAGE, TAKEN)
+"""Everything the report of a comparison consists of; no model.json where none is to be taken."""
 
 
 def compared_errors_table(found: Comparison) -> Table:
@@ -141,8 +142,11 @@ def write_comparison(
     *,
     sources: Mapping[str, str] | None = None,
     data: str = "",
+    save: Sequence[str] = (),
 ) -> tuple[Path, ...]:
-    """Write comparison.json, the figures and comparison.html; all of them or none.
+    """Write comparison.json, the figures, comparison.html and the model to take as model.json.
+
+    All of them or none.
 
     Parameters
     ----------
@@ -154,16 +158,18 @@ def write_comparison(
         The file of each model, by its name, for the page.
     data
         Where the records came from.
+    save
+        Names of models to write beside them, each as NAME.json.
 
     Returns
     -------
     tuple of pathlib.Path
-        The files written.
+        The files written; model.json is none of them where every model is unfit.
 
     Raises
     ------
     InputError
-        If the folder cannot be one.
+        If the folder cannot be one, or a model of such a name there is none.
 
     Examples
     --------
@@ -174,6 +180,9 @@ def write_comparison(
     """
     figures = {LOOPS: draw_compared_loops(found), ERRORS: draw_compared_errors(found)}
     files = dict(sources or {})
+    models = {f"{name}.json": found[name].model for name in save}
+    if found.chosen is not None:
+        models[TAKEN] = found.chosen.model
     with replacing_files(folder) as temporary:
         numbers = found.to_dict() | {"files": files, "data": data}
         text = json.dumps(numbers, indent=2, allow_nan=False, ensure_ascii=False)
@@ -181,7 +190,10 @@ def write_comparison(
         for name, content in figures.items():
             (temporary / name).write_bytes(content)
         (temporary / PAGE).write_text(_page(found, figures, files, data), encoding="utf-8")
-    return tuple(Path(folder) / name for name in COMPARISON_FILES)
+        for name, model in models.items():
+            model.save(temporary / name)
+    written = (NUMBERS, LOOPS, ERRORS, PAGE, *models)
+    return tuple(Path(folder) / name for name in written)
 
 
 def _page(found: Comparison, figures: dict[str, bytes], files: dict[str, str], data: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -36,32 +37,62 @@ def draw_error(fits: tuple[FittedRecord, ...], heading: str) -> Figure:
         PNG.
     """
     figure, (over_time, over_input, spread, memory) = blank(2, 2, 10.0, 6.4)
-    record = fits[0].record
-    for number, fit in enumerate(fits):
-        colour = (MODELLED, SECOND)[number % 2]
-        u, error = fit.model_input, fit.error
-        shown = drawn_samples(u, error)
-        time = (fit.start + shown) * fit.record.dt
-        over_time.plot(time, error[shown], ".", color=colour, markersize=1.6, alpha=0.6)
-        over_input.plot(u[shown], error[shown], ".", color=colour, markersize=1.6, alpha=0.4)
-    error_label = with_unit("error", record.output_unit)
-    over_time.set(title="Error over time", xlabel="time [s]", ylabel=error_label)
-    over_input.set(
-        title="Error over input",
-        xlabel=with_unit(record.input_name, record.input_unit),
-        ylabel=error_label,
-    )
-    for axes in (over_time, over_input):
-        axes.axhline(0.0, color=FAINT, zorder=0)
-    _draw_distribution(spread, np.concatenate([fit.error for fit in fits]))
-    spread.set(title="Distribution", xlabel=error_label, ylabel="share of samples per unit")
-    spread.locator_params(axis="x", nbins=6)  # labels such as -0.015 ran into each other
-    longest = max(fits, key=lambda fit: fit.error.size)
-    _draw_autocorrelation(memory, longest)
-    memory.set(title="Autocorrelation", xlabel="lag [s]", ylabel="correlation")
+    draw_error_over_time(over_time, fits)
+    draw_error_over_input(over_input, fits)
+    draw_error_distribution(spread, fits)
+    draw_error_autocorrelation(memory, fits)
     if heading:
         figure.suptitle(heading)
     return figure
+
+
+def draw_error_over_time(axes: Axes, fits: tuple[FittedRecord, ...]) -> None:
+    """Draw what the model leaves of ``fits`` over time, on ``axes``."""
+    for fit, shown, colour in _coloured(fits):
+        time = (fit.start + shown) * fit.record.dt
+        axes.plot(time, fit.error[shown], ".", color=colour, markersize=1.6, alpha=0.6)
+    axes.axhline(0.0, color=FAINT, zorder=0)
+    axes.set(title="Error over time", xlabel="time [s]", ylabel=_error_label(fits))
+
+
+def draw_error_over_input(axes: Axes, fits: tuple[FittedRecord, ...]) -> None:
+    """Draw what the model leaves of ``fits`` over the input, on ``axes``."""
+    for fit, shown, colour in _coloured(fits):
+        u = fit.model_input[shown]
+        axes.plot(u, fit.error[shown], ".", color=colour, markersize=1.6, alpha=0.4)
+    axes.axhline(0.0, color=FAINT, zorder=0)
+    record = fits[0].record
+    axes.set(
+        title="Error over input",
+        xlabel=with_unit(record.input_name, record.input_unit),
+        ylabel=_error_label(fits),
+    )
+
+
+def draw_error_distribution(axes: Axes, fits: tuple[FittedRecord, ...]) -> None:
+    """Draw how large the errors of ``fits`` are how often, on ``axes``."""
+    _draw_distribution(axes, np.concatenate([fit.error for fit in fits]))
+    axes.set(title="Distribution", xlabel=_error_label(fits), ylabel="share of samples per unit")
+    axes.locator_params(axis="x", nbins=6)  # labels such as -0.015 ran into each other
+
+
+def draw_error_autocorrelation(axes: Axes, fits: tuple[FittedRecord, ...]) -> None:
+    """Draw how long the error of the longest of ``fits`` remembers itself, on ``axes``."""
+    _draw_autocorrelation(axes, max(fits, key=lambda fit: fit.error.size))
+    axes.set(title="Autocorrelation of the error", xlabel="lag [s]", ylabel="correlation")
+
+
+def _coloured(
+    fits: tuple[FittedRecord, ...],
+) -> Iterator[tuple[FittedRecord, NDArray[np.intp], str]]:
+    """Give each record with the samples of it that are drawn, and its colour."""
+    for number, fit in enumerate(fits):
+        shown = drawn_samples(fit.model_input, fit.error)
+        yield fit, shown, (MODELLED, SECOND)[number % 2]
+
+
+def _error_label(fits: tuple[FittedRecord, ...]) -> str:
+    return with_unit("error", fits[0].record.output_unit)
 
 
 def _draw_distribution(axes: Axes, error: Array) -> None:

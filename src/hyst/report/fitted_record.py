@@ -100,15 +100,30 @@ def fit_records(
                 zip(training, identified.used_of_shown, strict=True), 1
             )
         ),
-        tuple(
-            _fit(
-                identified,
-                record,
-                _all_that_have_an_input(record, identified.delay),
-                _label("validation", number, len(validation)),
-            )
-            for number, record in enumerate(validation, 1)
-        ),
+        fit_other_records(identified, validation),
+    )
+
+
+def fit_other_records(
+    identified: Identified, records: tuple[Record, ...]
+) -> tuple[FittedRecord, ...]:
+    """Run the model over records that took no part.
+
+    Parameters
+    ----------
+    identified
+        The result.
+    records
+        In its units.
+    """
+    return tuple(
+        _fit(
+            identified,
+            record,
+            _all_that_have_an_input(record, identified.delay),
+            _label("validation", number, len(records)),
+        )
+        for number, record in enumerate(records, 1)
     )
 
 

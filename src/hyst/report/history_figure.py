@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hyst.report.canvas import MEASURED, MODELLED, blank, drawn, with_unit
+from hyst.report.canvas import FAINT, MEASURED, MODELLED, blank, drawn, with_unit
 from hyst.report.drawn_samples import drawn_samples
 from hyst.report.fitted_record import FittedRecord
 from hyst.signals import reversals
@@ -33,21 +33,62 @@ def draw_history(fits: tuple[FittedRecord, ...], heading: str) -> Figure:
     figure, axes = blank(2, len(fits), 10.0, 0.8 + 2.7 * len(fits))
     for row, fit in enumerate(fits):
         whole, close = axes[2 * row], axes[2 * row + 1]
-        _draw(whole, fit, 0, len(fit.record))
+        draw_output(whole, fit)
         _draw(close, fit, *_a_few_strokes(fit))
-        whole.set_title(f"Output, {fit.label} record")
         close.set_title("A closer look")
-        whole.set_ylabel(with_unit(fit.record.output_name, fit.record.output_unit))
-        if fit.start > 0:
-            whole.axvspan(0.0, fit.start * fit.record.dt, color="#f3f4f6", zorder=0)
     for bottom in axes[-2:]:
         bottom.set_xlabel("time [s]")
-    axes[1].legend(loc="upper right", ncols=3)
-    low, high = axes[1].get_ylim()
-    axes[1].set_ylim(low, high + 0.18 * (high - low))
+    _place_legend(axes[1])
     if heading:
         figure.suptitle(heading)
     return figure
+
+
+def draw_output(axes: Axes, fit: FittedRecord) -> None:
+    """Draw the output of a whole record, ``fit``, and of the model over time, on ``axes``."""
+    _draw(axes, fit, 0, len(fit.record))
+    axes.set_title(f"Output, {fit.label} record")
+    axes.set_ylabel(with_unit(fit.record.output_name, fit.record.output_unit))
+    if fit.start > 0:
+        axes.axvspan(0.0, fit.start * fit.record.dt, color="#f3f4f6", zorder=0)
+
+
+def draw_strokes(axes: Axes, fit: FittedRecord) -> None:
+    """Draw a few strokes of a record, ``fit``, and of the model over time, on ``axes``."""
+    _draw(axes, fit, *_a_few_strokes(fit))
+    axes.set_title("A few strokes")
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel(with_unit(fit.record.output_name, fit.record.output_unit))
+    _place_legend(axes)
+
+
+def draw_band(axes: Axes, fit: FittedRecord) -> None:
+    """Draw the error of ``fit`` over a few strokes in the band that is to hold it, on ``axes``.
+
+    Beside an output of its full range neither could be seen.
+    """
+    start, stop = _a_few_strokes(fit)
+    error = (fit.y_model - fit.record.y)[start:stop]
+    shown = drawn_samples(error)
+    t = (start + shown) * fit.record.dt
+    if fit.band is None:
+        axes.set_title("Error over a few strokes (too long a record for the band)")
+    else:
+        low, high = ((fit.y_model - each)[start:stop][shown] for each in fit.band)
+        axes.fill_between(t, low, high, color=MODELLED, alpha=0.18, linewidth=0.0, label="95 %")
+        axes.set_title("Error over a few strokes, in its band")
+    axes.plot(t, error[shown], ".", color=MODELLED, markersize=2.5, label="model - record")
+    axes.axhline(0.0, color=FAINT, zorder=0)
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel(with_unit("error", fit.record.output_unit))
+    axes.margins(x=0.01)
+    _place_legend(axes)
+
+
+def _place_legend(axes: Axes) -> None:
+    axes.legend(loc="upper right", ncols=3)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.18 * (high - low))
 
 
 def _draw(axes: Axes, fit: FittedRecord, start: int, stop: int) -> None:

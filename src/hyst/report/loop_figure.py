@@ -31,25 +31,37 @@ def draw_loop(fits: tuple[FittedRecord, ...], heading: str) -> Figure:
         PNG.
     """
     figure, (left, right) = blank(2, 1, 10.0, 4.4)
-    slope, offset = _straight_line(fits)
-    for number, fit in enumerate(fits):
-        label = number == 0
-        u = fit.model_input
-        _pair(left, u, fit.measured, fit.modelled, label)
-        line = slope * u + offset
-        _pair(right, u, fit.measured - line, fit.modelled - line, label)
-    record = fits[0].record
-    right.axhline(0.0, color=FAINT, linewidth=1.0, zorder=0)
-    left.set_title("Loop")
-    right.set_title("Loop without its straight line")
-    for axes in (left, right):
-        axes.set_xlabel(with_unit(record.input_name, record.input_unit))
-    left.set_ylabel(with_unit(record.output_name, record.output_unit))
-    right.set_ylabel(with_unit(f"{record.output_name} - line", record.output_unit))
-    left.legend(loc="upper left" if slope > 0.0 else "upper right")
+    draw_fitted_loop(left, fits)
+    draw_fitted_hysteresis(right, fits)
     if heading:
         figure.suptitle(heading)
     return figure
+
+
+def draw_fitted_loop(axes: Axes, fits: tuple[FittedRecord, ...]) -> None:
+    """Draw the loop of records and model on ``axes``; ``fits`` are records with its output."""
+    slope, _ = _straight_line(fits)
+    _draw(axes, fits, 0.0, 0.0)
+    axes.set_title("Loop")
+    axes.legend(loc="upper left" if slope > 0.0 else "upper right")
+
+
+def draw_fitted_hysteresis(axes: Axes, fits: tuple[FittedRecord, ...]) -> None:
+    """Draw the loop of ``fits`` without its straight line on ``axes``."""
+    _draw(axes, fits, *_straight_line(fits))
+    axes.axhline(0.0, color=FAINT, linewidth=1.0, zorder=0)
+    axes.set_title("Loop without its straight line")
+
+
+def _draw(axes: Axes, fits: tuple[FittedRecord, ...], slope: float, offset: float) -> None:
+    for number, fit in enumerate(fits):
+        u = fit.model_input
+        line = slope * u + offset
+        _pair(axes, u, fit.measured - line, fit.modelled - line, number == 0)
+    record = fits[0].record
+    what = f"{record.output_name} - line" if slope or offset else record.output_name
+    axes.set_xlabel(with_unit(record.input_name, record.input_unit))
+    axes.set_ylabel(with_unit(what, record.output_unit))
 
 
 def _straight_line(fits: tuple[FittedRecord, ...]) -> tuple[float, float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -13,6 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from hyst.operators import Chained, Operator, Portrait
+from hyst.operators.portrait import Panel
 from hyst.report.canvas import (
     FAINT,
     MEASURED,
@@ -87,20 +89,41 @@ def draw_model(
     bytes
         PNG.
     """
+    panels = model_panels(model, u, labels, standard_errors)
+    figure, axes = blank(len(panels), 1, 10.0 if len(panels) > 1 else 5.0, 3.9)
+    for (_, draw), free in zip(panels, axes, strict=True):
+        draw(free)
+    if heading:
+        figure.suptitle(heading)
+    return figure
+
+
+def model_panels(
+    model: Operator, u: Array, labels: Labels, standard_errors: Mapping[str, float]
+) -> list[tuple[Panel, Callable[[Axes], None]]]:
+    """Give what there is to see of a model, panel by panel, and what draws it.
+
+    Parameters
+    ----------
+    model, u, labels, standard_errors
+        As for ``draw_model``.
+    """
     parts = _parts(model, u, labels, standard_errors)
     panels = [(part, panel) for part in parts for panel in part.portrait.panels]
     if all(panel == "loop" for _, panel in panels):
         # Nothing to see inside: the whole says more than its pieces.
-        whole = _Part(
-            Portrait(()), u, model(u), labels, {}, model.traits().memoryless, is_first=True
-        )
-        panels = [(whole, "loop")]
-    figure, axes = blank(len(panels), 1, 10.0 if len(panels) > 1 else 5.0, 3.9)
-    for (part, panel), free in zip(panels, axes, strict=True):
-        _BRUSHES[panel](free, part)
-    if heading:
-        figure.suptitle(heading)
-    return figure
+        return [("loop", partial(draw_whole_loop, model=model, u=u, labels=labels))]
+    return [(panel, _brush(panel, part)) for part, panel in panels]
+
+
+def _brush(panel: Panel, part: _Part) -> Callable[[Axes], None]:
+    return lambda axes: _BRUSHES[panel](axes, part)
+
+
+def draw_whole_loop(axes: Axes, model: Operator, u: Array, labels: Labels) -> None:
+    """Draw the output of a model over its input ``u``, with ``labels``, on ``axes``."""
+    memoryless = model.traits().memoryless
+    _draw_loop(axes, _Part(Portrait(()), u, model(u), labels, {}, memoryless, is_first=True))
 
 
 def _parts(
@@ -243,7 +266,7 @@ def _draw_relays(axes: Axes, part: _Part) -> None:
     axes.set_title(f"Density of the relays (p0 = {portrait.p0:.3g})")
 
 
-_BRUSHES: dict[str, Callable[[Axes, _Part], None]] = {
+_BRUSHES: dict[Panel, Callable[[Axes, _Part], None]] = {
     "weights": _draw_weights,
     "curve": _draw_curve,
     "map": _draw_map,

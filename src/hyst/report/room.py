@@ -122,7 +122,7 @@ def _measured(axes: Axes, renderer: RendererAgg, dpi: float) -> Around:
     title = axes.get_title(loc="left")
     if title:
         pad = float(mpl.rcParams["axes.titlepad"]) + power * _POINTS
-        axes.set_title(title, pad=pad)
+        axes.set_title(title, loc="left", pad=pad)
         size = float(axes.title.get_fontsize()) * _LINE
         around.above = max(around.above, (pad + _lines(title) * size) / _POINTS)
     legend = axes.get_legend()

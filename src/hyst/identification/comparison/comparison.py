@@ -5,8 +5,9 @@ from __future__ import annotations
 import functools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
+from hyst._above import PAGES, PLOTS, above
 from hyst.errors import InputError
 from hyst.identification.choice.cross_validation import Score
 from hyst.identification.choice.selection import EQUAL, NEGLIGIBLE, REPEATED, ROUNDING
@@ -18,6 +19,11 @@ from hyst.identification.judgement.validation import (
 )
 from hyst.identification.record_use.used_samples import UsedSamples
 from hyst.signals import Record
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from hyst.report.shown.axes import Panels
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -190,6 +196,54 @@ class Comparison:
         width = max(len(each.name) for each in self.models)
         lines = [_line(each, width, f" {unit}" if unit else "") for each in self.models]
         return "\n".join([*lines, "", *self.sentences()])
+
+    @overload
+    def plot(  # type: ignore[overload-overlap]
+        self, axes: Axes | None = ..., *, what: str, interactive: Literal[False] = ...
+    ) -> Axes: ...
+    @overload
+    def plot(
+        self,
+        axes: Sequence[Axes] | None = ...,
+        *,
+        what: Sequence[str] = ...,
+        interactive: Literal[False] = ...,
+    ) -> Panels: ...
+    @overload
+    def plot(self, axes: None = ..., *, what: Any = ..., interactive: Literal[True]) -> Any: ...
+    def plot(
+        self,
+        axes: Any = None,
+        *,
+        what: str | Sequence[str] = ("loops", "errors"),
+        interactive: bool = False,
+    ) -> Any:
+        """Draw the models over each other and over the records; of many models the best six.
+
+        Parameters
+        ----------
+        axes, interactive
+            As of ``Record.plot``.
+        what
+            ``"loops"``; ``"hysteresis"``, the same without the straight line of the record;
+            ``"errors"`` over time, the records after each other; or a sequence of these.
+
+        Returns
+        -------
+        matplotlib.axes.Axes, tuple of them, or plotly.graph_objects.Figure
+            As of ``Record.plot``.
+
+        Raises
+        ------
+        InputError
+            If there is no such panel, or ``axes`` are no plain axes or as many as panels.
+        MissingExtraError
+            If plotly is asked for and not installed.
+        """
+        return above(PLOTS, "plot_comparison")(self, axes, what, interactive)
+
+    def _repr_html_(self) -> str:
+        return str(above(PAGES, "page_of_comparison")(self))
 
     def _simplest(self, models: Sequence[ComparedModel]) -> ComparedModel | None:
         if not models:

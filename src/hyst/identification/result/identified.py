@@ -22,12 +22,17 @@ from hyst.identification.result.bands import NEW, Bands, as_level
 from hyst.identification.result.late_output import late_output
 from hyst.identification.result.motion import OutputPart, motion_lines
 from hyst.identification.result.part_of_file import PartOfFile
-from hyst.identification.result.record_errors import RecordErrors, run_at_several_rates
+from hyst.identification.result.record_errors import (
+    RecordErrors,
+    record_line,
+    run_at_several_rates,
+)
+from hyst.identification.result.what_is_kept import Kept
 from hyst.models import Delay, Lag
 from hyst.operators import ModelDescription, Operator, Verdict
 from hyst.operators.composition import leaves_of
 from hyst.operators.plain_data import as_number
-from hyst.signals import Metrics
+from hyst.signals import Metrics, Record
 
 Array = NDArray[np.float64]
 
@@ -69,7 +74,7 @@ class Candidate:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Identified:
+class Identified(Kept):
     """A model identified from records, and how far it can be trusted.
 
     Parameters
@@ -116,6 +121,8 @@ class Identified:
     part
         Of a record that stays in its file: the samples from which all but the constants was found;
         None where all samples were in memory.
+    records
+        What it was identified from, or the part of it in memory; see ``kept_records``.
     """
 
     model: Operator
@@ -138,6 +145,7 @@ class Identified:
     per_record: tuple[RecordErrors, ...]
     motion: tuple[OutputPart, ...]
     part: PartOfFile | None = field(default=None, kw_only=True)
+    records: tuple[Record, ...] = field(default=(), kw_only=True, repr=False)
 
     @property
     def used_of_shown(self) -> tuple[UsedSamples, ...]:
@@ -362,7 +370,7 @@ class Identified:
             )
         if len(self.per_record) > 1:
             several = run_at_several_rates(self.per_record)
-            lines += [_record_line(each, unit, several) for each in self.per_record]
+            lines += [record_line(each, unit, several) for each in self.per_record]
         if self.motion:
             lines += ["", *motion_lines(self.motion, unit)]
         lines += ["", f"{'parameter':36s} {'value':>13s} {'standard error':>15s}"]
@@ -375,23 +383,3 @@ class Identified:
             lines.append("(-: on a bound, or not determined by the records)")
         lines += [f"note: {sentence}" for sentence in self.undetermined]
         return "\n".join(lines)
-
-
-def _record_line(each: RecordErrors, unit: str, several_rates: bool) -> str:
-    named = f"record {each.number}" + (f", {each.name}" if each.name else "")
-    if each.metrics is None:
-        return f"{named:28s} no sample that moves was used"
-    return (
-        f"{named:28s} rms {each.metrics.rms:.4g}{unit} ({each.metrics.rms_percent:.3f} % of its "
-        f"own range)   max {each.metrics.max_abs:.4g}{unit}   {each.samples} samples"
-        f"{_loop_in_words(each) if several_rates else ''}"
-    )
-
-
-def _loop_in_words(each: RecordErrors) -> str:
-    if each.frequency is None or each.hysteresis is None or each.modelled_hysteresis is None:
-        return ""
-    return (
-        f"   at {each.frequency:.4g} Hz: hysteresis {each.hysteresis:.3g} %, of the model "
-        f"{each.modelled_hysteresis:.3g} %"
-    )

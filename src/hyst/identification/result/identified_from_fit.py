@@ -98,6 +98,8 @@ def identified_from_fit(
 def traced(found: Identified, records: Sequence[Record], options: Mapping[str, Any]) -> Identified:
     """Give a result whose model tells what it means, how far it is to be trusted, and its origin.
 
+    It keeps the records, unless it has others already: what its family made of them.
+
     Parameters
     ----------
     found
@@ -119,7 +121,12 @@ def traced(found: Identified, records: Sequence[Record], options: Mapping[str, A
         errors=errors_of(found.metrics),
         provenance=provenance(records, options),
     )
-    return replace(found, description=about, model=found.model.with_description(about))
+    return replace(
+        found,
+        description=about,
+        model=found.model.with_description(about),
+        records=found.records or tuple(records),
+    )
 
 
 def metrics_by_record(

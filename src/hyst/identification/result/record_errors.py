@@ -133,3 +133,27 @@ def _hysteresis(u: Array, y: Array) -> float | None:
         return hysteresis_percent(u, y, SMALLEST_TURN * float(np.ptp(u)))
     except (InputError, ValueError):  # nothing turns or moves
         return None
+
+
+def record_line(each: RecordErrors, unit: str, several_rates: bool) -> str:
+    """Say how far a model is from one record, ``each``, in its ``unit``, and its loop's size.
+
+    The latter where the records have ``several_rates``.
+    """
+    named = f"record {each.number}" + (f", {each.name}" if each.name else "")
+    if each.metrics is None:
+        return f"{named:28s} no sample that moves was used"
+    return (
+        f"{named:28s} rms {each.metrics.rms:.4g}{unit} ({each.metrics.rms_percent:.3f} % of its "
+        f"own range)   max {each.metrics.max_abs:.4g}{unit}   {each.samples} samples"
+        f"{_loop_in_words(each) if several_rates else ''}"
+    )
+
+
+def _loop_in_words(each: RecordErrors) -> str:
+    if each.frequency is None or each.hysteresis is None or each.modelled_hysteresis is None:
+        return ""
+    return (
+        f"   at {each.frequency:.4g} Hz: hysteresis {each.hysteresis:.3g} %, of the model "
+        f"{each.modelled_hysteresis:.3g} %"
+    )

@@ -1,0 +1,1 @@
+"""What records, models, results and comparisons show when they are asked to, in notebooks too."""

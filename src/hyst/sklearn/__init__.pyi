@@ -1,0 +1,1 @@
+from hyst.sklearn.regressor import HysteresisRegressor as HysteresisRegressor
