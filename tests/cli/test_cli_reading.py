@@ -42,7 +42,7 @@ def test_one_table_or_each_as_a_record(run: Run) -> None:
     report = Path("out/report.html").read_text()
     assert "loop.csv, table 1" in report
     assert "loop.csv, table 2" in report
-    wrong = run("identify", path, *COLUMNS, "--time", "time", "--table", "two", *QUICK)
+    wrong = run("identify", path, *COLUMNS, "--time", "time", "--table", "two", *QUICK, "--force")
     assert (wrong.code, "--table is 'two'; give a whole number or all" in wrong.err) == (2, True)
 
 
