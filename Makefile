@@ -33,8 +33,8 @@ export MKL_NUM_THREADS := 1
 export CC CXX
 
 .DEFAULT_GOAL := help
-.PHONY: help venv install demo test core-test fuzz soak embedded embedded-table misra lint types \
-	bench bench-peers clean distclean
+.PHONY: help venv install demo docs test core-test fuzz soak embedded embedded-table misra lint \
+	types bench bench-peers clean distclean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -45,6 +45,10 @@ install: $(installed_dev) ## install hyst and all development tools; again after
 
 demo: $(installed) ## the whole story on a simulated stage; results in demo/
 	$(bin)/hyst demo -o demo
+
+docs: $(installed_dev) ## the documentation site, build/site/index.html; runs its notebooks
+	NO_MKDOCS_2_WARNING=1 $(bin)/mkdocs build --quiet
+	$(bin)/python docs/make_notebooks.py --run
 
 test: core-test ## C tests of the core, then pytest
 	$(bin)/python -m pytest $(PYTEST_ARGS)

@@ -1,4 +1,4 @@
-"""Draw the figure of docs/learning.md: `python docs/figures/draw_learning.py`.
+"""Draw the figure of docs/tutorials/learning.md: `python docs/figures/draw_learning.py`.
 
 The commands of the page are run as they stand there; its first block of Python is stage.py.
 """
@@ -18,12 +18,12 @@ from unittest import mock
 from hyst.cli import main
 
 HERE = Path(__file__).resolve().parent
-PAGE = HERE.parent / "learning.md"
+PAGE = HERE.parent / "tutorials" / "learning.md"
 
 
 def blocks(kind: str) -> list[str]:
     """Give the blocks of a kind, without their fences."""
-    return re.findall(rf"```{kind}\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S)
+    return re.findall(rf"```{kind}[^\n]*\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S)
 
 
 def follow() -> None:

@@ -9,11 +9,12 @@ from pathlib import Path
 
 import pytest
 from command_runs import Run, snapshot, write_csv
+from pages import blocks, commands, untold
 
 import hyst
 from fleet.lots import lot
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "fleet.md"
+TUTORIAL = "tutorials/fleet.md"
 CHEAP = "--family pi --plays 2 --delay 0 --creep none --leave-disturbances --scheduler threads"
 HOW = ["--input", "u", "--output", "y", "--rate", "1000", *CHEAP.split()]
 
@@ -103,32 +104,26 @@ def test_a_scheduler_that_does_not_answer_is_one_sentence(
     assert ended.err.count("\n") == 1
 
 
-def test_the_page_in_docs_runs(run: Run, folder: Path) -> None:
-    """docs/fleet.md with fewer devices, of one type, for which nothing is left to choose."""
-    text = PAGE.read_text(encoding="utf-8")
-    commands = [
-        shlex.split(line)
-        for block in re.findall(r"```bash\n(.*?)```", text, re.S)
-        for line in block.replace("\\\n", " ").splitlines()
-        if line.startswith("hyst ")
-    ]
-    make, first = commands[:2]
-    made = run(*[each if each != "1000" else "20" for each in make[1:]])
+def test_the_tutorial_runs(run: Run, folder: Path) -> None:
+    make, first, info = (shlex.split(line) for line in commands(TUTORIAL))
+    made = run(*make[1:])
     assert made.code == 0, made.err
-    cheap = ["--family", "pi", "--plays", "4", "--delay", "0", "--creep", "none"]
-    ended = run(*first[1:], *cheap, "--scheduler", "threads")
+    ended = run(*first[1:], "--scheduler", "threads")
     assert ended.code == 3, ended.err
-    assert "20 devices: " in ended.out
-    assert "2 without a model" in ended.out
+    assert untold(TUTORIAL, ended.out) == []
     assert "lot-out" in str(snapshot(folder))
-    # The same on a cluster is the same command with one option more.
-    on_cluster = next(each for each in commands if "--scheduler" in each)
+    assert run(*info[1:]).code == 0
+
+
+def test_the_page_has_the_same_on_a_cluster_as_one_option_more() -> None:
+    fleets = [shlex.split(line) for line in commands("fleet.md") if line.startswith("hyst fleet ")]
+    first, on_cluster = fleets[:2]
     assert on_cluster[: len(first)] == first
-    assert len(on_cluster) == len(first) + 2
+    assert on_cluster[len(first) :] == ["--scheduler", "dask"]
 
 
 def test_the_example_in_docs_runs() -> None:
-    (example,) = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S)
+    (example,) = blocks("fleet.md", "python")
     names: dict[str, object] = {}
-    exec(compile(example, str(PAGE), "exec"), names)
+    exec(compile(example, "fleet.md", "exec"), names)
     assert isinstance(names["fleet"], hyst.fleet.Fleet)

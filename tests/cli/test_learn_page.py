@@ -1,8 +1,7 @@
-"""docs/learning.md, run as it stands: a stage that starts at 3 % ends at its noise."""
+"""docs/tutorials/learning.md, run as it stands: a stage that starts at 3 % ends at its noise."""
 
 from __future__ import annotations
 
-import re
 import runpy
 import shlex
 import sys
@@ -12,23 +11,20 @@ import numpy as np
 import pytest
 from command_runs import Ended, Run
 from learning_runs import column, rows
+from pages import blocks
 
 from hyst.demo import SimulatedStage
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "learning.md"
-
-
-def blocks(kind: str) -> list[str]:
-    return re.findall(rf"```{kind}\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S)
+PAGE = "tutorials/learning.md"
 
 
 def follow(run: Run, monkeypatch: pytest.MonkeyPatch) -> list[Ended]:
     """Run every command of the page; give what those of hyst said."""
-    stage, motion = blocks("python")[:2]
+    stage, motion = blocks(PAGE, "python")[:2]
     Path("stage.py").write_text(stage, encoding="utf-8")
-    exec(compile(motion, str(PAGE), "exec"), {})
+    exec(compile(motion, PAGE, "exec"), {})
     said = []
-    for line in "".join(blocks("bash")).splitlines():
+    for line in "".join(blocks(PAGE, "bash")).splitlines():
         program, *words = shlex.split(line)
         if program == "python":
             monkeypatch.setattr(sys, "argv", words)
@@ -42,7 +38,7 @@ def test_the_page_is_as_it_says(run: Run, folder: Path, monkeypatch: pytest.Monk
     said = follow(run, monkeypatch)
     assert [each.code for each in said] == [0] * len(said)
     words = " ".join(said[-1].out.split())
-    for line in "".join(blocks("text")).splitlines():
+    for line in "".join(blocks(PAGE, "text")).splitlines():
         assert " ".join(line.split()) in words
     y_ref = column("wanted.csv", "position")
     missed = [

@@ -1,4 +1,4 @@
-"""docs/from_record_to_block.md, run as it stands: what it says is of the files that it makes."""
+"""The tutorial of a resonant stage, run as it stands: what it says is of the files it makes."""
 
 from __future__ import annotations
 
@@ -10,15 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_runs import Run, snapshot
+from pages import blocks
 
 import hyst
 from hyst.control import identification_weight, identified_plant, sampled_certificate
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "from_record_to_block.md"
-
-
-def blocks(kind: str) -> list[str]:
-    return re.findall(rf"```{kind}\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S)
+PAGE = "tutorials/hammerstein_and_observer.md"
 
 
 def sources(folder: Path) -> dict[str, bytes]:
@@ -26,20 +23,20 @@ def sources(folder: Path) -> dict[str, bytes]:
 
 
 def test_five_commands_lead_from_a_record_to_the_block(run: Run, folder: Path) -> None:
-    commands = [shlex.split(each) for each in blocks("bash")]
+    commands = [shlex.split(each) for each in blocks(PAGE, "bash")]
     assert [each[:2] for each in commands] == [
         ["hyst", verb] for verb in ("excite", "diagnose", "identify", "observer", "export")
     ]
-    (folder / "spec.toml").write_text(blocks("toml")[0], encoding="utf-8")
+    (folder / "spec.toml").write_text(blocks(PAGE, "toml")[0], encoding="utf-8")
     told = ""
     for number, command in enumerate(commands):
         ended = run(*command[1:])
         assert ended.code == 0, ended.err
         told += ended.out
         if number == 0:
-            exec(compile(blocks("python")[0], str(PAGE), "exec"), {})
+            exec(compile(blocks(PAGE, "python")[0], PAGE, "exec"), {})
     words = " ".join(told.split())
-    for each in blocks("text"):
+    for each in blocks(PAGE, "text"):
         for line in each.splitlines():
             assert line in words
     assert re.search(r"^SAFE: ", told, re.M)

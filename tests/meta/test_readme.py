@@ -8,6 +8,7 @@ import json
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -139,9 +140,10 @@ def test_python_names_exist(readme: str) -> None:
     assert not missing
 
 
-def test_python_blocks_run(readme: str, tmp_path: Path) -> None:
+def test_python_blocks_run(readme: str, repository: Path, tmp_path: Path) -> None:
     programs = blocks(readme, {"python", "py"})
     assert programs, "the README shows no Python"
+    shutil.copytree(repository / "examples", tmp_path / "examples")
     for program in programs:
         finished = subprocess.run(
             [sys.executable, "-W", "error", "-c", program],
@@ -151,6 +153,7 @@ def test_python_blocks_run(readme: str, tmp_path: Path) -> None:
             check=False,
         )
         assert finished.returncode == 0, finished.stderr
+        assert finished.stdout
 
 
 def test_links_lead_somewhere(readme: str, repository: Path) -> None:

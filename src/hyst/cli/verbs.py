@@ -82,6 +82,10 @@ VERBS: dict[str, tuple[str, str]] = {
         "hyst.cli.info",
         "Show what a model file holds: meaning, errors, origin, constants, traits, invertibility.",
     ),
+    "studio": (
+        "hyst.cli.studio",
+        "Do the whole job in a browser: look, identify, follow a reference, export; no typing.",
+    ),
     "reproduce": (
         "hyst.cli.reproduce",
         "Compute the papers' tables again, and print them beside the papers' numbers.",

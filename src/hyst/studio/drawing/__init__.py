@@ -1,0 +1,1 @@
+"""Plots as SVG, small whatever the length of the record."""

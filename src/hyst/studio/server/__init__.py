@@ -1,0 +1,1 @@
+"""The server: one address, one token, this machine only."""

@@ -1,0 +1,128 @@
+"""A session as a folder that the command line reads."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from hyst._files import replacing
+from hyst.errors import InputError
+from hyst.export import c_project, fmu, inverse_of, mex
+from hyst.identification import Identified
+from hyst.io import write_columns
+from hyst.report import dynamics_sections, write_report
+from hyst.studio.work.commands import Session
+from hyst.studio.work.folder import MARK
+from hyst.studio.work.following import command_for
+from hyst.studio.work.identifying import FoundModel
+from hyst.studio.work.measuring import record_of
+from hyst.studio.work.reference import Reference
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a session is and goes.
+
+    Parameters
+    ----------
+    record
+        The record's file.
+    folder
+        To write.
+    """
+
+    record: Path
+    folder: Path
+
+
+def save(
+    place: Place, session: Session, reference: Reference | None, tell: Callable[..., None]
+) -> tuple[str, ...]:
+    """Write a session.
+
+    Parameters
+    ----------
+    place, session, reference
+        Where and what.
+    tell
+        Not told anything.
+
+    Returns
+    -------
+    tuple of str
+        What was written, as paths from the folder.
+
+    Raises
+    ------
+    InputError
+        If the folder is there and is no session.
+    """
+    folder = place.folder
+    _require_own(folder)
+    (folder / "records").mkdir(parents=True, exist_ok=True)
+    copied = folder / "records" / session.record
+    if not copied.exists() or not copied.samefile(place.record):
+        shutil.copyfile(place.record, copied)
+    record = record_of(place.record, session.choice)
+    for each in session.models:
+        found = each.result()
+        sections = dynamics_sections(found)
+        write_report(
+            found, record, (), folder / "models" / each.name,
+            sources=[str(Path("records") / session.record)], sections=sections,
+        )  # fmt: skip
+    if reference is not None and session.method:
+        _write_command(folder, _chosen(session).result(), reference)
+    for target in session.exports:
+        _export(_chosen(session), target, folder / target)
+    with replacing(folder / MARK) as temporary:
+        lines = ["#!/bin/sh", "# Repeats this session; run it in this folder.", "set -e"]
+        temporary.write_text("\n".join([*lines, *session.commands()]) + "\n", encoding="utf-8")
+    written = sorted(each for each in folder.rglob("*") if each.is_file())
+    return tuple(each.relative_to(folder).as_posix() for each in written)
+
+
+def _require_own(folder: Path) -> None:
+    if folder.exists() and not (folder / MARK).is_file() and any(folder.iterdir()):
+        raise InputError(
+            f"{folder.name} is there and holds no session of the studio; give another name"
+        )
+
+
+def _chosen(session: Session) -> FoundModel:
+    return next(each for each in session.models if each.name == session.chosen)
+
+
+def _write_command(folder: Path, found: Identified, reference: Reference) -> None:
+    time, y_ref = reference.sampled(found.model.dt)
+    done, _ = command_for(found, y_ref)
+    about = found.description
+    u, y = (
+        f"{name} [{unit}]" if unit else name
+        for name, unit in ((about.input_name or "u", about.input_unit),
+                           (about.output_name or "y", about.output_unit))
+    )  # fmt: skip
+    _write(folder / "reference.csv", ["time [s]", y], [time, y_ref])
+    headers = ["time [s]", f"reference {y}", u, f"predicted {y}"]
+    _write(folder / "command.csv", headers, [time, y_ref, done.u, done.y_predicted])
+
+
+def _write(path: Path, headers: list[str], columns: list[np.ndarray]) -> None:
+    with replacing(path) as temporary:
+        write_columns(temporary, headers, columns)
+
+
+def _export(model: FoundModel, target: str, folder: Path) -> None:
+    found = model.result()
+    inverse = inverse_of(found.model)
+    if target == "c":
+        c_project(inverse, folder, force=True)
+    elif target == "fmu":
+        folder.mkdir(parents=True, exist_ok=True)
+        fmu(inverse, folder / "stage.fmu", force=True)
+    else:
+        mex(inverse, folder, force=True)
