@@ -84,6 +84,8 @@ def _product(*factors: dict[str, float]) -> str:
     powers = {unit: power for unit, power in powers.items() if power}
     if "" in powers:
         return ""
+    if list(powers.values()) == [1.0]:
+        return next(iter(powers))
     above = [_power(unit, power) for unit, power in powers.items() if power > 0.0]
     below = [_power(unit, -power) for unit, power in powers.items() if power < 0.0]
     text = " ".join(above) or ("1" if below else "")
