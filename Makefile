@@ -44,7 +44,7 @@ venv: $(bin)/python ## create the virtual environment
 install: $(installed_dev) ## install hyst and all development tools; again after a change of C or C++
 
 demo: $(installed) ## the whole story on a simulated stage; results in demo/
-	$(bin)/hyst demo -o demo
+	$(bin)/hyst demo -o demo --force
 
 docs: $(installed_dev) ## the documentation site, build/site/index.html; runs its notebooks
 	NO_MKDOCS_2_WARNING=1 $(bin)/mkdocs build --quiet

@@ -116,10 +116,10 @@ def test_weights_from_slopes_need_no_model(
     u = np.concatenate([np.linspace(0.0, 9.0, 100), np.linspace(9.0, -9.0, 200)])
     # Radii within the few percent that samples between two regimes cost a start that is exact.
     assert model(u)[50:] == pytest.approx(plant(u)[0][50:], abs=0.2)
-    assert adapt([data], folder, *law, "--law-plays", "2") == 0
+    assert adapt([data], folder, *law, "--law-plays", "2", "--force") == 0
     assert radii(folder).size == 2
     capsys.readouterr()
-    assert adapt([*files], folder, *law) == 2
+    assert adapt([*files], folder, *law, "--force") == 2
     assert "give DATA alone" in capsys.readouterr().err
 
 

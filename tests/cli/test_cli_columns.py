@@ -79,7 +79,7 @@ def test_a_channel_a_file(run: Run, refused: Callable[..., str], folder: Path) -
     options = ("--input", "u", "--output", "y", "--time", "t", "--output-file", "y.csv")
     quick = ("--family", "pi", "--plays", "2", "-o", "out")
     assert run("identify", "u.csv", *options, *quick).code == 0
-    several = refused("identify", "u.csv", "u.csv", *options, *quick)
+    several = refused("identify", "u.csv", "u.csv", *options, *quick, "--force")
     assert "--output-file is the output of one record, and 2 are given" in several
 
 
@@ -123,7 +123,7 @@ def test_a_rate_makes_the_time_and_without_one_there_is_none(
     compensate = ("compensate", "model.json", "ref.csv", "--column", 0, "-o", "c.csv")
     assert run(*compensate).code == 0
     assert (folder / "c.csv").read_text().startswith("reference [um],")
-    assert run(*compensate, "--rate", 1000).code == 0
+    assert run(*compensate, "--rate", 1000, "--force").code == 0
     assert (folder / "c.csv").read_text().startswith("time [s],reference [um],")
     stamps = hyst.io.read_column(folder / "c.csv", 0)[0]
     assert np.array_equal(stamps, np.arange(U.size) / 1000.0)

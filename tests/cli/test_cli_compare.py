@@ -146,7 +146,7 @@ def test_an_output_that_is_an_input_is_refused(
     inside = folder / "out" / "comparison.json"
     inside.parent.mkdir()
     STAGE.save(inside, describe(STAGE))
-    told = refused("compare", inside, models[0], fresh, *COLUMNS, "-o", "out")
+    told = refused("compare", inside, models[0], fresh, *COLUMNS, "-o", "out", "--force")
     assert "is one of the files to read" in told
     told = refused("compare", *models, fresh, *COLUMNS, "-o", "o", "--copy-best", "o/loops.png")
     assert "is a file of the report" in told

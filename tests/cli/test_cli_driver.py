@@ -103,7 +103,7 @@ def test_a_command_beyond_the_codes_is_refused_or_clipped(
     ended = run(*asked, *short, "--outside", "clip")
     assert ended.code == 0, ended.err
     assert np.loadtxt(folder / "c.csv", delimiter=",", skiprows=1)[:, 3].max() == 2400.0
-    ended = run(*asked, "--driver", "linear:0.05,500,0,2400")
+    ended = run(*asked, "--driver", "linear:0.05,500,0,2400", "--force")
     assert ended.code == 2
     assert "no code of the driver" in ended.err
 
@@ -194,7 +194,8 @@ def test_columns_that_say_codes_are_taken_as_the_model_s_driver_has_them(
     other = write_csv(folder / "other.csv", "t,drive,y [um]", codes * DT, codes, output)
     told = (("--driver", "driver.csv"),)
     for path, column, more in ((named, "code", ()), (unit, "drive", ()), (other, "drive", *told)):
-        ended = run("simulate", "out/model.json", path, "--input", column, *more, "-o", "s.csv")
+        out = ("-o", "s.csv", "--force")
+        ended = run("simulate", "out/model.json", path, "--input", column, *more, *out)
         assert ended.code == 0, ended.err
         rows = np.loadtxt(folder / "s.csv", delimiter=",", skiprows=1)
         assert np.array_equal(rows[:, 1], DRIVER.volts(codes))

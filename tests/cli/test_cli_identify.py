@@ -141,13 +141,19 @@ def test_auto_shows_what_it_compared_and_what_it_chose(run: Run, record_file: Pa
     assert ended.out.count("<- chosen") == 1
 
 
-def test_replaces_its_own_files_and_leaves_others(
+def test_replaces_its_own_files_when_asked_and_leaves_others(
     run: Run, record_file: Path, folder: Path
 ) -> None:
     (folder / "out").mkdir()
     (folder / "out" / "notes.txt").write_text("mine")
     (folder / "out" / "model.json").write_text("old")
-    ended = run("identify", record_file, *COLUMNS, "--time", "t", *QUICK, "-o", "out")
+    words = ("identify", record_file, *COLUMNS, "--time", "t", *QUICK, "-o", "out")
+    before = snapshot(folder)
+    ended = run(*words)
+    assert ended.code == 2
+    assert "the folder out holds files already" in ended.err
+    assert snapshot(folder) == before
+    ended = run(*words, "--force")
     assert ended.code == 0
     assert (folder / "out" / "notes.txt").read_text() == "mine"
     assert {path.name for path in (folder / "out").iterdir()} == FILES | {"notes.txt"}
@@ -166,7 +172,8 @@ def test_a_failure_while_writing_leaves_everything_as_it_was(
     (folder / "old" / "model.json").write_text("old")
     before = snapshot(folder)
     for target in ("new", "old"):
-        ended = run("identify", record_file, *COLUMNS, "--time", "t", *QUICK, "-o", target)
+        out = ("-o", target, "--force")
+        ended = run("identify", record_file, *COLUMNS, "--time", "t", *QUICK, *out)
         assert ended.code == 1
         assert "No space left" in ended.err
         assert snapshot(folder) == before
@@ -320,7 +327,8 @@ def test_a_folder_in_the_place_of_a_file_is_refused(
 ) -> None:
     (folder / "out" / "model.json").mkdir(parents=True)
     before = snapshot(folder)
-    ended = run("identify", record_file, *COLUMNS, "--time", "t", *QUICK, "-o", "out")
+    out = ("-o", "out", "--force")
+    ended = run("identify", record_file, *COLUMNS, "--time", "t", *QUICK, *out)
     assert ended.code == 2
     assert "model.json is a folder" in ended.err
     assert snapshot(folder) == before
@@ -341,7 +349,7 @@ def test_validation_records_may_call_their_columns_otherwise(
     assert ended.code == 0, ended.err
     numbers = (folder / "out" / "metrics.json").read_text(encoding="utf-8")
     plain = write_csv(folder / "plain.csv", "t,u,y", T, U, Y)
-    assert run(*words, "--validate", plain).code == 0
+    assert run(*words, "--validate", plain, "--force").code == 0
     again = (folder / "out" / "metrics.json").read_text(encoding="utf-8")
     # The same signals under other names.
     assert (

@@ -84,7 +84,7 @@ def test_what_a_delay_costs_is_told_and_saved(run: Run, folder: Path) -> None:
     told = float(plain.out.split("would miss the reference by ")[1].split(" ")[0])
     assert told == pytest.approx(0.15 * 0.6 / np.sqrt(2.0), rel=0.1)
     assert missed() == pytest.approx(told, rel=0.1)
-    early = run(*asked, "--with-delay")
+    early = run(*asked, "--with-delay", "--force")
     assert early.code == 0, early.err
     assert "3 samples of 0.001 s earlier" in early.out
     assert missed() < 0.1 * told

@@ -90,7 +90,7 @@ def test_what_a_trajectory_is_polished_for(run: Run, folder: Path) -> None:
     assert "a second difference of 1 counting as an error of 0.2" in said
     u = hyst.io.read_column(folder / "command.csv", "command")[0]
     assert f"{np.abs(np.diff(u, 2)).max():.4g} at most" in said
-    ended = run(*words, "--method", "preview", *how)
+    ended = run(*words, "--method", "preview", *how, "--force")
     assert ended.code == 2
     assert "--objective" in ended.err
 
@@ -146,7 +146,7 @@ def test_a_time_column_of_the_reference_is_checked(
         ("compensate", "model.json", "ref.csv", "--column", "y", "--method", "explicit"),
         ("simulate", "model.json", "ref.csv", "--input", "y"),
     ):
-        ended = run(*verb, "-o", "command.csv")
+        ended = run(*verb, "-o", "command.csv", "--force")
         if message is None:
             assert ended.code == 0, ended.err
             assert "is taken to have" not in ended.err + ended.out

@@ -37,12 +37,12 @@ def test_one_table_or_each_as_a_record(run: Run) -> None:
     assert "holds 2 tables below each other (1: 300 rows from line 2 on" in refused.err
     one = run("identify", path, *COLUMNS, "--time", "time", "--table", "2", *QUICK)
     assert one.code == 0
-    both = run("identify", path, *COLUMNS, "--time", "time", "--table", "all", *QUICK)
+    both = run("identify", path, *COLUMNS, "--time", "time", "--table", "all", *QUICK, "--force")
     assert both.code == 0
     report = Path("out/report.html").read_text()
     assert "loop.csv, table 1" in report
     assert "loop.csv, table 2" in report
-    wrong = run("identify", path, *COLUMNS, "--time", "time", "--table", "two", *QUICK)
+    wrong = run("identify", path, *COLUMNS, "--time", "time", "--table", "two", *QUICK, "--force")
     assert (wrong.code, "--table is 'two'; give a whole number or all" in wrong.err) == (2, True)
 
 
@@ -154,7 +154,8 @@ def test_format_and_limit(run: Run) -> None:
     timed = (*COLUMNS, "--time", "time")
     assert run("identify", path, *timed, *QUICK).code == 2
     assert run("identify", path, *timed, "--format", "text", *QUICK).code == 0
-    many = run("identify", path, *timed, "--format", "text", "--max-samples", "100", *QUICK)
+    few = ("--max-samples", "100", "--force")
+    many = run("identify", path, *timed, "--format", "text", *few, *QUICK)
     assert (many.code, "at most 100 are read" in many.err) == (2, True)
 
 

@@ -75,7 +75,7 @@ def test_no_advice_on_a_delay_of_what_is_unfit(
     assert "a delay of 3 samples, 30 ms; of a model that does not describe its record" in told
     assert "giving the command" not in told
     judged(Verdict("fair", ("Drift is left.",)))
-    told = run("identify", record_file, *COLUMNS, *late, "-o", "out").out
+    told = run("identify", record_file, *COLUMNS, *late, "-o", "out", "--force").out
     assert "by giving the command that much earlier" in told
 
 

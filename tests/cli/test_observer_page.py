@@ -24,7 +24,7 @@ def test_a_page_has_no_block_of_another_run_beside_it(run: Run, folder: Path) ->
     assert (folder / "out" / "controller.json").exists()
     steep = QUICK.replace('kind = "scaled"\nfactor = 0.7', 'kind = "none"')
     (folder / "spec.toml").write_text(steep, encoding="utf-8")
-    ended = run("observer", "spec.toml", "-o", "out")
+    ended = run("observer", "spec.toml", "-o", "out", "--force")
     assert "NOT SAFE" in ended.out
     assert not (folder / "out" / "controller.json").exists()
     # The design in continuous time knows nothing of the inverse: its praise is not repeated here.

@@ -26,7 +26,17 @@ WIDEST_NUMBER = 40
 
 @dataclass
 class Told:
-    """What was told, kept to be printed as JSON."""
+    """What was told, kept to be printed as JSON.
+
+    Parameters
+    ----------
+    tables
+        With title, header and rows.
+    files
+        That were written.
+    notes
+        Of ``note``.
+    """
 
     tables: list[dict[str, Any]] = field(default_factory=list)
     files: list[str] = field(default_factory=list)

@@ -59,7 +59,7 @@ def demo(
         f"  hyst identify {folder / 'record.csv'} --input drive --output position --time time "
         f"-o {folder / 'again'}\n"
         f"  hyst compensate {folder / 'model.json'} {folder / 'reference.csv'} --column reference "
-        f"--history {folder / 'history.csv'}:drive --with-delay -o {folder / 'command.csv'}"
+        f"--history {folder / 'history.csv'}:drive --with-delay -o {folder / 'again.csv'}"
     )
 
 

@@ -20,6 +20,9 @@ from hyst.cli.protection import protected, refuse_existing
 _PANEL = "Options of every verb"
 _GIVEN = "hyst.cli.verb"
 
+_WRITING_ANEW = ("learn", "watch")
+"""Verbs that replace their own files at each repetition, or go on from them."""
+
 
 class Verb(TyperCommand):
     """A verb with the options that all have, unless it has one of that name itself."""
@@ -29,6 +32,8 @@ class Verb(TyperCommand):
         own: list[Any] = [*super().get_params(ctx)]
         taken = {each for parameter in own for each in parameter.opts}
         common = [each for each in _common() if not taken.intersection(each.opts)]
+        if self.name in _WRITING_ANEW:
+            common = [each for each in common if each.name != "force"]
         return [*own[:-1], *common, *own[-1:]]
 
     def invoke(self, ctx: Any) -> Any:
@@ -39,7 +44,9 @@ class Verb(TyperCommand):
             refuse_existing(ctx.params, is_forced)
         if saved is not None:
             write_options(saved, self, ctx, is_forced)
-        with protected(ctx.params), _speaking(str(self.name), given) as ended:
+        # A log that goes on from its own estimator replaces it.
+        read = {} if self.name == "watch" else ctx.params
+        with protected(read), _speaking(str(self.name), given) as ended:
             ended["exit_code"] = super().invoke(ctx) or 0
         return ended["exit_code"]
 

@@ -45,7 +45,7 @@ from hyst.report.observer.page import observer_page as observer_page
 from hyst.report.observer.tables import answer_tables as answer_tables
 from hyst.report.parameter_tables import constants_table as constants_table
 from hyst.report.parameter_tables import parameters_table as parameters_table
-from hyst.report.parameter_units import parameter_units as parameter_units
+from hyst.report.parameter_units import units_of_parameters as units_of_parameters
 from hyst.report.table import Table as Table
 from hyst.report.table import number as number
 from hyst.report.tables import candidates_table as candidates_table

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from hyst.identification import Identified
 from hyst.operators import Operator
-from hyst.report.parameter_units import parameter_units
+from hyst.report.parameter_units import units_of_parameters
 from hyst.report.table import Table, number
 
 
@@ -24,7 +24,7 @@ def parameters_table(identified: Identified) -> Table:
     Table
     """
     about = identified.description
-    units = parameter_units(identified.model, about.input_unit, about.output_unit)
+    units = units_of_parameters(identified.model, about.input_unit, about.output_unit)
     unit_of = dict(zip(identified.model.parameters().names, units, strict=True))
     rows = [
         (name, number(value, 6), "-" if math.isnan(error) else number(error, 2))
@@ -75,7 +75,7 @@ def constants_table(model: Operator, input_unit: str = "", output_unit: str = ""
     Table
     """
     own = model.parameters()
-    units = parameter_units(model, input_unit, output_unit)
+    units = units_of_parameters(model, input_unit, output_unit)
     pairs = zip(own.names, own.values.tolist(), strict=True)
     rows = tuple((name, number(value, 10)) for name, value in pairs)
     return _with_units(

@@ -20,7 +20,7 @@ _OF_TIME = {
 """Constants that are times by their name."""
 
 
-def parameter_units(model: Operator, input_unit: str, output_unit: str) -> tuple[str, ...]:
+def units_of_parameters(model: Operator, input_unit: str, output_unit: str) -> tuple[str, ...]:
     """Give the unit of every constant of a model.
 
     A constant that is multiplied by ``a**m b**n`` where the numbers of the input are multiplied by
@@ -45,7 +45,7 @@ def parameter_units(model: Operator, input_unit: str, output_unit: str) -> tuple
     --------
     >>> import hyst
     >>> model = hyst.PrandtlIshlinskii([0.3, 0.2], [0.5, 1.0], p0=0.5)
-    >>> hyst.report.parameter_units(model, "V", "um")
+    >>> hyst.report.units_of_parameters(model, "V", "um")
     ('um/V', 'um/V', 'um/V', 'V', 'V')
     """
     names = model.parameters().names
@@ -84,6 +84,8 @@ def _product(*factors: dict[str, float]) -> str:
     powers = {unit: power for unit, power in powers.items() if power}
     if "" in powers:
         return ""
+    if list(powers.values()) == [1.0]:
+        return next(iter(powers))
     above = [_power(unit, power) for unit, power in powers.items() if power > 0.0]
     below = [_power(unit, -power) for unit, power in powers.items() if power < 0.0]
     text = " ".join(above) or ("1" if below else "")
