@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal
 
-from threadpoolctl import threadpool_limits
-
 from hyst.diagnosis import Diagnosis
 from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
+from hyst.identification.blas_threads import one_blas_thread
 from hyst.identification.creep.creeping import Creeping
 from hyst.identification.creep.found_creep import with_creep
 from hyst.identification.creep.wanted import Wanted as Creeps
@@ -145,9 +144,8 @@ def identify(
     families, lags = creeping_inside(families, lags)
     require_place(families, lags)
     reserve = families_in_reserve(family, options)
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         diagnosis = diagnose_all_but_delay(given)
-        # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
         reserve = tuple(each for each in reserve if _is_called_for(each, diagnosis))
         clean = cleaned(given, diagnosis, about_drift)
 

@@ -213,8 +213,10 @@ class Data:
             own = self.lag_of(number)
             moved = own - math.floor(own) + lag_in_samples(more, self.records[0].dt, record.dt)
             whole = math.floor(moved)
-            shifted = by_whole_samples(self._later(u, moved - whole), whole)
-            records.append(replace(record, u=shifted))
+            # What an earlier input has after its last sample lies on the line through the last two.
+            further = np.append(u, 2.0 * u[-1] - u[-2] if u.size > 1 else u[-1])
+            shifted = by_whole_samples(self._later(further, moved - whole), whole)
+            records.append(replace(record, u=shifted[: u.size]))
         return replace(self, records=tuple(records))
 
     def _later(self, u: Array, part: float) -> Array:
