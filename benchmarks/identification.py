@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 import hyst
+from benchmarks.fit_speed import unit_told
 from hyst.identification.fit.play_bank import bank_matrix
 from hyst.identification.fit.weights import fit_weights
 from hyst.identification.record_use.used_samples import prepare
@@ -46,7 +47,7 @@ def print_times() -> None:
     print(f"  streamed Gram and NNLS  {1e3 * ours:8.2f} ms")
     print(f"  matrix and scipy nnls   {1e3 * peer:8.2f} ms   ratio {peer / ours:.1f}")
     whole = median_time(lambda: hyst.identify(record), 1)
-    print(f"identify, all families and sizes, 8000 samples: {whole:.2f} s")
+    print(f"identify, all families and sizes, 8000 samples: {whole:.2f} s; {unit_told()}")
 
 
 def with_offset(matrix: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -213,9 +213,10 @@ class Data:
             own = self.lag_of(number)
             moved = own - math.floor(own) + lag_in_samples(more, self.records[0].dt, record.dt)
             whole = math.floor(moved)
-            # What an earlier input has after its last sample lies on the line through the last two.
-            further = np.append(u, 2.0 * u[-1] - u[-2] if u.size > 1 else u[-1])
-            shifted = by_whole_samples(self._later(further, moved - whole), whole)
+            # An earlier input goes on after its last sample, on the line through the last two.
+            further = u[-1] + np.array([1.0, 2.0]) * np.diff(u[-2:]).sum()
+            beyond = self._later(np.concatenate([u, further]), moved - whole)
+            shifted = by_whole_samples(beyond, whole)
             records.append(replace(record, u=shifted[: u.size]))
         return replace(self, records=tuple(records))
 
