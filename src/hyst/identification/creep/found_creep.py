@@ -113,7 +113,7 @@ def with_creep(
             return as_it_was
         if _no_place(found.fit):
             return as_it_was
-    seen = evidence_of(*work.scaled(found), drifts)
+    seen = evidence_of(*work.scaled(found), drifts, only_if_shown=wanted == AUTO)
     if wanted != AUTO:
         require_told(seen)
     without = replace(as_it_was, evidence=replace(seen, shown=False), asked=wanted != AUTO)
