@@ -21,6 +21,7 @@ from pathlib import Path
 import numpy as np
 
 import hyst
+from benchmarks.fit_speed import unit_told
 from benchmarks.measured_tasks import Task, tasks
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "families.md"
@@ -64,6 +65,7 @@ def main() -> None:
     """Print a table for each data set, and write all of them if asked to."""
     asked = _asked()
     _load_what_is_slow()
+    print(unit_told())
     rows: list[tuple[Task, list[Entry]]] = []
     notes: list[str] = []
     for task in tasks():

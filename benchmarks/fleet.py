@@ -16,7 +16,7 @@ from pathlib import Path
 
 import hyst
 import hyst.demo
-from benchmarks.fit_speed import DRIVES, SAMPLES, TEN, measured, peer
+from benchmarks.fit_speed import unit_seconds
 
 
 class _File:
@@ -44,7 +44,10 @@ def main() -> None:
         fleet = hyst.fleet.identify(sources, folder=out)
         wall, spent = time.perf_counter() - wall, _processor_seconds() - spent
     print(f"  {count} devices: {wall:.1f} s, {wall / unit:.0f} units; on {os.cpu_count()} cores")
-    print(f"  processor time {spent:.1f} s, {1e3 * spent / count:.0f} ms a device")
+    print(
+        f"  processor time {spent:.1f} s, {spent / unit:.0f} units; {1e3 * spent / count:.0f} ms, "
+        f"{spent / unit / count:.2f} units a device"
+    )
     for each in fleet.sentences():
         print(f"  {each}")
     named = {each.identifier for each in fleet.outliers} | set(fleet.failures)
@@ -57,18 +60,6 @@ def main() -> None:
 def _processor_seconds() -> float:
     told = os.times()
     return told.user + told.system + told.children_user + told.children_system
-
-
-def unit_seconds() -> float:
-    """Time the peer's fit of ten plays and radii of ``fit_speed``, compiled before."""
-    record = measured(TEN, list(DRIVES.values())[-1](SAMPLES))
-    peer(record, 10)
-    times = []
-    for _ in range(3):
-        begun = time.perf_counter()
-        peer(record, 10)
-        times.append(time.perf_counter() - begun)
-    return min(times)
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 import hyst
+from benchmarks.fit_speed import unit_told
 from benchmarks.timing import interleaved, report, report_times
 from hyst.identification.fit.play_bank import bank_matrix
 from hyst.identification.fit.weights import fit_weights
@@ -53,7 +54,7 @@ def print_times() -> None:
     over = report_times("scipy nnls over ours, weights of 10 plays", times, peer, ours)
     print(f"  ratio {over:.1f}")
     whole = median_time(lambda: hyst.identify(record), 1)
-    print(f"identify, all families and sizes, 8000 samples: {whole:.2f} s")
+    print(f"identify, all families and sizes, 8000 samples: {whole:.2f} s; {unit_told()}")
 
 
 def with_offset(matrix: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 
 import hyst
-from benchmarks.fit_speed import MAPPED, NOISE, TEN, decaying, measured, peer
-from benchmarks.timing import interleaved, report
+from benchmarks.fit_speed import MAPPED, NOISE, decaying, measured, unit_seconds
+from benchmarks.timing import report
 
 PIECE = 10**6
 ALLOWED, TIMES = 150.0, 3.0
@@ -30,8 +30,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--largest", type=int, default=6)
     largest = parser.parse_args([] if arguments is None else arguments).largest
-    record = measured(TEN, decaying(10_000))
-    unit = float(np.median(interleaved({"peer": lambda: peer(record, 10)}, seconds=2.0)["peer"]))
+    unit = unit_seconds()
     print(f"a unit is {unit:.3f} s of processor time: the peer's fit of ten plays to 10^4 samples")
     spent: dict[int, float] = {}
     with tempfile.TemporaryDirectory() as folder:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import hyst
-from hyst.identification.choice.selection import first_fit
+from hyst.identification.choice.fits_from_starts import first_fit
 from hyst.identification.families.family import Family
 from hyst.identification.fit.bounded_least_squares import minimize
 from hyst.identification.fit.left_out import normal_equations_without, refitted

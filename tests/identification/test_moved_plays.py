@@ -7,7 +7,7 @@ import pytest
 from simulated_records import drive, plays_by_definition
 
 import hyst
-from hyst.identification.choice.selection import best_of_starts
+from hyst.identification.choice.fits_from_starts import best_of_starts
 from hyst.identification.families.plays import layout_of
 from hyst.identification.fit.moved_plays import MovedPlays
 from hyst.identification.fit.whiteness import is_white

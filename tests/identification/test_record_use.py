@@ -106,3 +106,13 @@ def test_rate_independent_records_of_different_sample_times_share_one_lag_in_tim
     found = hyst.identify([fast, slow], family="pi", plays=3, delay=4)
     assert found.model.parameters().values[0] == pytest.approx(1.0, abs=0.01)
     assert found.used[1].start == found.used[0].start // 2 or found.used[1].start > 0
+
+
+@pytest.mark.parametrize("part", [-0.25, -0.01, 0.25])
+def test_an_input_a_little_earlier_goes_on_beyond_its_last_sample(part: float) -> None:
+    """The last sample of a straight ramp moves as all others do, and is not held."""
+    ramp = np.concatenate([np.linspace(0.0, 1.0, 50), np.linspace(1.0, -1.0, 101)[1:]])
+    data = prepare(hyst.Record(ramp, ramp, 1e-3), "auto")
+    moved = data.a_little_later(part).records[0].u
+    step = -2.0 / 100.0
+    np.testing.assert_allclose(moved[-20:] - ramp[-20:], -part * step, atol=1e-12)

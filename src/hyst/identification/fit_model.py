@@ -8,11 +8,11 @@ from typing import Literal, final
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
 from hyst.errors import InputError, NotIdentifiableError
-from hyst.identification.choice.selection import settled
+from hyst.identification.blas_threads import one_blas_thread
+from hyst.identification.choice.fits_from_starts import settled
 from hyst.identification.dynamics_estimates import chain_of, estimates_of_chain
 from hyst.identification.families.family import Estimates, Family, Fit, Start, Words
 from hyst.identification.families.hammerstein.impulse_response.first_dynamics import shortened
@@ -175,7 +175,7 @@ def fit(
     data = data.delayed(as_delay(delay, data, ""))
     for record in (*given, *judged):
         model.require_sample_time(record.dt)
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         found = _fitted(OwnModel(parametrization, theta), data, options)
         say("verdict")
         told = identified_from_fit(data, found, (), judged, (), diagnosis)

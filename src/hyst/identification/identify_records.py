@@ -8,10 +8,10 @@ from functools import partial
 from typing import Any, Literal
 
 from numpy.typing import ArrayLike
-from threadpoolctl import threadpool_limits
 
 from hyst.diagnosis import Diagnosis
 from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
+from hyst.identification.blas_threads import one_blas_thread
 from hyst.identification.creep.creeping import Creeping
 from hyst.identification.creep.found_creep import with_creep
 from hyst.identification.creep.wanted import Wanted as Creeps
@@ -163,9 +163,8 @@ def identify(
     require_place(families, lags)
     reserve = families_in_reserve(family, options)
     say("diagnosis")
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         diagnosis = diagnose_all_but_delay(given)
-        # Matrices of a few dozen columns: a second BLAS thread costs more than it gives.
         reserve = tuple(each for each in reserve if _is_called_for(each, diagnosis))
         clean = cleaned(given, diagnosis, about_drift)
         search = _Search(clean, families, as_lag(lag), lags, about_drift == "auto", wanted)

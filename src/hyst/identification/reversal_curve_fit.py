@@ -17,11 +17,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from hyst.checks.numbers import as_number
 from hyst.checks.numbers import whole_number as as_whole_number
 from hyst.errors import InputError, NotIdentifiableError
+from hyst.identification.blas_threads import one_blas_thread
 from hyst.identification.choice.blocks import Block
 from hyst.identification.families.preisach.cells import Cells, adapted_cells, even_cells
 from hyst.identification.families.preisach.grid_choice import (
@@ -139,7 +139,7 @@ def identify_from_reversal_curves(
     strength = None if smoothness == AUTO else _as_strength(smoothness)
     cells = even_cells(float(u.min()), float(u.max()), side)
     sign = 1.0 if float((u - u.mean()) @ y) >= 0.0 else -1.0
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         found, like_noise = _fitted(curves, cells, strength, (sign, span, output_range))
         if levels != AUTO or like_noise:
             return found

@@ -7,6 +7,7 @@ record by powers of two scales the result, bit for bit; other factors change the
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -16,18 +17,17 @@ from hyst.diagnosis.delay_evidence import DelayEvidence
 from hyst.errors import InputError, NotIdentifiableError
 from hyst.identification.choice.cross_validation import fewest_left
 from hyst.identification.choice.delay import OWN, find_delay, told_by_family, usable_delay
+from hyst.identification.choice.fits_from_starts import best_of_starts, settled
 from hyst.identification.choice.joint_delay import with_joint_delay
 from hyst.identification.choice.overviews import with_overviews
 from hyst.identification.choice.rivals import other_signs, rivals_of
 from hyst.identification.choice.selection import (
     Contender,
     as_good_as_best,
-    best_of_starts,
     compare,
     contender_of,
     in_reserve,
     not_compared,
-    settled,
     simplest_good,
 )
 from hyst.identification.choice.sign_of_weights import Ruling, ruled
@@ -81,6 +81,11 @@ class Found:
     notes: tuple[str, ...]
     rivals: tuple[Fit, ...]
     delay: DelayEvidence | None
+
+    @functools.cached_property
+    def leaves_noise(self) -> bool:
+        """Whether what the fit leaves is noise."""
+        return level_of(self.data, self.fit) == "good"
 
 
 def find(

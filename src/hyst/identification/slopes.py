@@ -13,9 +13,9 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from hyst.errors import InputError, NotIdentifiableError
+from hyst.identification.blas_threads import one_blas_thread
 from hyst.models import PrandtlIshlinskii
 from hyst.signals import Record, reversals, suggest_dead_band
 
@@ -150,7 +150,7 @@ def identify_weights_from_slopes(
     counts = range(max_plays + 1) if plays == "auto" else (plays,)
     edges = np.unique(np.linspace(0, x.size, min(_BINS, x.size // 3) + 1).astype(int))
     cuts = _best_cuts(_sums(x, y, edges), max(counts) + 1)
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         return _best_line(x, y, cuts, counts, edges, strokes)
 
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 import scipy.optimize
 
 from hyst.diagnosis.delay_evidence import DelayEvidence, evidence_of_delay
+from hyst.identification.choice.fewer_samples import LOOK_SAMPLES
 from hyst.identification.families.family import Fit
-from hyst.identification.record_use.thinning import thinned
+from hyst.identification.record_use.thinning import MOST_SAMPLES, thinned
 from hyst.identification.record_use.used_samples import Data
 
 NOISE_ALIKE = 1.05
@@ -97,6 +99,8 @@ def _told_by_own_loops(data: Data, fit: Fit, evidence: DelayEvidence) -> DelayEv
     first = np.linspace(-limit, limit, OWN_LAGS_TRIED).tolist()
     if now:  # found before, on a grid that was made for another lag
         step, first = OWN_STEP, [0, now - OWN_STEP, now + OWN_STEP]
+    elif not _promises(data, fit, [round(each) for each in first]):
+        return None
     for lag in {round(each) for each in first if abs(each) <= limit} - {now}:
         costs[lag] = _rms_of_searched(data, fit, lag)
     while step > 1:
@@ -123,8 +127,14 @@ def _told_by_own_loops(data: Data, fit: Fit, evidence: DelayEvidence) -> DelayEv
     )
 
 
-def _rms_of_searched(data: Data, fit: Fit, lag: int) -> float:
-    searched = fit.family.searched(data.delayed(lag))
+def _promises(data: Data, fit: Fit, lags: Sequence[int]) -> bool:
+    """Tell on few samples whether any of some lags leaves less than none."""
+    few = (_rms_of_searched(data, fit, lag, LOOK_SAMPLES) for lag in lags if lag)
+    return min(few, default=math.inf) < _rms_of_searched(data, fit, 0, LOOK_SAMPLES)
+
+
+def _rms_of_searched(data: Data, fit: Fit, lag: int, most: int = MOST_SAMPLES) -> float:
+    searched = thinned(fit.family.searched(data.delayed(lag)), most)
     problem = fit.problem(searched)
     theta = fit.family.solve(problem, fit.solution.theta, REFIT_ITERATIONS).theta
     residual = problem.residual(theta)[: searched.measured().size]

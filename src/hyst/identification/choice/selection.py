@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from hyst.errors import NotIdentifiableError, SolverError
 from hyst.identification.choice.cross_validation import (
     Score,
@@ -15,9 +13,9 @@ from hyst.identification.choice.cross_validation import (
     leaves_white_noise,
     score_in_sample,
 )
-from hyst.identification.choice.fewer_samples import for_a_look
+from hyst.identification.choice.fewer_samples import for_a_look, look_at
+from hyst.identification.choice.fits_from_starts import first_fit
 from hyst.identification.families.family import Family, Fit
-from hyst.identification.fit.bounded_least_squares import CONVERGED, Solution
 from hyst.identification.progress import Progress
 from hyst.identification.record_use.overview import Overview
 from hyst.identification.result.identified import Candidate
@@ -41,11 +39,6 @@ NEAR = 1.2
 
 CLEARLY = 1.2
 """Times that, from which on few samples tell that it is not near."""
-
-SAME_COST = 0.01
-"""Costs that differ by this share of the residual variance are equal."""
-
-LEAST_ITERATIONS = 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,92 +79,6 @@ class Contender:
             negligible = min(REPEATED * least**2, (NEGLIGIBLE * output_range) ** 2)
         equal = max((1.0 + EQUAL) * least, ROUNDING * output_range)
         return self.score.rms <= equal or not self.score.seems_worse(other.score, negligible)
-
-
-def best_of_starts(
-    family: Family, overview: Overview, size: int, most: int, max_iterations: int = 100
-) -> Fit:
-    """Fit a family of a given size from several starts and keep the best.
-
-    Parameters
-    ----------
-    family
-        The family.
-    overview
-        The records.
-    size
-        One of its sizes.
-    most
-        How many starts to try.
-    max_iterations
-        For each start.
-
-    Returns
-    -------
-    Fit
-    """
-    fits: list[Fit] = []
-    known = overview.found(("first fit", family, size)) if most > 1 else None
-    for parametrization, theta in family.starts(overview, size, most):
-        if not fits and isinstance(known, Fit) and _serves(known, max_iterations):
-            fits.append(known)
-            continue
-        unsolved = Fit(family, size, parametrization, Solution(theta, np.inf, 0, ""))
-        problem = unsolved.problem(overview.data, overview.kept)
-        solution = family.solve(problem, theta, max_iterations)
-        fits.append(replace(unsolved, solution=solution))
-    return min(fits, key=lambda each: each.solution.cost)
-
-
-def _serves(known: Fit, max_iterations: int) -> bool:
-    """Tell whether a fit is what one with other steps at most would come to."""
-    ended = known.solution
-    return ended.status == CONVERGED and ended.iterations <= max_iterations
-
-
-def first_fit(family: Family, overview: Overview, size: int) -> Fit:
-    """Fit a family of a given size from its best guess, once for all who ask.
-
-    Parameters
-    ----------
-    family
-        The family.
-    overview
-        The records.
-    size
-        One of its sizes.
-    """
-    return overview.once(
-        ("first fit", family, size), lambda: best_of_starts(family, overview, size, most=1)
-    )
-
-
-def settled(fit: Fit, overview: Overview, max_iterations: int) -> Fit:
-    """Go on from a fit that did not converge, and take it for converged if that gains nothing.
-
-    At a kink the iteration may go back and forth for ever within a fraction of a standard error.
-
-    Parameters
-    ----------
-    fit
-        A fit.
-    overview
-        Its records.
-    max_iterations
-        At most.
-
-    Returns
-    -------
-    Fit
-    """
-    if fit.solution.status == CONVERGED:
-        return fit
-    problem = fit.problem(overview.data, overview.kept)
-    again = fit.family.solve(problem, fit.solution.theta, max(max_iterations, LEAST_ITERATIONS))
-    samples = overview.data.measured().size
-    same = fit.solution.cost - again.cost <= SAME_COST * again.cost / samples
-    solution = replace(again, status=CONVERGED) if same else fit.solution
-    return replace(fit, solution=solution)
 
 
 def compare(
@@ -229,8 +136,8 @@ def in_reserve(
     families
         Each with its records.
     chosen
-        The best so far: what leaves far more of the records from its best guess is no candidate,
-        and is not scored.
+        The best so far: what leaves far more of the records from its best guess than it, or than
+        a family scored before, is no candidate, and is not scored.
     progress
         Told what is being fitted.
 
@@ -245,20 +152,32 @@ def in_reserve(
         own = _share(progress, k, len(families))
         own(family.named_size(largest), 0.0)
         try:
-            if _comes_near(family, overview, largest, chosen):
+            if _comes_near(family, overview, largest, _most(chosen, contenders)):
                 contenders += _grow(family, overview, own)
         except (NotIdentifiableError, SolverError):
             continue
     return tuple(contenders)
 
 
-def _comes_near(family: Family, overview: Overview, size: int, chosen: Contender) -> bool:
-    """Tell whether a family leaves hardly more than what was chosen."""
-    most = NEAR**2 * _left(chosen.fit, chosen.overview)
+def _most(chosen: Contender, contenders: Sequence[Contender]) -> float:
+    """Give the mean square up to which a family is scored.
+
+    Of records with minor loops a family whose best fit leaves more than another one misses of what
+    it has not seen is no tie with that one. Of strokes of one amplitude it may be a rival.
+    """
+    most = _left(chosen.fit, chosen.overview)
+    if chosen.overview.shows_minor_loops:
+        missed = (max(each.score.rms**2, _left(each.fit, each.overview)) for each in contenders)
+        most = min([most, *missed])
+    return NEAR**2 * most
+
+
+def _comes_near(family: Family, overview: Overview, size: int, most: float) -> bool:
+    """Tell whether a family leaves hardly more than a mean square."""
     fewer = for_a_look(overview)
     if family.is_linear or fewer is overview:
         return _left(first_fit(family, overview, size), overview) <= most
-    look = first_fit(family, fewer, size)
+    look = look_at(family, fewer, size, CLEARLY**2 * most)
     near = _left(look, fewer)
     if size or near > CLEARLY**2 * most:
         return near <= most

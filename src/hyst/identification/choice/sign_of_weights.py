@@ -22,7 +22,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyst.identification.choice.cross_validation import fewest_left
-from hyst.identification.choice.selection import first_contender, first_fit
+from hyst.identification.choice.fits_from_starts import first_fit
+from hyst.identification.choice.selection import first_contender
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.plays import fine_weights, negative_weights_pay
 from hyst.identification.fit.weight_rules import INVERTIBLE, NON_NEGATIVE

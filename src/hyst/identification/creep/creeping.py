@@ -20,7 +20,6 @@ from hyst.identification.creep.told import (
 )
 from hyst.identification.fit.nuisance import Drift, Nuisances, moments_of, over_whole_records
 from hyst.identification.fit.problem import model_output
-from hyst.identification.judgement.judge import level_of
 from hyst.identification.record_use.cleaned import Cleaned
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.identified import Identified
@@ -65,7 +64,7 @@ class Creeping:
 
     def leaves_noise(self) -> bool:
         """Tell whether what the model leaves is noise."""
-        return level_of(self.found.data, self.found.fit) == "good"
+        return self.found.leaves_noise
 
     def or_better(self, other: Creeping) -> Creeping:
         """Give this search if it found creep, unless another one leaves clearly less.

@@ -95,7 +95,7 @@ class Evidence:
     late_error: float
 
 
-def evidence_of(data: Data, fit: Fit, drifts: bool) -> Evidence:
+def evidence_of(data: Data, fit: Fit, drifts: bool, *, only_if_shown: bool = False) -> Evidence:
     """Look for creep in what a fit without creep leaves.
 
     Parameters
@@ -106,6 +106,9 @@ def evidence_of(data: Data, fit: Fit, drifts: bool) -> Evidence:
         Of a model without creep.
     drifts
         Whether the output may also drift.
+    only_if_shown
+        Whether nobody goes on with creep that the records do not show: how late the output is
+        beside it, which takes as long as all else, is not asked then.
     """
     tau, rows = grid_of(data), evenly(data)
     look = Look(data, fit, nuisances_of(tau.size, drifts), tau, rows)
@@ -128,7 +131,7 @@ def evidence_of(data: Data, fit: Fit, drifts: bool) -> Evidence:
         and _beyond_rate(look, remainder, loops) >= BEYOND_RATE * beyond
     )
     heavy = weights > 0.0
-    late = look.lateness(heavy)
+    late = look.lateness(heavy) if shown or not only_if_shown else (0.0, math.inf)
     return Evidence(bool(shown), resembled, weights[heavy], tau[heavy], tau, look.limits(), *late)
 
 

@@ -38,7 +38,6 @@ from hyst.identification.fit.nuisance import (
 )
 from hyst.identification.fit.problem import model_output
 from hyst.identification.fit.stages import with_stage
-from hyst.identification.judgement.judge import level_of
 from hyst.identification.options import Options
 from hyst.identification.record_use.cleaned import Cleaned
 from hyst.identification.record_use.overview import Overview
@@ -99,7 +98,7 @@ def with_creep(
     if why and wanted != AUTO:
         raise NotIdentifiableError(why)
     drifted = any(each is not None for each in records.drifts)
-    if wanted == AUTO and (why or (not drifted and _leaves_noise(found))):
+    if wanted == AUTO and (why or (not drifted and found.leaves_noise)):
         return as_it_was
     options.say("creep")
     work = _Work(records, drifts, _scales(found.data))
@@ -114,7 +113,7 @@ def with_creep(
             return as_it_was
         if _no_place(found.fit):
             return as_it_was
-    seen = evidence_of(*work.scaled(found), drifts)
+    seen = evidence_of(*work.scaled(found), drifts, only_if_shown=wanted == AUTO)
     if wanted != AUTO:
         require_told(seen)
     without = replace(as_it_was, evidence=replace(seen, shown=False), asked=wanted != AUTO)
@@ -320,10 +319,6 @@ def _no_place(fit: Fit) -> str:
         f"creep is not identified with {fit.family.name}, whose offset is not its last stage and "
         "would creep; choose another family, or leave creep out"
     )
-
-
-def _leaves_noise(found: Found) -> bool:
-    return level_of(found.data, found.fit) == "good"
 
 
 def _scales(data: Data) -> tuple[float, float]:

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hyst.identification.choice.selection import best_of_starts
+from hyst.identification.choice.fits_from_starts import best_of_starts
 from hyst.identification.families.family import Fit, Start
 from hyst.identification.families.play_layout import PlayLayout, PlayParametrization
 from hyst.identification.families.plays import layout_of, weights_left

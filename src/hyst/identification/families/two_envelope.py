@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from hyst import models
 from hyst.errors import InputError, NotIdentifiableError
-from hyst.identification.choice.selection import best_of_starts
+from hyst.identification.choice.fits_from_starts import best_of_starts
 from hyst.identification.families.branch_envelopes import guess_of_branches
 from hyst.identification.families.envelope_layout import EnvelopeLayout
 from hyst.identification.families.family import Fit, Start, Words

@@ -235,7 +235,7 @@ def projected_step(
     diagonal = matrix.diagonal()
     scale = np.sqrt(np.maximum(diagonal, 1e-30 * max(float(diagonal.max()), 1e-300)))
     damped = matrix / scale[:, None] / scale
-    damped[np.diag_indices_from(damped)] += damping
+    damped.flat[:: len(damped) + 1] += damping
     while free.any():
         step = _solved(damped, -gradient / scale, free) / scale
         # A parameter on its bound that the step would push out is held as well.

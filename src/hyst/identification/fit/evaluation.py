@@ -100,11 +100,8 @@ class Evaluation:
             by_constants = self._rows[: each.u.size]
             each.chain.jacobian(self._start.copy(), each.u, by_constants)
             rows = by_constants[each.window]
-            np.matmul(
-                rows if each.counts is None else rows[each.counts],
-                self._parametrization.transform,
-                out=result[row : row + length],
-            )
+            rows = rows if each.counts is None else rows[each.counts]
+            result[row : row + length] = self._by_theta(rows)
             row += length
         return result
 
@@ -115,7 +112,7 @@ class Evaluation:
         for number, each in enumerate(self._passes):
             for rows in self._blocks_of(each):
                 stop = first + len(rows)
-                yield Block(number, slice(first, stop), rows @ self._parametrization.transform)
+                yield Block(number, slice(first, stop), self._by_theta(rows))
                 first = stop
 
     def products(
@@ -144,7 +141,7 @@ class Evaluation:
             by_constants = self._rows[: each.u.size]
             each.chain.jacobian(self._start.copy(), each.u, by_constants)
             for piece in pieces:
-                rows = by_constants[piece] if late else by_constants[piece] @ transform
+                rows = by_constants[piece] if late else self._by_theta(by_constants[piece])
                 place = slice(first, first + len(rows))
                 rows = rows if root is None else root[place, None] * rows
                 matrix += rows.T @ rows
@@ -192,6 +189,22 @@ class Evaluation:
             used = slice(max(first, start) - start, first + signal.size - start)
             rows = rows[max(start - first, 0) :]
             yield rows if each.counts is None else rows[each.counts[used]]
+
+    def _by_theta(self, by_constants: Array) -> Array:
+        """Give derivatives by theta from those by all constants, shape (n, m)."""
+        if self._chosen is None:
+            return np.asarray(by_constants @ self._parametrization.transform)
+        places, factors = self._chosen
+        return np.asarray(by_constants[:, places] * factors)
+
+    @functools.cached_property
+    def _chosen(self) -> tuple[Places, Array] | None:
+        """Which constant each parameter moves, and by how much, where it moves but one."""
+        transform = self._parametrization.transform
+        if np.count_nonzero(transform, axis=0).max(initial=0) > 1:
+            return None
+        places = np.abs(transform).argmax(axis=0)
+        return places, transform[places, np.arange(places.size)]
 
     def _set(self, theta: Array) -> None:
         constants = self._parametrization.constants(theta)

@@ -13,7 +13,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from hyst.identification.fit.bounded_least_squares import Problem
@@ -35,8 +34,9 @@ class _Without:
     ----------
     kept
         Which columns follow.
-    factor, moment
-        Lower factor of their scaled products, and their products with what is left through it.
+    inverse, moment
+        Of the lower factor of their scaled products, and their products with what is left through
+        it.
     cost
         Squared errors after a linear step of what follows.
     promised
@@ -44,7 +44,7 @@ class _Without:
     """
 
     kept: NDArray[np.intp]
-    factor: Array
+    inverse: Array
     moment: Array
     cost: float
     promised: float
@@ -99,7 +99,7 @@ class MovedPlays:
             self._without[i, follows] = self._bare(i, follows)
         bare = self._without[i, follows]
         others = products[bare.kept]
-        along = scipy.linalg.solve_triangular(bare.factor, others, lower=True, check_finite=False)
+        along = bare.inverse @ others
         size, slope = square - float(along @ along), left - float(along @ bare.moment)
         if size <= RIDGE * square:
             return bare.cost + bare.promised
@@ -114,14 +114,14 @@ class MovedPlays:
         scale = self._scale[kept]
         normal = self._normal[np.ix_(kept, kept)] / np.outer(scale, scale)
         factor = np.linalg.cholesky(normal + RIDGE * np.eye(kept.size))
+        inverse = np.linalg.inv(factor)
         moved = (self._gradient - weight * self._normal[1 + i])[kept] / scale
-        both = np.column_stack([moved, self._gradient[kept] / scale])
-        moment, still = scipy.linalg.solve_triangular(
-            factor, both, lower=True, check_finite=False
-        ).T
+        moment, still = inverse @ moved, inverse @ (self._gradient[kept] / scale)
         errors = float(self._errors @ self._errors)
         errors += weight * float(weight * self._normal[1 + i, 1 + i] - 2.0 * self._gradient[1 + i])
-        return _Without(kept, factor, moment, errors - float(moment @ moment), float(still @ still))
+        return _Without(
+            kept, inverse, moment, errors - float(moment @ moment), float(still @ still)
+        )
 
     def _column(self, i: int, place: float) -> Array:
         """Give what the play adds to the output at another place, per weight."""

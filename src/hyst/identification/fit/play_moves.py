@@ -4,6 +4,12 @@ A radius bends the output wherever it passes half a swing of its input, and a pl
 or stands where another does, has no derivative that would lead it away. So each play in turn is
 taken out and put to other places; everything else follows it in one linear step, of which only the
 residual is asked. From the best place a fit is tried.
+
+``moved_plays`` forecasts moves too, of a bank whose weights are sums of others and whose starts are
+near: one output a move, products of columns shared by all, other radii free or not. Behind dynamics
+a play may stand anywhere, what it adds at a place is the same for every play, and dynamics and
+plays resemble each other so much that products lose the digits: hence columns, found once, and
+their orthonormal basis.
 """
 
 from __future__ import annotations

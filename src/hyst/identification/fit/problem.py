@@ -26,8 +26,10 @@ ROUNDING = 1e-12
 HOLDS_A_GAUGE = 10.0
 """Weight of a gauge beside the norm of the centred output: a scale must not drift."""
 
-LARGEST_JACOBIAN = 2**20
-"""Entries, 8 MB: above, normal equations are summed block by block and no Jacobian is stored."""
+LARGEST_JACOBIAN, LARGEST_PRODUCT = 2**20, 2**23
+"""Entries, 8 and 64 MB. Above the first no Jacobian is handed out, it comes block by block; above
+the second normal equations are summed so as well, which takes models of many states, whose memory
+has a derivative of its own, several times as long."""
 
 NO_STEP_TO = 1e3
 """Residual, over the norm of the centred output, of a theta that makes no operator."""
@@ -148,6 +150,7 @@ class _Residual:
             self.columns = Beside(data, nuisances, chosen, root_weights)
         entries = self._target.size * parametrization.transform.shape[0]
         self.is_long = entries > LARGEST_JACOBIAN
+        self._in_blocks = entries > LARGEST_PRODUCT or self.columns is not None
         self.negligible = float(self._target.size * (ROUNDING * np.ptp(y)) ** 2)
         self._streamed = Streamed(self._evaluation, self._rows, self._root, self.columns)
 
@@ -179,7 +182,7 @@ class _Residual:
         """Give the normal equations without a Jacobian of all records."""
         errors, samples = self.residual(theta), self._target.size
         own, more = errors[:samples], [by_theta for _, by_theta in self._beside(theta)]
-        if self.is_long:
+        if self._in_blocks:
             normal = self._streamed.normal(theta, self._errors, own)
         else:
             sums = self._evaluation.products(theta, own, self._chosen, self._root)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.fft
@@ -16,6 +16,9 @@ Array = NDArray[np.float64]
 
 SMALLEST_EIGENVALUE = 1e-9
 """Of the correlations of columns: below, a direction is told by others."""
+
+WIDE = 60
+"""Columns of a group, from which on what others have beyond it is found once for all choices."""
 
 NOT_CORRELATED = 0.05
 
@@ -38,6 +41,10 @@ class Regression:
 
     error: Array
     groups: Mapping[str, Array]
+    _known: dict[tuple[str, ...], tuple[Array, NDArray[np.intp], int]] = field(
+        default_factory=dict, init=False, repr=False
+    )
+    _left: dict[str, tuple[Array, Array, int]] = field(default_factory=dict, init=False, repr=False)
 
     @functools.cached_property
     def _all(self) -> tuple[Array, Array, dict[str, NDArray[np.intp]]]:
@@ -62,13 +69,35 @@ class Regression:
 
     def _solved(self, names: Sequence[str]) -> tuple[Array, NDArray[np.intp], int]:
         """Give coefficients of scaled columns, which they are, and their number of directions."""
+        key = tuple(names)
+        if key not in self._known:
+            self._known[key] = self._solve(names)
+        return self._known[key]
+
+    def _solve(self, names: Sequence[str]) -> tuple[Array, NDArray[np.intp], int]:
         at = self._chosen(names)
         if at.size == 0:
             return np.empty(0), at, 0
-        values, vectors = np.linalg.eigh(self._products[np.ix_(at, at)])
-        known = values > SMALLEST_EIGENVALUE
-        along = vectors[:, known].T @ self._products[at, -1]
-        return vectors[:, known] @ (along / values[known]), at, int(known.sum())
+        first = self._all[2][names[0]]
+        if first.size < WIDE:
+            matrix, moment = self._products[np.ix_(at, at)], self._products[at, -1]
+            found, directions = _least_squares(matrix, moment)
+            return found, at, directions
+        # The freedom of hundreds of cells is in every choice: what it leaves is found once.
+        taken, products, directions = self._beyond(names[0])
+        rest = at[first.size :]
+        found, more = _least_squares(products[np.ix_(rest, rest)], products[rest, -1])
+        own = taken[:, -1] - taken[:, rest] @ found
+        return np.concatenate([own, found]), at, directions + more
+
+    def _beyond(self, name: str) -> tuple[Array, Array, int]:
+        """Give what one group makes of every column, the products of what is left, and its rank."""
+        if name not in self._left:
+            at = self._all[2][name]
+            with_all = self._products[at]
+            taken, directions = _least_squares(with_all[:, at], with_all)
+            self._left[name] = taken, self._products - with_all.T @ taken, directions
+        return self._left[name]
 
     @property
     def total(self) -> float:
@@ -106,6 +135,16 @@ class Regression:
         solved, at, _ = self._solved(names)
         columns, size, _ = self._all
         return np.asarray((columns[:, -1] - columns[:, at] @ solved) * size[-1])
+
+
+def _least_squares(matrix: Array, moment: Array) -> tuple[Array, int]:
+    """Give the least solution of normal equations in the directions known, and how many are."""
+    if not len(matrix):
+        return np.zeros_like(moment), 0
+    values, vectors = np.linalg.eigh(matrix)
+    known = values > SMALLEST_EIGENVALUE
+    along = (vectors[:, known].T @ moment).T / values[known]
+    return vectors[:, known] @ along.T, int(known.sum())
 
 
 def correlation_time(error: Array) -> float:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hyst.models import LinearDynamics
+
 Array = NDArray[np.float64]
 
 
@@ -18,8 +20,7 @@ def low_passed(u: Array, samples: float) -> Array:
     samples
         Its time constant.
     """
-    import scipy.signal  # slow, and only dynamics need it
-
     keep = float(np.exp(-1.0 / samples))
-    passed, _ = scipy.signal.lfilter([1.0 - keep], [1.0, -keep], u, zi=[keep * u[0]])
-    return np.asarray(passed)
+    # By the engine: scipy.signal takes half a second to load.
+    passes = LinearDynamics([[keep]], [1.0 - keep], [keep], 1.0 - keep, 1.0, x0=u[:1])
+    return passes(u)

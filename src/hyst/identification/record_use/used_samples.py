@@ -213,8 +213,11 @@ class Data:
             own = self.lag_of(number)
             moved = own - math.floor(own) + lag_in_samples(more, self.records[0].dt, record.dt)
             whole = math.floor(moved)
-            shifted = by_whole_samples(self._later(u, moved - whole), whole)
-            records.append(replace(record, u=shifted))
+            # An earlier input goes on after its last sample, on the line through the last two.
+            further = u[-1] + np.array([1.0, 2.0]) * np.diff(u[-2:]).sum()
+            beyond = self._later(np.concatenate([u, further]), moved - whole)
+            shifted = by_whole_samples(beyond, whole)
+            records.append(replace(record, u=shifted[: u.size]))
         return replace(self, records=tuple(records))
 
     def _later(self, u: Array, part: float) -> Array:

@@ -9,12 +9,12 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from threadpoolctl import threadpool_limits
 
 from hyst.diagnosis import Diagnosis
 from hyst.diagnosis.diagnose_records import diagnose_all_but_delay
 from hyst.errors import HystError
-from hyst.identification.choice.selection import settled
+from hyst.identification.blas_threads import one_blas_thread
+from hyst.identification.choice.fits_from_starts import settled
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.families.registry import chosen_families
 from hyst.identification.fit.bounded_least_squares import Problem
@@ -154,7 +154,7 @@ def identify_scheduled(
     say = Progress(progress or silent)
     wanted = Options((), say, delay, start, max_iterations, allow_unconverged)
     families, about_drift = chosen_families(family, options), as_drift(drift)
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         values = [_value(each, name, about_drift) for each in groups]
         found = [
             _found(each, families, replace(wanted, say=_part(say, each, k, values, name)), name)
