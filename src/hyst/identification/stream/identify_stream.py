@@ -7,7 +7,7 @@ memory; then the constants are fitted to every sample. What was judged on which 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -38,10 +38,9 @@ Array = NDArray[np.float64]
 
 MOST_STEPS = 60
 
-SECANT = 8.0
-"""Standard errors that secants by radii reach to either side: of 10^6 samples across several teeth
-of the cost, and in proportion to the root of the samples across more of more; ten times as far
-biases the weight of the smallest play by a standard error."""
+SECANTS = (8.0, 24.0, 72.0)
+"""Standard errors that secants by radii reach to either side, the widest last: where the first lead
+to an end no other is asked, for what they pass over biases the weights of small plays."""
 
 WORTH_SAYING = 0.3
 """Standard errors by which constants may be off without a word."""
@@ -81,15 +80,16 @@ def identify_stream(stream: RecordStream, identify: Callable[[Record], Identifie
     _require_servable(before, fit)
     late = round(before.delay)
     across, own = _across(before, found.samples), fit.parametrization
-    exact = FitOfAll(stream, found, own, late)
-    smooth = FitOfAll(stream, found, own, late, across)
-    ended = _fitted(fit, exact, smooth, tuple(np.flatnonzero(across).tolist()))
-    whole, fit = exact if ended.exact else smooth, replace(fit, solution=ended.solution)
-    return _with_fit(before, fit, whole, found, stream, ended.left)
+    ways = [FitOfAll(stream, found, own, late)]
+    if across.any():
+        ways += [FitOfAll(stream, found, own, late, each * across) for each in SECANTS]
+    ended = _fitted(fit, ways, tuple(np.flatnonzero(across).tolist()))
+    fit = replace(fit, solution=ended.solution)
+    return _with_fit(before, fit, ways[1 + ended.by], found, stream, ended.left)
 
 
 def _across(before: Identified, samples: int) -> Array:
-    """Give how far secants by radii reach: some standard errors of a fit to all samples."""
+    """Give the standard errors that radii will have in a fit to all samples; 0 for the others."""
     bands = before.bands
     parametrization, spread = bands.fit.parametrization, bands.spread
     errors, across = np.zeros(parametrization.size), np.zeros(parametrization.size)
@@ -97,21 +97,22 @@ def _across(before: Identified, samples: int) -> Array:
     errors[spread.inside] = spread.of_what_is_determined(own)
     radii = list(parametrization.radii)
     part = before.metrics["training"].samples
-    across[radii] = SECANT * errors[radii] * math.sqrt(part / samples)
+    across[radii] = errors[radii] * math.sqrt(part / samples)
     return across
 
 
-def _fitted(fit: Fit, exact: FitOfAll, smooth: FitOfAll, rough: tuple[int, ...]) -> Settled:
+def _fitted(fit: Fit, ways: Sequence[FitOfAll], rough: tuple[int, ...]) -> Settled:
     """Fit to all samples, beginning at the fit to a part."""
-    posed, theta, back = fit.family.in_own_coordinates(exact.problem(), fit.solution.theta)
+    posed, theta, back = fit.family.in_own_coordinates(ways[0].problem(), fit.solution.theta)
     if rough:
-        return settle(posed, smooth.problem(), theta, rough, MOST_STEPS)
+        secants = [each.problem() for each in ways[1:]]
+        return settle(posed, secants, theta, rough, MOST_STEPS)
     found, left = minimize(posed, theta, MOST_STEPS, TOLERANCE, curvature=Curvature()), 0.0 * theta
     if found.status != CONVERGED:
         normal = posed.normal_equations(found.theta)
         left = projected_step(posed, found.theta, normal, LEAST_DAMPING)[0]
     left = back(found.theta + left) - back(found.theta)
-    return Settled(replace(found, theta=back(found.theta)), left, exact=True)
+    return Settled(replace(found, theta=back(found.theta)), left, by=-1)
 
 
 def _require_servable(before: Identified, fit: Fit) -> None:
@@ -235,7 +236,7 @@ def _verdict(before: Identified, rms: float, found: Survey, converged: bool) -> 
     )
     if not converged:
         level = "unfit" if level == "unfit" else "fair"
-        sentences = (f"The fit to all samples was ended after {MOST_STEPS} steps.", *sentences)
+        sentences = ("The fit to all samples has not settled.", *sentences)
     if rms > WORSE * part or found.part_covers < COVERS:
         level = "unfit" if level == "unfit" else "fair"
         return Verdict(

@@ -11,6 +11,7 @@ would follow it; and where no step is, what is left of it is told.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -49,13 +50,13 @@ class Settled:
         There.
     left
         Shape (m,), the step that was not taken any more: how far off the constants may be.
-    exact
-        Whether derivatives led there.
+    by
+        Which of the secants led there; -1 for derivatives.
     """
 
     solution: Solution
     left: Array
-    exact: bool
+    by: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +75,7 @@ class _Place:
 
 
 def settle(
-    exact: Problem, smooth: Problem, theta: Array, rough: tuple[int, ...], most: int
+    exact: Problem, smooth: Sequence[Problem], theta: Array, rough: tuple[int, ...], most: int
 ) -> Settled:
     """Go to where the gradient vanishes: by derivatives, and by secants once these mislead.
 
@@ -84,7 +85,7 @@ def settle(
         Of derivatives. Where a tooth is wide enough to hold all that noise leaves possible, or none
         is high, they lead to the right place.
     smooth
-        Of secants.
+        Of secants, each wider than the one before: what misleads one may be too small for the next.
     theta
         Start; moved into the bounds.
     rough
@@ -96,38 +97,50 @@ def settle(
     while here.promise > TOLERANCE * here.variance and passes < most:
         there, passes = _at(exact, here.theta + here.step), passes + 1
         if not there.normal.cost < here.normal.cost:
-            if here.promise > NEAR * here.variance:
-                return _by_secants(smooth, _at(smooth, here.theta), rough, passes, most)
             break
         here = there
-    status = ITERATION_LIMIT if passes == most else CONVERGED
-    return _end(here, passes, status, here.step, exact=True)
+    ended, by = here, -1
+    for by, problem in enumerate(smooth):
+        if ended.promise <= NEAR * ended.variance or passes == most:
+            by -= 1
+            break
+        is_last = problem is smooth[-1]
+        ended, passes = _by_secants(problem, ended.theta, rough, passes, most, is_last)
+    near = ended.promise <= (TOLERANCE if passes == most else NEAR) * ended.variance
+    status = CONVERGED if near else ITERATION_LIMIT
+    found = Solution(ended.theta, ended.normal.cost, passes, status)
+    return Settled(found, ended.step, by)
 
 
 def _by_secants(
-    problem: Problem, here: _Place, rough: tuple[int, ...], passes: int, most: int
-) -> Settled:
-    damping, growth, smooth_tried = LEAST_DAMPING, 4.0, False
-    while passes < most:
+    problem: Problem,
+    theta: Array,
+    rough: tuple[int, ...],
+    passes: int,
+    most: int,
+    to_the_end: bool,
+) -> tuple[_Place, int]:
+    """Take steps until none is good; those after the first that was not, only if asked for."""
+    here, damping, growth, smooth_tried = _at(problem, theta), LEAST_DAMPING, 4.0, False
+    while passes < most and here.promise > TOLERANCE * here.variance:
         passes += 1
         step, _ = projected_step(problem, here.theta, here.normal, damping)
-        if here.promise <= TOLERANCE * here.variance:
-            return _end(here, passes, CONVERGED, here.step)
         there = _at(problem, here.theta + step)
         if _is_better(there, here):
             here, growth, smooth_tried = there, 4.0, False
             damping = max(damping / 10.0, LEAST_DAMPING)
             continue
-        if here.promise <= NEAR * here.variance:
-            return _end(here, passes, CONVERGED, here.step)
-        if float(step @ here.normal.matrix @ step) <= TOLERANCE * here.variance:
-            return _end(here, passes, CONVERGED, step)
+        length = float(step @ here.normal.matrix @ step)
+        if here.promise <= NEAR * here.variance or length <= TOLERANCE * here.variance:
+            break
+        if not to_the_end:
+            break
         damping, growth = max(damping * growth, FIRST_REFUSED), 2.0 * growth
         if not smooth_tried:
             smooth_tried = True
             other = _beside_teeth(problem, here, rough)
             here = here if other is None else other
-    return _end(here, most, ITERATION_LIMIT, here.step)
+    return here, passes
 
 
 def _beside_teeth(problem: Problem, here: _Place, rough: tuple[int, ...]) -> _Place | None:
@@ -153,7 +166,3 @@ def _is_better(there: _Place, here: _Place) -> bool:
     rise = there.normal.cost - here.normal.cost
     scatter = math.sqrt(2.0 * here.normal.count) * here.variance
     return rise < 0.0 or (rise <= scatter and there.promise < here.promise)
-
-
-def _end(here: _Place, passes: int, status: str, left: Array, exact: bool = False) -> Settled:
-    return Settled(Solution(here.theta, here.normal.cost, passes, status), left, exact)
