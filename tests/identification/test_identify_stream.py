@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -110,10 +111,64 @@ def test_a_part_that_shows_little_makes_the_verdict_say_so() -> None:
 def test_what_a_file_cannot_serve_is_refused() -> None:
     given = stream(30_000)
     with pytest.raises(NotIdentifiableError, match="depends on the rate"):
-        hyst.identify(given, family="hammerstein", delay=0, creep=None, drift=False)
+        hyst.identify(given, family="rdpi", plays=1, delay=0, creep=None, drift=False)
     given.u[:] = 1.0
     with pytest.raises(NotIdentifiableError, match="the input is constant"):
         hyst.identify(given, delay=0, **ASKED)
+
+
+@pytest.mark.usefixtures("small")
+def test_a_record_that_is_not_all_there_is_refused() -> None:
+    class Short(Arrays):
+        def chunks(self, samples: int) -> Iterator[tuple[Array, Array]]:
+            yield from itertools.islice(super().chunks(samples), 11)
+
+    class Once(Arrays):
+        def chunks(self, samples: int) -> Iterator[tuple[Array, Array]]:
+            whole = super().chunks(samples)
+            yield from itertools.islice(whole, None if asked.append(0) or len(asked) == 1 else 17)
+
+    class Uneven(Arrays):
+        def chunks(self, samples: int) -> Iterator[tuple[Array, Array]]:
+            for number, (u, y) in enumerate(super().chunks(samples)):
+                yield u, y[1:] if number == 7 else y
+
+    given, asked = stream(20_000), list[int]()
+    with pytest.raises(InputError, match="has 20000 samples, but 11000 were read"):
+        hyst.identify(Short(given.u, given.y), delay=0, **ASKED)
+    with pytest.raises(InputError, match="has 20000 samples, but 17000 were read"):
+        hyst.identify(Once(given.u, given.y), delay=0, **ASKED)
+    with pytest.raises(InputError, match="from sample 7000 on, 1000 samples of the input were"):
+        hyst.identify(Uneven(given.u, given.y), delay=0, **ASKED)
+
+
+@pytest.mark.usefixtures("small")
+def test_a_fit_that_is_ended_tells_what_was_left_to_go(monkeypatch: pytest.MonkeyPatch) -> None:
+    given = stream(30_000)
+    whole = hyst.identify(given, delay=0, **ASKED)
+    monkeypatch.setattr(identify_stream, "MOST_STEPS", 0)
+    ended = hyst.identify(given, delay=0, **ASKED)
+    assert whole.status == "converged"
+    assert ended.status == "iteration limit"
+    assert ended.verdict.level == "fair"
+    assert any("a further one moves constants by up to" in each for each in ended.undetermined)
+    # One Gauss-Newton step from the fit to a fifth of the samples goes nearly all the way.
+    moved = np.abs(whole.parameter_values - ended.parameter_values)
+    assert (moved <= 1.1 * ended.standard_errors).all()
+    assert (ended.standard_errors > 1.2 * whole.standard_errors).any()
+
+
+@pytest.mark.usefixtures("small")
+def test_more_samples_never_hurt() -> None:
+    u = 0.9 * np.sin(np.linspace(0.0, 40.0, 4000)) * np.linspace(1.0, 0.2, 4000)
+    errors = {samples: list[float]() for samples in (7_500, 30_000, 120_000)}
+    for seed in range(3):
+        for samples, each in errors.items():
+            found = hyst.identify(stream(samples, seed=seed), delay=0, **ASKED)
+            each.append(float(np.std(found.model(u) - TRUE(u))))
+    least, middle, most = (np.mean(np.square(each)) for each in errors.values())
+    assert middle < least
+    assert most < middle
 
 
 def test_arrays_are_a_stream_and_a_record_is_none() -> None:

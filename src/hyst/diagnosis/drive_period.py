@@ -61,14 +61,21 @@ def repeat_tolerance(u: Array, change: Array, noise: float) -> float:
 def _difference(v: Array) -> Array:
     """Mean square difference at lags 0.. over twice the power: 0 the same, 1 unlike."""
     size = 1 << (2 * v.size - 1).bit_length()
-    spectrum = np.fft.rfft(v, size)
-    products = np.fft.irfft(spectrum.real**2 + spectrum.imag**2, size)[: v.size]
+    products = np.fft.irfft(_power(v, size), size)[: v.size]
     energy = np.concatenate([[0.0], np.cumsum(v * v)])
     lags = np.arange(int(v.size / 1.5))
     both = energy[v.size - lags] + energy[-1] - energy[lags]
     with np.errstate(invalid="ignore", divide="ignore"):
         result = 1.0 - 2.0 * products[: lags.size] / both
     return np.where(both > 0.0, result, 1.0)
+
+
+def _power(v: Array, size: int) -> Array:
+    """Give the squares of a spectrum, which of a long record must not outlive them."""
+    spectrum = np.fft.rfft(v, size)
+    power = spectrum.real**2
+    power += spectrum.imag**2
+    return power
 
 
 def _minima(difference: Array) -> NDArray[np.intp]:

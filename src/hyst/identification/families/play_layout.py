@@ -129,6 +129,11 @@ class PlayParametrization(Parametrization):
 
     layout: PlayLayout = None  # type: ignore[assignment]  # the fields before it have defaults
 
+    @property
+    def radii(self) -> tuple[int, ...]:
+        """Places in theta of the radii of the plays."""
+        return tuple(range(self.layout.plays + 1, 2 * self.layout.plays + 1))
+
 
 def parametrize_plays(
     template: Operator, guess: FirstGuess, map_at: int | None

@@ -62,6 +62,11 @@ class ChainParametrization(Parametrization):
     sizes_held: tuple[bool, ...] = ()
     sentences: tuple[str, ...] = ()
 
+    @property
+    def radii(self) -> tuple[int, ...]:
+        """Places in theta of the radii of the plays."""
+        return tuple(place for bank in self.banks for place in bank.radii)
+
 
 @dataclass(frozen=True)
 class _Holds:

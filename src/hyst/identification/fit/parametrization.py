@@ -103,6 +103,11 @@ class Parametrization:
         made: Operator = self.template.with_parameters(self.constants(theta))
         return made
 
+    @property
+    def radii(self) -> tuple[int, ...]:
+        """Places in theta of the radii of plays, past which the output bends; none here."""
+        return ()
+
     def inside(self, theta: Array) -> NDArray[np.bool_]:
         """Tell which parameters lie on neither of their bounds."""
         return np.asarray((theta > self.lower) & (theta < self.upper))

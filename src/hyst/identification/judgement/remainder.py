@@ -107,17 +107,17 @@ class Remainder:
     @functools.cached_property
     def error(self) -> Array:
         """Of all parts, one after the other."""
-        return np.concatenate([each.error for each in self.parts])
+        return _joined([each.error for each in self.parts])
 
     @functools.cached_property
     def y(self) -> Array:
         """Measured, of all parts."""
-        return np.concatenate([each.y for each in self.parts])
+        return _joined([each.y for each in self.parts])
 
     @functools.cached_property
     def u(self) -> Array:
         """Of all parts."""
-        return np.concatenate([each.u for each in self.parts])
+        return _joined([each.u for each in self.parts])
 
     @functools.cached_property
     def rows(self) -> NDArray[np.intp]:
@@ -170,10 +170,11 @@ def remainder_of(data: Data, fit: Fit, output_range: float) -> Remainder:
         here = slice(first, first + places.size)
         first += places.size
         if places.size:
+            whole = record.u[: window.stop] / into
             parts.append(
                 Part(
-                    record.u[: window.stop] / into,
-                    record.u[places] / into,
+                    whole,
+                    whole[window] if counts is None else whole[places],
                     measured[here] / out,
                     modelled[here] / out,
                     places,
@@ -191,6 +192,11 @@ def remainder_of(data: Data, fit: Fit, output_range: float) -> Remainder:
     units = record.input_unit, record.output_unit
     span = output_range / out
     return Remainder(tuple(parts), tangent, span, into, out, *units, has_memory, held)
+
+
+def _joined(parts: list[Array]) -> Array:
+    """Put arrays into one; a single one, which may be long, is not copied."""
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
 def _rows(total: int) -> NDArray[np.intp]:

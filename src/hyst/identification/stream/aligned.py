@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hyst.identification.fit.evaluation import BLOCK
-from hyst.identification.stream.survey import CHUNK
+from hyst.identification.stream.survey import chunks_of
 from hyst.signals.record_stream import RecordStream
 
 Array = NDArray[np.float64]
@@ -32,7 +32,7 @@ def aligned(stream: RecordStream, late: int) -> Iterator[tuple[Array, Array]]:
     """
     skipped = max(late, 0)
     u_left, y_left = np.empty(0), np.full(max(-late, 0), np.nan)
-    for u, y in stream.chunks(CHUNK):
+    for u, y in chunks_of(stream):
         dropped = min(skipped, y.size)
         skipped -= dropped
         u_left, y_left = np.concatenate([u_left, u]), np.concatenate([y_left, y[dropped:]])

@@ -1,9 +1,16 @@
-"""A fit to every sample of a record in a file: the record goes by, and only sums stay."""
+"""A fit to every sample of a record in a file: the record goes by, and only sums stay.
+
+By radii of plays it takes secants, not derivatives, and what the model leaves is the mean at the
+ends of these: a play that some strokes do not move keeps where its last stroke left it, which jumps
+from the upper to the lower end as the radius passes one stroke after the other. A derivative is
+that of one tooth; a secant across many is the slope that more such records would show.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +35,9 @@ from hyst.signals.record_stream import RecordStream
 
 Array = NDArray[np.float64]
 
+MOST_OF_A_GAP = 0.05
+"""That a secant may reach of the way to the next radius: there its model would be another one."""
+
 
 class FitOfAll:
     """The least squares problem of a parametrization over a record in a file.
@@ -42,16 +52,25 @@ class FitOfAll:
         Free parameters, without columns beside the model.
     late
         Whole samples by which the output lags.
+    across
+        Shape (m,), how far from theta secants reach; 0 for derivatives, and where left out.
     """
 
     def __init__(
-        self, stream: RecordStream, found: Survey, parametrization: Parametrization, late: int
+        self,
+        stream: RecordStream,
+        found: Survey,
+        parametrization: Parametrization,
+        late: int,
+        across: Array | None = None,
     ) -> None:
         self._stream, self._found, self._late = stream, found, late
         self._parametrization = parametrization
         template = parametrization.template
         self._memory = template.initial_state()
-        self._chain = _engine.Chain(template.at_sample_time(stream.dt).stages())
+        self._stages = template.at_sample_time(stream.dt).stages()
+        self._chain = _engine.Chain(self._stages)
+        self._across = np.zeros(parametrization.size) if across is None else across
         self._beside = beside_the_records(parametrization, found.y_spread)
         self._start = max(found.start, -late)
         self.samples = found.samples - max(late, 0) - self._start
@@ -103,15 +122,42 @@ class FitOfAll:
         columns = self._chain.parameter_count
         state, memory = self._memory.copy(), np.zeros((self._memory.size, columns))
         transform, place = self._parametrization.transform, 0
+        secants = self._secants(theta)
         for u, y in aligned(self._stream, self._late):
             signal, rows = u.copy(), np.empty((u.size, columns))
             self._chain.carry_jacobian(state, memory, signal, rows)
+            by_theta, errors = rows @ transform, signal - y
+            for each in secants:
+                by_theta[:, each.column], mean = each.over(np.ascontiguousarray(u)[None, :])
+                errors += mean - signal
             used = max(self._start - place, 0)
             first = max(place - self._start, 0)
             place += u.size
             if used < u.size:
                 own = slice(first, first + u.size - used)
-                yield Block(0, own, rows[used:] @ transform), signal[used:] - y[used:]
+                yield Block(0, own, by_theta[used:]), errors[used:]
+
+    def _secants(self, theta: Array) -> list[_Secant]:
+        """Give secants, of which none reaches a bound or another radius."""
+        low, high = self._parametrization.lower, self._parametrization.upper
+        found, radii = list[_Secant](), list(self._parametrization.radii)
+        for column in np.flatnonzero(self._across):
+            ends = [low[column], high[column], *(theta[i] for i in radii if i != column)]
+            room = MOST_OF_A_GAP * min(abs(theta[column] - end) for end in ends)
+            width = min(float(self._across[column]), room)
+            if width > 0.0:
+                found.append(self._secant(theta, int(column), width))
+        return found
+
+    def _secant(self, theta: Array, column: int, width: float) -> _Secant:
+        chains = []
+        for sign in (1.0, -1.0):
+            moved = theta.copy()
+            moved[column] += sign * width
+            chain = _engine.Chain(self._stages)
+            chain.set_parameters(self._parametrization.constants(moved))
+            chains.append((chain, self._memory[None, :].copy()))
+        return _Secant(column, 2.0 * width, chains)
 
     def _normal(self, theta: Array) -> NormalEquations:
         matrix, gradient = LongSum((theta.size, theta.size)), LongSum((theta.size,))
@@ -158,6 +204,36 @@ class FitOfAll:
             scores.add(0, scaled * (errors / noise)[:, None])
         power = left.power / noise**2
         return ScoreSums(unit, noise, gram.total, scores.total(), power, self.samples)
+
+
+@dataclass(frozen=True, eq=False)
+class _Secant:
+    """A model with one parameter a little larger, and a little smaller.
+
+    Parameters
+    ----------
+    column
+        Which parameter.
+    width
+        How far the two are apart.
+    chains
+        Both, with their memory.
+    """
+
+    column: int
+    width: float
+    chains: list[tuple[_engine.Chain, Array]]
+
+    def over(self, u: Array) -> tuple[Array, Array]:
+        """Go on over the next samples, shape (1, n): the slope between both, and their mean."""
+        larger, smaller = (self._output(each, u) for each in self.chains)
+        return (larger - smaller) / self.width, 0.5 * (larger + smaller)
+
+    @staticmethod
+    def _output(model: tuple[_engine.Chain, Array], u: Array) -> Array:
+        y = np.empty_like(u)
+        model[0].run(model[1], u, y)
+        return np.asarray(y[0])
 
 
 class ErrorsOfAll:

@@ -6,31 +6,45 @@ memory; then the constants are fitted to every sample. What was judged on which 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from hyst.errors import NotIdentifiableError, SolverError
+from hyst.errors import NotIdentifiableError
 from hyst.identification.families.family import Fit
-from hyst.identification.fit.bounded_least_squares import CONVERGED, minimize
+from hyst.identification.fit.bounded_least_squares import (
+    CONVERGED,
+    LEAST_DAMPING,
+    minimize,
+    projected_step,
+)
 from hyst.identification.fit.curvature import Curvature
 from hyst.identification.progress import Progress
 from hyst.identification.record_use.used_samples import UsedSamples
-from hyst.identification.result.fit_spread import spread_from_sums
+from hyst.identification.result.fit_spread import FitSpread, spread_from_sums
 from hyst.identification.result.identified import Identified
 from hyst.identification.result.part_of_file import PartOfFile
 from hyst.identification.stream.fit_of_all import ErrorsOfAll, FitOfAll
+from hyst.identification.stream.settling import TOLERANCE, Settled, settle
 from hyst.identification.stream.survey import Survey, data_hash, part_of, survey
 from hyst.operators import Verdict
 from hyst.operators.description import errors_of
 from hyst.signals import Record
 from hyst.signals.record_stream import RecordStream
 
-MOST_STEPS = 200
+Array = NDArray[np.float64]
 
-TOLERANCE = 1e-2
-"""Of the residual variance: no constant is then off by more than a tenth of its standard error."""
+MOST_STEPS = 60
+
+SECANTS = (8.0, 24.0, 72.0)
+"""Standard errors that secants by radii reach to either side, the widest last: where the first lead
+to an end no other is asked, for what they pass over biases the weights of small plays."""
+
+WORTH_SAYING = 0.3
+"""Standard errors by which constants may be off without a word."""
 
 WORSE = 1.1
 """Times the rms over the part: more over all samples is said, and makes the model fair at best."""
@@ -63,7 +77,8 @@ def identify_stream(
         If the record is constant, or holds what cannot be fitted sample by sample from a file, as
         drift or a delay by parts of a sample.
     SolverError
-        If the fit to all samples did not converge.
+        If the fit to the part did not converge. That to all samples is ended after so many ways
+        through them, and what is then left to go is part of the standard errors.
     """
     found = survey(stream)
     before = identify(part_of(stream, found.part))
@@ -73,16 +88,40 @@ def identify_stream(
     _require_servable(before, fit)
     say(f"fit to all {found.samples} samples", UNTIL_FIT_OF_ALL)
     late = round(before.delay)
-    whole = FitOfAll(stream, found, fit.parametrization, late)
-    posed, theta, back = fit.family.in_own_coordinates(whole.problem(), fit.solution.theta)
-    solution = minimize(posed, theta, MOST_STEPS, TOLERANCE, curvature=Curvature())
-    if solution.status != CONVERGED:
-        raise SolverError(
-            f"the fit to all {found.samples} samples did not converge in {MOST_STEPS} steps; load "
-            "a part of the record and identify from that"
-        )
-    fit = replace(fit, solution=replace(solution, theta=back(solution.theta)))
-    return _with_fit(before, fit, whole, found, stream)
+    across, own = _across(before, found.samples), fit.parametrization
+    ways = [FitOfAll(stream, found, own, late)]
+    if across.any():
+        ways += [FitOfAll(stream, found, own, late, each * across) for each in SECANTS]
+    ended = _fitted(fit, ways, tuple(np.flatnonzero(across).tolist()))
+    fit = replace(fit, solution=ended.solution)
+    return _with_fit(before, fit, ways[1 + ended.by], found, stream, ended.left)
+
+
+def _across(before: Identified, samples: int) -> Array:
+    """Give the standard errors that radii will have in a fit to all samples; 0 for the others."""
+    bands = before.bands
+    parametrization, spread = bands.fit.parametrization, bands.spread
+    errors, across = np.zeros(parametrization.size), np.zeros(parametrization.size)
+    own = np.eye(parametrization.size)[spread.inside]
+    errors[spread.inside] = spread.of_what_is_determined(own)
+    radii = list(parametrization.radii)
+    part = before.metrics["training"].samples
+    across[radii] = errors[radii] * math.sqrt(part / samples)
+    return across
+
+
+def _fitted(fit: Fit, ways: Sequence[FitOfAll], rough: tuple[int, ...]) -> Settled:
+    """Fit to all samples, beginning at the fit to a part."""
+    posed, theta, back = fit.family.in_own_coordinates(ways[0].problem(), fit.solution.theta)
+    if rough:
+        secants = [each.problem() for each in ways[1:]]
+        return settle(posed, secants, theta, rough, MOST_STEPS)
+    found, left = minimize(posed, theta, MOST_STEPS, TOLERANCE, curvature=Curvature()), 0.0 * theta
+    if found.status != CONVERGED:
+        normal = posed.normal_equations(found.theta)
+        left = projected_step(posed, found.theta, normal, LEAST_DAMPING)[0]
+    left = back(found.theta + left) - back(found.theta)
+    return Settled(replace(found, theta=back(found.theta)), left, by=-1)
 
 
 def _require_servable(before: Identified, fit: Fit) -> None:
@@ -114,13 +153,20 @@ def _require_servable(before: Identified, fit: Fit) -> None:
 
 
 def _with_fit(
-    before: Identified, fit: Fit, whole: FitOfAll, found: Survey, stream: RecordStream
+    before: Identified,
+    fit: Fit,
+    whole: FitOfAll,
+    found: Survey,
+    stream: RecordStream,
+    step: Array,
 ) -> Identified:
     """Put the fit to all samples in the place of that to a part."""
     theta, estimates = fit.solution.theta, fit.family.estimates(fit)
     left = ErrorsOfAll(whole.errors(theta))
     sums = whole.sums(theta, fit.parametrization.inside(theta), left)
     spread = spread_from_sums(sums, fit, found.y_spread)
+    notes = (*_about(found), *_unfinished(fit, step, spread))
+    spread = replace(spread, moves=step[spread.inside, None])
     errors, apart = np.full(len(estimates.names), np.nan), tuple[str, ...]()
     if fit.family.estimates_noise:
         errors, apart = spread.of(estimates.by_theta), spread.not_told_apart(estimates)
@@ -132,8 +178,8 @@ def _with_fit(
     late = round(before.delay)
     stop = found.samples + min(late, 0)
     used = UsedSamples(stop - whole.samples, stop, found.samples)
-    notes = tuple(dict.fromkeys((*_about(found), *before.undetermined, *apart)))
-    verdict = _verdict(before, metrics["training"].rms, found)
+    notes = tuple(dict.fromkeys((*notes, *before.undetermined, *apart)))
+    verdict = _verdict(before, metrics["training"].rms, found, fit.solution.status == CONVERGED)
     about = replace(
         before.description,
         input_low=found.u_low,
@@ -176,13 +222,30 @@ def _about(found: Survey) -> tuple[str, ...]:
     )
 
 
-def _verdict(before: Identified, rms: float, found: Survey) -> Verdict:
-    """Lower the verdict where the whole record is described worse than the part."""
+def _unfinished(fit: Fit, step: Array, spread: FitSpread) -> tuple[str, ...]:
+    """Say by how much a further step would move the constants, where it is worth saying."""
+    own = np.eye(step.size)[spread.inside]
+    errors, move = spread.of_what_is_determined(own), np.abs(step[spread.inside])
+    most = float(np.max(move / np.where(errors > 0.0, errors, np.inf), initial=0.0))
+    if fit.solution.status == CONVERGED and most < WORTH_SAYING:
+        return ()
+    return (
+        f"the fit to all samples ended ({fit.solution.status}) after {fit.solution.iterations} "
+        f"steps where a further one moves constants by up to {most:.2g} of the standard errors of "
+        "their noise; the standard errors told count that move",
+    )
+
+
+def _verdict(before: Identified, rms: float, found: Survey, converged: bool) -> Verdict:
+    """Lower the verdict where all samples are described worse than the part, or not to the end."""
     part = before.metrics["training"].rms
     level, sentences = before.verdict.level, before.verdict.sentences
     judged = (
         f"Judged on {found.part.stop - found.part.start} of {found.samples} samples, fitted to all."
     )
+    if not converged:
+        level = "unfit" if level == "unfit" else "fair"
+        sentences = ("The fit to all samples has not settled.", *sentences)
     if rms > WORSE * part or found.part_covers < COVERS:
         level = "unfit" if level == "unfit" else "fair"
         return Verdict(

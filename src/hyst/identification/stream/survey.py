@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,7 +77,7 @@ def survey(stream: RecordStream) -> Survey:
     lows, highs, covered, firsts = list[float](), list[float](), list[float](), list[int]()
     total, low, high = _Moments(), math.inf, -math.inf
     y_low, y_high, place = math.inf, -math.inf, 0
-    for u, y in stream.chunks(CHUNK):
+    for u, y in chunks_of(stream):
         _require_finite(u, "input", place)
         _require_finite(y, "output", place)
         lows.append(float(u.min()))
@@ -87,8 +88,6 @@ def survey(stream: RecordStream) -> Survey:
         firsts.append(place)
         total.add(y)
         place += u.size
-    if place != len(stream):
-        raise InputError(f"the record says it has {len(stream)} samples, but {place} were read")
     for name, least, most in (("input", low, high), ("output", y_low, y_high)):
         if not most > least:
             raise NotIdentifiableError(f"the {name} is constant ({least:.6g}) over all samples")
@@ -108,6 +107,39 @@ def survey(stream: RecordStream) -> Survey:
     )
 
 
+def chunks_of(stream: RecordStream) -> Iterator[tuple[Array, Array]]:
+    """Go through a record, and see that all of it comes every time.
+
+    Parameters
+    ----------
+    stream
+        The record.
+
+    Yields
+    ------
+    tuple of numpy.ndarray
+        Input and output, shape (n,).
+
+    Raises
+    ------
+    InputError
+        If input and output of a chunk are not equally long, or it holds another number of samples
+        than it says.
+    """
+    place = 0
+    for u, y in stream.chunks(CHUNK):
+        if u.shape != y.shape:
+            raise InputError(
+                f"from sample {place} on, {u.size} samples of the input were read and {y.size} of "
+                "the output; give as many of both"
+            )
+        place += u.size
+        if u.size:
+            yield u, y
+    if place != len(stream):
+        raise InputError(f"the record says it has {len(stream)} samples, but {place} were read")
+
+
 def part_of(stream: RecordStream, part: slice) -> Record:
     """Load some of the samples of a record in a file.
 
@@ -123,7 +155,7 @@ def part_of(stream: RecordStream, part: slice) -> Record:
     Record
     """
     us, ys, place = list[Array](), list[Array](), 0
-    for u, y in stream.chunks(CHUNK):
+    for u, y in chunks_of(stream):
         inside = slice(max(part.start - place, 0), max(part.stop - place, 0))
         us.append(u[inside].copy())
         ys.append(y[inside].copy())
@@ -151,7 +183,7 @@ def data_hash(stream: RecordStream) -> str:
     """
     total = hashlib.sha256()
     for signal in (0, 1):
-        for chunk in stream.chunks(CHUNK):
+        for chunk in chunks_of(stream):
             total.update(np.ascontiguousarray(chunk[signal], dtype="<f8").tobytes())
     total.update(np.ascontiguousarray(stream.dt, dtype="<f8").tobytes())
     return total.hexdigest()
@@ -172,7 +204,7 @@ def _first_settled(
     """Give the first sample at which the input has covered a span."""
     chunk = next((i for i, each in enumerate(covered) if each >= span), len(covered) - 1)
     low, high = math.inf, -math.inf
-    for number, (u, _) in enumerate(stream.chunks(CHUNK)):
+    for number, (u, _) in enumerate(chunks_of(stream)):
         if number == chunk:
             ups = np.maximum(np.maximum.accumulate(u), high)
             downs = np.minimum(np.minimum.accumulate(u), low)
