@@ -31,7 +31,9 @@ PACKAGES = (
     "report",
     "demo",
     "studies",
+    "studio",
     "jax",
+    "sklearn",
     "torch",
 )
 

@@ -30,7 +30,7 @@ from hyst.identification.result.identified import Identified
 from hyst.identification.result.identified_from_fit import identified_from_fit, traced
 from hyst.identification.search import Found, find
 from hyst.identification.stream.identify_stream import UNTIL_FIT_OF_ALL, identify_stream
-from hyst.operators import Driver
+from hyst.operators import Driver, Operator
 from hyst.operators.provenance import options_asked
 from hyst.signals import Record, RecordStream
 
@@ -171,8 +171,7 @@ def identify(
         creeping = search.best(reserve)
         found = creeping.found
         diagnosis = creeping.judged(diagnosis, given)
-        for number, record in enumerate(judged, 1):
-            found.fit.operator.require_possible_time(record.dt, f"validation record {number}")
+        _require_possible(found.fit.operator, judged)
         if found.delay is not None:
             diagnosis = diagnosis.with_delay(found.delay, given[0].dt)  # the same in any unit
         say("verdict")
@@ -190,6 +189,12 @@ def identify(
         identified = replace(creeping.told(identified), records=used.records)
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
     return with_driver(traced(told, measured, asked), driver)
+
+
+def _require_possible(model: Operator, judged: Sequence[Record]) -> None:
+    """Refuse validation records of a sample time that the model cannot have."""
+    for number, record in enumerate(judged, 1):
+        model.require_possible_time(record.dt, f"validation record {number}")
 
 
 _KEYWORDS = frozenset(identify.__kwdefaults__ or ()) - {"dt"}

@@ -14,14 +14,13 @@ from hyst.report.comparison_report import (
     not_invertible_sentences,
 )
 from hyst.report.description_tables import description_table, errors_table
+from hyst.report.parameter_tables import constants_table, parameters_table
 from hyst.report.shown.notebook_page import NotebookPage
 from hyst.report.table import Table, number, with_unit
 from hyst.report.tables import (
     candidates_table,
-    constants_table,
     metrics_table,
     motion_table,
-    parameters_table,
     per_record_table,
 )
 from hyst.signals import Record
