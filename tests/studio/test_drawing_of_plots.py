@@ -10,15 +10,20 @@ from hyst.studio.drawing.extremes import extreme_samples
 from hyst.studio.drawing.plot import Line, Plot
 
 
-def test_a_million_samples_are_drawn_by_their_extremes() -> None:
-    y = np.random.default_rng(1).standard_normal(1_000_003)
-    chosen = extreme_samples(500, y)
-    assert chosen.size < 1100
-    # In every stretch the drawn line reaches as far as all samples do.
-    for stretch in np.array_split(np.arange(1_000_000), 500):
-        inside = chosen[(chosen >= stretch[0]) & (chosen <= stretch[-1])]
-        assert y[inside].max() == y[stretch].max()
-        assert y[inside].min() == y[stretch].min()
+@pytest.mark.parametrize("size", [1_000_003, 1801, 1200, 999_999])
+def test_a_record_is_drawn_by_the_extremes_of_its_stretches(size: int) -> None:
+    y = np.random.default_rng(1).standard_normal(size)
+    chosen = extreme_samples(400, y)
+    assert chosen.size <= 802
+    # Within any two stretches the drawn line reaches as far as all samples do.
+    width = 2 * int(np.ceil(size / 400))
+    for begin in range(0, size - width, width // 2):
+        inside = chosen[(chosen >= begin) & (chosen < begin + width)]
+        drawn, there = y[inside], y[begin + width // 4 : begin + 3 * width // 4]
+        assert np.ptp(drawn) >= 0.5 * np.ptp(there)
+    assert y[chosen].max() == y.max()
+    assert y[chosen].min() == y.min()
+    assert np.diff(chosen).max() < width
 
 
 def test_a_spike_in_the_rest_behind_the_last_stretch_is_drawn() -> None:

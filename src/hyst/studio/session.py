@@ -13,10 +13,10 @@ from hyst.studio.work.commands import Session
 from hyst.studio.work.folder import WorkFolder, plain_name
 from hyst.studio.work.following import Followed, follow
 from hyst.studio.work.identifying import AUTO, FoundModel, find_model, overlay
+from hyst.studio.work.jobs import Place, save
 from hyst.studio.work.looking import Look, look
 from hyst.studio.work.measuring import Measured, measure
 from hyst.studio.work.reference import Reference
-from hyst.studio.work.saving import Place, save
 from hyst.studio.work.sentences import sentence_of
 from hyst.studio.work.worker import CancelledError, Worker
 
@@ -48,7 +48,8 @@ class StudioSession:
 
     def __init__(self, folder: WorkFolder) -> None:
         self.folder = folder
-        self.quick, self.long = Worker(), Worker()
+        self.quick = Worker(("hyst.studio.work.looking", "hyst.studio.work.measuring"))
+        self.long = Worker(("hyst.studio.work.identifying",))
         self.said: dict[str, str] = {}
         self.busy: set[str] = set()
         self.progress: Progress | None = None

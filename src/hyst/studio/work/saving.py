@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -19,37 +17,18 @@ from hyst.studio.work.commands import Session
 from hyst.studio.work.folder import MARK
 from hyst.studio.work.following import command_for
 from hyst.studio.work.identifying import FoundModel
+from hyst.studio.work.jobs import Place
 from hyst.studio.work.measuring import record_of
 from hyst.studio.work.reference import Reference
 
 
-@dataclass(frozen=True)
-class Place:
-    """Where a session is and goes.
-
-    Parameters
-    ----------
-    record
-        The record's file.
-    folder
-        To write.
-    """
-
-    record: Path
-    folder: Path
-
-
-def save(
-    place: Place, session: Session, reference: Reference | None, tell: Callable[..., None]
-) -> tuple[str, ...]:
+def write_session(place: Place, session: Session, reference: Reference | None) -> tuple[str, ...]:
     """Write a session.
 
     Parameters
     ----------
     place, session, reference
         Where and what.
-    tell
-        Not told anything.
 
     Returns
     -------
