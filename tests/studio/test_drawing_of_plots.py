@@ -47,6 +47,23 @@ def test_short_signals_are_drawn_whole() -> None:
     [
         (0.0, 10.0, ["0", "2", "4", "6", "8", "10"]),
         (-1.0, 1.0, ["-1", "-0.5", "0", "0.5", "1"]),
+        (
+            -0.06,
+            0.06,
+            [
+                "-0.06",
+                "-0.05",
+                "-0.04",
+                "-0.025",
+                "-0.02",
+                "0",
+                "0.02",
+                "0.025",
+                "0.04",
+                "0.05",
+                "0.06",
+            ],
+        ),
         (0.0, 150.0, ["0", "25", "50", "75", "100", "125", "150"]),
     ],
 )
@@ -54,6 +71,13 @@ def test_ticks_stand_at_round_numbers(low: float, high: float, labels: list[str]
     told = [label for _, label in Axis(low, high, 0.0, 100.0).ticks()]
     assert set(told) <= set(labels)
     assert len(told) >= 3
+
+
+@pytest.mark.parametrize("span", [0.1, 0.125, 3.0, 7e4, 2e-5])
+def test_labels_say_where_their_ticks_stand(span: float) -> None:
+    axis = Axis(-0.4 * span, 0.6 * span, 0.0, 1000.0)
+    for pixel, label in axis.ticks():
+        assert float(label) == pytest.approx(axis.low + span * pixel / 1000.0, abs=1e-6 * span)
 
 
 def test_an_axis_of_one_value_has_a_width() -> None:

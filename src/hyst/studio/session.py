@@ -18,7 +18,7 @@ from hyst.studio.work.looking import Look, look
 from hyst.studio.work.measuring import Measured, measure
 from hyst.studio.work.reference import Reference
 from hyst.studio.work.sentences import sentence_of
-from hyst.studio.work.worker import CancelledError, Worker
+from hyst.studio.work.worker import CancelledError, Worker, WorkError
 
 PARTS = ("file", "columns", "record", "identify", "models", "reference", "save")
 
@@ -295,8 +295,10 @@ class StudioSession:
         async with _Doing(self, "save", "save"):
             place = Place(self.folder.readable(self.file), self.folder.inside(plain_name(name)))
             given = (place, self.session(exports), self.reference)
-            self.saved = await self.quick.run(save, *given)
-            self.saved_in = name
+            done = await self.quick.run(save, *given)
+            self.saved, self.saved_in = done.files, name
+            if done.refusals:
+                raise WorkError(" ".join(done.refusals))
 
     def free_folder(self) -> str:
         """Name a folder for a session that is not there yet."""

@@ -26,9 +26,25 @@ class Place:
     folder: Path
 
 
+@dataclass(frozen=True)
+class Saved:
+    """What was written.
+
+    Parameters
+    ----------
+    files
+        As paths from the folder.
+    refusals
+        Sentences about code that cannot be exported.
+    """
+
+    files: tuple[str, ...]
+    refusals: tuple[str, ...]
+
+
 def save(
     place: Place, session: Session, reference: Reference | None, tell: Callable[..., None]
-) -> tuple[str, ...]:
+) -> Saved:
     """Write a session as a folder.
 
     Parameters

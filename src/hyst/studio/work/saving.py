@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from hyst._files import replacing
-from hyst.errors import InputError
+from hyst.errors import HystError, InputError
 from hyst.export import c_project, fmu, inverse_of, mex
 from hyst.identification import Identified
 from hyst.io import write_columns
 from hyst.report import dynamics_sections, write_report
-from hyst.studio.work.commands import Session
+from hyst.studio.work.commands import TARGETS, Session
 from hyst.studio.work.folder import MARK
 from hyst.studio.work.following import command_for
 from hyst.studio.work.identifying import FoundModel
-from hyst.studio.work.jobs import Place
+from hyst.studio.work.jobs import Place, Saved
 from hyst.studio.work.measuring import record_of
 from hyst.studio.work.reference import Reference
+from hyst.studio.work.sentences import sentence_of
 
 
-def write_session(place: Place, session: Session, reference: Reference | None) -> tuple[str, ...]:
+def write_session(place: Place, session: Session, reference: Reference | None) -> Saved:
     """Write a session.
 
     Parameters
@@ -32,8 +34,8 @@ def write_session(place: Place, session: Session, reference: Reference | None) -
 
     Returns
     -------
-    tuple of str
-        What was written, as paths from the folder.
+    Saved
+        Also where code could not be exported, which it says.
 
     Raises
     ------
@@ -56,13 +58,25 @@ def write_session(place: Place, session: Session, reference: Reference | None) -
         )  # fmt: skip
     if reference is not None and session.method:
         _write_command(folder, _chosen(session).result(), reference)
-    for target in session.exports:
-        _export(_chosen(session), target, folder / target)
+    exports, refusals = _exported(session, folder)
+    session = replace(session, exports=exports)
     with replacing(folder / MARK) as temporary:
         lines = ["#!/bin/sh", "# Repeats this session; run it in this folder.", "set -e"]
         temporary.write_text("\n".join([*lines, *session.commands()]) + "\n", encoding="utf-8")
     written = sorted(each for each in folder.rglob("*") if each.is_file())
-    return tuple(each.relative_to(folder).as_posix() for each in written)
+    return Saved(tuple(each.relative_to(folder).as_posix() for each in written), refusals)
+
+
+def _exported(session: Session, folder: Path) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Write the code that can be written, and say of the other why not."""
+    written, refusals = [], []
+    for target in session.exports:
+        try:
+            _export(_chosen(session), target, folder / target)
+            written.append(target)
+        except (HystError, OSError) as refusal:
+            refusals.append(f"{TARGETS[target]} was not written: {sentence_of(refusal)}")
+    return tuple(written), tuple(refusals)
 
 
 def _require_own(folder: Path) -> None:
