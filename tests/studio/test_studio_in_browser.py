@@ -198,6 +198,14 @@ def test_what_cannot_be_read_ends_in_a_sentence(page: Any) -> None:
     open_loop(page)
 
 
+def test_a_file_of_two_gigabytes_is_refused_before_it_is_read(page: Any, tmp_path: Path) -> None:
+    with (tmp_path / "huge.csv").open("wb") as file:
+        file.truncate(2_000_000_000)  # sparse: it takes no room
+    page.set_input_files("#dropped", str(tmp_path / "huge.csv"))
+    page.wait_for_function("document.querySelector('#file .said')?.innerText.includes('2.00 GB')")
+    assert "--in-file yes" in page.inner_text("#file .said")
+
+
 def test_a_cancelled_identification_leaves_the_page_as_it_was(page: Any) -> None:
     open_loop(page)
     page.click("#identify-button")

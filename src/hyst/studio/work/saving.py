@@ -84,6 +84,12 @@ def _require_own(folder: Path) -> None:
         raise InputError(
             f"{folder.name} is there and holds no session of the studio; give another name"
         )
+    links = [each for each in folder.rglob("*") if each.is_symlink()]
+    if links:
+        raise InputError(
+            f"{folder.name} holds the link {links[0].name}, which may lead anywhere; give another "
+            "name, or take it away"
+        )
 
 
 def _chosen(session: Session) -> FoundModel:
