@@ -18,7 +18,7 @@ from hyst.studio.work.looking import Look, look
 from hyst.studio.work.measuring import Measured, measure
 from hyst.studio.work.reference import Reference
 from hyst.studio.work.sentences import sentence_of
-from hyst.studio.work.worker import CancelledError, Worker, WorkError
+from hyst.studio.work.worker import CancelledError, Worker
 
 PARTS = ("file", "columns", "record", "identify", "models", "reference", "save")
 
@@ -291,14 +291,16 @@ class StudioSession:
         exports
             Targets.
         """
-        self.saved, self.saved_in = (), ""
+        self.saved, self.saved_in, refusals = (), "", ()
         async with _Doing(self, "save", "save"):
             place = Place(self.folder.readable(self.file), self.folder.inside(plain_name(name)))
             given = (place, self.session(exports), self.reference)
             done = await self.quick.run(save, *given)
             self.saved, self.saved_in = done.files, name
-            if done.refusals:
-                raise WorkError(" ".join(done.refusals))
+            refusals = done.refusals
+        if refusals:
+            self.said["save"] = " ".join(refusals)
+            self.changed("save")
 
     def free_folder(self) -> str:
         """Name a folder for a session that is not there yet."""
