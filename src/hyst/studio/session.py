@@ -291,7 +291,8 @@ class StudioSession:
         exports
             Targets.
         """
-        self.saved, self.saved_in, refusals = (), "", ()
+        self.saved, self.saved_in = (), ""
+        refusals: tuple[str, ...] = ()
         async with _Doing(self, "save", "save"):
             place = Place(self.folder.readable(self.file), self.folder.inside(plain_name(name)))
             given = (place, self.session(exports), self.reference)
