@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 
 import hyst
 from hyst.identification.fit.problem import Evaluation
-from hyst.identification.options import Options, silent
+from hyst.identification.options import Options
+from hyst.identification.progress import Progress
 from hyst.identification.record_use.cleaned import Cleaned
 from hyst.identification.search import Found, find
 
@@ -119,7 +120,7 @@ def _without_noise(name: str, example: FamilyExample) -> Found:
     records = tuple(example.records())
     family = hyst.families.make(name, example.options)
     nothing = (None,) * len(records)
-    wanted = Options((), silent, 0, "auto", 200, False)
+    wanted = Options((), Progress(), 0, "auto", 200, False)
     return find(Cleaned(records, nothing, nothing), (family,), wanted)
 
 

@@ -141,6 +141,16 @@ def test_an_object_with_a_value_of_another_version_is_refused(name: str) -> None
 
 
 @pytest.mark.parametrize("name", NAMES)
+def test_its_results_go_from_process_to_process(name: str) -> None:
+    records = family_example(name).records()
+    found = identified(name, records)
+    there, u = pickle.loads(pickle.dumps(found)), records[0].u
+    assert there.predict(u).tolist() == found.predict(u).tolist()
+    for one, other in zip(there.band(u), found.band(u), strict=True):
+        assert one.tolist() == other.tolist()
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_it_recovers_its_own_constants(name: str) -> None:
     example = family_example(name)
     found = identified(name, example.records())

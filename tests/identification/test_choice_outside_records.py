@@ -21,7 +21,8 @@ from hyst.identification.choice.cross_validation import Score
 from hyst.identification.choice.disagreement import nested_drive
 from hyst.identification.choice.told import kind_of
 from hyst.identification.families.registry import chosen_families
-from hyst.identification.options import Options, silent
+from hyst.identification.options import Options
+from hyst.identification.progress import Progress
 from hyst.identification.record_use.cleaned import Cleaned
 from hyst.identification.record_use.outlying import rows_to_fit
 from hyst.identification.record_use.overview import Overview
@@ -143,7 +144,7 @@ def _columns(path: Path) -> NDArray[np.float64]:
 
 
 def found_on(record: hyst.Record) -> Found:
-    options = Options((), silent, 0, "auto", 200, False)
+    options = Options((), Progress(), 0, "auto", 200, False)
     given = Cleaned((record,), (None,), (None,))
     return find(given, chosen_families("auto", {}), options)
 

@@ -9,7 +9,8 @@ from hyst.diagnosis import Diagnosis, Finding
 from hyst.identification.families.family import Family, Fit
 from hyst.identification.identify_records import find
 from hyst.identification.judgement.judge import judge
-from hyst.identification.options import Options, silent
+from hyst.identification.options import Options
+from hyst.identification.progress import Progress
 from hyst.identification.record_use.cleaned import Cleaned
 from hyst.identification.record_use.used_samples import Data
 from hyst.identification.result.identified_from_fit import metrics_by_record
@@ -23,7 +24,7 @@ def fitted_as_given(
     """Fit a family to every sample as it was measured."""
     given = (records,) if isinstance(records, Record) else tuple(records)
     nothing = (None,) * len(given)
-    options = Options((), silent, 0, "auto", 200, True)
+    options = Options((), Progress(), 0, "auto", 200, True)
     found = find(Cleaned(given, nothing, nothing, nothing), [family], options)
     return found.data, found.fit, metrics_by_record(found.data, found.fit.operator, ())
 

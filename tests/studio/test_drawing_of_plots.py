@@ -10,15 +10,20 @@ from hyst.studio.drawing.extremes import extreme_samples
 from hyst.studio.drawing.plot import Line, Plot
 
 
-def test_a_million_samples_are_drawn_by_their_extremes() -> None:
-    y = np.random.default_rng(1).standard_normal(1_000_003)
-    chosen = extreme_samples(500, y)
-    assert chosen.size < 1100
-    # In every stretch the drawn line reaches as far as all samples do.
-    for stretch in np.array_split(np.arange(1_000_000), 500):
-        inside = chosen[(chosen >= stretch[0]) & (chosen <= stretch[-1])]
-        assert y[inside].max() == y[stretch].max()
-        assert y[inside].min() == y[stretch].min()
+@pytest.mark.parametrize("size", [1_000_003, 1801, 1200, 999_999])
+def test_a_record_is_drawn_by_the_extremes_of_its_stretches(size: int) -> None:
+    y = np.random.default_rng(1).standard_normal(size)
+    chosen = extreme_samples(400, y)
+    assert chosen.size <= 802
+    # Within any two stretches the drawn line reaches as far as all samples do.
+    width = 2 * int(np.ceil(size / 400))
+    for begin in range(0, size - width, width // 2):
+        inside = chosen[(chosen >= begin) & (chosen < begin + width)]
+        drawn, there = y[inside], y[begin + width // 4 : begin + 3 * width // 4]
+        assert np.ptp(drawn) >= 0.5 * np.ptp(there)
+    assert y[chosen].max() == y.max()
+    assert y[chosen].min() == y.min()
+    assert np.diff(chosen).max() < width
 
 
 def test_a_spike_in_the_rest_behind_the_last_stretch_is_drawn() -> None:
@@ -42,6 +47,23 @@ def test_short_signals_are_drawn_whole() -> None:
     [
         (0.0, 10.0, ["0", "2", "4", "6", "8", "10"]),
         (-1.0, 1.0, ["-1", "-0.5", "0", "0.5", "1"]),
+        (
+            -0.06,
+            0.06,
+            [
+                "-0.06",
+                "-0.05",
+                "-0.04",
+                "-0.025",
+                "-0.02",
+                "0",
+                "0.02",
+                "0.025",
+                "0.04",
+                "0.05",
+                "0.06",
+            ],
+        ),
         (0.0, 150.0, ["0", "25", "50", "75", "100", "125", "150"]),
     ],
 )
@@ -49,6 +71,13 @@ def test_ticks_stand_at_round_numbers(low: float, high: float, labels: list[str]
     told = [label for _, label in Axis(low, high, 0.0, 100.0).ticks()]
     assert set(told) <= set(labels)
     assert len(told) >= 3
+
+
+@pytest.mark.parametrize("span", [0.1, 0.125, 3.0, 7e4, 2e-5])
+def test_labels_say_where_their_ticks_stand(span: float) -> None:
+    axis = Axis(-0.4 * span, 0.6 * span, 0.0, 1000.0)
+    for pixel, label in axis.ticks():
+        assert float(label) == pytest.approx(axis.low + span * pixel / 1000.0, abs=1e-6 * span)
 
 
 def test_an_axis_of_one_value_has_a_width() -> None:

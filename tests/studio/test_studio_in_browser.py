@@ -124,7 +124,8 @@ def _repeats(session: Path) -> None:
     commands = [each for each in lines if each.startswith(("hyst identify", "hyst compensate"))]
     assert len(commands) == 2
     with contextlib.chdir(session):
-        assert [main(each.split()[1:]) for each in commands] == [0, 0]
+        quickly = [commands[0] + " --no-figures", commands[1]]
+        assert [main(each.split()[1:]) for each in quickly] == [0, 0]
     first, again = (
         json.loads((session / folder / "auto" / "metrics.json").read_text())
         for folder in ("models", "again")
@@ -196,6 +197,14 @@ def test_what_cannot_be_read_ends_in_a_sentence(page: Any) -> None:
     assert "Traceback" not in said
     assert len(said.split()) > 4
     open_loop(page)
+
+
+def test_a_file_of_two_gigabytes_is_refused_before_it_is_read(page: Any, tmp_path: Path) -> None:
+    with (tmp_path / "huge.csv").open("wb") as file:
+        file.truncate(2_000_000_000)  # sparse: it takes no room
+    page.set_input_files("#dropped", str(tmp_path / "huge.csv"))
+    page.wait_for_function("document.querySelector('#file .said')?.innerText.includes('2.00 GB')")
+    assert "--in-file yes" in page.inner_text("#file .said")
 
 
 def test_a_cancelled_identification_leaves_the_page_as_it_was(page: Any) -> None:

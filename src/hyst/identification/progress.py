@@ -50,6 +50,10 @@ class Step(str):
         return Step, (str(self), self.share)
 
 
+def silent(_: str) -> None:
+    """Report progress to nobody."""
+
+
 class Progress:
     """Tells a caller each step before it is made; what the caller raises ends the search.
 
@@ -65,7 +69,7 @@ class Progress:
 
     def __init__(
         self,
-        tell: Callable[[Step], object],
+        tell: Callable[[Step], object] = silent,
         begin: float = 0.0,
         end: float = 1.0,
         before: str = "",
@@ -93,7 +97,3 @@ class Progress:
             Words before those of its steps.
         """
         return Progress(self, begin, end, before)
-
-
-def silent(_: str) -> None:
-    """Report progress to nobody."""

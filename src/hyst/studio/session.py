@@ -13,10 +13,10 @@ from hyst.studio.work.commands import Session
 from hyst.studio.work.folder import WorkFolder, plain_name
 from hyst.studio.work.following import Followed, follow
 from hyst.studio.work.identifying import AUTO, FoundModel, find_model, overlay
+from hyst.studio.work.jobs import Place, save
 from hyst.studio.work.looking import Look, look
 from hyst.studio.work.measuring import Measured, measure
 from hyst.studio.work.reference import Reference
-from hyst.studio.work.saving import Place, save
 from hyst.studio.work.sentences import sentence_of
 from hyst.studio.work.worker import CancelledError, Worker
 
@@ -48,7 +48,8 @@ class StudioSession:
 
     def __init__(self, folder: WorkFolder) -> None:
         self.folder = folder
-        self.quick, self.long = Worker(), Worker()
+        self.quick = Worker(("hyst.studio.work.looking", "hyst.studio.work.measuring"))
+        self.long = Worker(("hyst.studio.work.identifying",))
         self.said: dict[str, str] = {}
         self.busy: set[str] = set()
         self.progress: Progress | None = None
@@ -291,11 +292,16 @@ class StudioSession:
             Targets.
         """
         self.saved, self.saved_in = (), ""
+        refusals: tuple[str, ...] = ()
         async with _Doing(self, "save", "save"):
             place = Place(self.folder.readable(self.file), self.folder.inside(plain_name(name)))
             given = (place, self.session(exports), self.reference)
-            self.saved = await self.quick.run(save, *given)
-            self.saved_in = name
+            done = await self.quick.run(save, *given)
+            self.saved, self.saved_in = done.files, name
+            refusals = done.refusals
+        if refusals:
+            self.said["save"] = " ".join(refusals)
+            self.changed("save")
 
     def free_folder(self) -> str:
         """Name a folder for a session that is not there yet."""

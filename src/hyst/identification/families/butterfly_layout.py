@@ -7,6 +7,7 @@ input, and the plays make of that a state that goes from -1 to 1: both are gauge
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -162,8 +163,8 @@ def parametrize_butterfly(first: Hysteresis) -> tuple[ButterflyParametrization, 
         fixed,
         lower,
         upper,
-        lambda theta: _sorted(theta, first),
-        gauges=lambda theta: _scales(theta, first),
+        partial(_sorted, first),
+        gauges=partial(_scales, first),
         gauge_count=2,
         first=first,
     )
@@ -185,7 +186,7 @@ def _parts(theta: Array, first: Hysteresis) -> tuple[Array, Array, Array]:
     return theta[:pieces], theta[pieces : pieces + n], theta[pieces + n : pieces + 2 * n]
 
 
-def _sorted(theta: Array, first: Hysteresis) -> Array:
+def _sorted(first: Hysteresis, theta: Array) -> Array:
     """Sort the plays by radius, each with its weight: their order means nothing."""
     slopes, p, r = _parts(theta, first)
     order = np.argsort(r, kind="stable")
@@ -193,7 +194,7 @@ def _sorted(theta: Array, first: Hysteresis) -> Array:
     return np.concatenate([slopes, p[order], r[order], rest])
 
 
-def _scales(theta: Array, first: Hysteresis) -> tuple[Array, Array]:
+def _scales(first: Hysteresis, theta: Array) -> tuple[Array, Array]:
     """Give by which shares the rises of envelope and state are off, with their derivatives."""
     slopes, p, r = _parts(theta, first)
     pieces, n = slopes.size, p.size

@@ -9,6 +9,7 @@ open.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -145,13 +146,17 @@ def _parametrized(
         fixed,
         lower,
         upper,
-        gauges=lambda theta: (sums @ theta - 1.0, sums),
+        gauges=partial(_sum_of_cells, sums),
         gauge_count=1,
         prior=prior,
         cells=cells,
         effective=_effective(overview, template, prior, theta > lower),
     )
     return parametrization, theta
+
+
+def _sum_of_cells(sums: Array, theta: Array) -> tuple[Array, Array]:
+    return sums @ theta - 1.0, sums
 
 
 def _effective(overview: Overview, model: Butterfly, prior: Array, free: NDArray[np.bool_]) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import final
 
 import numpy as np
@@ -126,13 +127,13 @@ class EnvelopeLayout:
             # In units of an envelope whose slope around 0 may be the smallest of all.
             upper[n + 1 : 2 * n + 1] /= SMALLEST_MAP_SLOPE
         plays = PlayLayout(weights_of, lower, upper)
-
-        def canonical(theta: Array) -> Array:
-            return self.with_room(plays.canonical(theta), n)
-
+        canonical = partial(self._canonical, plays, n)
         return PlayParametrization(
             template, transform, fixed, lower, upper, canonical, layout=plays
         ), theta
+
+    def _canonical(self, plays: PlayLayout, n: int, theta: Array) -> Array:
+        return self.with_room(plays.canonical(theta), n)
 
     def with_room(self, theta: Array, n: int) -> Array:
         """Give theta with falling nowhere more than 2 r_1 below rising, its slopes changed.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -142,14 +143,14 @@ def _parametrize(
         lower,
         upper,
         layout.canonical,
-        gauges=lambda theta: _sum_of_weights(theta, n),
+        gauges=partial(_sum_of_weights, n),
         gauge_count=1,
         layout=layout,
     )
     return parametrization, theta
 
 
-def _sum_of_weights(theta: Array, n: int) -> tuple[Array, Array]:
+def _sum_of_weights(n: int, theta: Array) -> tuple[Array, Array]:
     row = np.zeros((1, theta.size))
     row[0, : n + 1] = 1.0
     return row @ theta - 1.0, row

@@ -7,7 +7,8 @@ The slopes of a map are those of its pieces, counted outwards from slope 1 aroun
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Self
+from functools import partial
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -121,7 +122,7 @@ class RateDependentLayout:
             transform,
             fixed,
             *self._bounds(overview),
-            _sorted_plays(n) if self.spacing == FREE else unchanged,
+            partial(_with_sorted_plays, n) if self.spacing == FREE else unchanged,
             layout=self,
         )
 
@@ -210,14 +211,10 @@ def radius_count(spacing: str, plays: int) -> int:
     return {EVEN: min(plays, 1), FREE: plays, GIVEN: 0}[spacing]
 
 
-def _sorted_plays(n: int) -> Any:
-    """Give what sorts the plays by radius, each with its weight: their order means nothing."""
-
-    def canonical(theta: Array) -> Array:
-        order = np.argsort(theta[n + 1 : 2 * n + 1], kind="stable")
-        result = theta.copy()
-        result[1 : n + 1] = theta[1 : n + 1][order]
-        result[n + 1 : 2 * n + 1] = theta[n + 1 : 2 * n + 1][order]
-        return result
-
-    return canonical
+def _with_sorted_plays(n: int, theta: Array) -> Array:
+    """Sort the plays by radius, each with its weight: their order means nothing."""
+    order = np.argsort(theta[n + 1 : 2 * n + 1], kind="stable")
+    result = theta.copy()
+    result[1 : n + 1] = theta[1 : n + 1][order]
+    result[n + 1 : 2 * n + 1] = theta[n + 1 : 2 * n + 1][order]
+    return result

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from typing import Literal, Self
 
 import numpy as np
@@ -105,7 +106,7 @@ def with_stage(
         "fixed": fixed,
         "lower": np.concatenate([parametrization.lower, lower]),
         "upper": np.concatenate([parametrization.upper, upper]),
-        "canonical": _canonical(parametrization),
+        "canonical": partial(_canonical, parametrization),
         "gauges": _gauges(parametrization, own.size),
         "is_allowed": _is_allowed(parametrization),
         "is_linear": False,
@@ -168,25 +169,28 @@ def _constants_before(operator: Operator, where: Where) -> int:
     return sum(len(each.parameters()) for each in _parts(operator)[: _place(operator, where)])
 
 
-def _canonical(base: Parametrization) -> Callable[[Array], Array]:
-    def canonical(theta: Array) -> Array:
-        return np.concatenate([base.canonical(theta[: base.size]), theta[base.size :]])
-
-    return canonical
+def _canonical(base: Parametrization, theta: Array) -> Array:
+    return np.concatenate([base.canonical(theta[: base.size]), theta[base.size :]])
 
 
 def _is_allowed(base: Parametrization) -> Callable[[Array], bool] | None:
     allowed = base.is_allowed
-    return None if allowed is None else lambda theta: allowed(theta[: base.size])
+    return None if allowed is None else partial(_is_allowed_before, allowed, base.size)
+
+
+def _is_allowed_before(allowed: Callable[[Array], bool], size: int, theta: Array) -> bool:
+    return allowed(theta[:size])
 
 
 def _gauges(base: Parametrization, more: int) -> Callable[[Array], tuple[Array, Array]] | None:
     gauges = base.gauges
     if gauges is None:
         return None
+    return partial(_padded, gauges, base.size, more)
 
-    def padded(theta: Array) -> tuple[Array, Array]:
-        values, rows = gauges(theta[: base.size])
-        return values, np.pad(rows, ((0, 0), (0, more)))
 
-    return padded
+def _padded(
+    gauges: Callable[[Array], tuple[Array, Array]], size: int, more: int, theta: Array
+) -> tuple[Array, Array]:
+    values, rows = gauges(theta[:size])
+    return values, np.pad(rows, ((0, 0), (0, more)))

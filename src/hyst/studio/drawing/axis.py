@@ -89,12 +89,5 @@ class Axis:
 
 
 def _label(value: float, step: float) -> str:
-    if abs(value) < 1e-9 * step:
-        return "0"
-    if 1e-3 <= abs(value) < 1e5 and step >= 1e-4:
-        return (
-            f"{value:.{max(0, -math.floor(math.log10(step) - 1e-9))}f}".rstrip("0").rstrip(".")
-            if step < 1
-            else f"{value:.10g}"
-        )
-    return f"{value:.3g}"
+    # Multiples of a round step, so that six digits are all of them.
+    return "0" if abs(value) < 1e-9 * step else f"{value:.6g}"

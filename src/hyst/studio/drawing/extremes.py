@@ -17,7 +17,7 @@ def extreme_samples(stretches: int, *signals: Array) -> NDArray[np.intp]:
     Parameters
     ----------
     stretches
-        How many; about one for each column of pixels.
+        How many at most; about one for each column of pixels.
     signals
         Of one length N; samples that are not finite are passed over.
 
@@ -37,12 +37,13 @@ def extreme_samples(stretches: int, *signals: Array) -> NDArray[np.intp]:
     size = signals[0].size
     if size <= 2 * stretches * len(signals) + 2:
         return np.arange(size)
-    length = size // stretches
-    whole = length * stretches
-    begins = np.arange(stretches) * length
+    length = -(-size // stretches)  # rounded up, so that what is left is no longer than a stretch
+    count = size // length
+    whole = length * count
+    begins = np.arange(count) * length
     chosen = [np.array([0, size - 1]), *_of_rest(whole, size, signals)]
     for signal in signals:
-        rows = signal[:whole].reshape(stretches, length)
+        rows = signal[:whole].reshape(count, length)
         low = np.where(np.isfinite(rows), rows, np.inf).argmin(axis=1)
         high = np.where(np.isfinite(rows), rows, -np.inf).argmax(axis=1)
         chosen += [begins + low, begins + high]

@@ -98,7 +98,7 @@ class Plot:
         if not (self.x_label or self.y_label):
             return 2, 2, 2, 2
         rows = len(_legend_rows(self.lines, self.width))
-        return 62, 14, 12 + _ROW * rows, 46
+        return 76, 14, 12 + _ROW * rows, 46
 
 
 def _drawn(line: Line, across: Axis, up: Axis) -> str:
@@ -128,7 +128,7 @@ def _labels(plot: Plot) -> str:
     return (
         f'<text class="name" x="{plot.width / 2 + 24}" y="{plot.height - 8}">'
         f"{escape(plot.x_label)}</text>"
-        f'<text class="name" transform="translate(14 {middle}) rotate(-90)">'
+        f'<text class="name" transform="translate(15 {middle}) rotate(-90)">'
         f"{escape(plot.y_label)}</text>"
     )
 
@@ -153,7 +153,7 @@ def _legend_rows(lines: Sequence[Line], width: int) -> list[list[Line]]:
             continue
         if left < _room_of(each) or not rows:
             rows.append([])
-            left = width - 76.0
+            left = width - 90.0
         rows[-1].append(each)
         left -= _room_of(each)
     return rows

@@ -100,7 +100,7 @@ def _draw_reading(session: StudioSession) -> None:
                 on_change=lambda event: read_with(time_unit=event.value),
             )
             units.props('id="time-unit" outlined').classes("field")
-        table = ui.number("Table of the file, of several", value=choice.table, on_change=set_table)
+        table = ui.number("Number of the table", value=choice.table, on_change=set_table)
         table.props('id="table" debounce="600" min="1" step="1" outlined').classes("field")
         ui.checkbox(
             "Repair: leave out a few bad rows, and make uneven time even",

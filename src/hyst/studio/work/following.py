@@ -129,9 +129,9 @@ def _tracking(time: Array, done: Compensation, band: tuple[Array, Array], label:
     both = np.concatenate([at, at[::-1]])
     edge = np.concatenate([low[at], high[at][::-1]])
     lines = (
-        Line(time[both], edge, "holds 95 % of what will be measured", 3, "band"),
-        Line(time[at], done.y_ref[at], "wanted", 0, "dashed"),
+        Line(time[both], edge, "95 % band", 3, "band"),
         Line(time[at], done.y_predicted[at], "predicted", 1),
+        Line(time[at], done.y_ref[at], "wanted", 0, "dashed"),
     )
     worst = float(np.abs(done.y_predicted - done.y_ref).max())
     told = f"Wanted and predicted {label} over time; the prediction is at most {worst:.3g} off"

@@ -3,58 +3,39 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from hyst._files import replacing
-from hyst.errors import InputError
+from hyst.errors import HystError, InputError
 from hyst.export import c_project, fmu, inverse_of, mex
 from hyst.identification import Identified
 from hyst.io import write_columns
 from hyst.report import dynamics_sections, write_report
-from hyst.studio.work.commands import Session
+from hyst.studio.work.commands import TARGETS, Session
 from hyst.studio.work.folder import MARK
 from hyst.studio.work.following import command_for
 from hyst.studio.work.identifying import FoundModel
+from hyst.studio.work.jobs import Place, Saved
 from hyst.studio.work.measuring import record_of
 from hyst.studio.work.reference import Reference
+from hyst.studio.work.sentences import sentence_of
 
 
-@dataclass(frozen=True)
-class Place:
-    """Where a session is and goes.
-
-    Parameters
-    ----------
-    record
-        The record's file.
-    folder
-        To write.
-    """
-
-    record: Path
-    folder: Path
-
-
-def save(
-    place: Place, session: Session, reference: Reference | None, tell: Callable[..., None]
-) -> tuple[str, ...]:
+def write_session(place: Place, session: Session, reference: Reference | None) -> Saved:
     """Write a session.
 
     Parameters
     ----------
     place, session, reference
         Where and what.
-    tell
-        Not told anything.
 
     Returns
     -------
-    tuple of str
-        What was written, as paths from the folder.
+    Saved
+        Also where code could not be exported, which it says.
 
     Raises
     ------
@@ -77,19 +58,37 @@ def save(
         )  # fmt: skip
     if reference is not None and session.method:
         _write_command(folder, _chosen(session).result(), reference)
-    for target in session.exports:
-        _export(_chosen(session), target, folder / target)
+    exports, refusals = _exported(session, folder)
+    session = replace(session, exports=exports)
     with replacing(folder / MARK) as temporary:
         lines = ["#!/bin/sh", "# Repeats this session; run it in this folder.", "set -e"]
         temporary.write_text("\n".join([*lines, *session.commands()]) + "\n", encoding="utf-8")
     written = sorted(each for each in folder.rglob("*") if each.is_file())
-    return tuple(each.relative_to(folder).as_posix() for each in written)
+    return Saved(tuple(each.relative_to(folder).as_posix() for each in written), refusals)
+
+
+def _exported(session: Session, folder: Path) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Write the code that can be written, and say of the other why not."""
+    written, refusals = [], []
+    for target in session.exports:
+        try:
+            _export(_chosen(session), target, folder / target)
+            written.append(target)
+        except (HystError, OSError) as refusal:
+            refusals.append(f"{TARGETS[target]} was not written: {sentence_of(refusal)}")
+    return tuple(written), tuple(refusals)
 
 
 def _require_own(folder: Path) -> None:
     if folder.exists() and not (folder / MARK).is_file() and any(folder.iterdir()):
         raise InputError(
             f"{folder.name} is there and holds no session of the studio; give another name"
+        )
+    links = [each for each in folder.rglob("*") if each.is_symlink()]
+    if links:
+        raise InputError(
+            f"{folder.name} holds the link {links[0].name}, which may lead anywhere; give another "
+            "name, or take it away"
         )
 
 
