@@ -214,7 +214,7 @@ def test_a_model_of_before_is_told_of_where_none_is_taken(
     STAGE.save("bad.json", describe(STAGE, verdict=Verdict("unfit", ("It describes nothing.",))))
     (folder / "out").mkdir()
     LINE.save(folder / "out" / "model.json")
-    ended = run("compare", "bad.json", fresh, *COLUMNS, "-o", "out")
+    ended = run("compare", "bad.json", fresh, *COLUMNS, "-o", "out", "--force")
     assert ended.code == 3
     assert "model.json was there before: every model is unfit" in ended.err
     assert hyst.load(folder / "out" / "model.json") == LINE

@@ -91,12 +91,18 @@ def test_a_misspelled_option_is_refused(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_object_and_the_name_mean_the_same(name: str) -> None:
+    options = family_example(name).options
+    family = hyst.families.make(name, options)
+    assert isinstance(family, type(hyst.families[name]))
+    by_object = hyst.identification.chosen_families(family, {})
+    assert list(by_object) == list(hyst.identification.chosen_families(name, options))
+
+
+@pytest.mark.parametrize("name", ["pi", "ramberg-osgood"])
+def test_the_object_and_the_name_find_the_same(name: str) -> None:
     example = family_example(name)
-    records = example.records(example.noise, 0)
-    its_class = type(hyst.families[name])
     family = hyst.families.make(name, example.options)
-    assert isinstance(family, its_class)
-    found = hyst.identify(records, family=family, delay=0)
+    found = hyst.identify(example.records(example.noise, 0), family=family, delay=0)
     assert found.model == noisy_fits(name)[0].model
 
 

@@ -126,7 +126,7 @@ def test_resuming_needs_no_model_and_refuses_another(
     capsys.readouterr()
     assert adapt((other, data), tmp_path / "fourth", *resume) == 2
     assert "is not the model that" in capsys.readouterr().err
-    assert main(["adapt", str(data), *columns, *second]) == 2
+    assert main(["adapt", str(data), *columns, *second, "--force"]) == 2
     assert "give MODEL and DATA" in capsys.readouterr().err
 
 

@@ -13,9 +13,10 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand
 
+from hyst._files import keeping
 from hyst.cli import console
 from hyst.cli.config_file import options_from, write_options
-from hyst.cli.protection import protected, refuse_existing
+from hyst.cli.protection import files_among, refuse_existing
 
 _PANEL = "Options of every verb"
 _GIVEN = "hyst.cli.verb"
@@ -40,13 +41,16 @@ class Verb(TyperCommand):
         """Carry the verb out, unless it would replace what is there."""
         given = ctx.meta.get(_GIVEN, {})
         saved, is_forced = given.get("save_config"), given.get("force") or ctx.params.get("force")
+        written = [each.name for each in self.params if "-o" in each.opts]
+        read = {name: value for name, value in ctx.params.items() if name not in written}
         if "force" in given:  # the others look after their folders themselves
-            refuse_existing(ctx.params, is_forced)
+            target = ctx.params[written[0]] if written else None
+            refuse_existing(read, None if target is None else Path(target), is_forced)
         if saved is not None:
             write_options(saved, self, ctx, is_forced)
         # A log that goes on from its own estimator replaces it.
-        read = {} if self.name == "watch" else ctx.params
-        with protected(read), _speaking(str(self.name), given) as ended:
+        kept = [] if self.name == "watch" else files_among(read)
+        with keeping(kept), _speaking(str(self.name), given) as ended:
             ended["exit_code"] = super().invoke(ctx) or 0
         return ended["exit_code"]
 
