@@ -62,6 +62,18 @@ def test_what_cannot_be_used_ends_in_a_sentence(session: StudioSession, name: st
     assert session.busy == set()
 
 
+def test_of_two_tables_one_can_be_chosen(session: StudioSession) -> None:
+    async def work() -> None:
+        await session.choose_file("two.csv")
+        assert "“Number of the table”" in session.said["file"]
+        await session.choose_file("two.csv", 2)
+
+    run(session, work)
+    assert session.measured is not None
+    assert session.measured.samples == 200
+    assert session.session().commands()[0] == "hyst columns records/two.csv --table 2"
+
+
 def test_a_file_after_one_that_cannot_be_used_is_read(session: StudioSession) -> None:
     run(session, lambda: session.choose_file("loop.csv"))
     assert session.said == {}

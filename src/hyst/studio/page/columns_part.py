@@ -31,6 +31,8 @@ def draw_columns(session: StudioSession, remembered: dict[str, Any]) -> None:
     with section("columns", "2. Its columns"):
         if session.look is None:
             text("Open a file first.", "small")
+            if session.file and "file" in session.said:
+                _draw_table(session)  # which may be all that is missing
             return
         text(
             "Say which column is what. The guess is by names, units and values: check it.", "small"
@@ -84,10 +86,6 @@ def _draw_reading(session: StudioSession) -> None:
         value = event.value
         await read_with(rate=float(value) if value and float(value) > 0.0 else None)
 
-    async def set_table(event: Any) -> None:
-        if session.look is not None and event.value != session.look.guess.table:
-            await session.choose_file(session.file, int(event.value) if event.value else None)
-
     with ui.element("div").classes("fields"):
         if choice.time is None:
             rate = ui.number("Samples per second", value=choice.rate, on_change=set_rate)
@@ -100,8 +98,7 @@ def _draw_reading(session: StudioSession) -> None:
                 on_change=lambda event: read_with(time_unit=event.value),
             )
             units.props('id="time-unit" outlined').classes("field")
-        table = ui.number("Number of the table", value=choice.table, on_change=set_table)
-        table.props('id="table" debounce="600" min="1" step="1" outlined').classes("field")
+        _draw_table(session)
         ui.checkbox(
             "Repair: leave out a few bad rows, and make uneven time even",
             value=choice.repair,
@@ -112,3 +109,13 @@ def _draw_reading(session: StudioSession) -> None:
             value=choice.resample,
             on_change=lambda event: read_with(resample=event.value),
         ).props('id="resample"')
+
+
+def _draw_table(session: StudioSession) -> None:
+    async def choose(event: Any) -> None:
+        number = int(event.value) if event.value else None
+        if number != session.choice.table:
+            await session.choose_file(session.file, number)
+
+    made = ui.number("Number of the table", value=session.choice.table, on_change=choose)
+    made.props('id="table" debounce="600" min="1" step="1" outlined').classes("field")

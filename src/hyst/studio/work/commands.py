@@ -44,7 +44,8 @@ class Session:
         """Give the commands, to be run in the session's folder."""
         record = f"records/{self.record}"
         reading = self.choice.options()
-        lines = [_line("columns", record), _line("diagnose", record, *reading)]
+        table = [] if self.choice.table is None else ["--table", str(self.choice.table)]
+        lines = [_line("columns", record, *table), _line("diagnose", record, *reading)]
         for each in self.models:
             fit = ("--family", each.asked, "-o", f"again/{each.name}")
             lines.append(_line("identify", record, *reading, *fit))

@@ -7,6 +7,9 @@ from hyst.errors import HystError
 # Options of Python that messages name, and what they are called on the page.
 _ON_THE_PAGE = (
     ("repair=True", "the box “Repair”"),
+    ("the option repair", "the box “Repair”"),
+    ("the option resample", "the box “Bring to one raster”"),
+    ("choose one with table", "choose one with “Number of the table”"),
     ("resample=True", "the box “Bring to one raster”"),
     (
         "give output_time and resample",
