@@ -39,9 +39,8 @@ def main(path: str) -> None:
         assert "lens.h" in names, names
 
     error = found.metrics["training"].rms
-    print(
-        f"hyst {hyst.__version__}, {Path(_engine.__file__).name}: rms {error:.4g}, {len(names)} files of C"
-    )
+    engine = Path(_engine.__file__).name
+    print(f"hyst {hyst.__version__}, {engine}: rms {error:.4g}, {len(names)} files of C")
 
 
 if __name__ == "__main__":
