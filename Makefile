@@ -33,7 +33,7 @@ export MKL_NUM_THREADS := 1
 export CC CXX
 
 .DEFAULT_GOAL := help
-.PHONY: help venv install demo docs test core-test fuzz soak embedded embedded-table misra lint \
+.PHONY: help venv install demo docs wheel test core-test fuzz soak embedded embedded-table misra lint \
 	types bench bench-peers clean distclean
 
 help: ## list the targets
@@ -49,6 +49,19 @@ demo: $(installed) ## the whole story on a simulated stage; results in demo/
 docs: $(installed_dev) ## the documentation site, build/site/index.html; runs its notebooks
 	NO_MKDOCS_2_WARNING=1 $(bin)/mkdocs build --quiet
 	$(bin)/python docs/make_notebooks.py --run
+
+wheel: $(installed_dev) ## source distribution and wheel into dist/, tried in a fresh environment
+	rm -rf dist build/wheel
+	CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) PATH="$(abspath $(bin)):$$PATH" \
+		$(bin)/python -m build --no-isolation --outdir build/wheel
+	@mkdir -p dist
+	cp build/wheel/*.tar.gz dist
+	if [ "$$(uname)" = Linux ]; then PATH="$(abspath $(bin)):$$PATH" \
+		$(bin)/auditwheel repair --wheel-dir dist build/wheel/*.whl; \
+	else cp build/wheel/*.whl dist; fi
+	$(bin)/python -m venv build/wheel/fresh
+	build/wheel/fresh/bin/python -m pip install --quiet --disable-pip-version-check dist/*.whl
+	build/wheel/fresh/bin/python tests/installed/smoke.py examples/stage.csv
 
 test: core-test ## C tests of the core, then pytest
 	$(bin)/python -m pytest $(PYTEST_ARGS)

@@ -13,6 +13,7 @@ BESIDE = {
     "README.md": "index.md",
     "CHANGELOG.md": "changelog.md",
     "CONTRIBUTING.md": "contributing.md",
+    "SECURITY.md": "security.md",
     "benchmarks/README.md": "benchmarks.md",
     "CITATION.cff": "CITATION.cff",
     "LICENSE": "LICENSE.txt",

@@ -42,7 +42,7 @@ class ShownAxes(Axes):
         return super().set_title(label, fontdict, loc or "left", pad, y=y, **kwargs)
 
     def _repr_png_(self) -> bytes | None:
-        return _png_in_look(self.get_figure(root=True))
+        return _png_in_look(Panels([self]).figure)
 
 
 class Panels(tuple[Axes, ...]):
@@ -56,9 +56,9 @@ class Panels(tuple[Axes, ...]):
     @property
     def figure(self) -> Figure:
         """The figure of the first of them."""
-        found = self[0].get_figure(root=True)
-        assert found is not None, "axes that were drawn on are in a figure"
-        return found
+        holding = self[0].figure  # which may be a part of a figure
+        assert holding is not None, "axes that were drawn on are in a figure"
+        return holding.figure
 
     def _repr_png_(self) -> bytes | None:
         return _png_in_look(self.figure) if isinstance(self[0], ShownAxes) else None
