@@ -38,7 +38,7 @@ figure { margin: 1rem 0; }
 .panels { display: grid; background: #ffffff; padding: 4px; border-radius: 6px; }
 .panels p { grid-column: 1 / -1; margin: 0.3rem 0.4rem; max-width: none; color: #1f2937;
   font-size: 0.9rem; font-weight: 600; }
-.panel { overflow-x: auto; }
+.panel { overflow-x: auto; min-width: 0; }
 .panel img { display: block; max-width: 100%; height: auto; }
 .legend { grid-column: 1 / -1; }
 .legend img { margin: 0.2rem auto; }
@@ -76,7 +76,7 @@ pre { background: var(--box); padding: 0.7rem 0.9rem; overflow-x: auto; border-r
   .panels { padding: 0; }
   .panels .panel img { min-width: 0; }
   table { font-size: 8.5pt; }
-  th, td { white-space: normal; padding-right: 0.5rem; }
+  th, td { white-space: normal; overflow-wrap: anywhere; padding-right: 0.5rem; }
   th.said, td.said { min-width: 0; }
   pre { white-space: pre-wrap; overflow-wrap: anywhere; }
 }

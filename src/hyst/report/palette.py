@@ -41,5 +41,6 @@ def with_palette(pixels: NDArray[np.uint8]) -> Image.Image:
 
 
 def _nearest(rare: NDArray[np.uint8], kept: NDArray[np.uint8]) -> NDArray[np.intp]:
+    """Give which of the kept colours is next to each rare one."""
     apart = rare[:, None, :].astype(np.float32) - kept[None, :, :]
-    return np.einsum("ijk,ijk->ij", apart, apart).argmin(axis=1)
+    return np.asarray(np.square(apart).sum(axis=2).argmin(axis=1))
