@@ -130,7 +130,15 @@ def _cut(picture: Image.Image, places: Places) -> Iterator[Piece]:
 
 
 def rounded_out(box: Sequence[float], width: int, height: int) -> tuple[int, int, int, int]:
-    """Give a box in whole pixels that holds ``box``, inside a picture of a size."""
+    """Give a box in whole pixels that holds another, inside a picture.
+
+    Parameters
+    ----------
+    box
+        Left, upper, right, lower end, pixels.
+    width, height
+        Of the picture, pixels.
+    """
     left, upper, right, lower = box
     return (
         max(math.floor(left), 0),
