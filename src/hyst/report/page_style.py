@@ -73,7 +73,8 @@ pre { background: var(--box); padding: 0.7rem 0.9rem; overflow-x: auto; border-r
   tr, .panel, .verdict, pre { break-inside: avoid; }
   figcaption { break-before: avoid; }
   .wide, .panel, .equation, pre { overflow: visible; }
-  .panels { padding: 0; }
+  .panels { padding: 0;
+    grid-template-columns: repeat(auto-fit, minmax(16rem, 1fr)) !important; }
   .panels .panel img { min-width: 0; }
   table { font-size: 8.5pt; }
   th, td { white-space: normal; overflow-wrap: anywhere; padding-right: 0.5rem; }
