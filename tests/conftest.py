@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import contextlib
 import ctypes
 import importlib.util
@@ -46,9 +47,12 @@ def measured_data() -> Path:
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave out matplotlib's work on figures that a test does not look at, most of its time.
 
-    Figures are made as ever, only not laid out and turned into pixels.
+    Figures are made as ever, only not laid out and turned into pixels: each is one white pixel.
     """
-    monkeypatch.setattr("hyst.report.canvas.png_of", lambda figure: b"\x89PNG\r\n\x1a\n")
+    pixel = base64.b64decode(
+        "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR42mP4DwABAQEAHLCMmQAAAABJRU5ErkJggg=="
+    )
+    monkeypatch.setattr("hyst.report.canvas.png_of", lambda figure: pixel)
 
 
 @pytest.fixture(scope="session")

@@ -61,7 +61,7 @@ def test_tables_and_files(run: Run, models: tuple[Path, Path], fresh: Path, fold
     assert numbers["models"][0]["metrics"]["rms"] == pytest.approx(rms, rel=1e-9)
     assert numbers["files"]["line"] == str(models[1])
     page = (folder / "out" / "comparison.html").read_text()
-    assert page.count("<img ") == 2
+    assert page.count("<figure>") == 2
     assert "not judged" in page
     assert '<tr class="marked"><td>plays</td>' in page
 

@@ -42,7 +42,7 @@ def test_without_figures_the_rest_is_the_same_and_matplotlib_stays_out(
     numbers = [(folder / out / "metrics.json").read_text() for out in ("with", "without")]
     assert numbers[0] == numbers[1]
     pages = [(folder / out / "report.html").read_text() for out in ("with", "without")]
-    assert [page.count("<img") for page in pages] == [4, 0]
+    assert [page.count("<figure>") for page in pages] == [4, 0]
     assert pages[1].count("<table") == pages[0].count("<table") > 0
     ask = "import hyst.cli, sys; hyst.report.write_report; print('matplotlib' in sys.modules)"
     said = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=True)

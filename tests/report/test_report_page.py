@@ -6,6 +6,7 @@ import base64
 import io
 import json
 import math
+import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -13,6 +14,7 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 import pytest
+from PIL import Image
 
 import hyst
 from hyst.identification import Identified
@@ -134,22 +136,49 @@ def test_the_same_result_gives_the_same_files(
     assert [path.read_bytes() for path in again] == contents
 
 
-def test_the_page_needs_nothing_but_itself(folder: Path, page: str) -> None:
+def test_the_page_needs_nothing_but_itself(page: str) -> None:
     reader = Reader(page)
     names = {tag for tag, _ in reader.tags}
-    assert not names & {"script", "link", "iframe", "object", "embed", "a", "base", "form"}
-    images = [attributes["src"] or "" for tag, attributes in reader.tags if tag == "img"]
-    assert len(images) == len(PICTURES)
-    prefix = "data:image/png;base64,"
-    for source, name in zip(images, PICTURES, strict=True):
-        assert source.startswith(prefix)
-        content = base64.b64decode(source.removeprefix(prefix), validate=True)
-        assert content == (folder / name).read_bytes()
+    assert not names & {"script", "link", "iframe", "object", "embed", "base", "form"}
+    anchors = {f"#{attributes['id']}" for tag, attributes in reader.tags if tag == "h2"}
     for tag, attributes in reader.tags:
-        assert not {"href", "onload", "onerror", "style"} & set(attributes), tag
+        assert not {"onload", "onerror", "style"} & set(attributes), tag
         assert tag == "img" or "src" not in attributes
+        assert "href" not in attributes or (tag == "a" and attributes["href"] in anchors)
     for outside in ("http:", "https:", "url(", "@import", "//cdn"):
         assert outside not in page
+
+
+def test_pictures_of_the_page_are_those_of_the_files_panel_by_panel(
+    folder: Path, page: str
+) -> None:
+    images = [attributes for tag, attributes in Reader(page).tags if tag == "img"]
+    panels = []
+    for name in PICTURES:
+        with Image.open(folder / name) as whole:
+            told = json.loads(whole.info["hyst panels"])["panels"]
+            panels += [(np.asarray(whole.convert("RGB").crop(each["box"])), each) for each in told]
+    # The loop twice, training and validation twice each, four views of the error, two of the model.
+    assert len(images) == len(panels) == 12
+    prefix = "data:image/png;base64,"
+    for image, (expected, told) in zip(images, panels, strict=True):
+        source = image["src"] or ""
+        assert source.startswith(prefix)
+        content = base64.b64decode(source.removeprefix(prefix), validate=True)
+        with Image.open(io.BytesIO(content)) as shown:
+            assert np.array_equal(np.asarray(shown.convert("RGB")), expected)
+        assert image["alt"] == told["words"]
+    assert images[0]["alt"] == "Loop: stroke [um] over drive [V]; record, model"
+
+
+def test_what_matters_comes_first_and_then_what_there_is(page: str) -> None:
+    places = [page.index(part) for part in ('class="verdict', "<figure>", "<nav", "<h2")]
+    assert places == sorted(places)
+    listed = page[page.index("<nav") : page.index("</nav>")]
+    headings = re.findall(r'<h2 id="([a-z0-9-]+)">(.*?)</h2>', page)
+    assert re.findall(r'<a href="#([a-z0-9-]+)">(.*?)</a>', listed) == headings
+    assert len(headings) == len({anchor for anchor, _ in headings}) == 5
+    assert page.count("<nav") == page.count("<h1>") == 1
 
 
 def test_the_page_says_what_was_found(found: Identified, folder: Path, page: str) -> None:
@@ -196,7 +225,7 @@ def test_names_from_the_user_s_file_are_text_and_nothing_else(tmp_path: Path) ->
     )
     reader = Reader(page.read_text(encoding="utf-8"))
     assert not {tag for tag, _ in reader.tags} & {"script", "b", "i", "u", "t"}
-    assert sum(tag == "img" for tag, _ in reader.tags) == len(PICTURES)
+    assert sum(tag == "figure" for tag, _ in reader.tags) == len(PICTURES)
     words = reader.words
     for part in (hostile, "<img src=x>", "<i>note</i>", "<u>.csv", "<b>&", "o'\"'\"'u<t"):
         assert part in words

@@ -19,8 +19,10 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatter, LogFormatterMathtext
-from PIL import Image
 
+from hyst.report.figure_places import places_of
+from hyst.report.palette import with_palette
+from hyst.report.picture_pieces import written_places
 from hyst.report.room import give_room
 
 Parameters = ParamSpec("Parameters")
@@ -92,16 +94,18 @@ def shared_look() -> Iterator[None]:
 
 
 def png_of(figure: Figure) -> bytes:
-    """Lay a figure out and give its pixels."""
+    """Lay a figure out and give its pixels; the file says where each panel is."""
     content = io.BytesIO()
     canvas: Any = FigureCanvasAgg(figure)
-    if figure.get_layout_engine() is None:
-        give_room(figure, canvas.get_renderer())
-    # Not by savefig, which draws everything a second time in case it had to be laid out, and writes
-    # opacity that is 1 everywhere: without it the file is smaller and a third quicker to write.
+    own_room = figure.get_layout_engine() is None
+    cells = give_room(figure, canvas.get_renderer()) if own_room else []
+    # Not by savefig, which draws everything a second time in case it had to be laid out.
     canvas.draw()
-    pixels = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
-    pixels.save(content, "png", compress_level=3, dpi=(_DOTS_PER_INCH, _DOTS_PER_INCH))
+    places = written_places(places_of(figure, cells)) if cells else None
+    dots = (_DOTS_PER_INCH, _DOTS_PER_INCH)
+    # Indices of few colours are written in a fifth of the time of red, green and blue.
+    picture = with_palette(np.asarray(canvas.buffer_rgba()))
+    picture.save(content, "png", compress_level=3, dpi=dots, pnginfo=places)
     return content.getvalue()
 
 

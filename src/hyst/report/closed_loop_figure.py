@@ -49,7 +49,7 @@ def draw_closed_loops(
     """
     if not 1 <= len(loops) <= len(_COLOURS):
         raise InputError(f"there are {len(loops)} loops; give one to {len(_COLOURS)}")
-    figure, (over_time, against, errors, drives) = blank(2, 2, 11.0, 7.0)
+    figure, (over_time, against, errors, drives) = blank(2, 2, 10.0, 7.0)
     longest = max(loops.values(), key=lambda loop: loop.r.size)
     every = _stride(longest)
     over_time.plot(
@@ -82,7 +82,7 @@ def draw_closed_loops(
         steady = [loop.u for loop in loops.values() if loop.diverged_at is None and loop.u.size]
         most = max((float(np.abs(u).max()) for u in steady), default=reach)
         drives.set_ylim(-1.2 * most or None, 1.2 * most or None)
-    figure.legend(loc="outside lower center", ncols=min(3, 1 + len(loops)))
+    figure.legend(loc="outside lower center", ncols=2)
     if heading:
         figure.suptitle(heading)
     return figure

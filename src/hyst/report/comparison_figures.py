@@ -42,11 +42,11 @@ def draw_compared_loops(found: Comparison) -> Figure:
     bytes
         PNG.
     """
-    figure, (left, right) = blank(2, 1, 11.0, 4.9)
+    figure, (left, right) = blank(2, 1, 10.0, 4.9)
     draw_loops_over_input(left, found)
     draw_hystereses(right, found)
     handles, labels = left.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), 4))
+    figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), 2))
     return figure
 
 
@@ -101,14 +101,14 @@ def draw_compared_errors(found: Comparison) -> Figure:
         PNG.
     """
     models = drawn_models(found)
-    figure, axes = blank(1, len(models), 10.0, 0.7 + 1.75 * len(models))
+    figure, axes = blank(1, len(models), 10.0, 0.3 + 2.1 * len(models))
     shown = _shown_error(found)
     for at, colour, each in zip(axes, COLOURS, models, strict=False):
         most = _largest_error(each, found, _windows(found))
         _draw_error(at, found, each, colour)
         at.set_title(_told(each) + (f", cut off: up to {most:.3g}" if most > shown else ""))
         _finish_errors(at, found)
-    axes[-1].set_xlabel("time [s]")
+        at.set_xlabel("time [s]")
     return figure
 
 

@@ -200,6 +200,13 @@ def _page(found: Comparison, figures: dict[str, bytes], files: dict[str, str], d
     first = found.records[0]
     page = Page(f"Models of {first.output_name} over {first.input_name}, side by side")
     page.items(found.sentences())
+    shown = "" if len(found) <= MOST_DRAWN else f" The {MOST_DRAWN} best are shown."
+    page.picture(
+        figures[LOOPS],
+        "The recorded loop and those of the models. Beside it the straight line that fits the "
+        f"record best is taken away, so that the hysteresis fills the picture.{shown}",
+    )
+    page.heading("The errors")
     page.table(compared_errors_table(found))
     page.faint(
         "All models are judged on the same samples. Percentages are of the range of the whole "
@@ -207,15 +214,10 @@ def _page(found: Comparison, figures: dict[str, bytes], files: dict[str, str], d
         "others; a dash: the records hold hardly any. With a free offset the mean error is taken "
         "out. The marked row is the one to take."
     )
+    page.picture(figures[ERRORS], f"Errors over time, all in one scale.{shown}")
+    page.heading("The models")
     page.table(compared_models_table(found))
     page.items(not_invertible_sentences(found))
-    shown = "" if len(found) <= MOST_DRAWN else f" The {MOST_DRAWN} best are shown."
-    page.picture(
-        figures[LOOPS],
-        "The recorded loop and those of the models. On the right the straight line that fits the "
-        f"record best is taken away, so that the hysteresis fills the picture.{shown}",
-    )
-    page.picture(figures[ERRORS], f"Errors over time, all in one scale.{shown}")
     page.heading("The verdicts they were saved with")
     page.items(
         [

@@ -46,11 +46,10 @@ def dynamics_sections(found: Identified) -> tuple[Section, ...]:
     """
     if not isinstance(found, IdentifiedHammerstein):
         return ()
-    first = [] if found.markov is None else [_response(found, found.markov)]
-    sections = [*first, _dynamics(found)]
-    if found.loop.valid.stop > found.loop.valid.start:
-        sections.append(_loop(found))
-    return tuple(sections)
+    has_loop = found.loop.valid.stop > found.loop.valid.start
+    loop = [_loop(found)] if has_loop else []
+    last = [] if found.markov is None else [_response(found, found.markov)]
+    return (*loop, _dynamics(found), *last)
 
 
 def _response(found: IdentifiedHammerstein, markov: MarkovParameters) -> Section:
@@ -104,6 +103,7 @@ def _dynamics(found: IdentifiedHammerstein) -> Section:
         caption="Frequency response of G with its 95 % band"
         + ("." if found.first_dynamics is None else ", and that of the impulse response."),
         files={RESPONSE: found.frequency_response().to_csv().encode()},
+        leads=True,
     )
 
 
@@ -148,6 +148,7 @@ def _loop(found: IdentifiedHammerstein) -> Section:
         png=draw_estimated_loop(found),
         caption="Estimated signal behind the hysteresis over the input, a branch a panel: samples, "
         "their mean with two standard deviations to either side, and the fitted hysteresis.",
+        leads=True,
     )
 
 
@@ -211,10 +212,10 @@ def draw_estimated_loop(found: IdentifiedHammerstein) -> Figure:
         for side, label in ((-2.0, None), (2.0, "two standard deviations")):
             axes.plot(centres, mean + side * deviation, "--", color=SECOND, label=label)
         axes.set_xlabel(with_unit(about.input_name, about.input_unit))
+        axes.set_ylabel(with_unit("signal behind the hysteresis", about.output_unit))
         axes.set_title(f"Input {name}")
         # Single samples far off, in a noisy record, must not flatten the loop.
         axes.set_ylim(*_shown_range(v, fitted))
-    panels[0].set_ylabel(with_unit("signal behind the hysteresis", about.output_unit))
     panels[0].legend(markerscale=4.0, loc="upper left")
     return figure
 

@@ -17,13 +17,13 @@ from hyst.report.canvas import FAINT, MEASURED, MODELLED, SECOND, blank, drawn
 Array = NDArray[np.float64]
 
 _MOST_DECADES = 4.0  # of gain below its largest
-_APART = 8.0  # ratio of frequencies at which two names stand beside each other
+_APART = 40.0  # ratio of frequencies at which two names stand beside each other
 
 
 @drawn
 def draw_dynamics(found: IdentifiedHammerstein) -> Figure:
     """Draw gain and phase of G over frequency with their 95 % bands, as PNG."""
-    figure, (gain, phase) = blank(1, 2, 10.0, 6.4)
+    figure, (gain, phase) = blank(2, 1, 10.0, 4.4)
     response = found.frequency_response()
     frequency = response.frequency
     if found.first_dynamics is not None:
@@ -44,6 +44,7 @@ def draw_dynamics(found: IdentifiedHammerstein) -> Figure:
     _resonances(gain, found)
     gain.set_ylabel("gain of G (1 at rest)")
     phase.set_ylabel("phase of G [degrees]")
+    gain.set_xlabel("frequency [Hz]")
     phase.set_xlabel("frequency [Hz]")
     gain.legend(loc="lower left")
     return figure

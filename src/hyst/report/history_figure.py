@@ -36,8 +36,9 @@ def draw_history(fits: tuple[FittedRecord, ...], heading: str) -> Figure:
         draw_output(whole, fit)
         _draw(close, fit, *_a_few_strokes(fit))
         close.set_title("A closer look")
-    for bottom in axes[-2:]:
-        bottom.set_xlabel("time [s]")
+        close.set_ylabel(with_unit(fit.record.output_name, fit.record.output_unit))
+    for each in axes:
+        each.set_xlabel("time [s]")
     _place_legend(axes[1])
     if heading:
         figure.suptitle(heading)

@@ -39,6 +39,11 @@ LOOP, HISTORY, ERROR, PARTS = "loop.png", "history.png", "error.png", "model.png
 FILES = (MODEL, METRICS, LOOP, HISTORY, ERROR, PARTS, PAGE)
 """Everything a report consists of."""
 
+_LOOP_CAPTION = (
+    "Recorded and modelled loop. Beside it the straight line that fits best is taken away, so that "
+    "the hysteresis fills the picture."
+)
+
 
 @dataclass(frozen=True, eq=False)
 class Section:
@@ -52,6 +57,8 @@ class Section:
         Name of the picture's file, its content, and what there is to see.
     files
         Further files to write beside it, by name.
+    leads
+        Whether it says what the page is read for, so that it stands at its beginning.
     """
 
     heading: str
@@ -61,6 +68,7 @@ class Section:
     png: bytes
     caption: str
     files: Mapping[str, bytes] = field(default_factory=dict)
+    leads: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,19 +183,18 @@ def _page(findings: _Findings, pictures: dict[str, bytes]) -> str:
         page.banner(findings.banner)
     page.verdict(findings.identified.verdict)
     page.items(in_short(findings.identified, findings.records))
-    _show(
-        page,
-        pictures,
-        LOOP,
-        "Recorded and modelled loop. On the right the straight line that fits best is taken away, "
-        "so that the hysteresis fills the picture.",
-    )
+    leading = [each for each in findings.sections if each.leads]
+    if not leading:
+        _show(page, pictures, LOOP, _LOOP_CAPTION)
+    for section in leading:
+        _further(page, section)
     _how_good(page, findings, pictures)
     _the_model(page, findings, pictures)
     _what_was_compared(page, findings)
     _the_data(page, findings)
     for section in findings.sections:
-        _further(page, section)
+        if not section.leads:
+            _further(page, section)
     _what_next(page, findings)
     return page.to_html()
 
@@ -210,6 +217,9 @@ def _how_good(page: Page, findings: _Findings, pictures: dict[str, bytes]) -> No
         "offset the mean of the error is taken out first: sensors drift, and a constant between "
         "model and sensor often means nothing."
     )
+    if any(each.leads for each in findings.sections):
+        # With dynamics, output over input is a cloud: what it shows best is how far they agree.
+        _show(page, pictures, LOOP, _LOOP_CAPTION)
     _show(
         page,
         pictures,

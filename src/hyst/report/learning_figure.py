@@ -46,7 +46,7 @@ def draw_learning(
     bytes
         PNG.
     """
-    figure, axes = blank(2, 3, 11.0, 9.0)
+    figure, axes = blank(2, 3, 10.0, 9.0)
     against, drive, whole, first_error, close, difference = axes
     _draw_errors(against, learner, output[1])
     samples = np.arange(learner.y_ref.size)
@@ -80,7 +80,7 @@ def draw_learning(
     for each_axes, title in titles.items():
         each_axes.set(title=title, xlabel=time)
         each_axes.margins(x=0.01)
-        each_axes.legend(loc="best", fontsize=8.0)
+        each_axes.legend(loc="best")
     drive.set_ylabel(with_unit(*command))
     difference.set_ylabel(with_unit("change", command[1]))
     whole.set_ylabel(with_unit(*output))
@@ -121,4 +121,4 @@ def _draw_errors(axes: Axes, learner: LearningCompensator, unit: str) -> None:
     axes.set_xlim(0.5, len(history) + 0.5)
     axes.set(title="Error against repetition", xlabel="repetition")
     axes.set_ylabel(with_unit("error", unit))
-    axes.legend(loc="best", fontsize=8.0)
+    axes.legend(loc="best")

@@ -54,6 +54,7 @@ def learning_page(
         page.verdict(verdict)
     if then:
         page.text(then)
+    page.heading("From repetition to repetition")
     page.table(learning_table(learner, unit, sources))
     page.faint(
         "Errors are measured output minus reference; the marked repetition is the best. Over the "

@@ -1,5 +1,7 @@
 """A page of HTML that needs nothing but itself: no network, no script, pictures inside.
 
+What comes before the first heading is what matters most; then the page lists its headings.
+
 Everything that comes from a file of the user is escaped where it enters the page.
 """
 
@@ -7,44 +9,15 @@ from __future__ import annotations
 
 import base64
 import html
+import re
 from collections.abc import Sequence
 
 from hyst.operators import Verdict
+from hyst.report.page_style import STYLE
 from hyst.report.table import Table
 
-_STYLE = """
-:root { color-scheme: light; }
-body { margin: 0 auto; padding: 1.5rem 1.25rem 4rem; max-width: 62rem; color: #1f2937;
-  background: #ffffff; font: 16px/1.55 system-ui, -apple-system, "Segoe UI", sans-serif; }
-h1 { font-size: 1.65rem; line-height: 1.25; margin: 0.5rem 0 0.25rem; }
-h2 { font-size: 1.2rem; margin: 2.2rem 0 0.5rem; padding-top: 0.8rem;
-  border-top: 1px solid #e5e7eb; }
-p, ul { margin: 0.5rem 0; max-width: 46rem; }
-.faint { color: #6b7280; font-size: 0.9rem; }
-.banner { background: #fef3c7; border-left: 4px solid #d97706; padding: 0.6rem 0.9rem;
-  font-weight: 600; }
-.verdict { border-left: 6px solid; padding: 0.6rem 0.9rem; max-width: none; }
-.verdict p { margin: 0.2rem 0; max-width: none; }
-.good { background: #dcfce7; border-color: #16a34a; }
-.fair { background: #fef3c7; border-color: #d97706; }
-.unfit { background: #fee2e2; border-color: #dc2626; }
-figure { margin: 1rem 0; }
-figure img { max-width: 100%; height: auto; }
-figcaption { color: #4b5563; font-size: 0.9rem; max-width: 46rem; }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 0.92rem;
-  margin: 0.6rem 0; }
-caption { text-align: left; color: #4b5563; font-size: 0.9rem; padding-bottom: 0.3rem; }
-th, td { text-align: right; padding: 0.22rem 0.9rem 0.22rem 0; white-space: nowrap;
-  border-bottom: 1px solid #f0f1f3; }
-th { color: #4b5563; font-weight: 600; border-bottom: 1px solid #9ca3af; }
-th:first-child, td:first-child { text-align: left; }
-tr.marked td { background: #ffedd5; font-weight: 600; }
-pre, code { font: 0.88rem/1.5 ui-monospace, "Cascadia Mono", Menlo, Consolas, monospace; }
-pre { background: #f3f4f6; padding: 0.7rem 0.9rem; overflow-x: auto; border-radius: 4px; }
-.equation { font: italic 1.08rem/1.8 Georgia, "Times New Roman", serif;
-  margin: 0.6rem 0 0.6rem 1.2rem; }
-"""
+_LONG = 40
+"""Letters from which on the cells of a column are broken into lines."""
 
 
 class Page:
@@ -66,10 +39,19 @@ class Page:
     def __init__(self, title: str) -> None:
         self._title = html.escape(title)
         self._parts = [f"<h1>{self._title}</h1>"]
+        self._headings: dict[str, str] = {}  # by anchor
+        self._first_heading = 0
+        self._sizes: set[tuple[int, int]] = set()
 
     def heading(self, text: str) -> None:
         """Begin a section."""
-        self._parts.append(f"<h2>{html.escape(text)}</h2>")
+        anchor = re.sub("[^a-z0-9]+", "-", text.lower()).strip("-") or "section"
+        if anchor in self._headings:
+            anchor = f"{anchor}-{len(self._headings) + 1}"
+        if not self._headings:
+            self._first_heading = len(self._parts)
+        self._headings[anchor] = html.escape(text)
+        self._parts.append(f'<h2 id="{anchor}">{html.escape(text)}</h2>')
 
     def text(self, text: str) -> None:
         """Add a paragraph."""
@@ -108,10 +90,17 @@ class Page:
 
     def table(self, table: Table) -> None:
         """Add a table."""
-        head = "".join(f"<th>{html.escape(each)}</th>" for each in table.header)
+        columns = [(each, *(row[k] for row in table.rows)) for k, each in enumerate(table.header)]
+        marks = [' class="said"' * any(len(text) > _LONG for text in each) for each in columns]
+        head = "".join(
+            f'<th scope="col"{mark}>{html.escape(each)}</th>'
+            for mark, each in zip(marks, table.header, strict=True)
+        )
         rows = []
         for index, row in enumerate(table.rows):
-            cells = "".join(f"<td>{html.escape(each)}</td>" for each in row)
+            cells = "".join(
+                f"<td{mark}>{html.escape(each)}</td>" for mark, each in zip(marks, row, strict=True)
+            )
             rows.append(
                 f'<tr class="marked">{cells}</tr>' if index == table.marked else f"<tr>{cells}</tr>"
             )
@@ -121,12 +110,29 @@ class Page:
         )
 
     def picture(self, png: bytes, caption: str) -> None:
-        """Add a picture, the bytes ``png``, inside the page; ``caption`` says what it shows."""
-        data = base64.b64encode(png).decode("ascii")
-        words = html.escape(caption)
+        """Add a picture, the bytes ``png``, inside the page; ``caption`` says what it shows.
+
+        Its panels stand beside each other where there is room, else one under another.
+        """
+        # Here, for a page without pictures needs nothing that reads them.
+        from hyst.report.picture_pieces import pieces_of
+
+        heading, columns, pieces = pieces_of(png)
+        shown = [f"<p>{html.escape(heading)}</p>"] if heading else []
+        for each in pieces:
+            self._sizes.add((0, each.least_width))
+            data = base64.b64encode(each.png).decode("ascii")
+            shown.append(
+                f'<div class="panel{" legend" * each.is_legend}"><img class="w{each.least_width}" '
+                f'width="{each.width}" height="{each.height}" '
+                f'alt="{html.escape(each.words or caption)}" '
+                f'src="data:image/png;base64,{data}"></div>'
+            )
+        least = max(each.least_width for each in pieces if not each.is_legend)
+        self._sizes.add((columns, least))
         self._parts.append(
-            f'<figure><img alt="{words}" src="data:image/png;base64,{data}">'
-            f"<figcaption>{words}</figcaption></figure>"
+            f'<figure><div class="panels c{columns}-{least}">{"".join(shown)}</div>'
+            f"<figcaption>{html.escape(caption)}</figcaption></figure>"
         )
 
     def to_html(self) -> str:
@@ -137,10 +143,32 @@ class Page:
         str
             To be written as UTF-8.
         """
-        body = "\n".join(self._parts)
+        first = self._first_heading
+        body = "\n".join([*self._parts[:first], *self._contents(), *self._parts[first:]])
+        style = STYLE + "".join(_size_rule(*each) for each in sorted(self._sizes))
         return (
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
             '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-            f"<title>{self._title}</title>\n<style>{_STYLE}</style>\n</head>\n"
+            f"<title>{self._title}</title>\n<style>{style}</style>\n</head>\n"
             f"<body>\n{body}\n</body>\n</html>\n"
         )
+
+    def _contents(self) -> list[str]:
+        """Give the list of headings, where there are several."""
+        if len(self._headings) < 2:
+            return []
+        lines = "".join(
+            f'<li><a href="#{anchor}">{text}</a></li>' for anchor, text in self._headings.items()
+        )
+        return [f'<nav aria-label="On this page"><ul>{lines}</ul></nav>']
+
+
+def _size_rule(columns: int, least: int) -> str:
+    """Give the rule for pictures, or grids of some columns of them, not to be made narrower."""
+    if not columns:
+        return f".w{least} {{ min-width: {least}px; }}\n"
+    narrowest = f"max(min(100%, {least}px), calc(100% / {columns} - 4px))"
+    return (
+        f".c{columns}-{least} {{ grid-template-columns: "
+        f"repeat(auto-fit, minmax({narrowest}, 1fr)); }}\n"
+    )

@@ -7,6 +7,7 @@ be looked for in each of these passes, stands on the power of ten of the axis be
 
 from __future__ import annotations
 
+import textwrap
 from dataclasses import dataclass
 
 import matplotlib as mpl
@@ -55,7 +56,10 @@ class Around:
         self.above = max(self.above, (box.y1 - panel.y1) / dpi)
 
 
-def give_room(figure: Figure, renderer: RendererAgg) -> None:
+Cell = tuple[float, float, float, float]
+
+
+def give_room(figure: Figure, renderer: RendererAgg) -> list[tuple[Axes, Cell]]:
     """Set the places of all panels of a grid, of their labels and of their titles.
 
     Parameters
@@ -64,6 +68,12 @@ def give_room(figure: Figure, renderer: RendererAgg) -> None:
         With axes in a grid, as ``blank`` makes it.
     renderer
         That of the canvas.
+
+    Returns
+    -------
+    list of tuple
+        Each panel, and left, upper, right and lower end of all that belongs to it: inches from the
+        upper left corner of the figure.
     """
     figure.subplots_adjust(left=0.08, right=0.98, bottom=0.12, top=0.88, wspace=0.18, hspace=0.3)
     spans = [(each, each.get_subplotspec()) for each in figure.axes if each.get_visible()]
@@ -79,11 +89,17 @@ def give_room(figure: Figure, renderer: RendererAgg) -> None:
     height -= _heading(figure) + _foot(figure, renderer)
     x, wide = _shared(width, [each.left for each in columns], [each.right for each in columns])
     y, high = _shared(height, [each.above for each in rows], [each.below for each in rows])
-    whole = figure.get_figheight()
-    lowest = whole - _heading(figure)
+    whole, top, half = figure.get_figheight(), _heading(figure), 0.5 * _BETWEEN
+    found = []
     for axes, at, down in cells:
-        left, low = x[at], lowest - y[down] - high
+        left, low, column, row = x[at], whole - top - y[down] - high, columns[at], rows[down]
         axes.set_position((left / width, low / whole, wide / width, high / whole))
+        upper = top + max(y[down] - row.above - half, 0.0)
+        lower = top + min(y[down] + high + row.below + half, height)
+        found.append(
+            (axes, (left - column.left - half, upper, left + wide + column.right + half, lower))
+        )
+    return found
 
 
 def _shared(
@@ -121,6 +137,7 @@ def _measured(axes: Axes, renderer: RendererAgg, dpi: float) -> Around:
     power = around.above if axes.yaxis.get_offset_text().get_text() else 0.0
     title = axes.get_title(loc="left")
     if title:
+        title = _broken(title, axes.title.get_window_extent(renderer).width, panel.width)
         pad = float(mpl.rcParams["axes.titlepad"]) + power * _POINTS
         axes.set_title(title, loc="left", pad=pad)
         size = float(axes.title.get_fontsize()) * _LINE
@@ -133,6 +150,13 @@ def _measured(axes: Axes, renderer: RendererAgg, dpi: float) -> Around:
         if box is not None:
             around.hold(box, panel, dpi)
     return around
+
+
+def _broken(text: str, length: float, room: float) -> str:
+    """Break a text at spaces into the lines that keep it beside its panel, ``room`` long."""
+    if length <= room or "\n" in text:
+        return text
+    return textwrap.fill(text, max(int(len(text) * room / length), 1), break_long_words=False)
 
 
 def _place_label(axis: Axis, around: Around, renderer: RendererAgg, dpi: float) -> None:
@@ -150,6 +174,9 @@ def _place_label(axis: Axis, around: Around, renderer: RendererAgg, dpi: float) 
         around.hold(box, axes.bbox, dpi)
     if not label.get_text():
         return
+    extent = label.get_window_extent(renderer)
+    length, room = (extent.height, axes.bbox.height) if upright else (extent.width, axes.bbox.width)
+    label.set_text(_broken(label.get_text(), length, room))
     pad = axis.labelpad / _POINTS
     thick = _lines(label.get_text()) * float(label.get_fontsize()) * _LINE / _POINTS
     numbers = around.left if upright else around.below

@@ -52,7 +52,8 @@ def draw_tracking(
     below.axhline(0.0, color=FAINT, zorder=0)
     below.set_title("Tracking error")
     below.set_ylabel(with_unit("error", unit))
-    below.set_xlabel("time [s]")
+    for axes in (above, below):
+        axes.set_xlabel("time [s]")
     above.margins(x=0.01)
     if heading:
         figure.suptitle(heading)

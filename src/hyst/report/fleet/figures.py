@@ -65,7 +65,6 @@ def draw_fleet_distributions(fleet: Fleet) -> Figure:
         _odd_ones(at, values[known & is_odd], widest)
         at.set_title(words)
         at.set_xlabel(with_unit("", fleet.table.units[name]).strip())
-    for at in axes[::3]:
         at.set_ylabel("devices")
     named: dict[str, Artist] = {}
     for at in axes:
@@ -144,7 +143,7 @@ def draw_fleet_loops(fleet: Fleet) -> Figure:
     bytes
         PNG.
     """
-    figure, (whole, opened) = blank(2, 1, 11.0, 4.9)
+    figure, (whole, opened) = blank(2, 1, 10.0, 4.9)
     odd = [each.identifier for each in fleet.outliers]
     named = dict(zip(odd, COLOURS, strict=False))
     devices = [each for each in fleet.devices if each.rising]
@@ -164,9 +163,10 @@ def draw_fleet_loops(fleet: Fleet) -> Figure:
     whole.set_title("Modelled loops, each from 0 to 1")
     opened.set_title("The same without the line from end to end")
     whole.set_ylabel("output, from its lowest to its highest")
+    opened.set_ylabel("output minus the line")
     handles, labels = whole.get_legend_handles_labels()
     if handles:
-        figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), 6))
+        figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), 3))
     return figure
 
 

@@ -174,7 +174,9 @@ def _page(fleet: Fleet, pictures: dict[str, tuple[bytes, str]]) -> str:
                 page.faint("The first are shown; all are in fleet.csv.")
     page.heading("Distributions")
     page.table(fleet_numbers_table(fleet))
-    for png, caption in pictures.values():
-        page.picture(png, caption)
+    if pictures:
+        page.picture(*pictures[DISTRIBUTIONS])
+        page.heading("Loops")
+        page.picture(*pictures[LOOPS])
     page.faint("fleet.csv has a row for each device, models has a file for each that has a model.")
     return page.to_html()

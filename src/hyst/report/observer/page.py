@@ -33,10 +33,12 @@ def observer_page(answer: ObserverAnswer, bode: bytes, loops: bytes) -> str:
     page.banner(answer.verdict())
     page.text(answer.gain_sentence())
     page.text(f"To implement: {answer.implement_sentence()}")
+    page.heading("What it does")
     page.table(checks_table(answer))
     page.table(tracking_table(answer))
     page.faint(SIGNS)
     page.picture(loops, "Reference and output, errors and drives of the loops.")
+    page.heading("Over frequency")
     page.picture(
         bode,
         "What the block leaves of a disturbance against what was asked, the output over the "
@@ -45,6 +47,7 @@ def observer_page(answer: ObserverAnswer, bode: bytes, loops: bytes) -> str:
     )
     for table in feedback_tables(answer):
         page.table(table)
+    page.heading("Other ways, and the filter")
     page.table(rivals_table(answer))
     page.table(filter_table(answer))
     if answer.safe:
