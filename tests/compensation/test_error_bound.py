@@ -21,9 +21,9 @@ PAPER = hyst.PrandtlIshlinskii(P, R, 0.1)
 ROUNDING = 1e-12
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(4))
 def test_it_is_never_violated(seed: int) -> None:
-    """10^4 pairs in all: PI, GPI and MPI models with 0 to 8 plays and unrelated inverses."""
+    """4000 pairs: PI, GPI and MPI with 0 to 8 plays, unrelated inverses; the benchmark has 10^4."""
     rng = np.random.default_rng(seed)
     attained = 0
     for _ in range(1000):
