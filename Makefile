@@ -63,8 +63,9 @@ wheel: $(installed_dev) ## source distribution and wheel into dist/, tried in a 
 	build/wheel/fresh/bin/python -m pip install --quiet --disable-pip-version-check dist/*.whl
 	build/wheel/fresh/bin/python tests/installed/smoke.py examples/stage.csv
 
-test: core-test ## C tests of the core, then pytest
-	$(bin)/python -m pytest $(PYTEST_ARGS)
+test: core-test ## C tests of the core, then pytest, what needs a browser last and by itself
+	$(bin)/python -m pytest $(PYTEST_ARGS) -m "not browser"
+	$(bin)/python -m pytest -m browser tests/studio tests/report/test_page_in_browser.py
 
 core-test: $(installed_dev) ## C tests of the core: double and float, plain and sanitized
 	@$(bin)/cmake -S . -B $(core_build) -G Ninja --log-level=WARNING \

@@ -17,9 +17,12 @@ from hyst.report.page import Page
 from studio import studio_browser
 
 pytest.importorskip("playwright", reason="tests in a browser need Playwright")
-pytestmark = pytest.mark.skipif(
-    studio_browser.CHROMIUM is None, reason="there is no Chromium on this machine"
-)
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(
+        studio_browser.CHROMIUM is None, reason="there is no Chromium on this machine"
+    ),
+]
 
 CONTRAST = (Path(studio_browser.__file__).parent / "contrast.js").read_text()
 LONG = "a_name_of_a_column_that_is_longer_than_the_screen_of_a_phone_is_wide_and_has_no_spaces"

@@ -16,7 +16,10 @@ from hyst.cli import main
 
 pytest.importorskip("nicegui", reason="the studio needs NiceGUI")
 pytest.importorskip("playwright", reason="tests in a browser need Playwright")
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium on this machine")
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium on this machine"),
+]
 
 PATIENCE = 60_000  # ms: other tests may run beside this one
 CONTRAST = (Path(__file__).parent / "contrast.js").read_text()
