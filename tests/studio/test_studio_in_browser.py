@@ -226,6 +226,8 @@ def test_two_tabs_show_the_same(studio: Studio, page: Any) -> None:
     wait(other, "#file-title")
     open_loop(page)
     wait(other, "#record .plots svg")
+    signals = "[...document.querySelectorAll('#record .plots svg')].map(e => e.outerHTML)"
+    assert other.evaluate(signals) == page.evaluate(signals)
     other.close()
     open_file(page, "words.csv", "section:not([data-old]) .said")
 

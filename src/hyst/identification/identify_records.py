@@ -175,20 +175,25 @@ def identify(
         if found.delay is not None:
             diagnosis = diagnosis.with_delay(found.delay, given[0].dt)  # the same in any unit
         say("verdict")
-        identified = identified_from_fit(
-            found.data,
-            found.fit,
-            found.candidates,
-            beside_level(judged, found.data),
-            found.notes,
-            diagnosis,
-            [each.operator for each in found.rivals],
-            found.delay,
-        )
+        identified = _identified(found, judged, diagnosis)
         used = found.fit.family.records_to_use(given, start)[0]
         identified = replace(creeping.told(identified), records=used.records)
         told = found.fit.family.result(identified, found.fit, Overview(found.data, delay))
     return with_driver(traced(told, measured, asked), driver)
+
+
+def _identified(found: Found, judged: Sequence[Record], diagnosis: Diagnosis) -> Identified:
+    """Judge what was found, on its own records and on those of validation."""
+    return identified_from_fit(
+        found.data,
+        found.fit,
+        found.candidates,
+        beside_level(judged, found.data),
+        found.notes,
+        diagnosis,
+        [each.operator for each in found.rivals],
+        found.delay,
+    )
 
 
 def _require_possible(model: Operator, judged: Sequence[Record]) -> None:
